@@ -108,15 +108,15 @@ seen["tpdo_positions_distinct"] = len(set(positions))
 seen["tpdo_times_never_fall"] = all(b >= a for a, b in zip(times, times[1:]))
 
 # An emergency: a target outside the software limits. Heard, and in the history.
-heard = []
-node.emcy.add_callback(lambda error: heard.append(error.code))
+received = []
+node.emcy.add_callback(lambda error: received.append(error.code))
 write(0x607D, -100, 4, 1)
 write(0x607D, 100, 4, 2)
 write(0x6040, 0x0F, 2)
 write(0x607A, target, 4)
 write(0x6040, 0x1F, 2)
-wait("an emergency message", lambda: bool(heard))
-seen["emcy"] = heard[0]
+wait("an emergency message", lambda: bool(received))
+seen["emcy"] = received[0]
 seen["history"] = read(0x1003, 1) & 0xFFFF
 
 # Recovery, then every way of homing, each from where the one before has left the axis.
@@ -149,7 +149,7 @@ seen["homed"] = homed
 
 
 def run_up():
-    """Goes up, off any stop first, until a fault; what was heard of it."""
+    """Goes up, off any stop first, until a fault; returns what was received of it."""
     enabled()
     write(0x6060, 1, 1)
     write(0x6081, 2000, 4)
@@ -157,14 +157,14 @@ def run_up():
     write(0x6040, 0x1F, 2)
     wait("room above", lambda: read(0x6041) & 0x0400 != 0)
     write(0x1003, 0, 1)
-    heard.clear()
+    received.clear()
     write(0x6040, 0x0F, 2)
     write(0x607A, 100_000, 4)
     write(0x6040, 0x1F, 2)
     wait("a fault", lambda: read(0x6041) & 0x4F == 0x08)
     count = read(0x1003)
-    wait("its emergency message", lambda: bool(heard))
-    return {"heard": list(heard), "history": [read(0x1003, sub) & 0xFFFF for sub in range(1, count + 1)]}
+    wait("its emergency message", lambda: bool(received))
+    return {"received": list(received), "history": [read(0x1003, sub) & 0xFFFF for sub in range(1, count + 1)]}
 
 
 # A limit switch with its bit in the execution mask is one fault; without, the axis goes on to the mechanical stop.

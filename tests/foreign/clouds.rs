@@ -1,5 +1,5 @@
-//! Clouds in other people's readers: MCAP in mcap and rosbags, E57 in pye57, PLY and PCD in Open3D.
-//! LAZ in laspy is beside.
+//! Clouds in foreign readers: MCAP in mcap and rosbags, E57 in pye57, PLY and PCD in Open3D, LAZ in
+//! laspy.
 
 use cloud::Summary;
 use serde_json::{Value, json};
@@ -7,7 +7,7 @@ use velomotion_tests::capture::{Captured, Setting};
 
 use super::run_script;
 
-/// Counts as they are, bounds but for rounding to f32.
+/// Checks that counts are equal, and bounds up to rounding to f32.
 fn same(summary: &Summary, got: &Value, least: &str, greatest: &str) {
     let bounds = summary.bounds.unwrap();
     for (name, wanted) in [(least, bounds.min_m), (greatest, bounds.max_m)] {
@@ -36,7 +36,7 @@ fn mcap_and_rosbags_read_our_recording_whole() {
     assert_eq!(got["bag_points"].as_u64(), Some(summary.points));
     same(&summary, &got, "min", "max");
     assert_eq!(got["counts"]["/velomotion/points"], report.sweeps.len());
-    // All but the slowest tenth of the polls, whose instants are not known.
+    // All but the slowest tenth of the polls, whose instants are unknown.
     let samples = report.contents.tilt.as_ref().unwrap().samples;
     let states = got["counts"]["/joint_states"].as_u64().unwrap();
     assert!(
@@ -55,7 +55,7 @@ fn mcap_and_rosbags_read_our_recording_whole() {
         .sum();
     assert_eq!(got["bag_messages"], all);
     let span = got["log_span_ns"].as_i64().unwrap();
-    // rosbags counts the last nanosecond.
+    // rosbags includes the last nanosecond.
     assert_eq!(got["bag_duration_ns"].as_i64(), Some(span + 1));
 
     assert_eq!(
@@ -126,7 +126,7 @@ fn pye57_reads_our_e57_with_the_right_count_and_bounds() {
     assert_eq!(got["rows"], span(cloud.ring()));
     let [least, greatest] = [0, 1].map(|i| got["intensity"][i].as_f64().unwrap() as u8);
     assert_eq!(json!([least, greatest]), span(cloud.intensity()));
-    // After the whole second in which the first point was fired.
+    // Offset from the whole second of the first point.
     let first = cloud.time().iter().min().unwrap().as_nanos();
     for (i, time) in [cloud.time().iter().min(), cloud.time().iter().max()]
         .into_iter()

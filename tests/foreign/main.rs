@@ -1,4 +1,4 @@
-//! Programs of other projects read velomotion's files.
+//! Foreign programs read velomotion's files.
 //!
 //! `VELOMOTION_PYTHON` names a python3 that has the packages of `requirements.txt`; tshark is
 //! Debian's.
@@ -22,7 +22,7 @@ use serde_json::Value;
 use sim::Attachment;
 use velomotion_tests::capture::{Captured, Setting};
 
-/// Runs a program that must succeed, and returns what it printed.
+/// Runs a program that must succeed. Returns its output.
 fn run(mut command: Command) -> String {
     let output = command
         .output()
@@ -37,7 +37,7 @@ fn python() -> Command {
     Command::new(std::env::var_os("VELOMOTION_PYTHON").unwrap_or_else(|| "python3".into()))
 }
 
-/// Runs a script of this folder, and returns the JSON object that it printed.
+/// Runs a script of this folder. Returns the JSON object that it printed.
 fn run_script(name: &str, arguments: &[&Path]) -> Value {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("foreign");
     let mut command = python();
@@ -56,8 +56,8 @@ fn velodyne_decoder_decodes_our_log_to_the_same_points() {
     assert!(result["ours"].as_u64().unwrap() > 180_000, "{result}");
     assert_eq!(result["same_rings"], true, "{result}");
     let of = |name: &str| result[name].as_f64().unwrap();
-    // 1 mm, apart from azimuth: theirs are whole hundredths of a degree, interpolated by whole
-    // hundredths a block, which is up to 3 mm at the hall's 17 m.
+    // Equal to 1 mm apart from azimuth. velodyne-decoder rounds azimuths to hundredths of a degree,
+    // up to 3 mm at the hall's 17 m.
     assert!(of("max_difference_turned_m") < 1e-3, "{result}");
     assert!(of("their_azimuth_off_grid_deg") < 1e-4, "{result}");
     assert!(of("max_azimuth_difference_deg") < 0.0125, "{result}");
@@ -112,7 +112,7 @@ fn tshark_reads_our_log_without_a_malformed_record() {
     assert_eq!(run(command), "");
 }
 
-/// The drive's traffic of a capture over CAN, dissected by somebody else's CANopen.
+/// tshark dissects the drive's traffic of a capture over CAN.
 #[test]
 #[ignore = "needs tshark"]
 fn tshark_reads_the_can_traffic_of_a_capture_as_canopen() {
@@ -129,7 +129,7 @@ fn tshark_reads_the_can_traffic_of_a_capture_as_canopen() {
     let printed = tshark(&["-Y", "canopen"]);
     let frames = printed.lines().count();
     assert!(frames > 1_500, "{frames}");
-    // A SYNC has no data to dissect.
+    // A SYNC has no data.
     assert_eq!(tshark(&["-Y", "can && !canopen && can.len > 0"]), "");
     assert_eq!(tshark(&["-Y", "_ws.malformed"]), "");
 }
@@ -208,7 +208,7 @@ fn python_canopen_runs_our_software_drive_over_slcan() {
     assert_eq!(homed.len(), 15, "{seen}");
     assert!(homed.values().all(|attained| attained == true), "{seen}");
     for (met, error) in [("limit_switch", 0xFF07), ("mechanical_stop", 0x8611)] {
-        assert_eq!(seen[met]["heard"], serde_json::json!([error]), "{seen}");
+        assert_eq!(seen[met]["received"], serde_json::json!([error]), "{seen}");
         assert_eq!(seen[met]["history"], serde_json::json!([error]), "{seen}");
     }
     assert_eq!(seen["enabled_again"], true, "{seen}");

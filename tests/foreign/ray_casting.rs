@@ -1,12 +1,11 @@
-//! Somebody else's ray caster (open3d, over embree) meets a mesh of 100,000 triangles where ours
-//! does.
+//! open3d, over embree, hits a mesh of 100,000 triangles where the simulator does.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use sim::cast::{Caster, Hit, Mesh, Object, Ray, Rays, Reach, Threads};
 
-/// Coordinates that f32 holds exactly, so that both cast at one mesh.
+/// Rounds to f32, so that both cast at the same mesh.
 fn short(value: f64) -> f64 {
     f64::from(value as f32)
 }
@@ -32,7 +31,7 @@ fn hills() -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
     (vertices, triangles)
 }
 
-/// Turns of a VLP-16 two metres above the ground, a little lower each time.
+/// Revolutions of a VLP-16 two metres above the ground, each slightly lower.
 fn firings() -> Vec<Ray> {
     let mut rays = Vec::new();
     for firing in 0..7_200_u32 {
@@ -46,7 +45,7 @@ fn firings() -> Vec<Ray> {
                 elevation.sin(),
             ]
             .map(short);
-            // f32 leaves the length within 1e-7 of 1: the same ray for both.
+            // f32 keeps the length within 1e-7 of 1: the same ray for both.
             rays.push(Ray::new([0.25, 0.125, 2.0].into(), along.into()).unwrap());
         }
     }
@@ -100,7 +99,7 @@ fn open3d_meets_a_mesh_of_100_000_triangles_at_the_same_ranges() {
     assert_eq!(of("rays"), 115_200);
     assert!(of("hits") > 50_000, "{result}");
     assert_eq!(of("apart_elsewhere"), 0, "{result}");
-    // Silhouettes are few, and few of them apart.
+    // Rays at silhouettes are few, and few of them differ.
     assert!(
         of("silhouette") < 3_000 && of("apart_at_silhouettes") < 300,
         "{result}"

@@ -1,4 +1,4 @@
-//! Bad requests, and good ones in any order: PyPI schemathesis makes them from the daemon's own
+//! Valid and invalid requests that PyPI's schemathesis derives from the daemon's OpenAPI
 //! description.
 
 use std::path::Path;
@@ -6,10 +6,10 @@ use std::path::Path;
 use daemon::{Daemon, Options};
 use velomotion_tests::bench::Bench;
 
-/// What is always right to ask, and moves the axis or stops it.
+/// Requests that are always valid and move or stop the axis.
 const COMMANDS: &str = "home$|stop$|clear$";
 
-/// A daemon on a software scanner, in folders of its own.
+/// A daemon on a software scanner with its own folders.
 fn daemon(bench: &Bench, folder: &Path) -> Daemon {
     let mut config = bench.config();
     config.daemon.scans = Some(folder.join("scans"));
@@ -53,8 +53,8 @@ fn fuzz(daemon: &Daemon, folder: &Path, more: &[&str]) {
             "--seed",
             "1",
         ])
-        // What an axis can do depends on its configuration, and whether it can now on what it does:
-        // a good request may be refused.
+        // The axis's limits depend on its configuration and its readiness on its activity: a valid
+        // request may be refused.
         .args(["--exclude-checks", "positive_data_acceptance"])
         .args([
             "--request-timeout",
@@ -64,13 +64,13 @@ fn fuzz(daemon: &Daemon, folder: &Path, more: &[&str]) {
             "off",
         ])
         .args(more)
-        // It remembers what it tried.
+        // schemathesis keeps a database of its examples.
         .current_dir(folder)
         .output()
         .unwrap();
-    let said = String::from_utf8_lossy(&output.stdout);
-    assert!(output.status.success(), "{said}");
-    assert!(said.contains("cases"), "nothing was tried: {said}");
+    let printed = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success(), "{printed}");
+    assert!(printed.contains("cases"), "nothing was tried: {printed}");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Somebody else's decoder reads simulated packets: its points lie on the scene's surfaces.
+//! velodyne-decoder reads simulated packets: its points lie on the scene's surfaces.
 
 use std::num::NonZeroUsize;
 use std::path::Path;
@@ -11,8 +11,8 @@ use velomotion::terminal::Progress;
 
 use crate::run_script;
 
-/// How far a point is from the nearest surface: along the axes and their diagonals, which is at
-/// most 1.1 times too far.
+/// Distance of a point from the nearest surface, along axes and diagonals, at most 1.1 times too
+/// large.
 fn from_surface_m(scene: &sim::Scene, point: DVec3) -> f64 {
     let steps = || [-1.0, 0.0, 1.0].into_iter();
     let ways =
@@ -31,8 +31,8 @@ fn velodyne_decoder_puts_simulated_points_on_the_scenes_surfaces() {
         ("vlp16", "VLP16", 0.002, 0.0),
         ("hi-res", "PuckHiRes", 0.002, 0.0),
         ("hdl32e", "HDL32E", 0.002, 0.0),
-        // Where its rays start is not published: we let them start in one point, they where a
-        // VLP-16's do, which is taken off.
+        // The origin of a VLP-32C's rays is not published. The simulator uses one point,
+        // velodyne-decoder a VLP-16's offset, which is subtracted.
         ("vlp32c", "VLP32C", 0.004, 0.041_91),
     ] {
         let folder = tempfile::tempdir().unwrap();
@@ -66,8 +66,7 @@ fn velodyne_decoder_puts_simulated_points_on_the_scenes_surfaces() {
         let numbers: Vec<f64> = (bytes.as_chunks().0.iter())
             .map(|bytes| f64::from_le_bytes(*bytes))
             .collect();
-        // 2 mm, and half a unit of range. (What they round azimuths by moves points along most
-        // surfaces.)
+        // 2 mm and half a unit of range. (Rounded azimuths move points along most surfaces.)
         let bound_m = 0.002 + 0.5 * unit_m;
         let mut worst_m = 0.0_f64;
         for [x, y, z] in numbers.as_chunks().0 {

@@ -1,4 +1,4 @@
-//! Angles: motions and samples at which arithmetic, or a fit, is hard.
+//! Motions and samples that make arithmetic or a fit hard.
 
 use cloud::mount::{Mount, Tilt};
 use scanner::AngleSample;
@@ -12,10 +12,10 @@ const TODAY: Stamp<Host> = Stamp::from_nanos(1_795_226_733_000_000_000);
 /// 2100-01-01 00:00:00 UTC and a nanosecond.
 const IN_2100: Stamp<Host> = Stamp::from_nanos(4_102_444_800_000_000_001);
 const QUANTUM_DEG: f64 = 0.0015;
-/// When the motion begins.
+/// Beginning of the motion.
 const START_S: f64 = 0.2;
 
-/// A trapezoid whose ramps need not be alike, or a triangle.
+/// A trapezoid, possibly with unequal ramps, or a triangle.
 #[derive(Clone, Copy, Debug)]
 struct Motion {
     way_deg: f64,
@@ -32,7 +32,7 @@ const CARD: Motion = Motion {
 };
 
 impl Motion {
-    /// The speed it reaches, and when it brakes and rests, after its start.
+    /// Speed reached, and times of braking and rest after the start.
     fn corners(&self) -> (f64, f64, f64) {
         let way = self.way_deg.abs();
         let ramps = |v: f64| v * v / 2.0 * (1.0 / self.up_deg_s2 + 1.0 / self.down_deg_s2);
@@ -57,12 +57,12 @@ impl Motion {
         } else {
             self.way_deg.abs() - (end_s - t).powi(2) / 2.0 * self.down_deg_s2
         };
-        // 0 x infinity where a ramp takes no time.
+        // Infinity times zero for a ramp without duration.
         let way = if way.is_finite() { way } else { 0.0 };
         way.copysign(self.way_deg)
     }
 
-    /// Polled at `hz` with an even round trip of twice `half_s`, from rest to rest.
+    /// Polls at `hz` with a symmetric round trip of twice `half_s`, from rest to rest.
     fn polls(&self, epoch: Stamp<Host>, hz: f64, half_s: f64) -> Vec<AngleSample> {
         let end_s = START_S + self.corners().2 + 0.3;
         let times = (0..).map(|k| 0.013 + f64::from(k) / hz);
@@ -91,7 +91,7 @@ impl Motion {
         }
     }
 
-    /// The greatest error in a sweep, degrees.
+    /// Greatest error in a sweep, degrees.
     fn worst_deg(&self, trajectory: &Trajectory, sweep: &Sweep, epoch: Stamp<Host>) -> f64 {
         let (from, to) = (
             (sweep.start - epoch).as_secs_f64(),
@@ -121,7 +121,7 @@ fn methods() -> impl Iterator<Item = Option<Method>> {
     Method::ALL.map(Some).into_iter().chain([None])
 }
 
-/// Either a fit is well conditioned, or it says what it did about it.
+/// Checks that a fit is well conditioned or reports its regularisation.
 fn says_why(trajectory: &Trajectory) -> bool {
     trajectory.fits().iter().all(|fit| {
         let regularised = fit
@@ -129,15 +129,15 @@ fn says_why(trajectory: &Trajectory) -> bool {
             .iter()
             .any(|r| matches!(r, Remark::Regularised(_)));
         let well = fit.condition.is_none_or(|condition| condition < 1e6);
-        // Nobody knows the angle of an axis that moves exactly from steps of an encoder.
+        // Encoder steps cannot determine the angle of a moving axis exactly.
         let exact = fit.method.is_fit() && fit.rms_deg > 0.0 && fit.sd_deg < 1e-6;
         let humble = fit.sd_deg.is_finite() && !exact;
         (well || regularised) && humble
     })
 }
 
-/// Nanoseconds since 1970 do not fit a double: whatever went through one would be off by a quarter
-/// of a microsecond, in f32 seconds of the hour by 244 us, which is 0.014 degrees here.
+/// Nanoseconds since 1970 exceed a double. Conversion to one costs a quarter of a microsecond;
+/// conversion to f32 seconds of the hour costs 244 us, 0.014 deg here.
 #[test]
 fn angles_of_2100_are_those_of_today() {
     for method in methods() {
@@ -151,7 +151,7 @@ fn angles_of_2100_are_those_of_today() {
             };
             assert_eq!(angle(&today, TODAY), angle(&then, IN_2100), "{method:?}");
         }
-        // A nanosecond is seen.
+        // One nanosecond changes the angle.
         let angle = |ns| then.angle(at(IN_2100 + Span::from_nanos(ns))).unwrap().0;
         if method != Some(Method::Nearest) {
             let step = angle(700_000_001) - angle(700_000_000);
@@ -160,8 +160,7 @@ fn angles_of_2100_are_those_of_today() {
     }
 }
 
-/// Motions at the edge of being one: where a division by a ramp, a speed or a way would be one by
-/// nothing.
+/// Degenerate motions: divisions by a ramp, a speed or a distance would be divisions by zero.
 #[test]
 fn motions_at_the_edge() {
     for (name, motion, most_deg) in [
@@ -201,7 +200,7 @@ fn motions_at_the_edge() {
             },
             0.003,
         ),
-        // A ramp within a poll: where in it the axis set off is known to half a poll.
+        // A ramp shorter than a poll: its start is known to half a poll.
         (
             "an acceleration without limit",
             Motion {
@@ -250,35 +249,35 @@ fn motions_at_the_edge() {
         for method in methods() {
             let trajectory = through(samples.clone(), sweep, method);
             let worst = motion.worst_deg(&trajectory, &sweep, TODAY);
-            let said = format!("{name}, {method:?}: {worst}, {:?}", trajectory.fits());
-            assert!(says_why(&trajectory), "{said}");
+            let printed = format!("{name}, {method:?}: {worst}, {:?}", trajectory.fits());
+            assert!(says_why(&trajectory), "{printed}");
             let bound = trajectory.bound_deg(&[(sweep.start, sweep.end)]);
-            // A spline has no corners, which an acceleration without limit makes.
+            // A spline has no corners; an unlimited acceleration makes one.
             let corner = method == Some(Method::Spline) && motion.up_deg_s2 > 1e6;
-            // Of a motion over few counts a fit knows no more than the count.
+            // Over few counts a fit knows no more than the count.
             let known = bound.max(QUANTUM_DEG);
-            assert!(corner || worst <= known, "{said}, bound {bound}");
+            assert!(corner || worst <= known, "{printed}, bound {bound}");
             if method.is_none() {
-                assert!(worst < most_deg, "{said}");
+                assert!(worst < most_deg, "{printed}");
             }
         }
     }
 }
 
-/// What a drive was told may be missing, or nonsense: the motion is then told by the samples alone.
+/// The commanded motion may be missing or wrong: the samples alone then give the motion.
 #[test]
 fn a_motion_of_which_nothing_is_known() {
-    let told = |speed, up, down| Commanded {
+    let reported = |speed, up, down| Commanded {
         speed: DegPerS(speed),
         acceleration: DegPerS2(up),
         deceleration: DegPerS2(down),
     };
     for commanded in [
         Commanded::NOTHING,
-        told(56.25, f64::INFINITY, f64::INFINITY),
-        told(56.25, 0.0, 500.0),
-        told(1e-9, 500.0, 500.0),
-        told(f64::INFINITY, 500.0, 500.0),
+        reported(56.25, f64::INFINITY, f64::INFINITY),
+        reported(56.25, 0.0, 500.0),
+        reported(1e-9, 500.0, 500.0),
+        reported(f64::INFINITY, 500.0, 500.0),
     ] {
         let sweep = Sweep {
             commanded,
@@ -291,8 +290,8 @@ fn a_motion_of_which_nothing_is_known() {
     }
 }
 
-/// A recording may end anywhere in a sweep (a cable, the power, Ctrl-C): what comes after the last
-/// sample is in no sample, and way and last ramp cannot be told.
+/// A recording may end anywhere in a sweep (cable, power, Ctrl-C). Nothing after the last sample is
+/// known, so distance and last ramp cannot be fitted.
 #[test]
 fn samples_end_in_mid_sweep() {
     for part in [0.02, 0.06, 0.125, 0.2, 0.5, 0.88, 0.95, 0.99] {
@@ -323,8 +322,8 @@ fn samples_end_in_mid_sweep() {
     }
 }
 
-/// The cruise alone: start and beginning, ramps and way are one straight line together, and an
-/// unregularised fit's condition would be 1e7 and more. With both ramps it is some tens.
+/// Without ramps start time, start angle, ramps and distance are one straight line, and an
+/// unregularised fit's condition number exceeds 1e7. With both ramps it is some tens.
 #[test]
 fn the_cruise_alone_is_a_fit_that_says_so() {
     let whole = CARD.sweep(TODAY);
@@ -362,7 +361,7 @@ fn the_cruise_alone_is_a_fit_that_says_so() {
     }
 }
 
-/// Three samples in a sweep, the rest at rest: fewer than a motion has parameters.
+/// Three samples within a sweep: fewer than a motion has parameters.
 #[test]
 fn a_sweep_of_three_samples() {
     let sweep = CARD.sweep(TODAY);
@@ -375,26 +374,26 @@ fn a_sweep_of_three_samples() {
         let trajectory = through(samples.clone(), sweep, method);
         let worst = CARD.worst_deg(&trajectory, &sweep, TODAY);
         assert!(says_why(&trajectory), "{method:?}: {:?}", trajectory.fits());
-        // Half of the way between two samples, at worst.
+        // At worst half of the distance between two samples.
         assert!(worst < 56.25 / 3.0, "{method:?}: {worst}");
         let bound = trajectory.bound_deg(&[(sweep.start, sweep.end)]);
         assert!(worst <= bound, "{method:?}: {worst}, bound {bound}");
     }
 }
 
-/// Stamps of one instant: a coarse clock, or frames read from one buffer. Differences of time are
+/// Samples with equal stamps, from a coarse clock or one read buffer. Differences of time are
 /// divisors.
 #[test]
 fn samples_of_identical_times() {
     let sweep = CARD.sweep(TODAY);
     let samples = CARD.polls(TODAY, 400.0, 0.2e-3);
-    // In pairs, of which the second is late by a poll and disagrees.
+    // In pairs whose second sample is late by a poll and disagrees.
     let mut pairs = samples.clone();
     for pair in pairs.chunks_mut(2) {
         let host = pair[0].host;
         pair.iter_mut().for_each(|s| s.host = host);
     }
-    // All that there are.
+    // All samples at one instant.
     let mut instant = samples;
     instant.iter_mut().for_each(|s| s.host = sweep.start);
     for method in methods() {
@@ -409,8 +408,8 @@ fn samples_of_identical_times() {
     }
 }
 
-/// A turn worked out step by step from the last one drifts: a quaternion in f32 by thousandths of a
-/// degree over a slow scan's 2e5 firings. Each tilt here is worked out from its own angle.
+/// A rotation accumulated step by step drifts: in f32 quaternions by thousandths of a degree over
+/// the 2e5 firings of a slow scan. Here each tilt follows from its own angle.
 #[test]
 fn tilts_do_not_drift_over_a_slow_scan() {
     const STEPS: u32 = 200_000;
@@ -427,7 +426,8 @@ fn tilts_do_not_drift_over_a_slow_scan() {
             cos * step_cos - sin * step_sin,
         );
         let gamma = Degrees(step_deg * f64::from(k));
-        // As a block is placed: from the angle at its beginning, a fraction of a degree ahead.
+        // As in the placement of a block: from the angle at its beginning, a fraction of a degree
+        // ahead.
         let block = Tilt::new(Degrees(gamma.0 - 0.005));
         let ahead = block.ahead(0.005_f64.to_radians());
         let point = [60.0, 20.0, -70.0];

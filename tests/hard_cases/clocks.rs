@@ -1,19 +1,19 @@
-//! Clocks: set in mid-sweep, begun anew, and times at which arithmetic is hard.
+//! Clocks that are set or restarted, and times that make arithmetic hard.
 
 use scanner::clock::{Arrival, LidarClock, OnlineClock};
 use sim::Attachment;
 use units::{Host, Lidar, Span, Stamp};
 use velomotion_tests::capture::{Captured, Setting};
 
-/// Half way through the usual setting's sweep, which begins after homing.
+/// The middle of the usual setting's sweep, which follows homing.
 fn mid_sweep(setting: Setting) -> Span {
     let (begin, end) = Captured::new(setting).sweep_span();
     begin.saturating_since(setting.start) + (end - begin).half()
 }
 
-/// NTP sets the host's clock while the platform moves: half of the packets and polls are stamped by
-/// another clock than the rest, and the pairing of requests and answers sees time go back. The
-/// cloud must be as good as any.
+/// NTP sets the host's clock during the sweep. Half of the packets and polls carry stamps of
+/// another clock, and the pairing of requests and answers sees time run back. The cloud must be as
+/// accurate as usual.
 #[test]
 fn the_hosts_clock_is_set_in_mid_sweep() {
     for attached in [Attachment::Usb, Attachment::Rs232, Attachment::Can] {
@@ -31,42 +31,42 @@ fn the_hosts_clock_is_set_in_mid_sweep() {
                 };
                 let captured = Captured::new(setting);
                 let (scan, cloud) = captured.scan();
-                let said = format!("{attached:?} {} s", by.as_secs_f64());
+                let printed = format!("{attached:?} {} s", by.as_secs_f64());
                 let [step] = scan.sync.steps[..] else {
-                    panic!("{said}: {:?}", scan.sync.steps);
+                    panic!("{printed}: {:?}", scan.sync.steps);
                 };
-                assert_eq!(step.clock, "host", "{said}");
+                assert_eq!(step.clock, "host", "{printed}");
                 assert!(
                     (step.by_s - by.as_secs_f64()).abs() < 50e-6,
-                    "{said}: {step:?}"
+                    "{printed}: {step:?}"
                 );
                 let when = step.when_s - (setting.start + middle).as_secs_f64();
-                assert!(when.abs() < 10e-3, "{said}: {step:?}");
+                assert!(when.abs() < 10e-3, "{printed}: {step:?}");
                 let warned = scan
                     .contents
                     .warnings
                     .iter()
                     .filter(|w| w.contains("host's clock was set"));
-                assert_eq!(warned.count(), 1, "{said}: {:?}", scan.contents.warnings);
+                assert_eq!(warned.count(), 1, "{printed}: {:?}", scan.contents.warnings);
                 let error = captured.error();
                 assert!(
                     cloud.len().abs_diff(points) < 2_000,
-                    "{said}: {} points",
+                    "{printed}: {} points",
                     cloud.len()
                 );
                 assert!(
                     error.worst_m < undisturbed.worst_m * 1.2 + 1e-3
                         && error.rms_m < undisturbed.rms_m * 1.1,
-                    "{said}: {error:?}, undisturbed {undisturbed:?}"
+                    "{printed}: {error:?}, undisturbed {undisturbed:?}"
                 );
-                assert!(cloud.time().is_sorted(), "{said}");
+                assert!(cloud.time().is_sorted(), "{printed}");
             }
         }
     }
 }
 
-/// A leap second is inserted by setting the clock back at midnight UTC: 2016-12-31 23:59:60, the
-/// last one so far, during the sweep.
+/// A leap second sets the clock back at midnight UTC: 2016-12-31 23:59:60, the latest so far,
+/// during the sweep.
 #[test]
 fn a_scan_across_a_leap_second() {
     let midnight = Stamp::<Host>::from_nanos(1_483_228_800_000_000_000);
@@ -91,8 +91,8 @@ fn a_scan_across_a_leap_second() {
     );
 }
 
-/// The first pulse per second sets the lidar's clock, here back as well, so that its times come
-/// twice within the sweep; or it begins anew. Host times and angles are as if nothing had been.
+/// The first pulse per second sets the lidar's clock back, so that its times repeat within the
+/// sweep; or the clock restarts. Host times and angles stay the same.
 #[test]
 fn the_lidars_clock_is_set_in_mid_sweep() {
     let middle = mid_sweep(Setting::default());
@@ -113,7 +113,7 @@ fn the_lidars_clock_is_set_in_mid_sweep() {
             "{by_us}: {step:?}"
         );
         assert!(cloud.time().is_sorted(), "{by_us}");
-        // The simulator knows times by the clock that nobody set.
+        // The simulator's times are those of the clock before it was set.
         let (mut last, mut set) = (None::<Stamp<Lidar>>, false);
         let truth = |time: Stamp<Lidar>, laser| {
             let went = last.map_or(Span::ZERO, |last| time - last);
@@ -152,7 +152,7 @@ fn arrival(device: i64, host: i64) -> Arrival {
     }
 }
 
-/// 2100-01-01 in nanoseconds needs 62 bits, a double has 53: whatever goes through one loses half a
+/// 2100-01-01 in nanoseconds needs 62 bits, a double has 53: conversion to one costs half a
 /// microsecond.
 #[test]
 fn the_year_2100() {
@@ -172,21 +172,21 @@ fn the_year_2100() {
     assert!((moment.host - last.host).as_nanos().abs() < 50_000);
 }
 
-/// Identical stamps make no slope: the earliest arrival counts.
+/// Identical stamps have no slope: the earliest arrival counts.
 #[test]
 fn packets_of_one_instant() {
     let arrivals = [30, 10, 20].map(|late| arrival(0, late));
     let clock = LidarClock::fit(&arrivals).unwrap();
     assert_eq!(clock.host(Stamp::from_nanos(0)).as_nanos(), 10);
     assert_eq!(clock.drift_ppm(), 0.0);
-    // And a thousand identical ones, which have a spread of nothing.
+    // A thousand identical stamps have no spread.
     let clock = LidarClock::fit(&[arrival(5, 7); 1_000]).unwrap();
     assert_eq!(clock.host(Stamp::from_nanos(5)).as_nanos(), 7);
     assert!(clock.bound() < Span::from_millis(1));
 }
 
-/// One packet gives an offset, two no drift of a thousand ppm out of their jitter; and the bound
-/// admits how little that is.
+/// One packet gives an offset. Two must not give a drift of 1000 ppm out of jitter, and the bound
+/// shows how little is known.
 #[test]
 fn one_packet_and_two() {
     let one = LidarClock::fit(&[arrival(5, 1_000)]).unwrap();
@@ -203,7 +203,7 @@ fn one_packet_and_two() {
     assert!(LidarClock::fit(&[]).is_none());
 }
 
-/// Packets that overtake each other on the way are the same packets.
+/// Packets that overtake each other are the same packets.
 #[test]
 fn packets_out_of_order() {
     let in_order: Vec<Arrival> = (0..20_000)
@@ -230,8 +230,8 @@ fn packets_out_of_order() {
     assert!(apart.as_nanos().abs() < 40_000, "{apart:?}");
 }
 
-/// While packets come in, a clock that is set is noticed: at once where time goes back, within five
-/// seconds where it leaps.
+/// Online, a clock that was set is detected: at once if time runs back, within five seconds if it
+/// jumps forward.
 #[test]
 fn the_online_clock_begins_anew() {
     for (device_by, host_by, within) in [

@@ -1,4 +1,4 @@
-//! The lidar: its clock, its rotor, its link.
+//! The lidar's clock, rotor and link.
 
 mod hours;
 mod order;
@@ -12,34 +12,34 @@ use protocol::vlp16::PositionPacket;
 use units::{Host, Span, Stamp};
 
 const HOUR_NS: i64 = HOUR_US as i64 * 1_000;
-/// Two sequences share a block, and its azimuth.
+/// A block holds two firing sequences and one azimuth.
 const BLOCK_NS: i64 = 2 * SEQUENCE_PERIOD_NS;
-/// Some hour of 2023.
+/// An hour of 2023.
 const BEGIN_NS: i64 = 470_000 * HOUR_NS;
-/// Azimuths are whole hundredths of a degree on the wire.
+/// Azimuths are hundredths of a degree on the wire.
 const WIRE_DEG: f64 = 0.005;
 /// Stamps are whole microseconds.
 const WIRE_NS: i64 = 1_000;
 
-/// A head whose angle is a function of time, and where it fires.
+/// A head whose angle is a function of time, with the azimuths at which it fires.
 struct Head<A, S> {
-    /// Degrees after so many seconds, not brought back below 360.
+    /// Angle in degrees as a function of seconds, not wrapped at 360.
     angle_deg: A,
     /// Whether it fires at an azimuth.
     sees: S,
-    /// Device time of its first block.
+    /// Device time of the first block.
     begin_ns: i64,
     dual: bool,
 }
 
-/// A UDP payload and when it arrives.
+/// A UDP payload and its arrival time.
 #[derive(Clone)]
 struct Packet {
     host: Stamp<Host>,
     bytes: Vec<u8>,
 }
 
-/// What the decoder made of one firing.
+/// The decoder's output for one firing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Seen {
     ns: i64,
@@ -48,7 +48,7 @@ struct Seen {
     range_m: f64,
 }
 
-/// A head at a steady speed that fires all round.
+/// A head at constant speed that fires at all azimuths.
 fn steady(rpm: f64, begin_ns: i64) -> Head<impl Fn(f64) -> f64, impl Fn(f64) -> bool> {
     Head {
         angle_deg: move |s: f64| 6.0 * rpm * s,
@@ -63,7 +63,7 @@ impl<A: Fn(f64) -> f64, S: Fn(f64) -> bool> Head<A, S> {
         (self.angle_deg)((ns - self.begin_ns) as f64 * 1e-9).rem_euclid(360.0)
     }
 
-    /// The first packets, and device time of every sequence in them.
+    /// The first packets, and device times of all their sequences.
     fn packets(&self, count: usize) -> (Vec<Packet>, Vec<i64>) {
         let blocks = if self.dual { 6 } else { 12 };
         let ticks = (0..).map(|k| self.begin_ns + k * BLOCK_NS);
@@ -99,7 +99,7 @@ impl<A: Fn(f64) -> f64, S: Fn(f64) -> bool> Head<A, S> {
     }
 }
 
-/// A distance that is different for each sequence of half a second.
+/// A distance that is unique within half a second.
 fn range_raw(since_ns: i64) -> u16 {
     (1_000 + since_ns / SEQUENCE_PERIOD_NS % 9_000) as u16
 }
@@ -127,7 +127,7 @@ fn apart_deg(a: f64, b: f64) -> f64 {
     apart.min(360.0 - apart)
 }
 
-/// Every firing when, where and of the range that it was; device time forwards.
+/// Checks time, azimuth and range of every firing against the head.
 fn assert_true<A: Fn(f64) -> f64, S: Fn(f64) -> bool>(
     head: &Head<A, S>,
     seen: &[Seen],
@@ -144,9 +144,9 @@ fn assert_true<A: Fn(f64) -> f64, S: Fn(f64) -> bool>(
         );
         let raw = (seen.range_m / 0.002).round() as u16;
         assert_eq!(raw, range_raw(truth - head.begin_ns), "firing {i}");
-        // Between two azimuths of the wire their rounding is all. Behind the last of a packet whose
-        // successor is missing, or before a gap, the step of the block before is carried on, a
-        // hundredth off at most, for up to 0.82 of a block.
+        // Between two azimuths of the wire only their rounding counts. Behind the last block of a
+        // packet without successor, or before a gap, the last step is extrapolated, with at most a
+        // hundredth of error, for up to 0.82 of a block.
         let carried_on = i % per_packet >= per_packet - 2 || slack_ns > 0;
         let tolerance_deg = if carried_on {
             2.7 * WIRE_DEG
@@ -174,10 +174,10 @@ fn nothing_amiss(stats: &Stats) {
     assert_eq!(odd, [0; 8], "{stats:?}");
 }
 
-/// 36000 is not a legal azimuth by the manual, and sensors send it; it is 0, not 360 beside 0.01.
+/// 36000 is invalid by the manual, and sensors send it; it means 0, not 360.
 #[test]
 fn azimuth_36000_is_0() {
-    // 0.36 deg a block: every thousandth azimuth is exactly 0.
+    // 0.36 deg per block: every thousandth azimuth is exactly 0.
     let head = steady(0.36 / 6.0 / (BLOCK_NS as f64 * 1e-9), BEGIN_NS);
     let (mut packets, truth) = head.packets(170);
     let mut replaced = 0;
@@ -199,7 +199,7 @@ fn azimuth_36000_is_0() {
     nothing_amiss(&stats);
 }
 
-/// The step from 359.9 to 0.1 deg is 0.2, wherever in the packet it falls, or between two.
+/// The step from 359.9 to 0.1 deg is 0.2 deg, anywhere in a packet or between two.
 #[test]
 fn azimuth_wraps_anywhere_in_a_packet() {
     for blocks_before in 0..14 {
@@ -224,8 +224,8 @@ fn azimuth_wraps_anywhere_in_a_packet() {
     }
 }
 
-/// A packet goes on filling behind the gap, 155 ms later than its place in the packet says;
-/// interpolating over the jump smears azimuths over the part of the turn that was never seen.
+/// A limited field of view: a packet continues behind the gap, 155 ms later than its place says.
+/// Interpolation over the jump would put azimuths into the unseen part of the revolution.
 #[test]
 fn blocks_behind_the_gap_of_a_limited_view_fired_a_gap_later() {
     for (dual, rpm) in [(false, 300.0), (true, 300.0), (false, 1_200.0)] {
@@ -248,8 +248,8 @@ fn blocks_behind_the_gap_of_a_limited_view_fired_a_gap_later() {
     }
 }
 
-/// One laser sees two surfaces, one sees only a last return, one only a strongest, one both at one
-/// distance, one nothing.
+/// One laser sees two surfaces, one only a last return, one only a strongest, one both at one
+/// distance, one none.
 #[test]
 fn dual_returns_may_be_missing_on_either_side() {
     let mut last: Returns = [(0, 0); LASERS];
@@ -316,9 +316,9 @@ fn dual_returns_may_be_missing_on_either_side() {
     }
 }
 
-/// Firmware before 3.0.29 has no factory bytes, and what stands there is the HDL-32E's: with its
-/// timing every azimuth between blocks and every elevation would be wrong. Spacing tells, also
-/// where packets are lost right at the start.
+/// Firmware before 3.0.29 has no factory bytes, and the values there are the HDL-32E's. Its timing
+/// would make azimuths between blocks and all elevations wrong. Block spacing identifies the model,
+/// even with lost packets at the start.
 #[test]
 fn a_vlp16_of_2014_calls_itself_an_hdl32e() {
     for lost in [0, 1, 2] {
@@ -339,7 +339,7 @@ fn a_vlp16_of_2014_calls_itself_an_hdl32e() {
     }
 }
 
-/// The rotor spins up: a mean rate, or the last packet's, puts azimuths off by more than a step of
+/// During spin-up a mean rate, or that of the last packet, moves azimuths by more than a step of
 /// the wire.
 #[test]
 fn the_rotor_changes_its_speed() {
@@ -357,9 +357,9 @@ fn the_rotor_changes_its_speed() {
     }
 }
 
-/// A packet's last block has no successor in it. Its second sequence is half a step on, not at the
-/// block's own azimuth, and where the next packet is there its azimuth is used: here the rotor
-/// halves its speed in mid-packet, so that a packet's mean is wrong.
+/// A packet's last block has no successor in it. Its second sequence is half a step on, and the
+/// next packet's azimuth gives that step. Here the rotor halves its speed within a packet, so that
+/// the packet's mean is wrong.
 #[test]
 fn the_last_block_turns_at_the_rate_of_the_next_packet() {
     let knee_s = 23.0 * SEQUENCE_PERIOD_NS as f64 * 1e-9 - 55.296e-6;
@@ -373,7 +373,7 @@ fn the_last_block_turns_at_the_rate_of_the_next_packet() {
     let (seen, stats) = decode(&packets);
     assert_true(&head, &seen, &truth, 0);
     nothing_amiss(&stats);
-    // Alone, it goes on at the pace of the block before.
+    // Without successor it continues at the rate of the block before.
     let (alone, _) = decode(&packets[1..2]);
     let step_deg = apart_deg(alone[23].azimuth_deg, alone[22].azimuth_deg);
     assert!(

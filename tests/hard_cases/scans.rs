@@ -1,4 +1,4 @@
-//! Whole scans where numbers are at their limits.
+//! Whole scans at the limits of numbers.
 
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -13,8 +13,8 @@ use sim::Attachment;
 use units::{DegPerS2, Degrees, Span, Stamp};
 use velomotion_tests::capture::{Captured, Setting};
 
-/// 2100-01-01 00:00:00 UTC during the sweep: nanoseconds beyond 2^61, where a double steps by half
-/// a microsecond. The same scan a whole number of hours earlier gives the same points.
+/// 2100-01-01 00:00:00 UTC during the sweep: nanoseconds over 2^61, where a double steps by half a
+/// microsecond. The same scan some whole hours earlier gives the same points.
 #[test]
 fn a_scan_into_the_year_2100() {
     let now = Setting::default();
@@ -38,9 +38,9 @@ fn a_scan_into_the_year_2100() {
     }
 }
 
-/// From one limit of the axis to the other and back, by a servo that overshoots either: the drive
-/// takes targets at its limits, samples beyond them are no faults, and the points at both ends are
-/// there and true.
+/// From one limit of the axis to the other and back with a servo that overshoots. The drive accepts
+/// targets at its limits, samples outside them are not faults, and the points at both ends are
+/// correct.
 #[test]
 fn gamma_at_both_limits() {
     for attached in [Attachment::Usb, Attachment::Can] {
@@ -70,8 +70,8 @@ fn gamma_at_both_limits() {
     }
 }
 
-/// A log that ends in mid-sweep, as after a power failure: what is there is as true as if it went
-/// on, its uncertainty no smaller, and it is said that the sweep was cut short.
+/// A log that ends within a sweep, as after a power failure: its points are as accurate as in the
+/// whole log, their uncertainty is no smaller, and the report says that the sweep was cut short.
 #[test]
 fn a_log_that_ends_in_mid_sweep() {
     for attached in [Attachment::Usb, Attachment::Can] {

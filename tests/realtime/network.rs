@@ -28,13 +28,13 @@ fn velomotion(folder: &Path, line: &str) -> Output {
 }
 
 /// The text on stderr without line breaks.
-fn said(output: &Output) -> String {
+fn printed(output: &Output) -> String {
     let text = String::from_utf8_lossy(&output.stderr).replace('│', " ");
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 fn json(output: &Output) -> serde_json::Value {
-    assert!(output.status.success(), "{}", said(output));
+    assert!(output.status.success(), "{}", printed(output));
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
@@ -77,7 +77,7 @@ impl Drop for Lidar {
 
 /// Whether this machine carries multicast on its loopback interface.
 fn has_multicast() -> bool {
-    let heard = || {
+    let received = || {
         let receiver = UdpSocket::bind("0.0.0.0:0")?;
         receiver.join_multicast_v4(&GROUP, &Ipv4Addr::LOCALHOST)?;
         receiver.set_read_timeout(Some(Duration::from_secs(2)))?;
@@ -85,7 +85,7 @@ fn has_multicast() -> bool {
         UdpSocket::bind((LIDAR, 0))?.send_to(b"anybody?", to)?;
         receiver.recv(&mut [0; 16])
     };
-    match heard() {
+    match received() {
         Ok(_) => true,
         Err(error) => {
             eprintln!(
@@ -120,7 +120,7 @@ fn group_sender_and_ports_are_the_configurations_and_the_log_replays() {
 
     configure(Ipv4Addr::new(127, 0, 0, 9));
     let silent = velomotion(place, "capture --speed 80 --to -8 -o scan.ply");
-    let why = said(&silent);
+    let why = printed(&silent);
     assert_eq!(silent.status.code(), Some(4), "{why}");
     for word in [
         "no packet came from 127.0.0.9",
@@ -136,23 +136,26 @@ fn group_sender_and_ports_are_the_configurations_and_the_log_replays() {
     // The drive's process goes silent while a busy machine does not schedule it, and the capture
     // stops.
     for _ in 0..3 {
-        if output.status.code() != Some(5) || !said(&output).contains("silence") {
+        if output.status.code() != Some(5) || !printed(&output).contains("silence") {
             break;
         }
         output = velomotion(place, line);
     }
     let scan = json(&output);
-    let heard = |name: &str| scan["reception"][name].as_u64().unwrap();
-    assert!(heard("packets") > 100, "{scan}");
-    assert!(heard("from_others") > 100, "{scan}");
-    assert_eq!(heard("dropped_by_kernel") + heard("dropped_by_log"), 0);
-    assert_eq!(heard("without_kernel_time"), 0);
+    let received = |name: &str| scan["reception"][name].as_u64().unwrap();
+    assert!(received("packets") > 100, "{scan}");
+    assert!(received("from_others") > 100, "{scan}");
+    assert_eq!(
+        received("dropped_by_kernel") + received("dropped_by_log"),
+        0
+    );
+    assert_eq!(received("without_kernel_time"), 0);
     assert!(scan["packets"]["data"].as_u64().unwrap() > 100, "{scan}");
     assert!(scan["packets"]["position"].as_u64().unwrap() > 0, "{scan}");
 
     let replay = velomotion(place, "replay scan.pcapng -o again.ply");
     let table = String::from_utf8_lossy(&replay.stdout).into_owned();
-    assert!(replay.status.success(), "{}", said(&replay));
+    assert!(replay.status.success(), "{}", printed(&replay));
     assert!(
         !table.contains("recorded"),
         "a replay records nothing:\n{table}"
@@ -195,7 +198,7 @@ fn fragmented(rig: &mut Rig) -> (Vec<u8>, u64) {
 }
 
 #[test]
-fn packets_that_were_put_together_of_fragments_are_said() {
+fn reassembled_packets_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     let start = Stamp::from_nanos(1_700_000_000_000_000_000);
     let mut rig = Rig::new(RigConfig::new(start));

@@ -23,8 +23,8 @@ impl Bench {
             .spawn()
             .unwrap();
         let mut port = String::new();
-        let mut said = BufReader::new(drive.stdout.take().unwrap());
-        said.read_line(&mut port).unwrap();
+        let mut printed = BufReader::new(drive.stdout.take().unwrap());
+        printed.read_line(&mut port).unwrap();
         assert_eq!(link.canonicalize().unwrap(), PathBuf::from(port.trim()));
         let config = format!(
             "[device]\ndefault = 'soft'\n[device.soft]\nkind = '{}'\nport = '{}'\n",
@@ -53,14 +53,14 @@ impl Bench {
         // The drive's process goes silent while a busy machine does not schedule it, and the client
         // stops.
         for _ in 0..3 {
-            let said = String::from_utf8_lossy(&output.stderr);
-            if output.status.code() != Some(5) || !said.contains("silence") {
+            let printed = String::from_utf8_lossy(&output.stderr);
+            if output.status.code() != Some(5) || !printed.contains("silence") {
                 break;
             }
             output = self.run(&format!("{line} --json"));
         }
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(output.status.success(), "{line}: {said}");
+        let printed = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success(), "{line}: {printed}");
         serde_json::from_slice(&output.stdout).unwrap()
     }
 }
@@ -94,11 +94,11 @@ fn the_axis_is_looked_at_homed_moved_and_its_faults_explained() {
     let cleared = bench.json("tilt faults --clear");
     assert_eq!(cleared["state"], "switch-on disabled", "{cleared}");
     assert_eq!(cleared["faults"][0]["code"], "8120");
-    let said = bench.run("tilt faults");
-    let said = String::from_utf8_lossy(&said.stdout).into_owned();
+    let printed = bench.run("tilt faults");
+    let printed = String::from_utf8_lossy(&printed.stdout).into_owned();
     assert!(
-        said.contains("CAN Passive Mode Error") && said.contains("wiring"),
-        "{said}"
+        printed.contains("CAN Passive Mode Error") && printed.contains("wiring"),
+        "{printed}"
     );
 
     // Before homing no angle is known.
@@ -148,13 +148,13 @@ fn tilt_stop_stops_a_move_of_another_process() {
         .stdout(Stdio::null())
         .spawn()
         .unwrap();
-    let mut said = BufReader::new(moving.stderr.take().unwrap());
+    let mut printed = BufReader::new(moving.stderr.take().unwrap());
     let mut line = String::new();
     while !line.contains("Moving(") {
         line.clear();
-        assert!(said.read_line(&mut line).unwrap() > 0, "no motion");
+        assert!(printed.read_line(&mut line).unwrap() > 0, "no motion");
     }
-    let rest = std::thread::spawn(move || said.lines().count());
+    let rest = std::thread::spawn(move || printed.lines().count());
     let stopped = bench.json("tilt stop");
     assert_eq!(stopped["stopped"], true);
     assert_eq!(moving.wait().unwrap().code(), Some(130));

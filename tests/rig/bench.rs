@@ -1,8 +1,8 @@
 //! A software scanner in real time that a daemon takes for hardware: a drive on a pseudo-terminal,
-//! a lidar on loopback, and a hand on both.
+//! a lidar on loopback, and faults on demand.
 //!
-//! It lives in the test's process, so that killing a daemon does not end it, its cable can be
-//! pulled while its motor runs on, and the drive can be looked at without a word on its line.
+//! It lives in the test's process. Killing a daemon does not end it, its cable can be unplugged
+//! while its motor moves, and the drive's state can be read without using its line.
 
 use std::net::{Ipv4Addr, UdpSocket};
 use std::path::{Path, PathBuf};
@@ -22,14 +22,14 @@ use units::Span;
 
 use crate::drive::{is_powered, moves};
 
-/// What truly happened so long ago is forgotten: a bench may run for hours.
+/// Age at which truth is dropped: a bench may run for hours.
 const MEMORY: Span = Span::from_secs(1);
 
-/// No more time than this passes between two looks at the drive's line: on a machine that is too
-/// busy the devices' time runs slower, and they answer all the same.
+/// Longest device time between two reads of the drive's line. On a busy machine device time runs
+/// slower, and the devices still answer.
 const SLICE: Span = Span::from_millis(20);
 
-/// What is done to the devices, and how the axis is.
+/// Faults that the test sets, and the state of the axis.
 #[derive(Default)]
 struct Hand {
     stop: AtomicBool,
@@ -51,10 +51,10 @@ pub struct Bench {
 }
 
 impl Bench {
-    /// Switches them on.
+    /// Starts the devices.
     ///
     /// # Panics
-    /// Where this machine gives no pseudo-terminal, socket or folder.
+    /// Panics if this machine provides no pseudo-terminal, socket or folder.
     #[must_use]
     pub fn start() -> Self {
         let folder = tempfile::tempdir().unwrap();
@@ -65,7 +65,7 @@ impl Bench {
         };
         let hand = Arc::new(Hand::default());
         let (theirs, link) = (Arc::clone(&hand), folder.path().join("epos"));
-        // It is there when this returns.
+        // The port exists on return.
         let cable = plug(&link);
         let thread = std::thread::spawn(move || run(Rig::new(rig), (cable, &link), ports, &theirs));
         Self {
@@ -76,19 +76,19 @@ impl Bench {
         }
     }
 
-    /// The drive's port, as long as it is plugged in.
+    /// The drive's port while it is plugged in.
     #[must_use]
     pub fn link(&self) -> PathBuf {
         self.folder.path().join("epos")
     }
 
-    /// UDP ports that data and position packets are sent to.
+    /// UDP ports of data and position packets.
     #[must_use]
     pub fn ports(&self) -> (u16, u16) {
         self.ports
     }
 
-    /// A configuration that names them.
+    /// A configuration that names the devices.
     #[must_use]
     pub fn config(&self) -> Config {
         let device = Device {
@@ -108,27 +108,27 @@ impl Bench {
         }
     }
 
-    /// A hand that holds the axis, or lets it go.
+    /// Blocks the axis, or releases it.
     pub fn hold(&self, held: bool) {
         self.hand.held.store(held, Ordering::Release);
     }
 
-    /// Pulls the drive's cable, or puts it in again.
+    /// Unplugs the drive's cable, or plugs it in.
     pub fn unplug(&self, gone: bool) {
         self.hand.unplugged.store(gone, Ordering::Release);
     }
 
-    /// The lidar says nothing, or goes on.
+    /// Silences the lidar, or ends its silence.
     pub fn silence(&self, silent: bool) {
         self.hand.silent.store(silent, Ordering::Release);
     }
 
-    /// The network loses every so many-th packet; 0: none.
+    /// Drops every n-th packet; 0 drops none.
     pub fn lose(&self, every: u64) {
         self.hand.lose.store(every, Ordering::Release);
     }
 
-    /// Whether the axis stands and its power stage is off.
+    /// Whether the axis is at rest with its power stage off.
     #[must_use]
     pub fn is_safe(&self) -> bool {
         let on = |flag: &AtomicBool| flag.load(Ordering::Acquire);
@@ -151,7 +151,7 @@ impl Drop for Bench {
     }
 }
 
-/// The axis, with the brake of the checkout's own configuration.
+/// Axis settings with the brake of the repository's configuration.
 fn axis() -> AxisSettings {
     AxisSettings {
         brake_output: Some(1),
@@ -159,17 +159,17 @@ fn axis() -> AxisSettings {
     }
 }
 
-/// A UDP port that nobody else has.
+/// A free UDP port.
 ///
 /// # Panics
-/// Where this machine gives no socket.
+/// Panics if this machine provides no socket.
 #[must_use]
 pub fn free_port() -> u16 {
     let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
     socket.local_addr().unwrap().port()
 }
 
-/// A pseudo-terminal behind the link.
+/// Opens a pseudo-terminal behind the link.
 fn plug(link: &Path) -> Pty {
     let pty = Pty::open().unwrap();
     let _ = std::fs::remove_file(link);
@@ -222,7 +222,7 @@ fn run(mut rig: Rig, (cable, link): (Pty, &Path), ports: (u16, u16), hand: &Hand
                     DATA_PORT => ports.0,
                     _ => ports.1,
                 };
-                // Nobody listens before the daemon does.
+                // The daemon may not listen yet.
                 let _ = socket.send_to(&datagram.payload, (Ipv4Addr::LOCALHOST, port));
             }
         }

@@ -1,5 +1,5 @@
-//! A whole capture in virtual time: the log file that the program would have written, and what it
-//! makes of it.
+//! A whole capture in virtual time: the log file that the program would have written, and its
+//! reconstruction.
 
 mod log;
 mod rejoin;
@@ -46,7 +46,7 @@ use rejoin::rejoin;
 pub use rejoin::Rejoined;
 pub use setting::{PacketLoss, Setting};
 
-/// How the log calls a way to the drive.
+/// The log's name of an attachment.
 fn link(attached: Attachment) -> DriveLink {
     match attached {
         Attachment::Usb => DriveLink::Usb,
@@ -55,7 +55,7 @@ fn link(attached: Attachment) -> DriveLink {
     }
 }
 
-/// A capture that has been made.
+/// A finished capture.
 pub struct Captured {
     link: DriveLink,
     folder: TempDir,
@@ -66,11 +66,11 @@ pub struct Captured {
     truth: sim::Truth,
 }
 
-/// What a record is known by.
+/// Bytes that identify a record.
 enum Mark {
-    /// All of it.
+    /// The whole record.
     Whole(Vec<u8>),
-    /// Part of it.
+    /// A part of the record.
     Within(Vec<u8>),
 }
 
@@ -84,7 +84,7 @@ impl Mark {
 }
 
 impl Captured {
-    /// Runs the capture, which must come to its end.
+    /// Runs a capture that must succeed.
     #[must_use]
     pub fn new(setting: Setting) -> Self {
         let (captured, ended) = Self::run(setting);
@@ -92,9 +92,9 @@ impl Captured {
         captured
     }
 
-    /// Runs the capture, whatever it comes to.
+    /// Runs a capture. Returns it with its result.
     pub fn run(setting: Setting) -> (Self, Result<(), SessionError>) {
-        // With the brake of the checkout's own configuration.
+        // With the brake of the repository's configuration.
         let mut axis = devices::axis(&AxisSettings {
             brake_output: Some(1),
             ..AxisSettings::default()
@@ -111,7 +111,7 @@ impl Captured {
         rig.ripple = setting.ripple;
         if setting.links.attached != Attachment::Usb && setting.links.attached != Attachment::Rs232
         {
-            // A unit on a CAN bus has nothing to complain of at power-on.
+            // A unit on a CAN bus reports no error at power-on.
             rig.drive.fault_at_power_on = DeviceError::NONE;
         }
         let port = VirtualPort::new(Rig::new(rig), setting.start, setting.links);
@@ -156,7 +156,7 @@ impl Captured {
         let mut session = Session::new(client, recorder, interrupt);
         let ended = motion::run(&mut session, &steps, &mut |_| {});
         drop(session);
-        // The lidar goes on for a moment, as in a capture.
+        // The lidar runs on for a moment, as in a capture.
         let mut tail = port.clone();
         io::port::Port::read(&mut tail, &mut [0; 1], Span::from_millis(20)).unwrap();
         let ended_at = tail.now() + Span::from_millis(20);
@@ -200,44 +200,43 @@ impl Captured {
         (captured, ended)
     }
 
-    /// The log file.
+    /// Path of the log file.
     #[must_use]
     pub fn log(&self) -> PathBuf {
         self.folder.path().join("scan.pcapng")
     }
 
-    /// Records in the log.
+    /// Number of records in the log.
     #[must_use]
     pub fn records(&self) -> usize {
         self.records
     }
 
-    /// Lidar data packets in the log.
+    /// Number of lidar data packets in the log.
     #[must_use]
     pub fn data_packets(&self) -> u64 {
         self.data_packets
     }
 
-    /// Data packets that the network lost.
+    /// Number of data packets that the network lost.
     #[must_use]
     pub fn lost_packets(&self) -> u64 {
         self.lost_packets.0
     }
 
-    /// Of those: between two that came.
+    /// Number of lost packets between two received ones.
     #[must_use]
     pub fn missed_packets(&self) -> u64 {
         self.lost_packets.1
     }
 
-    /// What the drive did until the next client had it.
+    /// Motion of the drive until the next client had it.
     #[must_use]
     pub fn rejoined(&self) -> Option<Rejoined> {
         self.rejoined
     }
 
-    /// Whether the last statusword in the log says that the power stage is off, so that the brake
-    /// holds.
+    /// Whether the last statusword in the log shows the power stage off, so that the brake holds.
     #[must_use]
     pub fn brake_is_set(&self) -> bool {
         use drive::cia402::DeviceState;
@@ -247,7 +246,7 @@ impl Captured {
                 last = DeviceState::from_statusword(value);
             }
         });
-        // An axis that was interrupted before its power stage was first on has nothing to set.
+        // An axis that was interrupted before its power stage was first on has no brake to set.
         !matches!(
             last,
             Some(
@@ -258,7 +257,7 @@ impl Captured {
         )
     }
 
-    /// When a quick stop was first sent after `begin`, whether it was answered or not.
+    /// Time of the first quick stop after `begin`, answered or not.
     #[must_use]
     pub fn stop_sent(&self, begin: Stamp<Host>) -> Option<Stamp<Host>> {
         let stop = [
@@ -278,7 +277,7 @@ impl Captured {
         None
     }
 
-    /// By what a record is known that writes the controlword.
+    /// Bytes that identify a write of the controlword.
     fn control(&self, word: u16) -> Vec<Mark> {
         let write = WriteObject {
             node: 1,
@@ -290,8 +289,8 @@ impl Captured {
                 let bytes = protocol::epos2::usb::to_bytes(&write.to_frame());
                 vec![Mark::Whole(bytes.to_vec())]
             }
-            // Where the unit takes part in the dialogue the body follows; nothing else is written
-            // while the axis moves. Where it does not, the body goes out unasked.
+            // If the unit takes part in the dialogue the body follows; nothing else is written
+            // while the axis moves. If it does not, the body is sent without the dialogue.
             DriveLink::Rs232 => {
                 let mut body = Vec::new();
                 rs232::encode_body(&write.to_frame(), &mut body).unwrap();
@@ -305,7 +304,7 @@ impl Captured {
         }
     }
 
-    /// When the last sweep ended, as far as the drive was told of one and made it.
+    /// End of the last sweep that the drive received and finished.
     #[must_use]
     pub fn last_sweep_end(&self) -> Option<Stamp<Host>> {
         let source = Source::open(&self.log(), None).ok()?;
@@ -327,7 +326,7 @@ impl Captured {
         alignment.sweeps.last().map(|sweep| sweep.end)
     }
 
-    /// From when to when the (first) sweep went.
+    /// Begin and end of the first sweep.
     #[must_use]
     pub fn sweep_span(&self) -> (Stamp<Host>, Stamp<Host>) {
         let cloud = self.cloud();
@@ -350,28 +349,28 @@ impl Captured {
         }
     }
 
-    /// What truly happened.
+    /// The truth of the devices.
     #[must_use]
     pub fn truth(&self) -> &sim::Truth {
         &self.truth
     }
 
-    /// The cloud, in memory with every column.
+    /// The cloud in memory with every column.
     #[must_use]
     pub fn cloud(&self) -> Points {
         self.scan().1
     }
 
-    /// The program's report and the cloud.
+    /// The report and the cloud.
     #[must_use]
     pub fn scan(&self) -> (ScanReport, Points) {
         self.try_scan().unwrap()
     }
 
-    /// The program's report and the cloud, if the log holds one.
+    /// The report and the cloud.
     ///
     /// # Errors
-    /// Where it does not.
+    /// Returns the failure if the log holds no cloud.
     pub fn try_scan(&self) -> Result<(ScanReport, Points), Failure> {
         let mut points = Points::new(Fields::ALL);
         let request = Reconstruction {
@@ -389,20 +388,20 @@ impl Captured {
         Ok((scan, points))
     }
 
-    /// How far the cloud is from what truly happened.
+    /// Distances between the cloud and the truth.
     #[must_use]
     pub fn error(&self) -> TruthReport {
         let truth = |time: Stamp<units::Lidar>, laser| self.truth.point(time.as_nanos(), laser);
         analysis::truth::compare(&self.cloud(), truth).unwrap()
     }
 
-    /// Writes the cloud beside the log.
+    /// Writes the cloud next to the log.
     #[must_use]
     pub fn cloud_file(&self, name: &str) -> PathBuf {
         self.file(name, TiltSource::Log)
     }
 
-    /// Writes every return in the sensor's own frame beside the log.
+    /// Writes every return in the sensor frame next to the log.
     #[must_use]
     pub fn sensor_frame(&self, name: &str) -> PathBuf {
         self.file(name, TiltSource::None)

@@ -1,4 +1,4 @@
-//! What a software drive is asked without a word on its line.
+//! State of a software drive, read without using its line.
 
 use firmware_sim::epos2::Node;
 use protocol::epos2::cia402::DeviceState;

@@ -1,10 +1,10 @@
-//! Faults on purpose: a wrapper around a port that hurts what passes, and things done to the drive
-//! behind it.
+//! Fault injection: a wrapper around a port that damages traffic, and faults of the drive behind
+//! it.
 //!
-//! On a serial line bytes are hurt. A CAN controller lets no damaged frame through: it destroys it
-//! on the bus and has it sent again, so there what a serial line would corrupt comes late, or never
-//! if it never passes whole. Everything is seeded and happens in virtual time, so that a fault that
-//! breaks something breaks it again.
+//! On a serial line bytes are damaged. A CAN controller passes no damaged frame: it destroys it on
+//! the bus and the sender repeats it. Faults that corrupt bytes on a serial line therefore delay
+//! frames on CAN, or lose them if they never pass whole. Everything is seeded and runs in virtual
+//! time, so failures repeat.
 
 use std::collections::VecDeque;
 
@@ -16,7 +16,7 @@ use units::{Host, Span, Stamp};
 
 use crate::port::VirtualPort;
 
-/// What goes wrong.
+/// A fault.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fault {
     /// Answers are lost for a span.
@@ -35,15 +35,15 @@ pub enum Fault {
     AnswersDoubled(Span),
     /// Instead of an answer the one before it comes again, for a span.
     AnswersStale(Span),
-    /// Answers come a byte at a time, for a span.
+    /// Answers arrive one byte at a time, for a span.
     AnswersInBytes(Span),
-    /// Random bytes stand before every answer, for a span.
+    /// Random bytes precede every answer, for a span.
     Noise(Span),
-    /// Random bytes with frame starts among them stand before every answer, for a span.
+    /// Random bytes with frame starts among them precede every answer, for a span.
     NoiseWithFrameStarts(Span),
     /// The port is gone: every call fails.
     Unplugged,
-    /// The port takes no bytes, for ever.
+    /// The port takes no more bytes.
     WriteBlocked,
     /// The drive loses and regains its supply.
     PowerCycle,
@@ -59,16 +59,16 @@ pub struct FaultInjector {
     fault: Fault,
     from: Stamp<Host>,
     done: bool,
-    /// Bytes on their way to the client, with when they come.
+    /// Bytes on their way to the client, with their arrival times.
     pending: VecDeque<(Stamp<Host>, Vec<u8>)>,
-    /// Whether what passes are frames of a CAN bus.
+    /// Whether the port carries frames of a CAN bus.
     bus: bool,
     last_answer: Vec<u8>,
     random: u64,
 }
 
 impl FaultInjector {
-    /// `fault` begins at `from`; what is random about it follows from `seed`.
+    /// Wraps a port. `fault` begins at `from`; its random parts follow from `seed`.
     #[must_use]
     pub fn new(
         port: VirtualPort,
@@ -95,7 +95,7 @@ impl FaultInjector {
         &self.port
     }
 
-    /// Whether a fault of this length is on.
+    /// Whether a fault of this duration is active.
     fn on(&self, span: Span) -> bool {
         let now = self.port.now();
         self.from <= now && now < self.from + span
@@ -115,7 +115,7 @@ impl FaultInjector {
         }
     }
 
-    /// What happens to the drive itself happens once, when its time has come.
+    /// Applies faults of the drive itself once, when they are due.
     fn hurt_the_drive(&mut self) {
         if self.done || self.port.now() < self.from {
             return;
@@ -140,7 +140,7 @@ impl FaultInjector {
         Ok(())
     }
 
-    /// An answer as it reaches the client: when, and in which pieces.
+    /// Damages an answer. Returns its pieces with their arrival times.
     fn hurt(&mut self, at: Stamp<Host>, mut bytes: Vec<u8>) -> Vec<(Stamp<Host>, Vec<u8>)> {
         let before = std::mem::replace(&mut self.last_answer, bytes.clone());
         if self.bus {
@@ -184,11 +184,11 @@ impl FaultInjector {
     }
 }
 
-/// Longer than this a fault lasts for ever.
+/// Faults longer than this never end.
 const FOR_EVER: Span = Span::from_secs(100);
 
 impl FaultInjector {
-    /// A frame of a bus as it reaches the client.
+    /// Damages a frame of a bus.
     fn hurt_frame(
         &mut self,
         at: Stamp<Host>,
@@ -214,7 +214,7 @@ impl FaultInjector {
         }
     }
 
-    /// What another node on the bus might say: any service, any bytes.
+    /// A random frame of another node on the bus.
     fn other_nodes_frame(&mut self) -> Vec<u8> {
         let services = [0x080, 0x180, 0x280, 0x380, 0x480, 0x580, 0x700];
         let service = services[usize::try_from(self.next() % 7).unwrap()];
@@ -225,7 +225,7 @@ impl FaultInjector {
         frame.to_socketcan().to_vec()
     }
 
-    /// When a request that is hurt gets through after all, on a bus; `None` for never.
+    /// Delay after which a damaged request passes on a bus; `None` if it never does.
     fn request_repeated(&self, span: Span) -> Option<Span> {
         (span < FOR_EVER).then(|| (self.from + span).saturating_since(self.port.now()))
     }
@@ -266,7 +266,7 @@ impl Port for FaultInjector {
         self.hurt_the_drive();
         self.unplugged()?;
         let until = self.port.now() + timeout;
-        // Everything that arrives by then, hurt, in order of when it reaches the client.
+        // Everything that arrives by then, damaged, in order of arrival at the client.
         while self
             .pending
             .front()
@@ -282,7 +282,7 @@ impl Port for FaultInjector {
                 Some((count, at)) => {
                     let pieces = self.hurt(at, buffer[..count].to_vec());
                     for (at, piece) in pieces {
-                        // A serial line keeps its order: what is late holds up what follows.
+                        // A serial line keeps its order: late bytes delay those behind them.
                         let after = self.pending.back().map_or(at, |(last, _)| at.max(*last));
                         self.pending.push_back((after, piece));
                     }

@@ -1,8 +1,7 @@
-//! The virtual-time rig: the program's own drive client and session against the software devices,
-//! with the clock turned by hand.
+//! The virtual-time rig: the program's drive client and session with software devices, and a clock
+//! that the test advances.
 //!
-//! What takes the program real seconds takes a test milliseconds, and comes out the same every
-//! time.
+//! Seconds of the program take a test milliseconds, and every run gives the same result.
 
 pub mod bench;
 pub mod capture;

@@ -1,6 +1,6 @@
-//! A drive port whose other end is a [`Rig`] and whose time stands still until somebody waits.
+//! A drive port with a [`Rig`] at its other end. Its time advances only while a caller waits.
 //!
-//! Whatever connects the two: bytes of a serial line, or 16 bytes a frame of a CAN bus.
+//! It carries bytes of a serial line, or 16 bytes per frame of a CAN bus.
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -13,10 +13,10 @@ use sim::link::{Link, LinkModel};
 use sim::{Attachment, Datagram, Rig};
 use units::{Host, Span, Stamp};
 
-/// How the drive is attached, and the delays of the three links.
+/// Attachment of the drive, and delays of the three links.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Links {
-    /// What the host speaks with the drive.
+    /// Attachment of the drive.
     pub attached: Attachment,
     /// Wire time of a byte to or from the drive.
     pub byte: Span,
@@ -26,21 +26,20 @@ pub struct Links {
     pub answer: LinkModel,
     /// Packets of the lidar.
     pub lidar: LinkModel,
-    /// What their delays are drawn from.
+    /// Seed of the delays.
     pub seed: u64,
 }
 
 impl Links {
-    /// Usual delays of a way to the drive; the lidar's over Ethernet.
+    /// Usual delays of an attachment; the lidar's are Ethernet's.
     #[must_use]
     pub fn usual(attached: Attachment, seed: u64) -> Self {
         let (model, byte_ns) = match attached {
-            // USB, and an adapter on USB.
+            // USB, or an adapter on USB.
             Attachment::Usb | Attachment::Slcan => (LinkModel::USB, 0),
-            // A UART of the machine itself at 115,200 baud: ten bits a byte.
+            // An on-board UART at 115,200 baud: ten bits per byte.
             Attachment::Rs232 => (QUICK, 86_806),
-            // A controller of the machine itself at 1 Mbit/s: eight bits a byte, and the rest of
-            // the frame.
+            // An on-board controller at 1 Mbit/s: eight bits per byte, and the rest of the frame.
             Attachment::Can => (QUICK, 8_000),
         };
         Self {
@@ -54,7 +53,7 @@ impl Links {
     }
 }
 
-/// Interrupt to program: 20..100 us, one in a hundred up to 2 ms more.
+/// Interrupt to program: 20 to 100 us, one in a hundred up to 2 ms more.
 const QUICK: LinkModel = LinkModel {
     min: Span::from_micros(20),
     max: Span::from_micros(100),
@@ -62,7 +61,7 @@ const QUICK: LinkModel = LinkModel {
     spike: Span::from_millis(2),
 };
 
-/// A lidar packet with the time at which the host's kernel would have stamped it.
+/// A lidar packet with its kernel receive time.
 #[derive(Clone, Debug)]
 pub struct Arrived {
     /// Kernel receive time.
@@ -71,7 +70,7 @@ pub struct Arrived {
     pub datagram: Datagram,
 }
 
-/// The far end, and the time.
+/// The devices and the time.
 pub struct World {
     rig: Rig,
     now: Stamp<Host>,
@@ -82,7 +81,7 @@ pub struct World {
     /// Answers on their way, in order of arrival.
     incoming: VecDeque<(Stamp<Host>, Vec<u8>)>,
     packets: Vec<Arrived>,
-    /// When the user presses Ctrl-C, and the flag that it sets.
+    /// Time of Ctrl-C, and the flag that it sets.
     interrupt: Option<(Stamp<Host>, Arc<AtomicBool>)>,
 }
 
@@ -91,7 +90,7 @@ pub struct World {
 pub struct VirtualPort(Rc<RefCell<World>>);
 
 impl VirtualPort {
-    /// A port to `rig`, which stands at `start`.
+    /// Makes a port to `rig` that starts at `start`.
     #[must_use]
     pub fn new(rig: Rig, start: Stamp<Host>, links: Links) -> Self {
         Self(Rc::new(RefCell::new(World {
@@ -107,12 +106,12 @@ impl VirtualPort {
         })))
     }
 
-    /// Sets `flag` when the time comes to `at`.
+    /// Sets `flag` at the time `at`.
     pub fn interrupt_at(&self, at: Stamp<Host>, flag: Arc<AtomicBool>) {
         self.0.borrow_mut().interrupt = Some((at, flag));
     }
 
-    /// Does something to the drive that no client can.
+    /// Changes the drive in a way that no client can.
     pub fn with_drive(&self, act: impl FnOnce(&mut firmware_sim::epos2::Node)) {
         act(self.0.borrow_mut().rig.drive_mut());
     }
@@ -129,7 +128,7 @@ impl VirtualPort {
         crate::drive::is_powered(self.0.borrow_mut().rig.drive_mut())
     }
 
-    /// The world's end: its packets in order of arrival and what truly happened.
+    /// Ends the world. Returns its packets in order of arrival, and the truth.
     #[must_use]
     pub fn end(&self) -> (Vec<Arrived>, sim::Truth) {
         let mut world = self.0.borrow_mut();
@@ -139,7 +138,7 @@ impl VirtualPort {
 }
 
 impl World {
-    /// Brings the devices to `at` and collects what they sent.
+    /// Advances the devices to `at` and collects their output.
     fn advance(&mut self, at: Stamp<Host>) {
         if let Some((_, flag)) = self.interrupt.take_if(|(when, _)| *when <= at) {
             flag.store(true, Ordering::Relaxed);
@@ -152,7 +151,7 @@ impl World {
         self.collect();
     }
 
-    /// Sends what the drive has said on its way to the host.
+    /// Puts the drive's output on its way to the host.
     fn collect(&mut self) {
         while let Some(sent) = self.rig.drive_output() {
             let at = self
@@ -162,7 +161,8 @@ impl World {
         }
     }
 
-    /// When the next bytes come, if by `until`; the devices live on at least to then.
+    /// Arrival time of the next bytes, if it is not after `until`. The devices advance at least to
+    /// it.
     fn await_incoming(&mut self, until: Stamp<Host>) -> Option<Stamp<Host>> {
         let mut to = self.now;
         loop {
@@ -173,20 +173,21 @@ impl World {
             if to >= until {
                 return None;
             }
-            // Never far beyond what comes next, as it may be answered. What is sent later arrives
-            // later.
+            // Never far past the next arrival, because the client may answer it. Later output
+            // arrives later.
             to = (to + STEP).min(until).min(next.unwrap_or(until));
             self.advance(to);
         }
     }
 }
 
-/// How finely it is looked whether the drive says something by itself.
+/// Time step of the check for unsolicited output of the drive.
 const STEP: Span = Span::from_micros(100);
 
-/// A data frame with a standard identifier and no data, without stuff bits, at 1 Mbit/s.
+/// Wire time of a data frame with a standard identifier and no data, without stuff bits, at 1
+/// Mbit/s.
 const EMPTY_CAN_FRAME: Span = Span::from_micros(47);
-/// Where a `struct can_frame` has the length of its data.
+/// Offset of the data length in `struct can_frame`.
 const CAN_LENGTH_AT: usize = 4;
 
 impl Links {

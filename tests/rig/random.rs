@@ -1,6 +1,6 @@
-//! Numbers that a seed stands for, so that what happened by chance can be made to happen again.
+//! Seeded random numbers, so that every failure can be repeated.
 
-/// A sequence of its own for every seed (SplitMix64: Steele, Lea and Flood, 2014).
+/// A sequence that follows from a seed (SplitMix64: Steele, Lea and Flood, 2014).
 #[derive(Clone, Debug)]
 pub struct Random(pub u64);
 
@@ -19,12 +19,12 @@ impl Random {
         self.bits() % limit.max(1)
     }
 
-    /// A number between two, the first included.
+    /// A number from `low` to below `high`.
     pub fn between(&mut self, low: i64, high: i64) -> i64 {
         low + i64::try_from(self.below(u64::try_from(high - low).unwrap_or(1))).unwrap_or(0)
     }
 
-    /// One of these.
+    /// One of the values.
     pub fn one<T: Copy>(&mut self, of: &[T]) -> T {
         of[usize::try_from(self.below(of.len() as u64)).unwrap_or(0)]
     }

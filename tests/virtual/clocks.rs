@@ -1,5 +1,5 @@
-//! The lidar's clock against simulated truth: three links, two lengths, every method; online and
-//! offline, and what they say of their own error.
+//! The lidar's clock against simulated truth: three links, two durations, every method, online and
+//! offline, with their reported bounds.
 //!
 //! `cargo test -p velomotion-tests --test virtual -- --nocapture clocks::table` prints the table of
 //! the documentation.
@@ -8,10 +8,10 @@ use scanner::clock::{Arrival, LidarClock, OnlineClock};
 use sim::packet_clock::{ArrivalLink, Oscillator, PACKET_NS, PacketClock, TimedPacket};
 use units::{Host, Lidar, Stamp};
 
-/// 2026-11-21 02:05:33 UTC, and the lidar's clock then.
+/// 2026-11-21 02:05:33 UTC, and the lidar's clock at that time.
 const BEGIN: Stamp<Host> = Stamp::from_nanos(1_795_226_733_000_000_000);
 const DEVICE: Stamp<Lidar> = Stamp::from_nanos(1_795_226_733_000_000_000 + 431_000_000_000);
-/// Offsets are compared at every so many packets.
+/// Number of packets between compared offsets.
 const EVERY: usize = 16;
 
 fn packets(link: ArrivalLink, seconds: i64, drift_ppm: f64, seed: u64) -> Vec<TimedPacket> {
@@ -112,10 +112,11 @@ fn straight(packets: &[TimedPacket]) -> Off {
     }))
 }
 
-/// A line: centre, offset there, slope; of microseconds over seconds.
+/// A line: centre, offset there, slope, in microseconds over seconds.
 type Line = (f64, f64, f64);
 
-/// The edge of the lower convex hull under the mean (gift wrapping: slow, and not the library's).
+/// The edge of the lower convex hull under the mean (gift wrapping: slow and independent of the
+/// library).
 fn hull_edge(points: &[(f64, f64)]) -> Line {
     let mean = points.iter().map(|p| p.0).sum::<f64>() / points.len() as f64;
     let mut at = points[0];
@@ -133,7 +134,7 @@ fn hull_edge(points: &[(f64, f64)]) -> Line {
     }
 }
 
-/// Lower convex hulls as they are, of blocks of this length that overlap by half and are blended.
+/// Plain lower convex hulls of blocks of this length that overlap by half and are blended.
 fn hulls(packets: &[TimedPacket], block_s: f64) -> Off {
     let point = |p: &TimedPacket| {
         let x = (p.device - DEVICE).as_secs_f64();
@@ -167,8 +168,8 @@ fn hulls(packets: &[TimedPacket], block_s: f64) -> Off {
     }))
 }
 
-/// Olson's, from a second after the start on; the share of packets at which its bound held, and its
-/// mean.
+/// Olson's algorithm from one second after the start: errors, the share of packets within its
+/// bound, and the mean bound.
 fn online(packets: &[TimedPacket]) -> (Off, f64, f64) {
     let mut clock = OnlineClock::new();
     let mut errors = Vec::new();
@@ -200,7 +201,7 @@ fn online(packets: &[TimedPacket]) -> (Off, f64, f64) {
 
 const DRIFTS_PPM: [f64; 3] = [-50.0, 0.0, 50.0];
 
-/// One link over one length of time, run by run.
+/// One link over one duration, by run.
 #[derive(Default)]
 struct Row {
     came: Vec<Off>,
@@ -249,8 +250,8 @@ impl Row {
     }
 }
 
-/// The bars are those of the clock's own figures, for every single run; the other columns show that
-/// the links are as hard as they are said to be.
+/// The limits hold for the clock in every single run; the other columns show that the links are as
+/// hard as stated.
 #[test]
 fn table() {
     println!(
@@ -278,8 +279,8 @@ fn table() {
     }
 }
 
-/// The bound is one: it holds in 99 of 100 recordings of any length, and is no excuse: within five
-/// times the greatest error on average, or a microsecond of it.
+/// The bound holds in 99 of 100 recordings of any length. It is tight: on average within five times
+/// the greatest error, or a microsecond of it.
 #[test]
 fn the_bound_holds_and_says_something() {
     for link in ArrivalLink::ALL {
@@ -301,33 +302,33 @@ fn the_bound_holds_and_says_something() {
                 bound_us += bound / seeds as f64;
                 worst_us += off.worst / seeds as f64;
             }
-            let said = format!(
+            let printed = format!(
                 "{}, {seconds} s: held in {held} of {seeds}, {bound_us:.1} us for {worst_us:.1}",
                 link.name()
             );
-            println!("{said}");
-            assert!(held * 100 >= seeds * 99, "{said}");
+            println!("{printed}");
+            assert!(held * 100 >= seeds * 99, "{printed}");
             assert!(
                 bound_us < 5.0 * worst_us || bound_us < worst_us + 1.0,
-                "{said}"
+                "{printed}"
             );
         }
     }
 }
 
-/// While packets come in: within its bound at 99 of 100 packets, forwards only.
+/// Online: within its bound at 99 of 100 packets, and time never runs back.
 #[test]
 fn the_online_bound_holds() {
     for link in ArrivalLink::ALL {
         for seed in 0..12 {
             let packets = packets(link, 45, DRIFTS_PPM[seed as usize % 3], seed);
             let (off, share, bound_us) = online(&packets);
-            let said = format!(
+            let printed = format!(
                 "{} {seed}: {share:.4}, {bound_us:.1} us, {off:?}",
                 link.name()
             );
-            println!("{said}");
-            assert!(share >= 0.99 && bound_us < 5.0 * off.worst, "{said}");
+            println!("{printed}");
+            assert!(share >= 0.99 && bound_us < 5.0 * off.worst, "{printed}");
         }
     }
 }

@@ -1,9 +1,9 @@
-//! What becomes of a scan when something goes wrong in mid-sweep: every fault over every way to the
-//! drive in virtual time, the tables of the docs made of it.
+//! Faults during a sweep over every attachment of the drive, in virtual time, and the tables of the
+//! book.
 //!
-//! For every fault: no hang, no panic, no lost scan, and the axis told to stop soon after the fault
-//! can be seen. `VELOMOTION_BLESS=1` writes docs/src/faults.md anew; without, the test fails where
-//! the page is not what happens.
+//! After every fault there is no hang, no panic and no lost scan, and the axis is stopped soon
+//! after the fault is detectable. `VELOMOTION_BLESS=1` writes docs/src/faults.md; without it the
+//! test fails if the page differs.
 
 use std::fmt::Write;
 
@@ -15,19 +15,19 @@ use units::{DegPerS, DegPerS2, Span, Stamp};
 use velomotion_tests::capture::{Captured, Setting};
 use velomotion_tests::inject::Fault;
 
-/// What must come of a fault.
+/// The required outcome of a fault.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Must {
-    /// The sweep is made to its end all the same.
+    /// The sweep ends as planned.
     Survive,
-    /// Either that, or the axis is told to stop within 0.2 s: how long the line is dead to the
-    /// client depends on which bits were hurt.
+    /// Either that, or the axis is stopped within 0.2 s: the damaged bits decide how long the
+    /// client takes the line for dead.
     SurviveOrStop,
-    /// The axis is told to stop within this time of the fault.
+    /// The axis is stopped within this time of the fault.
     StopWithin(Span),
-    /// Nothing can be sent any more: that is said.
+    /// Nothing can be sent: the report says so.
     SayThatItCannot,
-    /// The line is past use: that is said, and everything before is saved.
+    /// The line is unusable: the report says so, and everything before is saved.
     End,
 }
 
@@ -35,12 +35,13 @@ const fn ms(ms: i64) -> Span {
     Span::from_millis(ms)
 }
 
-/// A fault that the drive or its answers show at once: the next look is at most 20 ms away, and 100
-/// ms are allowed after it.
+/// A fault that the drive or its answers show at once: the next poll is at most 20 ms later, plus
+/// 100 ms.
 const SEEN: Must = Must::StopWithin(ms(120));
-/// A held motor is seen when the demand is 2000 qc (3 degrees) ahead of it: 100 ms at 30 deg/s.
+/// A blocked motor is detected when its position is 2000 qc (3 deg) behind the demand: 100 ms at 30
+/// deg/s.
 const FOLLOWING: Must = Must::StopWithin(ms(220));
-/// Silence is seen when no question was answered for a while, or no heartbeat came.
+/// Silence is detected by missing answers or heartbeats.
 const SILENCE: Must = Must::StopWithin(ms(430));
 
 const FAULTS: [(&str, Fault, Must); 33] = [
@@ -186,13 +187,13 @@ const WAYS: [(Attachment, &str); 4] = [
     (Attachment::Can, "SocketCAN"),
 ];
 
-/// What a way to the drive cannot do as well as the others.
+/// The required outcome, weaker for attachments that cannot do better.
 fn must(attached: Attachment, fault: Fault, must: Must) -> Must {
     match (attached, fault) {
-        // A dialogue of single bytes without frame starts: what is doubled or put in between for
-        // ever cannot be told from it.
+        // The dialogue of single bytes has no frame starts: bytes that are doubled or inserted for
+        // ever look like part of it.
         (Attachment::Rs232, Fault::AnswersDoubled(_) | Fault::Noise(_)) => Must::End,
-        // What is late holds up what follows: for as long neither positions nor heartbeats come.
+        // Late frames delay those behind them: meanwhile neither positions nor heartbeats arrive.
         (Attachment::Slcan | Attachment::Can, Fault::AnswersLate(_, late)) if late > ms(100) => {
             Must::SurviveOrStop
         }
@@ -200,7 +201,7 @@ fn must(attached: Attachment, fault: Fault, must: Must) -> Must {
     }
 }
 
-/// A sweep of 1.5 s in the middle of which things go wrong.
+/// A sweep of 1.5 s with a fault in its middle.
 fn setting(attached: Attachment) -> Setting {
     let mut setting = Setting::over(attached);
     setting.wish.speed = DegPerS(30.0);
@@ -208,17 +209,16 @@ fn setting(attached: Attachment) -> Setting {
     setting
 }
 
-/// What came of a fault over one way to the drive.
+/// Outcome of a fault over one attachment.
 struct Cell {
-    /// What was said; nothing where the sweep went on to its end.
-    said: Option<String>,
+    /// The error message, if the sweep did not end as planned.
+    printed: Option<String>,
     stop: Option<Span>,
     worst_mm: f64,
     doubted: bool,
 }
 
-/// However the polls were hurt, no point of the cloud may be farther than this from the truth
-/// without a warning.
+/// Greatest error of a point without a warning, however the polls were damaged.
 const WORST_MM: f64 = 20.0;
 
 fn try_out(attached: Attachment, name: &str, fault: Fault, expected: Must, at: Span) -> Cell {
@@ -268,10 +268,10 @@ fn try_out(attached: Attachment, name: &str, fault: Fault, expected: Must, at: S
                 matches!(ended, Err(SessionError::Drive(_))),
                 "{name}: {ended:?}"
             );
-            if is_heard(fault) {
+            if is_received(fault) {
                 assert!(stands(&captured), "{name}: the axis still moves");
             }
-            let stop = stop.unwrap_or_else(|| panic!("{name}: nobody told the axis to stop"));
+            let stop = stop.unwrap_or_else(|| panic!("{name}: nobody reported the axis to stop"));
             assert!(
                 stop <= limit,
                 "{name}: stop after {} ms",
@@ -288,26 +288,26 @@ fn try_out(attached: Attachment, name: &str, fault: Fault, expected: Must, at: S
     }
     let failed = ended.is_err();
     Cell {
-        said: ended.err().map(|error| error.to_string()),
+        printed: ended.err().map(|error| error.to_string()),
         stop: stop.filter(|_| failed),
         worst_mm,
         doubted,
     }
 }
 
-/// Whether the drive hears what it is told, though it may not be heard.
-fn is_heard(fault: Fault) -> bool {
+/// Whether the drive receives commands, even if its answers are lost.
+fn is_received(fault: Fault) -> bool {
     !matches!(fault, Fault::RequestsLost(_) | Fault::RequestsFlipped(_))
 }
 
-/// Whether the axis is at rest before it has come to the end of its sweep.
+/// Whether the axis rests before the end of its sweep.
 fn stands(captured: &Captured) -> bool {
     let last = captured.truth().end() - ms(1);
     let angle = |at| captured.truth().tilt_deg_at(at).unwrap();
     angle(last) == angle(last - ms(10)) && angle(last) > -44.0
 }
 
-/// Every fault over one way to the drive, 0.7 s into the sweep.
+/// Every fault over one attachment, 0.7 s into the sweep.
 fn column(attached: Attachment) -> Vec<Cell> {
     let usual = Captured::new(setting(attached));
     let at = usual.sweep_span().0 - setting(attached).start + ms(700);
@@ -333,14 +333,14 @@ fn no_fault_hangs_panics_or_loses_the_scan() {
     );
 }
 
-/// Other seconds of the same motion: the ramps, the homing, the way to the start.
+/// Other phases of the motion: ramps, homing, the move to the start.
 #[test]
 fn no_fault_at_any_moment_hangs_or_leaves_the_axis_on_its_own() {
     std::thread::scope(|scope| {
         for first in 0..WAYS.len() {
             scope.spawn(move || {
                 for (number, (name, fault, _)) in FAULTS.into_iter().enumerate() {
-                    // Each fault at four moments, each over another way.
+                    // Each fault at four moments, each over another attachment.
                     let (attached, _) = WAYS[(first + number) % WAYS.len()];
                     let step = 937 * i64::try_from(first).unwrap();
                     let after = ms(150 + step + 29 * i64::try_from(number).unwrap());
@@ -351,7 +351,7 @@ fn no_fault_at_any_moment_hangs_or_leaves_the_axis_on_its_own() {
     });
 }
 
-/// Whatever came of the fault, the axis does not move any more, or it is said that it may.
+/// Checks that the axis rests after the fault, or that the report says it may move.
 fn is_left_at_rest(attached: Attachment, name: &str, fault: Fault, after: Span) {
     let (captured, ended) = Captured::run(Setting {
         fault: Some((fault, after)),
@@ -361,13 +361,13 @@ fn is_left_at_rest(attached: Attachment, name: &str, fault: Fault, after: Span) 
     let end = captured.truth().end();
     let took = end - setting(attached).start;
     assert!(took < Span::from_secs(90), "{name}: hangs");
-    let said = matches!(
+    let printed = matches!(
         ended,
         Err(SessionError::Port(_)
             | SessionError::NotStopped(_)
             | SessionError::Drive(DriveError::NotStopped { .. }))
     );
-    if !said {
+    if !printed {
         let angle = |t: Stamp<units::Host>| captured.truth().tilt_deg_at(t);
         let last = end - ms(1);
         assert_eq!(
@@ -378,7 +378,7 @@ fn is_left_at_rest(attached: Attachment, name: &str, fault: Fault, after: Span) 
     }
 }
 
-/// In steps, so that the last bit of a sine does not change the page.
+/// Rounds to steps, so that the last bit of a sine does not change the page.
 fn below(worst_mm: f64) -> String {
     match [5.0, 10.0, 20.0]
         .into_iter()
@@ -390,7 +390,7 @@ fn below(worst_mm: f64) -> String {
 }
 
 fn cell(cell: &Cell) -> String {
-    let what = match (&cell.said, cell.stop) {
+    let what = match (&cell.printed, cell.stop) {
         (None, _) => "goes on".to_owned(),
         (Some(_), Some(stop)) => format!("stop after {:.0} ms", stop.as_secs_f64() * 1e3),
         (Some(_), None) => "says it cannot stop".to_owned(),
@@ -436,12 +436,12 @@ fn page(columns: &[Vec<Cell>]) -> String {
 fn messages(columns: &[Vec<Cell>], row: usize) -> Vec<(&str, Vec<&'static str>)> {
     let mut messages: Vec<(&str, Vec<&'static str>)> = Vec::new();
     for (column, (_, way)) in columns.iter().zip(WAYS) {
-        let Some(said) = column[row].said.as_deref() else {
+        let Some(printed) = column[row].printed.as_deref() else {
             continue;
         };
-        match messages.iter_mut().find(|(message, _)| *message == said) {
+        match messages.iter_mut().find(|(message, _)| *message == printed) {
             Some((_, over)) => over.push(way),
-            None => messages.push((said, vec![way])),
+            None => messages.push((printed, vec![way])),
         }
     }
     messages

@@ -1,9 +1,8 @@
-//! What fuzzing once found, run through the same properties on stable Rust: `inputs/TARGET/NAME`,
-//! one file an input.
+//! Inputs that fuzzing found, run through the same properties on stable Rust: `inputs/TARGET/NAME`,
+//! one file per input.
 //!
-//! The properties are the fuzz targets' own (`fuzz/properties`). Here also stands that they look at
-//! anything at all: a session that goes well must give samples, packets of a sensor firings. Left
-//! out: fuzzing itself.
+//! The properties are those of the fuzz targets (`fuzz/properties`). Further tests show that they
+//! check something: a successful session gives samples, and packets of a sensor give firings.
 
 #[path = "../../fuzz/properties/mod.rs"]
 mod properties;
@@ -13,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 use properties::input::Input;
 
-/// A target, and what holds for its inputs.
+/// A target and its property.
 type Target = (&'static str, fn(&[u8]));
 
 const TARGETS: [Target; 6] = [
@@ -41,11 +40,11 @@ fn inputs(target: &str) -> Vec<PathBuf> {
 fn what_was_found_once_holds_now() {
     let mut run = 0;
     for (target, holds) in TARGETS {
-        // Nothing at all is an input, too.
+        // The empty input is valid, too.
         holds(&[]);
         for path in inputs(target) {
             let data = fs::read(&path).unwrap();
-            // A failure says which input it was.
+            // Names the input of a failure.
             println!("{}", path.display());
             holds(&data);
             run += 1;
@@ -63,9 +62,9 @@ fn what_was_found_once_holds_now() {
 
 #[test]
 fn a_client_that_nobody_disturbs_samples_on_each_link() {
-    // Connect, home where it stands, sweep: steps of `properties::drive_link`.
+    // Connect, home at the current position, sweep: steps of `properties::drive_link`.
     let script = [3, 0, 0, 2, 60, 3, 0, 1, 2, 40, 3, 8, 3, 2, 60];
-    // With the shaft's own positions, and with one for each look.
+    // With the shaft's own positions, and with one position per poll.
     for link in [0, 1, 2, 0x80, 0x81, 0x82] {
         let bytes = [&[link], &script[..]].concat();
         let samples = properties::drive_link::holds(&mut Input::new(&bytes));
@@ -75,7 +74,7 @@ fn a_client_that_nobody_disturbs_samples_on_each_link() {
 
 #[test]
 fn packets_of_a_sensor_give_firings() {
-    // Host and device at 0, then 50 packets that are in time: 24 firings each.
+    // Host and device at 0, then 50 packets in time: 24 firings each.
     let script = [0; 8 + 4 + 1 + 50];
     assert_eq!(properties::vlp16_data::holds(&script), 50 * 24);
 }

@@ -1,4 +1,4 @@
-//! Tests across crates in virtual time: devices, clocks and links are simulated, nothing waits.
+//! Tests across crates in virtual time: devices, clocks and links are simulated.
 
 mod clocks;
 mod data_path;

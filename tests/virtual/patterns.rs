@@ -1,4 +1,4 @@
-//! The 2018 paper's analysis of scan patterns, made again: patterns of `sim`, measured by
+//! The scan-pattern analysis of the 2018 paper, repeated: patterns of `sim`, measured by
 //! `analysis`.
 
 use analysis::density::{
@@ -16,13 +16,13 @@ fn statistics(directions: &[DVec3]) -> Statistics {
     BinCounts::new(&locator, directions).unwrap().statistics()
 }
 
-/// A row of the table of densities as printed.
+/// A printed row of the table of densities.
 struct Printed {
     pattern: &'static str,
     mean: f64,
     sd: f64,
     ends: Option<(u64, u64)>,
-    /// Mean and sd a square degree.
+    /// Mean and standard deviation per square degree.
     per_deg2: [f64; 2],
 }
 
@@ -70,8 +70,7 @@ fn densities_are_the_papers() {
     }
 }
 
-/// The figures that were found to come closest, which differ from the printed ones in the last
-/// place.
+/// Settings whose figures come closest to the paper's; they differ in the last place.
 #[test]
 fn densities_are_what_they_were_found_to_be() {
     for (text, mean, sd, least, most) in [
@@ -80,8 +79,8 @@ fn densities_are_what_they_were_found_to_be() {
         ("velomotion16:50", "50.681", 63.23, 0, 235),
     ] {
         let ours = statistics(&pattern(text).directions());
-        // As `analyze` prints it: with two decimals the last bit would decide between 202.72 and
-        // the paper's 202.73.
+        // As `analyze` prints it: at two decimals the last bit would decide between 202.72 and the
+        // paper's 202.73.
         assert_eq!(format!("{:.3}", ours.mean), mean, "{text}");
         assert!((ours.sd - sd).abs() < 0.011, "{text}: {}", ours.sd);
         assert_eq!(ours.min, least, "{text}");
@@ -89,7 +88,7 @@ fn densities_are_what_they_were_found_to_be() {
     }
 }
 
-/// The book's figures of ours, and where it has them from: rounded as the report rounds them.
+/// The book's figures equal the computed ones, rounded as the report rounds them.
 #[test]
 fn the_book_prints_what_the_report_prints() {
     let book = include_str!("../../docs/src/paper.md");
@@ -123,7 +122,7 @@ fn the_book_prints_what_the_report_prints() {
     }
 }
 
-/// Points a square degree in the zone between two angles from the tilt axis, both of its ends.
+/// Points per square degree in the zone between two angles from the tilt axis, both of its ends.
 fn zone(directions: &[DVec3], from_deg: f64, to_deg: f64) -> f64 {
     let (high, low) = (from_deg.to_radians().cos(), to_deg.to_radians().cos());
     let within = directions
@@ -145,8 +144,7 @@ fn poles_on_the_tilt_axis_are_densest() {
             poles > times * mean && around < 0.8 * mean,
             "{text}: {poles} {around} {mean}"
         );
-        // From the pole to the belt it only falls, but for the edge of the head's own fan at 15
-        // deg.
+        // Density falls from pole to belt except at the edge of the fan at 15 deg.
         let zones: Vec<f64> = [15.0, 30.0, 45.0, 60.0, 75.0]
             .map(|a| zone(&directions, a, a + 15.0))
             .to_vec();
@@ -154,7 +152,7 @@ fn poles_on_the_tilt_axis_are_densest() {
             poles > zones[0] && zones.windows(2).all(|w| w[0] > w[1]),
             "{text}: {poles} {zones:?}"
         );
-        // The densest bins of all are at the poles.
+        // The densest bins are at the poles.
         let icosahedron = Icosahedron::new(4).unwrap();
         let counts = BinCounts::new(&Locator::new(&icosahedron), &directions).unwrap();
         let densest = icosahedron
@@ -172,8 +170,7 @@ fn poles_on_the_tilt_axis_are_densest() {
 
 #[test]
 fn blind_rows_stay_at_any_speed() {
-    // How far a point is from the tilt axis does not depend on the tilt: the bands that a level
-    // scan leaves out stay.
+    // A point's angle from the tilt axis does not depend on the tilt: gaps of a level scan remain.
     let least = 0.1_f64.to_radians();
     let level = bands(&pattern("vlp16").directions(), AXIS, least).unwrap();
     assert!(level.len() > 20, "{}", level.len());
@@ -190,14 +187,14 @@ fn blind_rows_stay_at_any_speed() {
             assert!((a.from_deg - b.from_deg).abs() < 1e-6 && (a.to_deg - b.to_deg).abs() < 1e-6);
         }
     }
-    // Narrower steps of azimuth are what narrows them.
+    // Narrower steps of azimuth narrow them.
     let fine = bands(&pattern("rmbl:120,step=0.1").directions(), AXIS, least).unwrap();
     assert!(fine.len() < level.len() / 2, "{}", fine.len());
 }
 
 #[test]
 fn the_poles_themselves_are_holes_at_any_speed() {
-    // No laser is level: the nearest are 1 deg off, and so is all they can see from the axis.
+    // No laser is level: the nearest are 1 deg off, and so is everything they see from the axis.
     for text in ["rmbl:300", "rmbl:120", "rmbl:50"] {
         let pattern = pattern(text);
         let directions = pattern.directions();
@@ -218,8 +215,8 @@ fn the_poles_themselves_are_holes_at_any_speed() {
 
 #[test]
 fn the_largest_holes_are_those_that_the_fan_leaves() {
-    // Level, the fan of 15 deg leaves caps of 75; swept to one side, 53 deg are left below where
-    // the sweep began and ended.
+    // Level, the fan of 15 deg leaves caps of 75 deg. Swept to one side, 53 deg remain below the
+    // limits of the sweep.
     for (text, radius_deg, at_least) in [
         ("vlp16", 75.0, 0.0),
         ("velomotion16:50", 53.13, 0.0),
@@ -234,7 +231,7 @@ fn the_largest_holes_are_those_that_the_fan_leaves() {
         let found = hole.radius_rad.to_degrees();
         assert!((found - radius_deg).abs() < 0.006, "{text}: {found}");
         assert!(found >= at_least);
-        // Nothing is in it.
+        // The cap holds no point.
         let most = directions
             .iter()
             .map(|d| d.dot(hole.centre))
@@ -243,7 +240,7 @@ fn the_largest_holes_are_those_that_the_fan_leaves() {
     }
 }
 
-/// The bin whose triangle holds a direction: down from the face of the icosahedron that does.
+/// The bin whose triangle holds a direction, found from the face of the icosahedron down.
 fn containing(icosahedron: &Icosahedron, direction: DVec3) -> usize {
     let depth = |corners: [DVec3; 3]| {
         let [a, b, c] = corners;
@@ -262,7 +259,7 @@ fn containing(icosahedron: &Icosahedron, direction: DVec3) -> usize {
     among.start / 4
 }
 
-/// What the paper does not say, and what it would come to.
+/// Settings that the paper does not give, and their figures.
 #[test]
 fn other_choices_come_less_close() {
     let icosahedron = Icosahedron::new(4).unwrap();

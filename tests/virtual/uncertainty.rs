@@ -1,10 +1,10 @@
-//! Whether points are off by what their column `sd` says, against the simulator's truth: the
-//! normalised error, the root mean square of error over sd, is 1 where it does.
+//! The column `sd` against the simulator's truth: the normalised error, the root mean square of
+//! error over sd, is 1 if `sd` is right.
 //!
 //! Errors of a fit, of a clock and of the polls' delays are common to many points of one scan, so
-//! every figure is over several seeds. What no scan tells, and sd leaves out, is taken away first
-//! as a calibration would: of each way to the drive one delay and one zero of the angle, over all
-//! of its seeds and speeds.
+//! every figure is over several seeds. `sd` leaves out what no scan can tell; it is removed first
+//! as a calibration would: per attachment one delay and one zero of the angle, over all seeds and
+//! speeds.
 
 use engine::reconstruct::source::Source;
 use firmware_sim::epos2::Servo;
@@ -16,9 +16,9 @@ use units::{DegPerS, DegPerS2, Degrees, Span};
 use velomotion_tests::capture::{Captured, Setting};
 
 const SEEDS: u64 = 8;
-/// Speed and where the sweep ends: some 0.7 s each.
+/// Speed and end of the sweep: about 0.7 s each.
 const SWEEPS: [(f64, f64); 2] = [(56.25, -45.0), (5.0, -3.0)];
-/// One point in so many is compared.
+/// Number of points per compared one.
 const EVERY: usize = 37;
 const NEAR_M: f64 = 5.0;
 const FAR_M: f64 = 12.0;
@@ -30,7 +30,7 @@ fn capture(attached: Attachment, sweep: (f64, f64), seed: u64) -> Captured {
 fn setting(attached: Attachment, (speed, to): (f64, f64), seed: u64) -> Setting {
     let mut setting = Setting::over(attached);
     setting.links.seed = 1_000 * seed + 7;
-    // Another day: other phases of polls, rotor and control cycle.
+    // Other phases of polls, rotor and control cycle.
     setting.start += Span::from_micros(137_731 * seed as i64);
     setting.lidar_clock_us += 7_919_111 * seed as u32;
     setting.wish.speed = DegPerS(speed);
@@ -38,13 +38,12 @@ fn setting(attached: Attachment, (speed, to): (f64, f64), seed: u64) -> Setting 
     setting
 }
 
-/// A point, or an angle, beside the truth.
+/// A point or an angle with the truth.
 struct Seen {
     case: usize,
     seed: u64,
     range_m: f64,
-    /// How far off, and how far a degree of tilt would move it; of an angle the first of three is
-    /// in use.
+    /// The error, and its change per degree of tilt; for an angle only the first of three is used.
     error: [f64; 3],
     per_deg: [f64; 3],
     rate_deg_s: f64,
@@ -78,8 +77,7 @@ fn points(captured: &Captured, case: usize, seed: u64) -> Vec<Seen> {
     seen.collect()
 }
 
-/// Takes away what one delay and one zero of the angle explain: weighted least squares in two
-/// unknowns.
+/// Removes one delay and one zero of the angle: weighted least squares in two unknowns.
 fn calibrate(seen: &mut [Seen]) -> (f64, f64) {
     let dot = |a: &[f64; 3], b: &[f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let (mut normal, mut right) = ([0.0; 3], [0.0; 2]);
@@ -104,7 +102,7 @@ fn calibrate(seen: &mut [Seen]) -> (f64, f64) {
     (delay_s, zero_deg)
 }
 
-/// The normalised error of some, and how many those are.
+/// The normalised error of the selected ones, and their number.
 fn normalised(seen: &[Seen], pick: impl Fn(&Seen) -> bool) -> (f64, usize) {
     let (mut sum, mut count) = (0.0, 0);
     for s in seen.iter().filter(|s| pick(s)) {
@@ -157,8 +155,8 @@ fn points_are_off_by_what_sd_says_over_can() {
     points_are_off_by_what_sd_says(Attachment::Can, None);
 }
 
-/// A servo of 15 Hz that overshoots, on both links. The gear is true: what it adds no encoder sees,
-/// and sd cannot hold.
+/// A servo of 15 Hz that overshoots, on both links. The gear is exact: no encoder sees its ripple,
+/// and sd cannot contain it.
 #[test]
 fn points_are_off_by_what_sd_says_behind_a_servo_that_lags() {
     let servo = Servo::SecondOrder {
@@ -170,7 +168,7 @@ fn points_are_off_by_what_sd_says_behind_a_servo_that_lags() {
     }
 }
 
-/// Where ranges and azimuths do not hide it: the angle itself, between polls over USB.
+/// Without the noise of ranges and azimuths: the angle itself, between polls over USB.
 #[test]
 fn angles_are_off_by_what_their_pieces_say() {
     for method in [Method::Nearest, Method::Linear] {

@@ -1,5 +1,4 @@
-//! Debian's Chromium through its WebDriver: one `chromedriver`, a window a look, and what tests do
-//! in one.
+//! Debian's Chromium through its WebDriver: one `chromedriver`, and one window per test.
 
 use std::collections::BTreeSet;
 use std::future::Future;
@@ -12,14 +11,14 @@ use fantoccini::{Client, ClientBuilder, Locator};
 use hyper_util::client::legacy::connect::HttpConnector;
 use serde_json::{Value, json};
 
-/// Nothing here takes longer, however busy the machine: what does is broken.
-const PATIENCE: Duration = Duration::from_secs(90);
+/// Every awaited condition comes sooner, or never.
+const TIME_LIMIT: Duration = Duration::from_secs(90);
 const LOOK_AGAIN: Duration = Duration::from_millis(40);
 
-/// A screen: its size, and whether it likes dark pages.
+/// A screen: its size and colour scheme.
 #[derive(Clone, Copy, Debug)]
 pub struct Screen {
-    /// As in the names of pictures.
+    /// Name in file names of pictures.
     pub name: &'static str,
     width: u32,
     height: u32,
@@ -35,7 +34,7 @@ pub const DESKTOP: Screen = Screen {
     ratio: 1,
     dark: true,
 };
-/// A phone held beside the tripod.
+/// A phone next to the tripod.
 pub const PHONE: Screen = Screen {
     name: "phone",
     width: 390,
@@ -43,7 +42,7 @@ pub const PHONE: Screen = Screen {
     ratio: 1,
     dark: true,
 };
-/// The narrowest that is to work.
+/// The narrowest supported screen.
 pub const NARROW: Screen = Screen {
     name: "narrow",
     width: 360,
@@ -53,7 +52,7 @@ pub const NARROW: Screen = Screen {
 };
 
 impl Screen {
-    /// The same in the sun.
+    /// The same screen with the light colour scheme.
     pub const fn light(self) -> Self {
         Self {
             dark: false,
@@ -77,21 +76,21 @@ impl Driver {
             .stderr(Stdio::null())
             .spawn()
             .expect("chromedriver, of the Debian package chromium-driver");
-        let mut said = BufReader::new(process.stdout.take().unwrap()).lines();
-        let port = said.find_map(|line| {
+        let mut printed = BufReader::new(process.stdout.take().unwrap()).lines();
+        let port = printed.find_map(|line| {
             let line = line.unwrap();
             let (_, port) = line.split_once("started successfully on port ")?;
             Some(port.trim_end_matches('.').to_owned())
         });
-        // Whoever writes into a pipe that nobody reads stands still.
-        std::thread::spawn(move || said.for_each(drop));
+        // A process that writes into an unread pipe blocks.
+        std::thread::spawn(move || printed.for_each(drop));
         Self {
             process,
             url: format!("http://127.0.0.1:{}", port.unwrap()),
         }
     }
 
-    /// Runs a test in a window of its own, which is closed whatever becomes of it.
+    /// Runs a test in its own window and closes the window even if the test panics.
     pub fn test<F: Future<Output = ()>>(&self, screen: Screen, act: impl FnOnce(Page) -> F) {
         let runtime = tokio::runtime::Builder::new_current_thread()
             .enable_all()
@@ -100,7 +99,7 @@ impl Driver {
         runtime.block_on(async {
             let page = self.open(screen).await;
             let client = page.client.clone();
-            // The future is dropped by a panic; the process of the browser ends with its driver.
+            // A panic drops the future; the browser's process ends with its driver.
             act(page).await;
             client.close().await.unwrap();
         });
@@ -141,7 +140,7 @@ impl Driver {
 
 impl Drop for Driver {
     fn drop(&mut self) {
-        // It ends its browsers.
+        // The driver ends its browsers.
         let _ = self.process.kill();
         let _ = self.process.wait();
     }
@@ -154,17 +153,17 @@ pub struct Page {
 }
 
 impl Page {
-    /// Goes there.
+    /// Opens the URL.
     pub async fn goto(&self, url: &str) {
         self.client.goto(url).await.unwrap();
     }
 
-    /// What a function body gives in the page.
+    /// Result of a function body that runs in the page.
     pub async fn run(&self, script: &str) -> Value {
         self.client.execute(script, vec![]).await.unwrap()
     }
 
-    /// An answer of the daemon's API, asked by the page itself.
+    /// An answer of the daemon's API to a request by the page.
     pub async fn api(&self, path: &str) -> Value {
         let script = "const done = arguments[1];
             fetch('/api/v1/' + arguments[0]).then((answer) => answer.json()).then(done, (error) => done(String(error)));";
@@ -174,14 +173,14 @@ impl Page {
             .unwrap()
     }
 
-    /// The text of the first element that fits; empty where none does.
+    /// Text of the first matching element, or an empty string.
     pub async fn text(&self, css: &str) -> String {
         let script = "const at = document.querySelector(arguments[0]); return at && at.checkVisibility() ? at.innerText : '';";
         let text = self.client.execute(script, vec![json!(css)]).await.unwrap();
         text.as_str().unwrap_or_default().to_owned()
     }
 
-    /// Waits until that text fits; gives it.
+    /// Waits until the text fits, and returns it.
     pub async fn until(&self, css: &str, what: &str, fits: impl Fn(&str) -> bool) -> String {
         let begin = Instant::now();
         loop {
@@ -189,7 +188,7 @@ impl Page {
             if fits(&text) {
                 return text;
             }
-            if begin.elapsed() > PATIENCE {
+            if begin.elapsed() > TIME_LIMIT {
                 let place = self.picture("failed").await;
                 eprintln!(
                     "what happened: {}",
@@ -207,7 +206,7 @@ impl Page {
         self.until(css, part, |text| text.contains(part)).await
     }
 
-    /// Waits until there is no such element in sight, or an empty one.
+    /// Waits until no such element is visible, or it is empty.
     pub async fn until_gone(&self, css: &str) {
         self.until(css, "gone", str::is_empty).await;
     }
@@ -216,18 +215,18 @@ impl Page {
     pub async fn until_true(&self, expression: &str) {
         let begin = Instant::now();
         while self.run(&format!("return Boolean({expression})")).await != true {
-            assert!(begin.elapsed() < PATIENCE, "never true: {expression}");
+            assert!(begin.elapsed() < TIME_LIMIT, "never true: {expression}");
             tokio::time::sleep(LOOK_AGAIN).await;
         }
     }
 
-    /// Waits until the cloud in view is whole.
+    /// Waits until the shown cloud is complete.
     pub async fn until_loaded(&self) {
         self.until_true("document.querySelector('#view-progress').hidden && document.querySelector('#view-note').textContent === ''")
             .await;
     }
 
-    /// How many colours the picture of an element has: one in which nothing is drawn has few.
+    /// Number of colours in the picture of an element: an empty drawing has few.
     pub async fn colours_of(&self, css: &str) -> usize {
         let element = self.client.find(Locator::Css(css)).await.unwrap();
         let picture = element.screenshot().await.unwrap();
@@ -238,9 +237,9 @@ impl Page {
         pixels.collect::<BTreeSet<_>>().len()
     }
 
-    /// Presses it, as a mouse or a finger does: it must be in reach.
+    /// Clicks an element, which must be reachable for a mouse or finger.
     pub async fn click(&self, css: &str) {
-        // The driver scrolls no farther than to the edge, where the buttons may be.
+        // The driver scrolls only to the edge, where the buttons may be.
         self.run(&format!(
             "document.querySelector({css:?}).scrollIntoView({{ block: 'center' }})"
         ))
@@ -249,21 +248,21 @@ impl Page {
         element.click().await.unwrap();
     }
 
-    /// Types into a field that may hold something.
+    /// Types into a field and replaces its text.
     pub async fn fill(&self, css: &str, text: &str) {
         let begin = Instant::now();
-        // A page that is just being replaced takes its fields with it.
+        // A page that is being replaced removes its fields.
         let element = loop {
             let element = self.client.find(Locator::Css(css)).await.unwrap();
             match element.clear().await {
                 Ok(()) => break element,
-                Err(error) => assert!(begin.elapsed() < PATIENCE, "{css}: {error}"),
+                Err(error) => assert!(begin.elapsed() < TIME_LIMIT, "{css}: {error}"),
             }
         };
         element.send_keys(text).await.unwrap();
     }
 
-    /// Presses keys, wherever the focus is.
+    /// Presses keys with the current focus.
     pub async fn keys(&self, keys: &str) {
         let element = self.client.active_element().await.unwrap();
         element.send_keys(keys).await.unwrap();
@@ -275,30 +274,29 @@ impl Page {
         element.select_by_value(value).await.unwrap();
     }
 
-    /// As if the cookies had run out.
+    /// Deletes the cookies, as if they had expired.
     pub async fn forget_cookies(&self) {
         self.client.delete_all_cookies().await.unwrap();
     }
 
-    /// Fails where `audit.js` has something to complain of.
+    /// Fails if `audit.js` reports a problem.
     pub async fn audit(&self, what: &str) {
         let complaints = self.run(include_str!("audit.js")).await;
         assert_eq!(complaints, json!([]), "{what} on {:?}", self.screen);
     }
 
-    /// A processor that draws in place of a graphics card may be late for the driver's own
-    /// patience.
+    /// Software rendering may exceed the driver's own time limit.
     async fn screenshot(&self) -> Vec<u8> {
         let begin = Instant::now();
         loop {
             match self.client.screenshot().await {
                 Ok(picture) => return picture,
-                Err(error) => assert!(begin.elapsed() < PATIENCE, "{error}"),
+                Err(error) => assert!(begin.elapsed() < TIME_LIMIT, "{error}"),
             }
         }
     }
 
-    /// A picture of the window, in the folder `VELOMOTION_SCREENSHOTS` or a temporary one.
+    /// Saves a picture of the window in the folder `VELOMOTION_SCREENSHOTS` or a temporary one.
     pub async fn picture(&self, name: &str) -> PathBuf {
         let folder = std::env::var_os("VELOMOTION_SCREENSHOTS").map_or_else(
             || std::env::temp_dir().join("velomotion-screenshots"),

@@ -1,8 +1,8 @@
-//! The daemon's page in Debian's Chromium, against the real daemon and software devices: scans made
-//! and counted, faults read, the connection lost.
+//! The daemon's page in Debian's Chromium with the real daemon and software devices: scans, faults,
+//! a lost connection.
 //!
 //! The tests need `chromedriver` and `chromium`. `VELOMOTION_SCREENSHOTS=FOLDER` keeps the
-//! pictures; those of docs/src/page are made so.
+//! pictures, as for docs/src/page.
 
 mod browser;
 
@@ -18,11 +18,11 @@ use tokio::task::spawn_blocking;
 use browser::{DESKTOP, Driver, NARROW, PHONE, Page};
 use velomotion_tests::bench::Bench;
 
-/// A daemon with its own folder; the port is 0 for one that is free.
+/// A daemon with its own folder; port 0 takes a free one.
 fn daemon(config: Config, device: Option<&str>, folder: &Path, port: u16) -> Daemon {
     let settings = DaemonConfig {
         scans: Some(folder.join("scans")),
-        // The machine's disk is not what is tested here.
+        // Free disk space is not tested here.
         reserve_bytes: 0,
         ..config.daemon.clone()
     };
@@ -47,7 +47,7 @@ fn url(daemon: &Daemon) -> String {
     format!("http://{}/", daemon.address())
 }
 
-/// The page is open and both devices are ready.
+/// Opens the page and waits for both devices.
 async fn ready(page: &Page, url: &str) {
     page.goto(url).await;
     page.until_has("#chip-link", "Connected").await;
@@ -67,7 +67,7 @@ async fn start(page: &Page, name: &str, speed: &str, to: &str) {
     page.click("#start").await;
 }
 
-/// The scan of this name, by the API.
+/// The scan of this name from the API.
 async fn scan(page: &Page, name: &str) -> Value {
     let scans = page.api("scans").await;
     let scans = scans.as_array().or(scans["scans"].as_array()).unwrap();
@@ -81,7 +81,7 @@ fn points(text: &str) -> u64 {
     digits.parse().unwrap_or(0)
 }
 
-/// Remembers every number of points that was shown while the cloud was live.
+/// Records every shown number of points of the live cloud.
 const WATCH: &str = "
     window.live = [];
     new MutationObserver(() => {
@@ -101,23 +101,23 @@ fn a_scan_is_started_seen_and_counted() {
         page.until_has("#view-empty", "No scan in view").await;
         page.fill("#to", "-30").await;
         let plan = page.until_has("#plan", "vertical resolution").await;
-        // 5.625 degrees at 600 rpm; a little less or more once the lidar's own are known.
+        // 5.625 deg at 600 rpm; slightly different once the lidar's own speed is known.
         assert!(plan.contains("5.6") && plan.contains("1125 rpm"), "{plan}");
 
         page.run(WATCH).await;
         start(&page, "hall", "56.25", "-30").await;
         page.until_has("#view-title", "Live: hall").await;
         page.until_has(".scan .badge[data-state]", "whole").await;
-        // The cloud takes the place of the live one.
+        // The final cloud replaces the live one.
         page.until("#view-title", "hall", |text| text == "hall")
             .await;
         page.until_loaded().await;
-        let said = points(&page.text("#view-points").await);
+        let printed = points(&page.text("#view-points").await);
 
         let made = scan(&page, "hall").await;
         assert_eq!(made["state"], "whole", "{made}");
-        assert_eq!(Some(said), made["report"]["points"].as_u64());
-        assert!((100_000..200_000).contains(&said), "{said}");
+        assert_eq!(Some(printed), made["report"]["points"].as_u64());
+        assert!((100_000..200_000).contains(&printed), "{printed}");
         let live = page.run("return window.live").await;
         let most = live
             .as_array()
@@ -125,7 +125,10 @@ fn a_scan_is_started_seen_and_counted() {
             .iter()
             .map(|text| points(text.as_str().unwrap()))
             .max();
-        assert!(most.unwrap_or(0) > said / 2, "{most:?} of {said} live");
+        assert!(
+            most.unwrap_or(0) > printed / 2,
+            "{most:?} of {printed} live"
+        );
         let residual = page.until_has("#last-facts", "Clock residual").await;
         assert!(
             residual.contains("Angle method") && residual.contains("\u{b5}s"),
@@ -171,15 +174,15 @@ fn a_sweep_is_watched_and_stopped_by_key_and_by_finger() {
     ] {
         driver.test(screen, async |page| {
             ready(&page, &url).await;
-            // Slow enough that nothing here can come after its end.
+            // Slow enough to outlast the checks.
             start(&page, name, "1", "-45").await;
             page.until_has("#doing", "Sweeping").await;
             page.until("#view-points", "a growing cloud", |text| {
                 points(text) > 20_000
             })
             .await;
-            // Where the processor draws, a picture takes seconds, and each lets the cloud grow by
-            // 300,000 points.
+            // With software rendering a picture takes seconds, in which the cloud grows by 300,000
+            // points.
             if std::env::var_os("VELOMOTION_SCREENSHOTS").is_some() {
                 page.run(TO_THE_TOP).await;
                 page.picture("live").await;
@@ -193,8 +196,8 @@ fn a_sweep_is_watched_and_stopped_by_key_and_by_finger() {
             assert_eq!(stopped["why"]["kind"], "interrupted", "{stopped}");
             let swept = stopped["report"]["sweeps"][0]["to_deg"].as_f64().unwrap();
             assert!((-44.0..-0.02).contains(&swept), "{stopped}");
-            let said = page.text(".scan .why").await;
-            assert_eq!(said, "Stopped by the user. What was captured is kept.");
+            let printed = page.text(".scan .why").await;
+            assert_eq!(printed, "Stopped by the user. What was captured is kept.");
             let tilt = page.api("tilt").await;
             assert_eq!(tilt["velocity_rpm"], 0, "{tilt}");
         });
@@ -204,7 +207,7 @@ fn a_sweep_is_watched_and_stopped_by_key_and_by_finger() {
 
 const TO_THE_TOP: &str = "scrollTo(0, 0); document.querySelector('.panels').scrollTo(0, 0); document.activeElement.blur();";
 
-/// As WebDriver has it.
+/// WebDriver's code of the key.
 const ESCAPE: &str = "\u{e00c}";
 
 #[test]
@@ -257,7 +260,7 @@ fn a_fault_is_read_with_what_to_do_and_cleared() {
         page.click("#clear").await;
         page.until_gone(".problem").await;
         page.until_has("#chip-drive", "Drive ready").await;
-        // The cable.
+        // Unplugs the cable.
         drop(bench);
         let gone = page
             .until_has(".problem[data-device=drive]", "What to do")
@@ -270,14 +273,14 @@ fn a_fault_is_read_with_what_to_do_and_cleared() {
 
 #[test]
 #[ignore = "needs chromium and chromedriver"]
-fn a_lost_connection_is_said_and_comes_back() {
+fn a_lost_connection_is_reported_and_restored() {
     let driver = Driver::start();
     let folder = tempfile::tempdir().unwrap();
     let first = simulator(folder.path());
     let (url, port) = (url(&first), first.address().port());
     driver.test(PHONE, async |page| {
         ready(&page, &url).await;
-        // It waits for its threads.
+        // The stop waits for the daemon's threads.
         spawn_blocking(move || first.stop(|| true).unwrap())
             .await
             .unwrap();
@@ -299,7 +302,7 @@ fn a_lost_connection_is_said_and_comes_back() {
 
 #[test]
 #[ignore = "needs chromium and chromedriver"]
-fn a_token_is_asked_for_once() {
+fn the_page_asks_for_a_token_once() {
     let driver = Driver::start();
     let folder = tempfile::tempdir().unwrap();
     let config = Config {
@@ -321,7 +324,7 @@ fn a_token_is_asked_for_once() {
         page.fill("[name=token]", "a-token-of-this-test").await;
         page.click("button").await;
         page.until_has("#chip-link", "Connected").await;
-        // The cookie is gone: the page itself asks then.
+        // Without its cookie the page asks for the token.
         page.run("return fetch('/api/v1/status').then((answer) => answer.status)")
             .await;
         page.forget_cookies().await;

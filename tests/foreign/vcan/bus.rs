@@ -1,8 +1,8 @@
-//! A CANopen master of few lines on an interface of the kernel: SDO transfers one after the other,
-//! and all else that is heard kept with the kernel's time.
+//! A small CANopen master on an interface of the kernel. It runs one SDO transfer after the other
+//! and keeps all other frames with the kernel's time.
 //!
-//! It is not the project's own client of the drive: what it asserts it asserts about the bus and
-//! the node.
+//! It shares nothing with the project's drive client, so its assertions are about the bus and the
+//! node.
 
 use io::can::{CanPort, SocketCan};
 use io::clock;
@@ -11,72 +11,72 @@ use protocol::canopen::{CanFrame, NodeId};
 use protocol::epos2::objects::{Address, Scalar, TypedObject};
 use units::{Host, Span, Stamp};
 
-/// For an answer, and for what a command brings about: an emulated machine on a busy host is slow.
-pub const PATIENCE: Span = Span::from_secs(5);
+/// Time limit of an answer and of a command's effect: an emulated machine on a busy host is slow.
+pub const TIME_LIMIT: Span = Span::from_secs(5);
 /// The longest object read here has 8 bytes.
 type Sdo = SdoClient<16>;
 
-/// A frame that was no answer to an SDO request, and when the kernel got it.
-pub type Heard = (CanFrame, Stamp<Host>);
+/// A frame other than an SDO answer, with the kernel's receive time.
+pub type ReceivedFrame = (CanFrame, Stamp<Host>);
 
-/// The master of one node.
+/// Master of one node.
 pub struct Master {
     bus: SocketCan,
     sdo: Sdo,
-    heard: Vec<Heard>,
+    received: Vec<ReceivedFrame>,
 }
 
 impl Master {
-    /// A master on an interface that is up. It hears what is sent from now on.
+    /// Opens a master on an interface that is up. It receives frames sent from now on.
     pub fn open(interface: &str, node: NodeId) -> Self {
         Self {
             bus: SocketCan::open(interface).unwrap(),
-            sdo: Sdo::new(node, PATIENCE),
-            heard: Vec::new(),
+            sdo: Sdo::new(node, TIME_LIMIT),
+            received: Vec::new(),
         }
     }
 
-    /// Sends a frame; the time just before.
+    /// Sends a frame. Returns the time just before.
     pub fn send(&mut self, frame: &CanFrame) -> Stamp<Host> {
         self.bus.write_frame(frame).unwrap()
     }
 
-    /// Listens until `end`, at least to what is there already.
+    /// Receives frames until `end`, at least those already queued.
     pub fn listen(&mut self, end: Stamp<Host>) {
         loop {
             let left = end.saturating_since(clock::now());
             match self.bus.read(left).unwrap() {
-                Some(heard) => self.heard.push(heard),
+                Some(received) => self.received.push(received),
                 None => return,
             }
         }
     }
 
-    /// Takes the frames heard so far.
-    pub fn take_heard(&mut self) -> Vec<Heard> {
-        std::mem::take(&mut self.heard)
+    /// Takes the frames received so far.
+    pub fn take_received(&mut self) -> Vec<ReceivedFrame> {
+        std::mem::take(&mut self.received)
     }
 
-    /// Waits for a frame that `pick` wants; those before it are dropped.
-    pub fn wait_for<T>(&mut self, what: &str, pick: impl Fn(&Heard) -> Option<T>) -> T {
-        let end = clock::now() + PATIENCE;
+    /// Waits for a frame that `pick` accepts and drops those before it.
+    pub fn wait_for<T>(&mut self, what: &str, pick: impl Fn(&ReceivedFrame) -> Option<T>) -> T {
+        let end = clock::now() + TIME_LIMIT;
         while clock::now() < end {
-            while !self.heard.is_empty() {
-                if let Some(found) = pick(&self.heard.remove(0)) {
+            while !self.received.is_empty() {
+                if let Some(found) = pick(&self.received.remove(0)) {
                     return found;
                 }
             }
             let left = end.saturating_since(clock::now());
-            self.heard.extend(self.bus.read(left).unwrap());
+            self.received.extend(self.bus.read(left).unwrap());
         }
-        panic!("waited {PATIENCE:?} for {what}");
+        panic!("waited {TIME_LIMIT:?} for {what}");
     }
 
     /// Reads objects until `done`.
     pub fn poll(&mut self, what: &str, mut done: impl FnMut(&mut Self) -> bool) {
-        let end = clock::now() + PATIENCE;
+        let end = clock::now() + TIME_LIMIT;
         while !done(self) {
-            assert!(clock::now() < end, "waited {PATIENCE:?} for {what}");
+            assert!(clock::now() < end, "waited {TIME_LIMIT:?} for {what}");
         }
     }
 
@@ -107,7 +107,7 @@ impl Master {
         self.transfer().map(drop)
     }
 
-    /// Brings the transfer that was begun to its end.
+    /// Completes the transfer under way.
     fn transfer(&mut self) -> Result<SdoValue<16>, TransferError> {
         loop {
             while let Some(frame) = self.sdo.poll_transmit(clock::now()) {
@@ -121,10 +121,10 @@ impl Master {
                 .poll_timeout()
                 .map_or(Span::ZERO, |end| end.saturating_since(clock::now()));
             match self.bus.read(left).unwrap() {
-                Some(heard) => match self.sdo.handle_frame(&heard.0) {
+                Some(received) => match self.sdo.handle_frame(&received.0) {
                     FrameDisposition::Accepted => {}
-                    FrameDisposition::Foreign => self.heard.push(heard),
-                    other => panic!("{other:?}: {}", heard.0),
+                    FrameDisposition::Foreign => self.received.push(received),
+                    other => panic!("{other:?}: {}", received.0),
                 },
                 None => self.sdo.handle_timeout(clock::now()),
             }

@@ -1,5 +1,5 @@
-//! The project's own client of the drive on a bus of the kernel: connects, homes and sweeps as a
-//! capture does, with a log of its frames and somebody else's beside it.
+//! The project's drive client on a bus of the kernel: it connects, homes and sweeps as a capture
+//! does. Both it and `candump` log the frames.
 
 use std::cell::RefCell;
 use std::path::Path;
@@ -20,17 +20,17 @@ use protocol::record::{DriveLink, Record, Wire};
 use units::{DegPerS, DegPerS2, Degrees, Span};
 
 use crate::BUS;
+use crate::candump::Candump;
 use crate::logs::{CANDUMP_LOG, LOG};
-use crate::onlooker::Onlooker;
 
-/// What a log of the sweep tells.
-struct Heard<W> {
+/// Frames of the sweep's log.
+struct SweepFrames<W> {
     log: LogWriter<W>,
     listener: DriveListener,
     samples: Vec<ShaftSample>,
 }
 
-impl<W: std::io::Write> Heard<W> {
+impl<W: std::io::Write> SweepFrames<W> {
     fn hear(&mut self, record: &Record<'_>) {
         self.log.write(record).unwrap();
         let Wire::Drive {
@@ -53,17 +53,17 @@ impl<W: std::io::Write> Heard<W> {
     }
 }
 
-/// 45 degrees at 10 deg/s, sampled at 1 kHz. The logs go to the folder `out`.
+/// Sweeps 45 deg at 10 deg/s, sampled at 1 kHz. The logs go to the folder `out`.
 pub fn sweep(out: &Path) {
-    let onlooker = Onlooker::start(&out.join(CANDUMP_LOG));
-    // With the brake of the checkout's own configuration.
+    let candump = Candump::start(&out.join(CANDUMP_LOG));
+    // With the brake of the repository's configuration.
     let mut axis = devices::axis(&AxisSettings {
         brake_output: Some(1),
         ..AxisSettings::default()
     })
     .unwrap();
-    // An emulated machine on a busy one may stand still for longer than a drive may be silent; that
-    // is tested in virtual time.
+    // An emulated machine on a busy host may pause for longer than the drive's silence limit;
+    // virtual time tests that limit.
     axis.can.host_limit = Span::from_secs(2);
     axis.can.node_limit = Span::from_secs(2);
     axis.timing.timeout_moving = Span::from_secs(1);
@@ -81,14 +81,14 @@ pub fn sweep(out: &Path) {
         metadata: String::new(),
         drive: Some(DriveLink::Can),
     };
-    let heard = RefCell::new(Heard {
+    let received = RefCell::new(SweepFrames {
         log: LogWriter::create(out.join(LOG), &head, Overwrite::Refuse).unwrap(),
         listener: DriveListener::new(axis.node),
         samples: Vec::new(),
     });
     let line = BusLine(SocketCan::open(BUS).unwrap());
     let port = RecordingPort::new(line, DriveLink::Can, |record: &Record<'_>| {
-        heard.borrow_mut().hear(record);
+        received.borrow_mut().hear(record);
     });
     let client = DriveClient::new(axis, DriveLink::Can);
     let mut session = Session::new(client, port, Arc::new(AtomicBool::new(false)));
@@ -110,16 +110,16 @@ pub fn sweep(out: &Path) {
     };
     assert!((arrived.angle.0 + 45.0).abs() < 0.01, "{arrived:?}");
     session.run(DriveCommand::Brake, &mut |_| {}).unwrap();
-    // What answers the last SYNCs may come after what ends the command: the log has it when
-    // something else has been asked.
+    // Answers to the last SYNCs may follow the command's end: another request brings them into the
+    // log.
     session.run(DriveCommand::Status, &mut |_| {}).unwrap();
     assert_eq!(session.port().port().0.dropped(), 0);
     drop(session);
-    onlooker.finish();
-    let heard = heard.into_inner();
-    heard.log.finish().unwrap();
-    let angles = heard.samples.iter().map(|s| gearing.angle(s.position).0);
+    candump.finish();
+    let received = received.into_inner();
+    received.log.finish().unwrap();
+    let angles = received.samples.iter().map(|s| gearing.angle(s.position).0);
     let sweep = angles.filter(|a| *a < -1.0 && *a > -44.0).count();
-    // 43 degrees at 10 deg/s, less what a machine that is kept waiting does not ask for.
+    // 43 deg at 10 deg/s, less the samples that a busy machine misses.
     assert!(sweep > 1_000, "{sweep} samples in the sweep");
 }

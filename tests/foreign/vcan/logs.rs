@@ -1,5 +1,4 @@
-//! The logs of a sweep, the project's own and `candump`'s: what is in them, and what tshark makes
-//! of them.
+//! Checks of the sweep's logs, the project's own and `candump`'s, also with tshark.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -10,18 +9,18 @@ use io::recording::Recording;
 use protocol::canopen::{CanFrame, CobId, CommunicationObject, NodeId, PdoNumber};
 use protocol::record::{Direction, Wire};
 
-use crate::onlooker;
+use crate::candump;
 
-/// The project's log.
+/// Name of the project's log.
 pub const LOG: &str = "sweep.pcapng";
-/// `candump`'s.
+/// Name of `candump`'s log.
 pub const CANDUMP_LOG: &str = "candump.log";
 
-/// Frames and how often each of them passed.
+/// Frames with their counts.
 type Passed = BTreeMap<[u8; 16], usize>;
 
-/// SYNCs have their samples, `candump` heard what the client said and heard, and tshark dissects
-/// both logs as CANopen.
+/// Checks that SYNCs have their samples, that `candump` logged the same frames, and that tshark
+/// dissects both logs as CANopen.
 pub fn check(folder: &Path) {
     let ours = of_the_log(&folder.join(LOG));
     tshark(&folder.join(LOG), &ours);
@@ -35,8 +34,7 @@ fn node() -> NodeId {
     NodeId::new(1).unwrap()
 }
 
-/// The frames of the log; none of the stream's may be missing but where the machine is kept
-/// waiting.
+/// Reads the frames of the log. Samples may be missing only where the machine was busy.
 fn of_the_log(path: &Path) -> Passed {
     let mut recording = Recording::open(path).unwrap();
     let mut passed = Passed::new();
@@ -55,11 +53,10 @@ fn of_the_log(path: &Path) -> Passed {
     assert!(recording.end().is_some());
     let [syncs, samples] = [CobId::SYNC, stream()].map(|id| of(&passed, id));
     println!("{syncs} SYNCs, {samples} samples");
-    // A second and more of the sweep alone, at 1 kHz.
+    // More than a second of the sweep at 1 kHz.
     assert!(syncs > 1_000, "{syncs}");
-    // On a machine that has time every SYNC has its sample (the test says how many). Where this one
-    // is kept waiting, the software drive is late for some; never for many, and it never sends what
-    // was not asked for.
+    // On an idle machine every SYNC has its sample; the test prints how many. On a busy one the
+    // software drive misses a few, and it never sends an unsolicited sample.
     let lost = syncs.checked_sub(samples).unwrap();
     assert!(lost <= 3 + syncs / 50, "{lost} of {syncs}");
     passed
@@ -69,14 +66,14 @@ fn stream() -> CobId {
     CommunicationObject::TransmitPdo(PdoNumber::One, node()).cob_id()
 }
 
-/// How many frames have this identifier.
+/// Number of frames with this identifier.
 fn of(passed: &Passed, id: CobId) -> usize {
     let has = |bytes: &[u8; 16]| CanFrame::from_socketcan(bytes).unwrap().cob_id() == Some(id);
     let with_id = passed.iter().filter(|(bytes, _)| has(bytes));
     with_id.map(|(_, count)| count).sum()
 }
 
-/// The frames of lines like `(1700000000.000000) vcan0 181#0011223344556677`.
+/// Parses lines like `(1700000000.000000) vcan0 181#0011223344556677`.
 fn of_candump(text: &str) -> Passed {
     let mut passed = Passed::new();
     for line in text.lines() {
@@ -92,27 +89,27 @@ fn of_candump(text: &str) -> Passed {
     passed
 }
 
-/// What is in the log was on the bus, as often; what `candump` has besides is what it was shown,
-/// the node's heartbeat before and after the client, and the last answers, which nobody read any
-/// more.
+/// Compares the logs. Every frame of the project's log is in `candump`'s as often. The rest of
+/// `candump`'s log is probes, the node's heartbeats before and after the client, and last answers
+/// that the client did not read.
 fn compare(ours: &Passed, theirs: &Passed) {
     let mut unread = 0;
-    for (frame, heard) in theirs {
+    for (frame, received) in theirs {
         let count = ours.get(frame).copied().unwrap_or_default();
         let frame = CanFrame::from_socketcan(frame).unwrap();
         let heartbeat = frame.cob_id() == Some(CommunicationObject::Heartbeat(node()).cob_id());
-        if heartbeat || onlooker::is_probe(&frame) {
+        if heartbeat || candump::is_probe(&frame) {
             continue;
         }
         assert!(
-            count <= *heard,
-            "{frame}: {heard} heard, {count} in the log"
+            count <= *received,
+            "{frame}: {received} received, {count} in the log"
         );
-        unread += heard - count;
+        unread += received - count;
         let answer = frame.cob_id() == Some(stream());
         assert!(
-            count == *heard || answer,
-            "{frame}: {heard} heard, {count} in the log"
+            count == *received || answer,
+            "{frame}: {received} received, {count} in the log"
         );
     }
     for frame in ours.keys() {
@@ -122,7 +119,7 @@ fn compare(ours: &Passed, theirs: &Passed) {
     assert!(unread <= 3 + samples / 50, "{unread} of {samples}");
 }
 
-/// Somebody else's CANopen finds every frame and no fault in any.
+/// Checks that tshark finds every frame and no malformed one.
 fn tshark(path: &Path, passed: &Passed) {
     let lines = |filter: &str| {
         let output = Command::new("tshark")
@@ -137,7 +134,7 @@ fn tshark(path: &Path, passed: &Passed) {
     };
     let malformed = lines("_ws.malformed");
     assert_eq!(malformed, "");
-    // A SYNC has no data to dissect.
+    // A SYNC has no data.
     assert_eq!(lines("can && !canopen && can.len > 0"), "");
     let frames = lines("can").lines().count();
     assert_eq!(frames, passed.values().sum::<usize>());

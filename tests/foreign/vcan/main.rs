@@ -1,13 +1,13 @@
-//! The software EPOS2 on a CAN interface of the kernel (`velomotion firmware-sim --can vcan0`), and
-//! CANopen masters on other sockets: one made for the test, and the project's own client.
+//! The software EPOS2 on a CAN interface of the kernel (`velomotion firmware-sim --can vcan0`) with
+//! two CANopen masters: one made for the test and the project's client.
 //!
-//! If the kernel has no CAN, `in-vm` runs this program's test again in an emulated machine. The
-//! logs of the client and of `candump` are then read outside, by tshark too.
+//! If the kernel has no CAN, `in-vm` runs this test program in an emulated machine. The logs of the
+//! client and of `candump` are then read outside, by tshark too.
 
 mod bus;
+mod candump;
 mod client;
 mod logs;
-mod onlooker;
 mod stream;
 
 use std::path::{Path, PathBuf};
@@ -37,14 +37,14 @@ use units::Span;
 use bus::Master;
 
 const BUS: &str = "vcan0";
-/// Set where the bus is there.
+/// Set where the bus exists.
 const INSIDE: &str = "VELOMOTION_VCAN_INSIDE";
-/// Of the node's heartbeat, ms.
+/// Producer period of the node's heartbeat, ms.
 const BEAT_MS: u16 = 50;
-/// A node that has been silent for so long is lost.
+/// Silence after which a node counts as lost.
 const LOST: Span = Span::from_secs(2);
 
-/// The folder for files that go out of the machine.
+/// Folder for files that leave the emulated machine.
 const OUT: &str = "VELOMOTION_VCAN_OUT";
 
 #[test]
@@ -70,7 +70,7 @@ fn the_client_homes_and_sweeps_on_a_bus_of_the_kernel() {
     }
 }
 
-/// Runs this program's test `name` where the bus exists, and returns the files that it left.
+/// Runs the test `name` where the bus exists. Returns a folder with the files that it left.
 fn run_inside(name: &str) -> TempDir {
     let runner = Path::new(env!("CARGO_MANIFEST_DIR")).join("foreign/vcan/in-vm");
     let out = tempfile::tempdir().unwrap();
@@ -103,7 +103,7 @@ fn candump() -> PathBuf {
         .expect("candump, of the Debian package can-utils")
 }
 
-/// The software drive on the bus, in a thread of its own.
+/// The software drive on the bus, in a thread.
 struct SoftwareDrive {
     stop: Arc<AtomicBool>,
     thread: JoinHandle<Result<(), SoftwareDriveError>>,
@@ -151,7 +151,7 @@ fn meet() {
     heartbeat_is_lost(&mut master, &mut consumer);
 }
 
-/// Waits until the node says that it is in `wanted`.
+/// Waits until the node reports the state `wanted`.
 fn expect_state(master: &mut Master, consumer: &mut HeartbeatConsumer, wanted: NmtState) {
     let consumer = std::cell::RefCell::new(consumer);
     let event = master.wait_for(&format!("a heartbeat: {wanted}"), |(frame, host)| {
@@ -164,7 +164,7 @@ fn expect_state(master: &mut Master, consumer: &mut HeartbeatConsumer, wanted: N
     }
 }
 
-/// Numbers in one exchange; the name in one segment, the serial number in two.
+/// Reads the identity: numbers in one exchange, the name in one segment, the serial number in two.
 fn identity(master: &mut Master) {
     assert_eq!(master.read(objects::DEVICE_TYPE), 0x0002_0192);
     assert_eq!(master.read(objects::VENDOR_ID), 0xFB);
@@ -178,8 +178,8 @@ fn identity(master: &mut Master) {
     assert_eq!(serial.bytes[..4], low.to_le_bytes());
 }
 
-/// What the node refuses it refuses with a reason (CiA 301, "SDO abort codes"), and the next
-/// transfer is as good as any.
+/// Checks that aborts carry their reason (CiA 301, "SDO abort codes") and that the next transfer
+/// works.
 fn aborts(master: &mut Master) {
     let refused = |error| Err(TransferError::Aborted(error));
     let read = master.read_raw(Address::new(0x5FFF, 0)).map(drop);
@@ -195,14 +195,14 @@ fn aborts(master: &mut Master) {
     assert_eq!(master.read(objects::DEVICE_TYPE), 0x0002_0192);
 }
 
-/// Process data that is too short is error 8210: told at once, kept in the history, and its end
-/// told, too.
+/// Checks error 8210 for process data that is too short: sent at once, kept in the history, and its
+/// end sent, too.
 fn emergency(master: &mut Master, node: NodeId) {
-    let told = |(frame, _): &bus::Heard| Emergency::parse(frame).ok();
-    master.take_heard();
+    let reported = |(frame, _): &bus::ReceivedFrame| Emergency::parse(frame).ok();
+    master.take_received();
     let id = CommunicationObject::ReceivePdo(PdoNumber::One, node).cob_id();
     master.send(&CanFrame::of(id, [0x06]));
-    let emergency = master.wait_for("an emergency message", told);
+    let emergency = master.wait_for("an emergency message", reported);
     assert_eq!(emergency.node, node);
     assert_eq!(emergency.code, DeviceError::PDO_LENGTH.0);
     assert_ne!(emergency.register, 0);
@@ -211,19 +211,19 @@ fn emergency(master: &mut Master, node: NodeId) {
     assert_eq!(latest & 0xFFFF, u32::from(DeviceError::PDO_LENGTH.0));
     stream::wait_for_state(master, DeviceState::Fault);
     master.write(objects::CONTROLWORD, control::FAULT_RESET);
-    assert!(master.wait_for("the end of the error", told).is_reset());
+    assert!(master.wait_for("the end of the error", reported).is_reset());
     stream::wait_for_state(master, DeviceState::SwitchOnDisabled);
 }
 
-/// A node that is gone is missed.
+/// Checks that the loss of a node is detected.
 fn heartbeat_is_lost(master: &mut Master, consumer: &mut HeartbeatConsumer) {
     master.listen(clock::now());
-    for (frame, host) in master.take_heard() {
+    for (frame, host) in master.take_received() {
         assert_eq!(consumer.handle_frame(&frame, host), None, "{frame}");
     }
     let end = consumer.poll_timeout().unwrap();
     master.listen(end);
-    assert_eq!(master.take_heard(), []);
+    assert_eq!(master.take_received(), []);
     assert!(matches!(
         consumer.handle_timeout(end),
         Some(HeartbeatEvent::Lost { silence }) if silence == LOST

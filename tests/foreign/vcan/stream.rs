@@ -1,5 +1,5 @@
-//! The angle of a turning motor on SYNC, as a capture over CAN takes it: TPDO 1 with position and
-//! time, 1000 a second.
+//! The angle of a turning motor on SYNC, as a capture over CAN gets it: TPDO 1 with position and
+//! time, 1000 per second.
 
 use std::fmt;
 
@@ -14,20 +14,19 @@ use protocol::epos2::cia402::{DeviceState, control, mode, status};
 use protocol::epos2::objects;
 use units::{Host, Span, Stamp};
 
-use crate::bus::{Heard, Master};
+use crate::bus::{Master, ReceivedFrame};
 
 const SYNCS: usize = 1000;
 const PERIOD: Span = Span::from_millis(1);
-/// For the last samples after the last SYNC.
+/// Wait for the samples of the last SYNCs.
 const REST: Span = Span::from_secs(1);
-/// Away from the positive limit switch, beside which the axis starts; 20 qc/ms, 30 degrees in the
-/// second.
+/// Away from the positive limit switch, where the axis starts; 20 qc/ms, 30 deg in the second.
 const SPEED_RPM: i32 = -600;
-/// The same, of the default rig's 2000 qc a turn.
+/// The same speed with the default rig's 2000 qc per revolution.
 const SPEED_QC_US: f64 = SPEED_RPM as f64 * 2000.0 / 60e6;
 const PDO: Pdo = Pdo::Transmit(PdoNumber::One);
 
-/// What is in the process data: position and time of the same instant.
+/// The process data: position and time of the same instant.
 fn layout() -> PdoLayout {
     let entries = [
         MappedObject::of(objects::POSITION_ACTUAL),
@@ -36,7 +35,7 @@ fn layout() -> PdoLayout {
     PdoLayout::new(&entries).unwrap()
 }
 
-/// Has the node send its angle and time at each SYNC.
+/// Makes the node send its angle and time at each SYNC.
 pub fn map_angle(master: &mut Master, node: NodeId) {
     let wanted = Configuration {
         transmission: TransmissionType::EACH_SYNC,
@@ -50,7 +49,7 @@ pub fn map_angle(master: &mut Master, node: NodeId) {
     }
 }
 
-/// Up to operation enabled, then at constant speed.
+/// Enables operation, then moves at constant speed.
 pub fn enable_and_turn(master: &mut Master) {
     for (word, state) in [
         (control::SHUTDOWN, DeviceState::ReadyToSwitchOn),
@@ -71,7 +70,7 @@ pub fn enable_and_turn(master: &mut Master) {
     });
 }
 
-/// Brings the motor to a stop.
+/// Stops the motor.
 pub fn halt(master: &mut Master) {
     master.write(objects::CONTROLWORD, control::HALT_MOTION);
     master.poll("the stop", |master| {
@@ -86,7 +85,7 @@ pub fn wait_for_state(master: &mut Master, state: DeviceState) {
     });
 }
 
-/// What came of a SYNC.
+/// A SYNC and its sample.
 struct Sample {
     position_qc: i32,
     time_us: u32,
@@ -94,7 +93,7 @@ struct Sample {
 }
 
 impl Sample {
-    fn of((frame, host): &Heard, node: NodeId) -> Option<Self> {
+    fn of((frame, host): &ReceivedFrame, node: NodeId) -> Option<Self> {
         let wanted = CommunicationObject::TransmitPdo(PdoNumber::One, node).cob_id();
         let layout = layout();
         let data = (frame.cob_id() == Some(wanted)).then(|| frame.data())?;
@@ -106,7 +105,7 @@ impl Sample {
     }
 }
 
-/// What was seen in the second.
+/// Results of one second.
 pub struct Report {
     samples: usize,
     beats: usize,
@@ -135,10 +134,10 @@ impl fmt::Display for Report {
     }
 }
 
-/// Beats for a second; every SYNC must bring its sample, and every sample must lie on the motor's
-/// line.
+/// Sends SYNCs for a second. Every SYNC must have its sample, and every sample must lie on the
+/// motor's line.
 pub fn one_second(master: &mut Master, node: NodeId) -> Report {
-    master.take_heard();
+    master.take_received();
     let begin = clock::now() + PERIOD;
     let due = |beat: usize| begin + Span::from_nanos(PERIOD.as_nanos() * beat as i64);
     let mut syncs = Vec::with_capacity(SYNCS);
@@ -147,8 +146,11 @@ pub fn one_second(master: &mut Master, node: NodeId) -> Report {
         syncs.push(master.send(&SyncMessage::default().to_frame()));
     }
     master.listen(due(SYNCS) + REST);
-    let heard = master.take_heard();
-    let samples: Vec<_> = heard.iter().filter_map(|h| Sample::of(h, node)).collect();
+    let received = master.take_received();
+    let samples: Vec<_> = received
+        .iter()
+        .filter_map(|h| Sample::of(h, node))
+        .collect();
     assert_eq!(samples.len(), SYNCS, "samples of {SYNCS} SYNC");
     on_the_line(&samples);
 
@@ -159,7 +161,7 @@ pub fn one_second(master: &mut Master, node: NodeId) -> Report {
         .map(|(sync, sample)| sample.host.saturating_since(*sync))
         .collect();
     answers.sort_unstable();
-    // Paired in order, so one that came before its SYNC would be another's.
+    // Pairs are made in order: a sample before its SYNC would belong to another.
     assert!(answers[0] > Span::ZERO, "{:?}", answers[0]);
     let took = syncs[SYNCS - 1].saturating_since(syncs[0]);
     assert!(took < Span::from_millis(1_200), "{took:?}: not 1 kHz");
@@ -167,7 +169,7 @@ pub fn one_second(master: &mut Master, node: NodeId) -> Report {
     instants.dedup();
     Report {
         samples: samples.len(),
-        beats: heard
+        beats: received
             .iter()
             .filter(|h| Heartbeat::parse(&h.0).is_ok())
             .count(),
@@ -179,8 +181,8 @@ pub fn one_second(master: &mut Master, node: NodeId) -> Report {
     }
 }
 
-/// Position and time of a sample belong together: at constant speed they are a line, but for the
-/// encoder's whole counts.
+/// Checks that position and time of a sample belong together: at constant speed they form a line up
+/// to whole counts.
 fn on_the_line(samples: &[Sample]) {
     let first = &samples[0];
     let mut before_us = 0;

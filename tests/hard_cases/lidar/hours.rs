@@ -1,9 +1,9 @@
-//! The lidar's clock: hours that turn, and UTC.
+//! The lidar's clock: the turn of the hour, and UTC.
 
 use super::*;
 
-/// The stamp counts microseconds of the hour and drops to nearly nothing: with "it decreased, so
-/// add an hour" this one works, the next ones do not.
+/// The stamp counts microseconds of the hour and drops to nearly zero. Adding an hour whenever it
+/// decreases passes this case and fails the next ones.
 #[test]
 fn the_hour_turns_between_two_packets() {
     // Ten packets end exactly on the hour.
@@ -14,8 +14,8 @@ fn the_hour_turns_between_two_packets() {
     nothing_amiss(&stats);
 }
 
-/// The packet's stamp is of the old hour, most of its firings of the new one: their times exceed an
-/// hour and must not be wrapped firing by firing.
+/// The packet's stamp belongs to the old hour, most of its firings to the new one. Their times
+/// exceed an hour and must not wrap one by one.
 #[test]
 fn the_hour_turns_inside_a_packet() {
     for blocks_before in 1..12 {
@@ -27,13 +27,12 @@ fn the_hour_turns_inside_a_packet() {
     }
 }
 
-/// The packet that straddles the gap is stamped before the hour, its trailing blocks and the next
-/// packet lie after it; the length of the gap comes from the difference of the two stamps, which is
-/// negative.
+/// The packet around the gap has a stamp before the hour; its last blocks and the next packet
+/// follow the hour. The length of the gap is the difference of the stamps, which is negative.
 #[test]
 fn the_hour_turns_in_the_gap_of_a_limited_view() {
     let view = |azimuth: f64| !(41.0..320.0).contains(&azimuth);
-    // 5 Hz from 320 deg: the first gap is 45 to 200 ms on.
+    // 5 Hz from 320 deg: the first gap is 45 to 200 ms later.
     for before_ms in [46, 60, 100, 199] {
         let head = Head {
             angle_deg: |s: f64| 320.0 + 1_800.0 * s,
@@ -49,9 +48,8 @@ fn the_hour_turns_in_the_gap_of_a_limited_view() {
     }
 }
 
-/// The packets on both sides of the hour are missing: nothing shows the turn but the difference of
-/// stamps half a packet or many packets apart, which has to be counted as loss and not as a step of
-/// the clock.
+/// The packets around the hour are missing. Only the difference of two stamps, half a packet or
+/// many packets apart, shows the turn; it counts as loss, not as a step of the clock.
 #[test]
 fn the_hour_turns_while_packets_are_lost() {
     for lost in [1, 2, 7, 40, 700] {
@@ -65,7 +63,7 @@ fn the_hour_turns_while_packets_are_lost() {
     }
 }
 
-/// Devices have been seen to count on past the hour before they wrap: 3600.06 s, then 0.061 s.
+/// Real devices count past the hour before they wrap: 3600.06 s, then 0.061 s.
 #[test]
 fn the_counter_runs_past_the_hour_before_it_wraps() {
     let head = steady(600.0, BEGIN_NS - 120 * BLOCK_NS);
@@ -81,8 +79,8 @@ fn the_counter_runs_past_the_hour_before_it_wraps() {
     nothing_amiss(&stats);
 }
 
-/// The host joins within a second of the hour and its clock is minutes off, on the other side of
-/// it.
+/// The host starts within a second of the hour with a clock that is minutes off, on the other side
+/// of it.
 #[test]
 fn the_first_packet_is_just_beside_the_hour() {
     for (device_ms, host_off_s) in [(-3, 20), (-3, -20), (3, -1_700), (3, 1_700), (-3, 1_700)] {
@@ -97,8 +95,7 @@ fn the_first_packet_is_just_beside_the_hour() {
     }
 }
 
-/// A host whose clock says 2100: beyond 32 bits of seconds, and half a microsecond an ulp in f64
-/// seconds.
+/// A host clock in 2100: over 32 bits of seconds, and half a microsecond per ulp in f64 seconds.
 #[test]
 fn the_year_2100_is_exact() {
     // 2100-01-01 00:00:00 UTC.
@@ -117,9 +114,8 @@ fn the_year_2100_is_exact() {
     );
 }
 
-/// The first sentence of a receiver sets minutes and seconds of a clock that ran free: device time
-/// jumps while the rotor does not. Nothing is lost, and the firings on both sides keep their own
-/// times.
+/// The first NMEA sentence sets minutes and seconds of a free-running clock: device time jumps
+/// while the rotor does not. Nothing is lost, and the firings on both sides keep their times.
 #[test]
 fn nmea_sets_the_device_clock() {
     for step_s in [-1_500, -61, -1, 3, 59, 1_500] {
@@ -154,8 +150,8 @@ fn nmea_sets_the_device_clock() {
     }
 }
 
-/// The host's clock is set by NTP in mid-scan, by seconds or by an hour and more; the sensor's is
-/// not.
+/// NTP sets the host's clock during a scan, by seconds or by more than an hour; the sensor's clock
+/// stays.
 #[test]
 fn the_hosts_clock_is_set() {
     for step_s in [-7_200, -40, 2, 1_800, 90_000] {
@@ -182,8 +178,8 @@ fn rmc(second_of_day: i64) -> Vec<u8> {
     format!("${body}*{sum:02X}\r\n").into_bytes()
 }
 
-/// The receiver's sentence is a second late, so that around the hour it names the old one while the
-/// sensor counts the new; the host's clock is days off. UTC must not jump by an hour.
+/// The receiver's sentence is one second late. Around the hour it names the old hour while the
+/// sensor counts the new one, and the host's clock is days off. UTC must not jump by an hour.
 #[test]
 fn utc_across_the_hour_with_a_late_sentence() {
     // 2024-02-29 00:00:00 UTC, a leap day (`date -u -d`).

@@ -1,8 +1,8 @@
-//! Packets that come late, twice, never, in heaps, or from others.
+//! Packets that arrive late, twice, never, in batches, or from other devices.
 
 use super::*;
 
-/// A switch that mirrors a port, or a recording of two interfaces, has every packet twice.
+/// A port mirror, or a recording of two interfaces, has every packet twice.
 #[test]
 fn every_packet_twice_is_every_packet_once() {
     let head = steady(600.0, BEGIN_NS - 40 * BLOCK_NS);
@@ -16,8 +16,7 @@ fn every_packet_twice_is_every_packet_once() {
     );
 }
 
-/// Neighbours change places on the way, also over the hour, where the later one has the smaller
-/// stamp.
+/// Neighbouring packets swap, also over the hour, where the later one has the smaller stamp.
 #[test]
 fn packets_out_of_order_are_put_back() {
     let head = steady(600.0, BEGIN_NS - 121 * BLOCK_NS);
@@ -30,9 +29,9 @@ fn packets_out_of_order_are_put_back() {
     assert_eq!((stats.reordered, stats.lost_packets, stats.late), (4, 0, 0));
 }
 
-/// Too late to be put back: left out and said, so that device time never runs backwards.
+/// A packet too late to be sorted in is dropped and counted, so that device time never runs back.
 #[test]
-fn a_packet_that_comes_too_late_is_left_out() {
+fn a_packet_that_arrives_too_late_is_dropped() {
     let head = steady(600.0, BEGIN_NS - 121 * BLOCK_NS);
     let (mut packets, mut truth) = head.packets(20);
     let late = packets.remove(6);
@@ -43,8 +42,8 @@ fn a_packet_that_comes_too_late_is_left_out() {
     assert_eq!((stats.late, stats.reordered, stats.lost_packets), (1, 0, 1));
 }
 
-/// Other programs' datagrams, cut ones, an HDL-64E's, and position packets between the data change
-/// nothing but counts.
+/// Foreign datagrams, truncated ones, an HDL-64E's, and position packets between the data change
+/// only counts.
 #[test]
 fn foreign_packets_change_nothing() {
     let head = steady(600.0, BEGIN_NS);
@@ -86,8 +85,8 @@ fn foreign_packets_change_nothing() {
     assert_eq!(counts, (20, 2, 3, 1, 0));
 }
 
-/// The host's stack hands over packets in batches of 15 ms and more: arrival says nothing of
-/// firing.
+/// The host's network stack delivers packets in batches of 15 ms and more: arrival says nothing
+/// about firing.
 #[test]
 fn packets_arrive_in_batches() {
     let head = steady(600.0, BEGIN_NS - 60 * BLOCK_NS);
@@ -99,7 +98,7 @@ fn packets_arrive_in_batches() {
     let (seen, stats) = decode(&packets);
     assert_true(&head, &seen, &truth, 0);
     nothing_amiss(&stats);
-    // The pass that reads times alone says the same to the nanosecond.
+    // The pass that reads only times agrees to the nanosecond.
     let mut timekeeper = Timekeeper::new(Options::default());
     for (packet, firings) in packets.iter().zip(seen.chunks(24)) {
         let timing = timekeeper.packet(packet.host, &packet.bytes).unwrap();
@@ -107,8 +106,8 @@ fn packets_arrive_in_batches() {
     }
 }
 
-/// Packets are missing and the rotor has turned on: what is behind the gap is neither moved nor
-/// joined to what was before.
+/// Packets are missing while the rotor turns: firings behind the gap are neither moved nor joined
+/// to those before.
 #[test]
 fn nothing_is_guessed_across_lost_packets() {
     for lost in [1, 3, 75, 150] {

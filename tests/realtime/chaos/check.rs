@@ -1,5 +1,5 @@
-//! What must hold of the scans whatever has happened: the list, the folder and the files agree, and
-//! what is incomplete says so.
+//! Conditions that hold for scans after every fault: list, folder and files agree, and incomplete
+//! scans are marked.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
@@ -16,18 +16,18 @@ use engine::service::scan_record::{ScanState, ScanView};
 use io::recording::Recording;
 use scanner::{Accuracy, TiltSource};
 
-/// What must become of a capture.
+/// The required outcome of a capture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wanted {
-    /// All of it.
+    /// Complete.
     Whole,
-    /// Not all of it, and that said.
+    /// Incomplete and marked so.
     Less,
     /// Either.
     Any,
 }
 
-/// Every scan that the daemon lists.
+/// Reads every scan that the daemon lists.
 pub fn list(client: &Client) -> Result<Vec<ScanView>, String> {
     let mut answer: BTreeMap<String, Vec<ScanView>> = client
         .get("/api/v1/scans")
@@ -37,7 +37,7 @@ pub fn list(client: &Client) -> Result<Vec<ScanView>, String> {
         .ok_or("no scans in the list of scans".to_owned())
 }
 
-/// The scan of that name, of which there is one.
+/// The only scan of that name.
 pub fn named<'a>(scans: &'a [ScanView], name: &str) -> Result<&'a ScanView, String> {
     let mut of_that_name = scans
         .iter()
@@ -49,7 +49,7 @@ pub fn named<'a>(scans: &'a [ScanView], name: &str) -> Result<&'a ScanView, Stri
     }
 }
 
-/// The list against the folder.
+/// Checks the list against the folder.
 pub fn agree(scans: &[ScanView], folder: &Path) -> Result<(), String> {
     let listed: BTreeSet<String> = scans.iter().map(|scan| scan.id.clone()).collect();
     let entries = fs::read_dir(folder).map_err(|error| error.to_string())?;
@@ -64,20 +64,21 @@ pub fn agree(scans: &[ScanView], folder: &Path) -> Result<(), String> {
     }
 }
 
-/// Whether the disk has what the list says, which comes first: where it was full, it is written
-/// when there is room again.
+/// Whether the scan's record on disk equals the list. On a full disk it follows once there is
+/// space.
 pub fn written(scan: &ScanView, folder: &Path) -> bool {
-    let told = fs::read(folder.join(&scan.id).join("scan.json")).ok();
-    let told: Option<serde_json::Value> = told.and_then(|text| serde_json::from_slice(&text).ok());
+    let reported = fs::read(folder.join(&scan.id).join("scan.json")).ok();
+    let reported: Option<serde_json::Value> =
+        reported.and_then(|text| serde_json::from_slice(&text).ok());
     let state = serde_json::to_value(scan.state).unwrap_or_default();
-    told.is_some_and(|told| told["state"] == state)
+    reported.is_some_and(|reported| reported["state"] == state)
 }
 
-/// A scan with its files.
+/// Checks a scan with its files.
 pub fn sound(scan: &ScanView, folder: &Path, wanted: Wanted) -> Result<(), String> {
     let place = folder.join(&scan.id);
-    let said = format!("{:?}, {:?}", scan.state, scan.why);
-    let wrong = |what: String| Err(format!("{}: {what} ({said})", scan.id));
+    let printed = format!("{:?}, {:?}", scan.state, scan.why);
+    let wrong = |what: String| Err(format!("{}: {what} ({printed})", scan.id));
     match (scan.state, wanted) {
         (ScanState::Recording | ScanState::Making, _) => return wrong("never ended".to_owned()),
         (ScanState::Whole, Wanted::Less) => return wrong("whole, and it cannot be".to_owned()),
@@ -96,12 +97,12 @@ pub fn sound(scan: &ScanView, folder: &Path, wanted: Wanted) -> Result<(), Strin
         }
         _ => {}
     }
-    let told =
+    let reported =
         fs::read(place.join("scan.json")).map_err(|error| format!("{}: {error}", scan.id))?;
-    let told: serde_json::Value =
-        serde_json::from_slice(&told).map_err(|error| format!("{}: {error}", scan.id))?;
-    if told["state"] != serde_json::to_value(scan.state).unwrap_or_default() {
-        return wrong(format!("on the disk it is {}", told["state"]));
+    let reported: serde_json::Value =
+        serde_json::from_slice(&reported).map_err(|error| format!("{}: {error}", scan.id))?;
+    if reported["state"] != serde_json::to_value(scan.state).unwrap_or_default() {
+        return wrong(format!("on the disk it is {}", reported["state"]));
     }
     let size = |name: &str| fs::metadata(place.join(name)).ok().map(|there| there.len());
     if (scan.log_bytes, scan.cloud_bytes) != (size(LOG), size(CLOUD)) {
@@ -131,7 +132,7 @@ pub fn sound(scan: &ScanView, folder: &Path, wanted: Wanted) -> Result<(), Strin
     Ok(())
 }
 
-/// A scan that failed though its log holds a sweep has lost something.
+/// Checks that a failed scan's log holds no sweep.
 pub fn worth_nothing(scan: &ScanView, folder: &Path) -> Result<(), String> {
     let log = folder.join(&scan.id).join(LOG);
     let points = points_of(&log);
@@ -161,9 +162,9 @@ fn points_of(log: &Path) -> Option<u64> {
     scan.ok().map(|scan| scan.points)
 }
 
-/// A log is read to its end, or to where it was cut off.
+/// Checks that a log can be read to its end or to where it was truncated.
 fn readable(log: &Path) -> Result<(), String> {
-    // A log that was cut off in its very head has nothing to read.
+    // A log that was truncated within its header holds nothing.
     let Ok(mut recording) = Recording::open(log) else {
         return match fs::metadata(log) {
             Ok(there) if there.len() < 4_096 => Ok(()),
@@ -179,7 +180,7 @@ fn readable(log: &Path) -> Result<(), String> {
     }
 }
 
-/// Rows that a PLY's head announces, where the file is as long as that.
+/// Number of rows in a PLY's header, if the file has that size.
 fn vertices(ply: &Path) -> Result<u64, String> {
     let name = ply.display();
     let file = File::open(ply).map_err(|error| format!("{name}: {error}"))?;

@@ -1,12 +1,11 @@
-//! A small disk of its own, which can be filled to the last bytes: a tmpfs, where this user may
-//! mount one.
+//! A small disk that can be filled completely: a tmpfs, where this user may mount one.
 
 use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Room for the longest scan of a plan, and what the daemon keeps free.
+/// Space for the longest scan of a plan and for the daemon's reserve.
 const BYTES: u64 = 256 << 20;
 
 /// A tmpfs, until dropped.
@@ -15,7 +14,7 @@ pub struct Disk {
 }
 
 impl Disk {
-    /// Mounts one there; why not, where that cannot be.
+    /// Mounts a tmpfs. Returns the reason if that is impossible.
     pub fn mount(place: &Path) -> Result<Self, String> {
         std::fs::create_dir_all(place).map_err(|error| error.to_string())?;
         let mounted = Command::new("mount")
@@ -35,7 +34,7 @@ impl Disk {
         self.place.join("filler")
     }
 
-    /// Fills it but for so many bytes.
+    /// Fills the disk but for so many bytes.
     pub fn fill(&self, but: u64) -> Result<(), String> {
         let text = |error: std::io::Error| error.to_string();
         let free = io::files::free_bytes(&self.place).map_err(text)?;
@@ -44,7 +43,7 @@ impl Disk {
         let mut left = free.saturating_sub(but);
         while left > 0 {
             let now = left.min(piece.len() as u64);
-            // Whoever else writes at the same time may be quicker.
+            // Other writers may take the space first.
             if file
                 .write_all(&piece[..usize::try_from(now).unwrap()])
                 .is_err()
@@ -56,7 +55,7 @@ impl Disk {
         Ok(())
     }
 
-    /// Gives the room back.
+    /// Frees the space.
     pub fn empty(&self) -> Result<(), String> {
         std::fs::remove_file(self.filler()).map_err(|error| error.to_string())
     }
@@ -64,7 +63,7 @@ impl Disk {
 
 impl Drop for Disk {
     fn drop(&mut self) {
-        // Lazily: a daemon that is being killed may still have a file there.
+        // Lazily: a daemon that is being killed may still have an open file.
         let _ = Command::new("umount").arg("-l").arg(&self.place).status();
     }
 }

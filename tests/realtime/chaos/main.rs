@@ -1,10 +1,10 @@
-//! Two hundred captures in which something goes wrong, each by a seed, and what must hold whatever
-//! it was: every scan is whole, or partial and marked so; none is lost silently; the motor is never
-//! left moving without a master.
+//! Captures with seeded failures, and the conditions that hold after each. Every scan is complete,
+//! or partial and marked so. No scan is lost silently. The motor never keeps moving without a
+//! master.
 //!
 //! `cargo test -p velomotion-tests --test chaos -- [--captures N] [--first SEED] [--bless]`.
-//! Without arguments the first twenty seeds, which have every kind of fault; `--bless` writes the
-//! table of docs/src/chaos.md.
+//! Without arguments it runs the first twenty seeds, which cover every kind of fault; `--bless`
+//! writes the table of docs/src/chaos.md.
 
 mod check;
 mod disk;
@@ -28,14 +28,14 @@ use process::{Process, wait};
 use real::{Came, Made, World};
 use table::Table;
 
-/// Captures of a run without arguments.
+/// Number of captures without arguments.
 const FEW: u64 = 20;
-/// Captures in virtual time that one daemon makes the clouds of.
+/// Number of virtual-time captures whose clouds one daemon makes.
 const BATCH: usize = 5;
-/// Threads that make captures in virtual time, and worlds in real time: these mostly wait.
+/// Threads for virtual-time captures, and for real-time ones, which mostly wait.
 const THREADS: (usize, usize) = (2, 3);
 
-/// What this run is to do.
+/// Command-line arguments.
 struct Arguments {
     first: u64,
     captures: u64,
@@ -44,7 +44,7 @@ struct Arguments {
     require_disk: bool,
 }
 
-/// What the run has come to.
+/// Results of the run.
 #[derive(Default)]
 struct Results {
     table: Mutex<Table>,
@@ -115,7 +115,7 @@ fn arguments(words: &[String]) -> Arguments {
             "--captures" => arguments.captures = number().unwrap_or_else(usage),
             "--bless" => arguments.bless = true,
             "--include-ignored" => arguments.require_disk = true,
-            // Other arguments of cargo test.
+            // Other arguments of `cargo test`.
             _ => {}
         }
     }
@@ -147,7 +147,7 @@ fn in_virtual_time(plans: &[Plan], results: &Results) {
     });
 }
 
-/// Captures in virtual time, and a daemon that finds them when it starts.
+/// Makes captures in virtual time, then starts a daemon that finds them.
 fn one_batch(batch: &[&Plan], results: &Results) -> Result<(), String> {
     let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
     let place = folder.path().join("scans");
@@ -208,7 +208,7 @@ fn in_real_time(plans: &[Plan], results: &Results, require_disk: bool) {
                     };
                     let made = in_world(&mut world, plan, what, small);
                     if made.is_err() {
-                        // Whatever is wrong with it is not to be wrong with the next.
+                        // A failed setup must not affect the next capture.
                         world = None;
                     }
                     results.put(plan, made);

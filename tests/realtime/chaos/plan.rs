@@ -1,4 +1,4 @@
-//! What a seed stands for: which fault, when, in which capture.
+//! The capture that a seed stands for: which fault, when, in which moves.
 
 use engine::capture::moves::SweepRequest;
 use sim::Attachment;
@@ -7,73 +7,73 @@ use velomotion_tests::capture::PacketLoss;
 use velomotion_tests::inject::Fault;
 use velomotion_tests::random::Random;
 
-/// What goes wrong in virtual time.
+/// Faults in virtual time.
 #[derive(Clone, Copy, Debug)]
 pub enum Virtual {
-    /// Nothing.
+    /// No fault.
     Nothing,
-    /// The way to the drive, or the drive.
+    /// A fault of the link or of the drive.
     Link(Fault),
-    /// The cable, or the program, is gone; another client comes so much later.
+    /// The cable or the program disappears; another client connects after this time.
     Gone(Span),
-    /// The network loses packets of the lidar: some, or all from then on.
+    /// The network loses packets of the lidar.
     Lost(PacketLoss),
-    /// The host's clock is set so far forward.
+    /// The host's clock is set forward by this much.
     HostClock(Span),
-    /// The lidar's clock is.
+    /// The lidar's clock is set forward by this much.
     LidarClock(Span),
-    /// The program is killed: so many of a thousand bytes of the log are on the disk.
+    /// The program is killed: so many thousandths of the log are on disk.
     Killed(u64),
     /// The user presses Ctrl-C.
     Interrupted,
 }
 
-/// What goes wrong in real time, with processes and sockets.
+/// Faults in real time, with processes and sockets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Real {
-    /// Nothing.
+    /// No fault.
     Nothing,
-    /// The drive's cable is pulled, and put in again.
+    /// The drive's cable is unplugged and plugged in again.
     UsbGone,
-    /// The lidar says nothing more, for a while.
+    /// The lidar is silent for a while.
     LidarGone,
-    /// The network loses every so many-th packet.
+    /// The network loses every n-th packet.
     PacketsLost,
-    /// The daemon is killed, and started again.
+    /// The daemon is killed and restarted.
     Killed,
-    /// The daemon is told to end, and started again.
+    /// The daemon is asked to end and restarted.
     Ended,
-    /// The disk is full to the last bytes.
+    /// The disk is full.
     DiskFull,
 }
 
 /// One capture.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan {
-    /// What it follows from.
+    /// The seed that determines everything else.
     pub seed: u64,
     /// The moves.
     pub wish: SweepRequest,
-    /// What goes wrong.
+    /// The fault.
     pub fault: Either,
-    /// How long after the begin.
+    /// Time from the beginning to the fault.
     pub after: Span,
-    /// How long until what is mended is mended.
+    /// Time from the fault to its repair.
     pub mended_after: Span,
-    /// How the drive is attached, in virtual time.
+    /// Attachment of the drive in virtual time.
     pub attached: Attachment,
 }
 
-/// In which time a capture is made.
+/// Virtual or real time.
 #[derive(Clone, Copy, Debug)]
 pub enum Either {
-    /// In virtual time.
+    /// Virtual time.
     Virtual(Virtual),
-    /// With real processes.
+    /// Real time.
     Real(Real),
 }
 
-/// Every row of the table, in its order.
+/// Rows of the table in order.
 pub const ROWS: [&str; 15] = [
     "no fault",
     "drive or its link",
@@ -93,7 +93,7 @@ pub const ROWS: [&str; 15] = [
 ];
 
 impl Plan {
-    /// The plan of a seed. Twenty seeds in a row have every kind of fault.
+    /// Makes the plan of a seed. Twenty consecutive seeds cover every kind of fault.
     pub fn new(seed: u64) -> Self {
         let mut random = Random(seed);
         let attached = [
@@ -103,7 +103,7 @@ impl Plan {
             Attachment::Can,
         ];
         let attached = attached[usize::try_from(seed / 20 + seed % 20).unwrap() % 4];
-        // The homing, the ramps and all of the sweep.
+        // Covers homing, ramps and the whole sweep.
         let after = Span::from_millis(random.between(100, 5_500));
         let fault = match seed % 20 {
             0 => Either::Virtual(Virtual::Nothing),
@@ -145,7 +145,7 @@ impl Plan {
         }
     }
 
-    /// Its row of the table.
+    /// Row of the table.
     pub fn row(&self) -> usize {
         match self.fault {
             Either::Virtual(what) => match what {
@@ -171,7 +171,7 @@ impl Plan {
         }
     }
 
-    /// What the scan is called.
+    /// Name of the scan.
     pub fn name(&self) -> String {
         format!("seed-{}", self.seed)
     }
@@ -222,7 +222,7 @@ fn loss(after: Span, random: &mut Random, all: bool) -> PacketLoss {
     }
 }
 
-/// Forwards or back, by milliseconds or by an hour.
+/// A clock step forwards or back, by milliseconds or by an hour.
 fn step(random: &mut Random) -> Span {
     let far = random.one(&[50, 900, 30_000, 3_600_000]);
     let ms = random.between(far / 2, far);

@@ -1,4 +1,4 @@
-//! A daemon as a process of its own, which can be killed: this program, started anew.
+//! A daemon in its own process, which can be killed: this program, started again.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader};
@@ -9,19 +9,19 @@ use std::time::{Duration, Instant};
 use daemon::client::Client;
 use velomotion::cli::{self, Cli, Common};
 
-/// What makes this program a daemon.
+/// Argument that makes this program a daemon.
 pub const ARGUMENT: &str = "--be-a-daemon";
-/// Whatever is waited for comes sooner, or never.
+/// Every awaited condition comes sooner, or never.
 const LIMIT: Duration = Duration::from_secs(60);
 
-/// A daemon that runs.
+/// A running daemon.
 pub struct Process {
     child: Child,
-    /// How it is talked to.
+    /// Client of its API.
     pub client: Client,
 }
 
-/// Is the daemon of a configuration, as the command is.
+/// Runs the daemon of a configuration, as the command does.
 pub fn be(path: &str) -> i32 {
     let cli = Cli {
         command: cli::Command::Daemon(cli::DaemonArguments {
@@ -45,7 +45,7 @@ pub fn be(path: &str) -> i32 {
 }
 
 impl Process {
-    /// Starts one with the configuration in `folder`, and waits until it answers.
+    /// Starts a daemon with the configuration in `folder` and waits for its first answer.
     pub fn start(folder: &Path) -> Result<Self, String> {
         let text = |error: std::io::Error| error.to_string();
         let path = folder.join("velomotion.toml");
@@ -81,13 +81,13 @@ impl Process {
         })
     }
 
-    /// Kills it: nothing is ended, nothing said.
+    /// Kills it without notice.
     pub fn kill(&mut self) -> Result<(), String> {
         self.child.kill().map_err(|error| error.to_string())?;
         self.child.wait().map(drop).map_err(|e| e.to_string())
     }
 
-    /// Tells it to end, which it does with success.
+    /// Ends it with SIGTERM, which must succeed.
     pub fn end(&mut self) -> Result<(), String> {
         let id = self.child.id().to_string();
         let sent = Command::new("kill").args(["-TERM", &id]).status();
@@ -95,7 +95,7 @@ impl Process {
         let ended = wait("the daemon's end", || self.child.try_wait().ok().flatten())?;
         match ended.success() {
             true => Ok(()),
-            false => Err(format!("told to end, it ended with {ended}")),
+            false => Err(format!("reported to end, it ended with {ended}")),
         }
     }
 }
@@ -107,8 +107,7 @@ impl Drop for Process {
     }
 }
 
-/// The sockets of daemons in a folder: of the one that runs, once what a killed one left was
-/// cleared away.
+/// Sockets of daemons in a folder: only that of the running one, once a killed one's is removed.
 fn sockets(folder: &Path) -> Result<Vec<PathBuf>, String> {
     let there = std::fs::read_dir(folder).map_err(|error| error.to_string())?;
     let paths = there.flatten().map(|entry| entry.path());
@@ -117,7 +116,7 @@ fn sockets(folder: &Path) -> Result<Vec<PathBuf>, String> {
         .collect())
 }
 
-/// Asks again and again until there is an answer.
+/// Repeats `wanted` until it returns a value.
 pub fn wait<T>(what: &str, mut wanted: impl FnMut() -> Option<T>) -> Result<T, String> {
     let begin = Instant::now();
     loop {

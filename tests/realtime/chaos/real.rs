@@ -1,5 +1,5 @@
-//! Captures in real time: a daemon in a process of its own, devices in this one, and a disk that
-//! may be full.
+//! Captures in real time: a daemon in its own process, devices in this one, and a disk that may be
+//! full.
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -17,39 +17,39 @@ use crate::disk::Disk;
 use crate::plan::{Plan, Real};
 use crate::process::{Process, wait};
 
-/// A daemon that is started has the axis at rest, its power stage off, within this time.
+/// Time within which a started daemon has the axis at rest with its power stage off.
 pub const SAFE: Duration = Duration::from_secs(10);
 
-/// What came of a capture.
+/// Outcome of a capture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Came {
-    /// A scan in this state.
+    /// The scan ended in this state.
     Scan(ScanState),
-    /// It could not be tried here.
+    /// Not possible on this machine.
     Skipped,
 }
 
-/// A capture that was made, with how long the axis was without a master.
+/// A capture, and how long the axis had no master.
 #[derive(Clone, Copy, Debug)]
 pub struct Made {
-    /// What came of it.
+    /// The outcome.
     pub came: Came,
-    /// From the start of the next daemon, or the cable's return, until the axis stood with its
+    /// Time from the next daemon's start, or the cable's return, until the axis stood with its
     /// power off.
     pub safe_after: Option<Duration>,
 }
 
-/// Devices, a daemon, and where it keeps its scans.
+/// Devices, a daemon and its folder of scans.
 pub struct World {
     daemon: Process,
     bench: Bench,
     scans: PathBuf,
     disk: Option<Disk>,
-    /// The last to go: the disk is in it.
+    /// Dropped last: it holds the disk.
     folder: TempDir,
 }
 
-/// The configuration of a daemon for devices at these places.
+/// Configuration of a daemon for devices at these addresses.
 pub fn configuration(link: &str, scans: &str, ports: (u16, u16)) -> String {
     format!(
         "[device]\ndefault = 'bench'\n[device.bench]\nkind = 'usb'\nport = '{link}'\nlidar = '127.0.0.1'\n\
@@ -60,7 +60,7 @@ pub fn configuration(link: &str, scans: &str, ports: (u16, u16)) -> String {
 }
 
 impl World {
-    /// Switches everything on. `small`: the scans are on a disk that can be filled.
+    /// Starts everything. With `small` the scans are on a disk that can be filled.
     pub fn start(small: bool) -> Result<Self, String> {
         let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
         let scans = folder.path().join("disk");
@@ -87,7 +87,7 @@ impl World {
         })
     }
 
-    /// Makes the capture of a plan and checks everything that must hold.
+    /// Makes the capture of a plan and checks every condition.
     pub fn capture(&mut self, plan: &Plan, what: Real) -> Result<Made, String> {
         if what == Real::DiskFull && self.disk.is_none() {
             return Ok(Made {
@@ -98,8 +98,8 @@ impl World {
         let made = self.go_through(plan, what);
         made.map_err(|why| {
             let log = std::fs::read_to_string(self.folder.path().join("daemon.log"));
-            let said = log.unwrap_or_default();
-            let last: Vec<&str> = said.lines().rev().take(12).collect();
+            let printed = log.unwrap_or_default();
+            let last: Vec<&str> = printed.lines().rev().take(12).collect();
             let last: Vec<&str> = last.into_iter().rev().collect();
             format!("{why}; the daemon said:\n    {}", last.join("\n    "))
         })
@@ -122,7 +122,7 @@ impl World {
             .client
             .post::<ScanView>("/api/v1/captures", &asked);
         if let Err(refused) = begun {
-            // Nothing was wrong yet.
+            // The fault has not begun.
             return Err(format!("refused: {refused}"));
         }
         pause(plan.after);
@@ -136,7 +136,7 @@ impl World {
         }
         let all = check::list(&self.daemon.client)?;
         check::agree(&all, &self.scans)?;
-        // It may have been over before anything happened, and a busy machine keeps devices waiting.
+        // The scan may have ended before the fault, and a busy machine delays devices.
         check::sound(&scan, &self.scans, Wanted::Any)?;
         check::worth_nothing(&scan, &self.scans)?;
         self.whole_is_whole(&scan)?;
@@ -151,7 +151,7 @@ impl World {
         })
     }
 
-    /// What says that it is whole has every sweep from end to end and every packet.
+    /// Checks that a scan marked as complete has all sweeps and packets.
     fn whole_is_whole(&self, scan: &ScanView) -> Result<(), String> {
         if scan.state != ScanState::Whole {
             return Ok(());
@@ -176,7 +176,7 @@ impl World {
         let lost = report["lost_packets"].as_u64();
         match (sweeps == asked.sweeps.unwrap_or(1) as usize, far, lost) {
             (true, true, Some(0)) => Ok(()),
-            _ => Err(format!("{}: said to be whole: {report}", scan.id)),
+            _ => Err(format!("{}: reported whole: {report}", scan.id)),
         }
     }
 
@@ -196,7 +196,7 @@ impl World {
         Ok(())
     }
 
-    /// Mends it; how long the axis then still was not safe, where it may not have been.
+    /// Repairs the fault. Returns how long the axis then was unsafe, if it may have been.
     fn mend(&mut self, what: Real) -> Result<Option<Duration>, String> {
         let begin = Instant::now();
         match what {
@@ -221,7 +221,7 @@ impl World {
         }
     }
 
-    /// Until both devices are there and the axis is idle.
+    /// Waits until both devices are connected and the axis is idle.
     fn ready(&self) -> Result<(), String> {
         let mut last = Value::Null;
         let ready = wait("both devices", || {
@@ -236,14 +236,13 @@ impl World {
         })
     }
 
-    /// The scan of that name once nothing is to be expected of it any more, with its record on the
-    /// disk.
+    /// Waits for the final state of the scan of that name, with its record on disk.
     fn over(&self, name: &str) -> Result<ScanView, String> {
         let mut lost = None;
         let over = wait("the end of the scan", || {
             let all = check::list(&self.daemon.client).ok()?;
             match check::named(&all, name) {
-                // The disk has room again.
+                // The disk has space again.
                 Ok(scan) if scan.state.is_final() && !scan.waits_for_room => {
                     check::written(scan, &self.scans).then(|| scan.clone())
                 }
@@ -264,7 +263,7 @@ fn pause(span: Span) {
     ));
 }
 
-/// A configuration whose devices are not there.
+/// Configuration whose devices do not exist.
 pub fn nowhere(scans: &str) -> String {
     configuration("/nonexistent/epos", scans, (free_port(), free_port()))
 }

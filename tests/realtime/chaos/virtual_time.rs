@@ -1,5 +1,5 @@
-//! Captures in virtual time, filed as a daemon files what it records: a folder with a log, whose
-//! cloud is still to be made.
+//! Captures in virtual time, stored as a daemon stores a recording: a folder with a log whose cloud
+//! is still to be made.
 
 use std::fs::File;
 
@@ -19,13 +19,13 @@ use velomotion_tests::port::Links;
 use crate::check::Wanted;
 use crate::plan::{Plan, Virtual};
 
-/// A drive that listens for heartbeats stands so long after the last one at most: 1016 is 100 ms,
-/// and then comes the ramp.
+/// Longest motion after the last heartbeat to a drive that monitors them: 100 ms of 1016h, then the
+/// ramp.
 const ALONE: Span = Span::from_millis(1_500);
-/// A client that connects has the axis at rest, its power off, within this time.
+/// Time within which a connecting client has the axis at rest with its power off.
 const SAFE: Span = Span::from_secs(2);
 
-/// Makes the capture of a plan and files it in `scans`; what must become of it.
+/// Makes the capture of a plan and stores it in `scans`. Returns the required outcome.
 pub fn make(plan: &Plan, what: Virtual, scans: &Scans) -> Result<Wanted, String> {
     let (captured, ended) = Captured::run(setting(plan, what));
     rests(plan, &captured, &ended)?;
@@ -51,7 +51,7 @@ pub fn make(plan: &Plan, what: Virtual, scans: &Scans) -> Result<Wanted, String>
         let file = File::options().write(true).open(&log);
         file.and_then(|file| file.set_len(cut))
             .map_err(|error| error.to_string())?;
-        // Its record says that it is being recorded: nobody has ended it.
+        // Its record still says that it is being recorded.
         wanted = Wanted::Less;
     } else {
         done(scans, &id, ended)?;
@@ -59,8 +59,8 @@ pub fn make(plan: &Plan, what: Virtual, scans: &Scans) -> Result<Wanted, String>
     Ok(wanted)
 }
 
-/// What must become of a capture by its packets. Those that are lost before the first that is
-/// heard, or after the sweep, nobody misses.
+/// Required outcome by the lidar's packets. Losses before the first received packet or after the
+/// sweep do not count.
 fn of_packets(captured: &Captured) -> Wanted {
     if captured.missed_packets() > 0 {
         return Wanted::Less;
@@ -69,8 +69,8 @@ fn of_packets(captured: &Captured) -> Wanted {
         return Wanted::Whole;
     }
     match (last_packet(captured), captured.last_sweep_end()) {
-        (Some(heard), Some(end)) if heard >= end => Wanted::Whole,
-        (Some(heard), Some(end)) if end - heard < Span::from_millis(60) => Wanted::Any,
+        (Some(received), Some(end)) if received >= end => Wanted::Whole,
+        (Some(received), Some(end)) if end - received < Span::from_millis(60) => Wanted::Any,
         _ => Wanted::Less,
     }
 }
@@ -88,7 +88,7 @@ fn last_packet(captured: &Captured) -> Option<Stamp<Host>> {
     last
 }
 
-/// The recording is over: its cloud waits to be made.
+/// Ends the recording; its cloud is still to be made.
 fn done(scans: &Scans, id: &str, ended: Result<(), SessionError>) -> Result<(), String> {
     let counts = CaptureCounts {
         lidar: io::udp::ListenCounts::default(),
@@ -129,7 +129,7 @@ fn setting(plan: &Plan, what: Virtual) -> Setting {
     setting
 }
 
-/// The axis stands, or it is said that it may not, and whoever comes next brings it to rest.
+/// Checks that the axis rests, or that the report says it may not and the next client stops it.
 fn rests(plan: &Plan, captured: &Captured, ended: &Result<(), SessionError>) -> Result<(), String> {
     let Some(Rejoined {
         went_on,
@@ -142,13 +142,13 @@ fn rests(plan: &Plan, captured: &Captured, ended: &Result<(), SessionError>) -> 
             false => Err(format!("the axis is left with its power on: {ended:?}")),
         };
     };
-    let said = matches!(
+    let printed = matches!(
         ended,
         Err(SessionError::Port(_)
             | SessionError::NotStopped(_)
             | SessionError::Drive(DriveError::NotStopped { .. }))
     );
-    if went_on > Span::ZERO && !said {
+    if went_on > Span::ZERO && !printed {
         return Err(format!(
             "the axis went on for {went_on:?}, and no word of it: {ended:?}"
         ));
@@ -159,7 +159,7 @@ fn rests(plan: &Plan, captured: &Captured, ended: &Result<(), SessionError>) -> 
             "without a heartbeat the axis went on for {went_on:?}"
         ));
     }
-    // Over USB and RS232 a profile move goes on to its own end and no farther.
+    // Over USB and RS232 a profile move ends at its target at the latest.
     let longest = plan.wish.to.0.abs() / plan.wish.speed.0 + 1.0;
     if went_on.as_secs_f64() > longest.max(HOMING_S) {
         return Err(format!(
@@ -174,5 +174,5 @@ fn rests(plan: &Plan, captured: &Captured, ended: &Result<(), SessionError>) -> 
     Ok(())
 }
 
-/// Longest way to the switch and back.
+/// Longest travel to the switch and back.
 const HOMING_S: f64 = 20.0;

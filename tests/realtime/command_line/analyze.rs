@@ -102,14 +102,14 @@ fn bins_whose_edges_pairs_lie_on_are_warned_of() {
         let pattern = &report["patterns"][0];
         assert_eq!(pattern["k"]["on_edges"], pairs, "{bins} bins");
         let warnings = pattern["warnings"].as_array().unwrap();
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        let printed = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(warnings.len(), usize::from(pairs > 0), "{warnings:?}");
         if let Some(warning) = warnings.first() {
             let warning = warning.as_str().unwrap();
             assert!(warning.contains(&format!("{pairs} pairs")) && warning.contains("--bins 151"));
-            assert!(said.contains(warning), "{said}");
+            assert!(printed.contains(warning), "{printed}");
         } else {
-            assert!(!said.contains("warning"), "{said}");
+            assert!(!printed.contains("warning"), "{printed}");
         }
     }
     let harmonics = json(&place.run("analyze vlp16 --level 2 --harmonics 64 --json"));
@@ -308,14 +308,14 @@ fn a_cloud_far_from_its_origin_is_warned_of_and_can_be_moved() {
     std::fs::write(place.path("here.csv"), text(0.0, 0.0)).unwrap();
     std::fs::write(place.path("far.xyz"), text(450_000.0, 5_400_000.0)).unwrap();
     let far = place.run("analyze far.xyz --harmonics 1 --json");
-    let said = String::from_utf8_lossy(&far.stderr).into_owned();
+    let printed = String::from_utf8_lossy(&far.stderr).into_owned();
     let far = json(&far)["patterns"][0].clone();
     let warned = far["warnings"][0].as_str().unwrap();
     assert!(
         warned.contains("outside the cloud") && warned.contains("--origin X,Y,Z"),
         "{warned}"
     );
-    assert!(said.contains(warned), "{said}");
+    assert!(printed.contains(warned), "{printed}");
     let moved = json(&place.run("analyze far.xyz --origin 450000,5400000,0 --harmonics 1 --json"));
     let here = json(&place.run("analyze here.csv --harmonics 1 --json"));
     let [moved, here] = [&moved["patterns"][0], &here["patterns"][0]];
@@ -380,11 +380,11 @@ fn analyze_writes_a_report_that_stands_alone() {
     let line =
         "analyze vlp16,step=2 rmbl:1200,step=2 --level 2 --bins 30 --report out/report --json";
     let output = place.run(line);
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.success(), "{said}");
+    let printed = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{printed}");
     let report = json(&output);
     let file = |name: &str| {
-        assert!(said.contains(name), "{name} in:\n{said}");
+        assert!(printed.contains(name), "{name} in:\n{printed}");
         std::fs::read_to_string(place.path("out/report").join(name)).unwrap()
     };
     let written: serde_json::Value = serde_json::from_str(&file("analyze.json")).unwrap();
@@ -448,14 +448,14 @@ fn analyze_writes_a_report_that_stands_alone() {
     );
     let both = place.run("analyze rmbl:50 --sweep rpm=300..600 --report page");
     assert_eq!(both.status.code(), Some(2));
-    let said = String::from_utf8_lossy(&both.stderr);
-    assert!(said.contains("cannot be used with"), "{said}");
+    let printed = String::from_utf8_lossy(&both.stderr);
+    assert!(printed.contains("cannot be used with"), "{printed}");
     let alone = place.run("analyze vlp16 --force");
     assert_eq!(alone.status.code(), Some(2));
 }
 
 #[test]
-fn what_cannot_be_analysed_is_said() {
+fn inputs_that_cannot_be_analysed_are_errors() {
     let place = Place::new();
     std::fs::write(place.path("one.csv"), "x,y,z\n1,2,3\n").unwrap();
     let one = json(&place.run("analyze one.csv --json"));
@@ -539,10 +539,10 @@ fn what_cannot_be_analysed_is_said() {
         ),
     ] {
         let output = place.run(line);
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(code), "{line}:\n{said}");
-        let flat = said.split_whitespace().collect::<Vec<_>>().join(" ");
-        assert!(flat.contains(words), "{line}: no {words:?} in:\n{said}");
+        let printed = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(code), "{line}:\n{printed}");
+        let flat = printed.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(flat.contains(words), "{line}: no {words:?} in:\n{printed}");
     }
 }
 
@@ -551,11 +551,11 @@ fn a_sweep_says_which_settings_nothing_beats() {
     let place = Place::new();
     let output = place.run("analyze velomotion16,step=2 --sweep speed=100..400/3,tilt=1..2 --json");
     assert_eq!(output.status.code(), Some(2), "tilt is no number");
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    let flat = said.split_whitespace().collect::<Vec<_>>().join(" ");
+    let printed = String::from_utf8_lossy(&output.stderr).into_owned();
+    let flat = printed.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(
         flat.contains("tilt is no number") && flat.contains("tilt=stepped"),
-        "{said}"
+        "{printed}"
     );
     for (sweep, settings) in [("speed=200..200", 1), ("speed=200..400/2,rpm=600..600", 2)] {
         let report = json(&place.run(&format!(
@@ -617,11 +617,11 @@ fn ctrl_c_ends_an_analysis_with_130_and_no_half_report() {
             .spawn()
             .unwrap();
         // Each of several inputs is named before its analysis begins.
-        let mut said = std::io::BufReader::new(analysis.stderr.take().unwrap());
+        let mut printed = std::io::BufReader::new(analysis.stderr.take().unwrap());
         let mut line = String::new();
         while !line.contains("velomotion16:5") {
             line.clear();
-            let read = std::io::BufRead::read_line(&mut said, &mut line).unwrap();
+            let read = std::io::BufRead::read_line(&mut printed, &mut line).unwrap();
             assert!(read > 0, "it ended");
         }
         let kill = Command::new("kill")
@@ -629,7 +629,7 @@ fn ctrl_c_ends_an_analysis_with_130_and_no_half_report() {
             .status();
         assert!(kill.unwrap().success());
         let mut rest = String::new();
-        std::io::Read::read_to_string(&mut said, &mut rest).unwrap();
+        std::io::Read::read_to_string(&mut printed, &mut rest).unwrap();
         assert_eq!(analysis.wait().unwrap().code(), Some(130), "{rest}");
         assert!(rest.contains("stopped by the user"), "{rest}");
         let written = std::fs::read_dir(place.path("page")).unwrap().count();

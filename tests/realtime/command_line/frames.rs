@@ -6,8 +6,8 @@ use super::*;
 fn names_are_not_broken_at_the_end_of_a_line() {
     let place = Place::new();
     let name = format!("{}.pcap", "a-b".repeat(30));
-    let said = place.run(&format!("info {name}")).stderr;
-    assert!(String::from_utf8_lossy(&said).contains(&name));
+    let printed = place.run(&format!("info {name}")).stderr;
+    assert!(String::from_utf8_lossy(&printed).contains(&name));
 }
 
 #[test]

@@ -37,13 +37,16 @@ impl Place {
     fn fails(&self, line: &str, code: i32, words: &[&str]) {
         let before = self.files();
         let output = self.run(line);
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(code), "{line}:\n{said}");
-        let flat = said.split_whitespace().collect::<Vec<_>>().join(" ");
+        let printed = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(code), "{line}:\n{printed}");
+        let flat = printed.split_whitespace().collect::<Vec<_>>().join(" ");
         for word in words {
-            assert!(flat.contains(word), "{line}: no {word:?} in:\n{said}");
+            assert!(flat.contains(word), "{line}: no {word:?} in:\n{printed}");
         }
-        assert!(said.contains("help:"), "{line}: no next step in:\n{said}");
+        assert!(
+            printed.contains("help:"),
+            "{line}: no next step in:\n{printed}"
+        );
         assert_eq!(self.files(), before, "{line} left files behind");
     }
 
@@ -67,9 +70,9 @@ fn json(output: &Output) -> serde_json::Value {
 fn the_version_says_which_commit_it_is() {
     let place = Place::new();
     let output = place.run("--version");
-    let said = String::from_utf8(output.stdout).unwrap();
+    let printed = String::from_utf8(output.stdout).unwrap();
     let version = format!("velomotion {}", env!("CARGO_PKG_VERSION"));
-    let rest = said.trim_end().strip_prefix(&version).unwrap();
+    let rest = printed.trim_end().strip_prefix(&version).unwrap();
     let commit = rest
         .strip_prefix(" (")
         .and_then(|rest| rest.strip_suffix(')'));
@@ -78,7 +81,7 @@ fn the_version_says_which_commit_it_is() {
             hash.len() >= 12
                 && hash.bytes().all(|digit| digit.is_ascii_hexdigit())
                 && day.len() == 10,
-            "{said}"
+            "{printed}"
         ),
         // Packages without a repository.
         None => assert_eq!(rest, ""),
@@ -92,14 +95,14 @@ fn a_simulated_capture_gives_a_cloud_a_log_and_the_same_cloud_again() {
     // Software devices go silent while a busy machine does not schedule them, and the capture
     // stops.
     for _ in 0..3 {
-        let said = String::from_utf8_lossy(&output.stderr);
-        if output.status.code() != Some(5) || !said.contains("silence") {
+        let printed = String::from_utf8_lossy(&output.stderr);
+        if output.status.code() != Some(5) || !printed.contains("silence") {
             break;
         }
         output = place.run("capture --speed 56.25 -o scan.ply --json --force");
     }
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{said}");
+    let printed = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{printed}");
     let scan = json(&output);
     assert_eq!(scan["simulated"], true);
     assert!(scan["points"].as_u64().unwrap() > 180_000, "{scan}");
@@ -187,26 +190,26 @@ fn ctrl_c_in_mid_sweep_saves_what_there_is_and_exits_130() {
         .spawn()
         .unwrap();
     // Homing is not a profile move: the first profile move is the sweep.
-    let mut said = std::io::BufReader::new(capture.stderr.take().unwrap());
+    let mut printed = std::io::BufReader::new(capture.stderr.take().unwrap());
     let mut line = String::new();
     while !line.contains("Moving(") {
         line.clear();
         assert!(
-            std::io::BufRead::read_line(&mut said, &mut line).unwrap() > 0,
+            std::io::BufRead::read_line(&mut printed, &mut line).unwrap() > 0,
             "no motion"
         );
     }
     let rest = std::thread::spawn(move || {
         let mut text = String::new();
-        std::io::Read::read_to_string(&mut said, &mut text).map(|_| text)
+        std::io::Read::read_to_string(&mut printed, &mut text).map(|_| text)
     });
     let kill = Command::new("kill")
         .args(["-INT", &capture.id().to_string()])
         .status();
     assert!(kill.unwrap().success());
     assert_eq!(capture.wait().unwrap().code(), Some(130));
-    let said = rest.join().unwrap().unwrap();
-    assert!(said.contains("stopped by the user"), "{said}");
+    let printed = rest.join().unwrap().unwrap();
+    assert!(printed.contains("stopped by the user"), "{printed}");
     assert!(place.path("scan.pcapng").is_file(), "the log is gone");
 }
 
@@ -330,8 +333,11 @@ fn a_recording_for_ros_is_a_bag_and_leaves_the_metadata_of_another_alone() {
     let output = place.run(&line("-o an.mcap"));
     assert!(output.status.success() && place.path("an.mcap").is_file());
     assert_eq!(metadata(), first);
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(said.contains("belongs to another recording"), "{said}");
+    let printed = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        printed.contains("belongs to another recording"),
+        "{printed}"
+    );
 }
 
 #[test]
@@ -403,7 +409,7 @@ fn another_rigs_angles_can_be_attached() {
 }
 
 #[test]
-fn simulate_makes_a_log_that_replay_reads_and_says_what_is_wrong_where() {
+fn simulate_makes_a_log_that_replay_reads_and_locates_errors() {
     let place = Place::new();
     place.fails("simulate castle", 3, &["scene castle", "hall"]);
     let scene = "scene = \"hall\"\n[motion]\nkind = \"fixed\"\nduration_s = 0.05\n";
@@ -423,33 +429,36 @@ fn simulate_makes_a_log_that_replay_reads_and_says_what_is_wrong_where() {
     place.fails("simulate stand.toml -o -", 2, &["file", ".pcapng"]);
     let output = place.run("simulate stand.toml --truth t.csv --json --threads 2");
     assert!(output.status.success(), "{output:?}");
-    let said = json(&output);
-    assert_eq!(said["packets"], 37);
-    assert_eq!(said["share_returned"], 1.0);
-    assert_eq!(said["effects"].as_array().unwrap().len(), 0);
-    assert_eq!(said["log"], "stand.pcapng");
+    let printed = json(&output);
+    assert_eq!(printed["packets"], 37);
+    assert_eq!(printed["share_returned"], 1.0);
+    assert_eq!(printed["effects"].as_array().unwrap().len(), 0);
+    assert_eq!(printed["log"], "stand.pcapng");
     let truth = std::fs::read_to_string(place.path("t.csv")).unwrap();
     assert!(truth.contains("SIMULATED"), "{:?}", truth.lines().next());
     let rows = truth.lines().filter(|line| !line.starts_with('#')).count() - 1;
-    assert_eq!(said["returned"].as_u64(), Some(rows as u64));
+    assert_eq!(printed["returned"].as_u64(), Some(rows as u64));
     place.fails("simulate stand.toml", 2, &["exists"]);
     let over = "simulate stand.toml -o stand.toml --force";
     place.fails(over, 2, &["stand.toml", "overwrite its input"]);
     // The lidar alone, for programs that read one link type per file.
     let output = place.run("simulate rig -o rig.pcap --json");
-    let (made, told) = (json(&output), json(&place.run("info rig.pcap --json")));
-    assert_eq!(told["packets"]["data"], made["packets"]);
+    let (made, reported) = (json(&output), json(&place.run("info rig.pcap --json")));
+    assert_eq!(reported["packets"]["data"], made["packets"]);
     assert_eq!(
-        (&told["packets"]["other"], &told["returns"]),
+        (&reported["packets"]["other"], &reported["returns"]),
         (&0.into(), &made["returns"])
     );
     let asks = format!("{scene}[effects.tilt_limits]\nfrom_deg = -45.0\nto_deg = 45.0\n");
     std::fs::write(place.path("asks.toml"), asks).unwrap();
     let output = place.run("simulate asks.toml --explain --json");
-    let told = &json(&output)["explanation"]["on"][0];
-    assert_eq!(told["effect"], "tilt_limits");
-    assert_eq!((&told["line"], &told["acted"]), (&5.into(), &0.into()));
-    assert!(told["not_needed"].as_str().unwrap().contains("stops"));
+    let reported = &json(&output)["explanation"]["on"][0];
+    assert_eq!(reported["effect"], "tilt_limits");
+    assert_eq!(
+        (&reported["line"], &reported["acted"]),
+        (&5.into(), &0.into())
+    );
+    assert!(reported["not_needed"].as_str().unwrap().contains("stops"));
     let output = place.run("simulate asks.toml --without all --force --json");
     assert_eq!(json(&output)["effects"].as_array().unwrap().len(), 0);
     let output = place.run("simulate asks.toml --without weather,loss --force --json");

@@ -8,8 +8,8 @@ use super::*;
 fn what_accuracy_costs_is_measured_and_shown() {
     let place = Place::new();
     let output = place.run("tradeoff --quick --json --report out --markdown book");
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{said}");
+    let printed = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{printed}");
     let report = json(&output);
     assert_eq!(
         (&report["schema"], &report["effort"]),
@@ -28,7 +28,10 @@ fn what_accuracy_costs_is_measured_and_shown() {
     }
     for study in studies {
         study_is_whole(study);
-        assert!(said.contains(study["title"].as_str().unwrap()), "{said}");
+        assert!(
+            printed.contains(study["title"].as_str().unwrap()),
+            "{printed}"
+        );
     }
     let file = |name: &str| std::fs::read_to_string(place.path(name)).unwrap();
     assert_eq!(

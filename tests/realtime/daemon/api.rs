@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::rig::{Rig, kept_waiting, post, request};
+use super::rig::{Rig, machine_was_busy, post, request};
 
 /// Bodies of invalid captures.
 fn impossible() -> Vec<Value> {
@@ -159,7 +159,7 @@ fn the_way_home_before_a_scan_is_planned_and_seen() {
         ] {
             let moved = rig.post(&format!("/api/v1/tilt/{path}"), &body);
             assert!(
-                moved.status == 200 || kept_waiting(&moved.text()),
+                moved.status == 200 || machine_was_busy(&moved.text()),
                 "{}",
                 moved.text()
             );

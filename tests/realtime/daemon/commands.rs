@@ -5,18 +5,18 @@ use std::process::{Output, Stdio};
 
 use serde_json::Value;
 
-use super::rig::{Process, place, ready, request, run, said, velomotion};
+use super::rig::{Process, place, printed, ready, request, run, velomotion};
 
 fn json(output: &Output) -> Value {
     serde_json::from_slice(&output.stdout)
-        .unwrap_or_else(|error| panic!("{error}: {}", said(output)))
+        .unwrap_or_else(|error| panic!("{error}: {}", printed(output)))
 }
 
 /// Runs a command again if the software drive went silent on a busy machine.
-fn patiently(folder: &std::path::Path, line: &str, again: &str) -> Output {
+fn run_with_retries(folder: &std::path::Path, line: &str, again: &str) -> Output {
     let mut output = run(folder, line);
     for _ in 0..3 {
-        if output.status.code() != Some(5) || !super::rig::kept_waiting(&said(&output)) {
+        if output.status.code() != Some(5) || !super::rig::machine_was_busy(&printed(&output)) {
             break;
         }
         output = run(folder, again);
@@ -28,13 +28,13 @@ fn patiently(folder: &std::path::Path, line: &str, again: &str) -> Output {
 fn a_capture_through_the_daemon_is_as_one_without() {
     let folder = place();
     let line = "capture --speed 56.25 -o own.ply --json";
-    let own = patiently(folder.path(), line, &format!("{line} --force"));
-    assert!(own.status.success(), "{}", said(&own));
+    let own = run_with_retries(folder.path(), line, &format!("{line} --force"));
+    assert!(own.status.success(), "{}", printed(&own));
     let daemon = Process::start(folder.path());
     ready(daemon.address);
     let line = "capture --speed 56.25 -o through.ply --json";
-    let through = patiently(folder.path(), line, &format!("{line} --force"));
-    assert!(through.status.success(), "{}", said(&through));
+    let through = run_with_retries(folder.path(), line, &format!("{line} --force"));
+    assert!(through.status.success(), "{}", printed(&through));
     let scans = request(daemon.address, "GET", "/api/v1/scans", "", "").json();
     assert!(
         !scans["scans"].as_array().unwrap().is_empty(),
@@ -83,16 +83,20 @@ fn a_capture_through_the_daemon_is_as_one_without() {
             output.status.code(),
             Some(code),
             "{line}: {}",
-            said(&output)
+            printed(&output)
         );
-        assert!(said(&output).contains(word), "{line}: {}", said(&output));
+        assert!(
+            printed(&output).contains(word),
+            "{line}: {}",
+            printed(&output)
+        );
     }
 
     // The axis keeps its position: the daemon owns it.
     let home = run(folder.path(), "tilt home --json");
-    assert!(home.status.success(), "{}", said(&home));
+    assert!(home.status.success(), "{}", printed(&home));
     let there = run(folder.path(), "tilt goto -7 --speed 50 --json");
-    assert!(there.status.success(), "{}", said(&there));
+    assert!(there.status.success(), "{}", printed(&there));
     let status = json(&run(folder.path(), "tilt status --json"));
     assert!(
         (status["angle_deg"].as_f64().unwrap() + 7.0).abs() < 0.01,
@@ -145,13 +149,13 @@ fn a_configuration_with_ros_2_needs_a_build_with_it() {
     let text = std::fs::read_to_string(&file).unwrap();
     std::fs::write(&file, format!("{text}[daemon.ros2]\ndomain = 3\n")).unwrap();
     let output = run(folder.path(), "daemon --listen 127.0.0.1:0");
-    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    assert_eq!(output.status.code(), Some(2), "{}", printed(&output));
     assert!(
-        said(&output).contains("--features ros2"),
+        printed(&output).contains("--features ros2"),
         "{}",
-        said(&output)
+        printed(&output)
     );
     // The rest of the configuration applies.
     let status = run(folder.path(), "tilt status --json");
-    assert!(!said(&status).contains("ros2"), "{}", said(&status));
+    assert!(!printed(&status).contains("ros2"), "{}", printed(&status));
 }

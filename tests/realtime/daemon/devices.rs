@@ -10,7 +10,7 @@ use serde_json::json;
 use units::Span;
 
 use super::events::connect;
-use super::rig::{Rig, run, said, wait};
+use super::rig::{Rig, printed, run, wait};
 use crate::software_drive::Drive;
 
 /// The device `bench` with these keys and a lidar port without a sender.
@@ -56,11 +56,11 @@ fn a_drive_that_is_unplugged_is_missed_and_found_again() {
     );
     // Without a lidar nothing moves, nothing is recorded, and no scan remains.
     let refused = rig.post("/api/v1/captures", &json!({"speed_deg_s": 10.0}));
-    let said = refused.refused(409, "no lidar").json();
-    assert_eq!(said["kind"], "no-device");
+    let printed = refused.refused(409, "no lidar").json();
+    assert_eq!(printed["kind"], "no-device");
     assert!(
-        said["error"].as_str().unwrap().contains("no lidar"),
-        "{said}"
+        printed["error"].as_str().unwrap().contains("no lidar"),
+        "{printed}"
     );
     assert_eq!(rig.get("/api/v1/scans").json(), json!({"scans": []}));
     let lidar = rig.status()["lidar"].clone();
@@ -145,8 +145,17 @@ fn a_drive_that_is_looked_for_is_found_wherever_its_cable_comes_back() {
     configure("");
     for line in ["tilt status", "capture --speed 10 -o scan.ply"] {
         let output = run(folder, line);
-        assert_eq!(output.status.code(), Some(4), "{line}: {}", said(&output));
-        assert!(said(&output).contains(looking), "{line}: {}", said(&output));
+        assert_eq!(
+            output.status.code(),
+            Some(4),
+            "{line}: {}",
+            printed(&output)
+        );
+        assert!(
+            printed(&output).contains(looking),
+            "{line}: {}",
+            printed(&output)
+        );
     }
     // An EPOS2 for which Linux makes no port.
     plug(None);
@@ -161,7 +170,7 @@ fn a_drive_that_is_looked_for_is_found_wherever_its_cable_comes_back() {
         // The daemon has the port, whatever its name: no other process gets it.
         configure(&keys);
         let output = run(folder, "tilt status --json");
-        assert!(output.status.success(), "{keys}: {}", said(&output));
+        assert!(output.status.success(), "{keys}: {}", printed(&output));
     }
 
     units.lock().unwrap().clear();
@@ -181,17 +190,17 @@ fn after_a_sleep_nothing_is_taken_for_granted() {
     let link = table.path().join("epos");
     let _unit = Drive::plug(&link);
     let slept = Arc::new(AtomicI64::new(0));
-    let told = Arc::clone(&slept);
+    let reported = Arc::clone(&slept);
     let rig = Rig::with("", |options| {
         bench(options, &format!("port = '{}'", link.display()));
         options.environment.suspended =
-            Arc::new(move || Span::from_nanos(told.load(Ordering::Relaxed)));
+            Arc::new(move || Span::from_nanos(reported.load(Ordering::Relaxed)));
     });
     drive(&rig, "connected");
     assert_eq!(rig.post("/api/v1/tilt/home", &json!({})).status, 200);
     let service = &rig.daemon().state().service;
     let connects = || service.connects();
-    let heard = Arc::downgrade(&service.receiver().unwrap());
+    let received = Arc::downgrade(&service.receiver().unwrap());
     let mut events = connect(rig.address, "?points=false").unwrap();
     // Less than half a second does not count as a suspension.
     slept.store(400_000_000, Ordering::Relaxed);
@@ -225,9 +234,9 @@ fn after_a_sleep_nothing_is_taken_for_granted() {
     // ones.
     wait("other sockets", || {
         let now = service.receiver()?;
-        (!std::ptr::eq(heard.as_ptr(), Arc::as_ptr(&now))).then_some(())
+        (!std::ptr::eq(received.as_ptr(), Arc::as_ptr(&now))).then_some(())
     });
     wait("the end of the old ones", || {
-        heard.upgrade().is_none().then_some(())
+        received.upgrade().is_none().then_some(())
     });
 }

@@ -23,7 +23,7 @@ pub fn connect(address: SocketAddr, query: &str) -> Result<WebSocket<TcpStream>,
 
 /// What one client received until the end of scan `id`.
 #[derive(Debug, Default, PartialEq)]
-struct Heard {
+struct ReceivedFrame {
     frames: Vec<u32>,
     points: u64,
     motions: usize,
@@ -31,8 +31,8 @@ struct Heard {
     angles_fall: bool,
 }
 
-fn listen(mut socket: WebSocket<TcpStream>) -> Heard {
-    let mut heard = Heard::default();
+fn listen(mut socket: WebSocket<TcpStream>) -> ReceivedFrame {
+    let mut received = ReceivedFrame::default();
     let mut angles = Vec::new();
     loop {
         match socket.read().unwrap() {
@@ -42,23 +42,23 @@ fn listen(mut socket: WebSocket<TcpStream>) -> Heard {
                 assert_eq!(&bytes[..4], b"VMP1");
                 assert_eq!(bytes.len(), 32 + 22 * count);
                 assert_eq!(u32_at(20), 0, "the live view left records out");
-                heard.frames.push(u32_at(16));
-                heard.points += count as u64;
+                received.frames.push(u32_at(16));
+                received.points += count as u64;
             }
             Message::Text(text) => {
                 let event: Value = serde_json::from_str(&text).unwrap();
                 match event["type"].as_str().unwrap() {
                     "motion" => {
-                        heard.motions += 1;
+                        received.motions += 1;
                         angles.push(event["angle_deg"].as_f64().unwrap());
                     }
                     "scan" => {
                         let state = event["scan"]["state"].as_str().unwrap().to_owned();
                         let over = ["whole", "partial", "failed"].contains(&state.as_str());
-                        heard.states.push(state);
+                        received.states.push(state);
                         if over {
-                            heard.angles_fall = angles.last() < angles.first();
-                            return heard;
+                            received.angles_fall = angles.last() < angles.first();
+                            return received;
                         }
                     }
                     "status" => assert!(event["status"]["activity"]["doing"].is_string()),
@@ -87,31 +87,34 @@ fn eight_clients_during_a_sweep_hear_the_same_and_the_capture_loses_nothing() {
             (rig.daemon().state().events().clients() == 9).then_some(())
         });
         let scan = rig.scan(&json!({"speed_deg_s": 56.25}));
-        let heard: Vec<Heard> = clients.into_iter().map(|c| c.join().unwrap()).collect();
+        let received: Vec<ReceivedFrame> = clients.into_iter().map(|c| c.join().unwrap()).collect();
         let thinned = thinned.join().unwrap();
         if scan["state"] != "whole" && attempt < 4 {
             // The software drive went silent on a busy machine.
-            assert!(super::rig::kept_waiting(&scan["why"].to_string()), "{scan}");
+            assert!(
+                super::rig::machine_was_busy(&scan["why"].to_string()),
+                "{scan}"
+            );
             continue;
         }
         assert_eq!(scan["state"], "whole", "{scan}");
         assert_eq!(scan["lost_records"], 0);
         assert_eq!(scan["reception"]["dropped_by_kernel"], 0);
         let points = scan["points"].as_u64().unwrap();
-        for one in &heard {
+        for one in &received {
             assert_eq!(one.states, ["recording", "making", "whole"]);
             assert!(one.motions > 3 && one.angles_fall, "{one:?}");
             let numbers: Vec<u32> = (0..one.frames.len() as u32).collect();
             assert_eq!(one.frames, numbers, "frames in order, none missing");
-            assert_eq!(one.points, heard[0].points);
+            assert_eq!(one.points, received[0].points);
             assert!(
                 one.points.abs_diff(points) < points / 50,
                 "{} of {points}",
                 one.points
             );
         }
-        assert_eq!(thinned.frames, heard[0].frames);
-        assert!((heard[0].points / 10..heard[0].points / 9).contains(&thinned.points));
+        assert_eq!(thinned.frames, received[0].frames);
+        assert!((received[0].points / 10..received[0].points / 9).contains(&thinned.points));
         assert_eq!(rig.status()["clients"]["dropped"], 0);
         return;
     }
@@ -126,11 +129,11 @@ fn who_stops_reading_is_dropped() {
     // More than the sockets' buffers hold. The sender never waits: the daemon notices the lag while
     // it sends.
     let long = "x".repeat(100_000);
-    let mut told = 0;
+    let mut reported = 0;
     wait("the client is disconnected", || {
         for _ in 0..100 {
             events.message(MessageLevel::Info, long.clone(), None);
-            told += 1;
+            reported += 1;
         }
         (events.disconnected() == 1).then_some(())
     });
@@ -142,7 +145,7 @@ fn who_stops_reading_is_dropped() {
     while idle.read().is_ok() {
         read += 1;
     }
-    assert!(read < told, "{read} of {told}");
+    assert!(read < reported, "{read} of {reported}");
     assert_eq!(rig.status()["clients"]["dropped"], 1);
     // Other clients are served.
     assert!(connect(rig.address, "").unwrap().read().unwrap().is_text());

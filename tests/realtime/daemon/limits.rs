@@ -139,7 +139,7 @@ fn there_are_no_more_downloads_at_once_than_allowed() {
 }
 
 #[test]
-fn a_download_that_nobody_reads_ends() {
+fn an_unread_download_ends() {
     let waits = Waits {
         download: Duration::from_secs(1),
         ..Waits::default()

@@ -1,16 +1,16 @@
 //! The daemon with the simulator on loopback, seen from its page, other programs and the commands.
 
+mod access;
 mod api;
 mod commands;
-mod deaf;
-mod defects;
+mod connections;
 mod devices;
-mod door;
 mod events;
-mod guard;
-mod hasty;
 mod limits;
+mod panics;
+mod rapid_requests;
 mod rig;
 mod scans;
 mod service;
-mod stall;
+mod silent_drive;
+mod stalled_disk;

@@ -88,7 +88,7 @@ impl Rig {
             if scan["state"] == "whole" {
                 return scan;
             }
-            assert!(kept_waiting(&scan["why"].to_string()), "{scan}");
+            assert!(machine_was_busy(&scan["why"].to_string()), "{scan}");
             self.ready();
         }
         panic!("the machine is too slow");
@@ -116,7 +116,7 @@ impl Drop for Rig {
 }
 
 /// Whether software devices were silent or late because the machine was busy.
-pub fn kept_waiting(why: &str) -> bool {
+pub fn machine_was_busy(why: &str) -> bool {
     why.contains("silence") || why.contains("none in time")
 }
 
@@ -169,9 +169,9 @@ impl Answer {
     /// Checks that the request was refused with this status and an error object.
     pub fn refused(&self, status: u16, what: &str) -> &Self {
         assert_eq!(self.status, status, "{what}: {}", self.text());
-        let said = self.json();
+        let printed = self.json();
         for key in ["error", "help", "kind"] {
-            assert!(said[key].is_string(), "{what}: no {key} in {said}");
+            assert!(printed[key].is_string(), "{what}: no {key} in {printed}");
         }
         self
     }
@@ -242,7 +242,7 @@ pub fn run(folder: &Path, line: &str) -> Output {
 }
 
 /// The text on stderr without line breaks.
-pub fn said(output: &Output) -> String {
+pub fn printed(output: &Output) -> String {
     let text = String::from_utf8_lossy(&output.stderr).replace('│', " ");
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
@@ -261,10 +261,11 @@ impl Process {
             .spawn()
             .unwrap();
         let mut line = String::new();
-        let mut said = BufReader::new(child.stdout.take().unwrap());
-        said.read_line(&mut line).unwrap();
-        let told: Value = serde_json::from_str(&line).unwrap_or_else(|e| panic!("{e}: {line:?}"));
-        let address = told["address"].as_str().unwrap().parse().unwrap();
+        let mut printed = BufReader::new(child.stdout.take().unwrap());
+        printed.read_line(&mut line).unwrap();
+        let reported: Value =
+            serde_json::from_str(&line).unwrap_or_else(|e| panic!("{e}: {line:?}"));
+        let address = reported["address"].as_str().unwrap().parse().unwrap();
         Self { child, address }
     }
 
@@ -303,7 +304,7 @@ pub fn sweep(address: SocketAddr) -> String {
         }
         // The software drive went silent on a busy machine.
         let scan = finished(address, &id);
-        assert!(kept_waiting(&scan["why"].to_string()), "{scan}");
+        assert!(machine_was_busy(&scan["why"].to_string()), "{scan}");
     }
     panic!("the machine is too slow");
 }

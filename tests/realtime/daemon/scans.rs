@@ -153,7 +153,7 @@ fn a_scan_in_which_the_daemon_is_killed_is_found_at_the_next_start() {
         second.status.code(),
         Some(4),
         "{}",
-        super::rig::said(&second)
+        super::rig::printed(&second)
     );
     again.signal("-TERM");
     let mut again = again;
@@ -210,10 +210,10 @@ fn a_log_whose_end_never_reached_the_disk_makes_no_whole_scan() {
 #[test]
 fn a_disk_that_is_nearly_full_ends_a_scan_and_begins_none() {
     let free = Arc::new(AtomicU64::new(u64::MAX));
-    let told = Arc::clone(&free);
+    let reported = Arc::clone(&free);
     let rig = Rig::with("", |options| {
         options.config.daemon.reserve_bytes = 1_000_000_000;
-        options.free_bytes = Arc::new(move |_| Ok(told.load(Ordering::Relaxed)));
+        options.free_bytes = Arc::new(move |_| Ok(reported.load(Ordering::Relaxed)));
     });
     let id = sweep(rig.address);
     free.store(999_999_999, Ordering::Relaxed);
@@ -237,12 +237,12 @@ fn a_disk_that_is_nearly_full_ends_a_scan_and_begins_none() {
 }
 
 #[test]
-fn a_machine_that_has_slept_connects_anew_and_the_scan_is_partial() {
+fn after_a_suspension_devices_reconnect_and_the_scan_is_partial() {
     let slept = Arc::new(AtomicI64::new(0));
-    let told = Arc::clone(&slept);
+    let reported = Arc::clone(&slept);
     let rig = Rig::with("", |options| {
         options.environment.suspended =
-            Arc::new(move || Span::from_nanos(told.load(Ordering::Relaxed)));
+            Arc::new(move || Span::from_nanos(reported.load(Ordering::Relaxed)));
     });
     rig.ready();
     let connects = || rig.daemon().state().service.connects();
@@ -265,13 +265,13 @@ fn a_machine_that_has_slept_connects_anew_and_the_scan_is_partial() {
 #[test]
 fn a_sleep_that_only_its_end_shows_makes_a_scan_partial() {
     let slept = Arc::new(AtomicI64::new(0));
-    let told = Arc::clone(&slept);
+    let reported = Arc::clone(&slept);
     let rig = Rig::with("", |options| {
         // Only the device thread sees the suspension.
         options.environment.suspended =
             Arc::new(
                 move || match std::thread::current().name() == Some("devices") {
-                    true => Span::from_nanos(told.load(Ordering::Relaxed)),
+                    true => Span::from_nanos(reported.load(Ordering::Relaxed)),
                     false => Span::ZERO,
                 },
             );
@@ -302,11 +302,11 @@ fn a_cloud_that_the_disk_had_no_room_for_is_made_once_there_is() {
         Arc::new(AtomicU64::new(0)),
     );
     let disk = || {
-        let (told, looked) = (Arc::clone(&free), Arc::clone(&looks));
+        let (reported, looked) = (Arc::clone(&free), Arc::clone(&looks));
         move |options: &mut Options| {
             options.free_bytes = Arc::new(move |_| {
                 looked.fetch_add(1, Ordering::SeqCst);
-                Ok(told.load(Ordering::SeqCst))
+                Ok(reported.load(Ordering::SeqCst))
             });
         }
     };
@@ -379,8 +379,8 @@ fn a_cloud_that_the_disk_had_no_room_for_is_made_once_there_is() {
         "{scan}"
     );
     wait("its record", || {
-        let told = written(&rig, &id);
-        (told["state"] == "partial" && told["waits_for_room"] == false).then_some(())
+        let reported = written(&rig, &id);
+        (reported["state"] == "partial" && reported["waits_for_room"] == false).then_some(())
     });
     let counters = &rig.daemon().state().counters;
     let counts = [&counters.partial, &counters.failed].map(|count| count.load(Ordering::Relaxed));
@@ -390,9 +390,9 @@ fn a_cloud_that_the_disk_had_no_room_for_is_made_once_there_is() {
 #[test]
 fn a_scan_that_waits_for_room_can_be_deleted() {
     let free = Arc::new(AtomicU64::new(u64::MAX));
-    let told = Arc::clone(&free);
+    let reported = Arc::clone(&free);
     let rig = Rig::with("", |options| {
-        options.free_bytes = Arc::new(move |_| Ok(told.load(Ordering::Relaxed)));
+        options.free_bytes = Arc::new(move |_| Ok(reported.load(Ordering::Relaxed)));
     });
     let id = sweep(rig.address);
     free.store(0, Ordering::Relaxed);
@@ -409,12 +409,12 @@ fn a_download_takes_no_room_that_a_scan_was_promised() {
         Arc::new(AtomicU64::new(u64::MAX)),
         Arc::new(AtomicU64::new(u64::MAX)),
     );
-    let (told, left) = (Arc::clone(&free), Arc::clone(&looks));
+    let (reported, left) = (Arc::clone(&free), Arc::clone(&looks));
     let rig = Rig::with("", |options| {
         options.free_bytes = Arc::new(move |_| {
             let lasts = |left: u64| left.checked_sub(1);
             match left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, lasts) {
-                Ok(_) => Ok(told.load(Ordering::Relaxed)),
+                Ok(_) => Ok(reported.load(Ordering::Relaxed)),
                 Err(_) => Ok(0),
             }
         });
@@ -458,8 +458,8 @@ fn a_download_takes_no_room_that_a_scan_was_promised() {
         Ordering::Relaxed,
     );
     let refused = rig.get(&path(Format::Pcd));
-    let said = refused.refused(507, "promised").text();
-    assert!(said.contains("may still need"), "{said}");
+    let printed = refused.refused(507, "promised").text();
+    assert!(printed.contains("may still need"), "{printed}");
     let status = rig.status();
     assert_eq!(status["activity"]["scan"], running.as_str(), "{status}");
     free.store(u64::MAX, Ordering::Relaxed);

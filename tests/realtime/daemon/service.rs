@@ -49,12 +49,12 @@ fn the_service_manager_hears_of_start_life_and_end() {
         .stderr(Stdio::null())
         .spawn()
         .unwrap();
-    let is = |line: &'static str| move |said: &String| said == line;
+    let is = |line: &'static str| move |printed: &String| printed == line;
     // A heartbeat may precede READY.
     let ready = loop {
-        let said = manager.hear();
-        if !said.iter().any(is("WATCHDOG=1")) {
-            break said;
+        let printed = manager.hear();
+        if !printed.iter().any(is("WATCHDOG=1")) {
+            break printed;
         }
     };
     assert!(ready.iter().any(is("READY=1")), "{ready:?}");
@@ -69,9 +69,9 @@ fn the_service_manager_hears_of_start_life_and_end() {
     }
     kill("-TERM", daemon.id());
     let last = loop {
-        let said = manager.hear();
-        if said != ["WATCHDOG=1"] {
-            break said;
+        let printed = manager.hear();
+        if printed != ["WATCHDOG=1"] {
+            break printed;
         }
     };
     assert!(last.iter().any(is("STOPPING=1")), "{last:?}");
@@ -81,7 +81,7 @@ fn the_service_manager_hears_of_start_life_and_end() {
 }
 
 /// The text that `line` writes to stderr, a file that is or is not announced as the journal.
-fn said_to(folder: &Path, line: &str, journal: bool) -> String {
+fn printed_to(folder: &Path, line: &str, journal: bool) -> String {
     let path = folder.join("stderr");
     let file = File::create(&path).unwrap();
     let about = file.metadata().unwrap();
@@ -102,7 +102,7 @@ fn said_to(folder: &Path, line: &str, journal: bool) -> String {
 fn a_failure_has_its_priority_in_the_journal_and_nowhere_else() {
     let folder = place();
     let line = "daemon --config missing.toml";
-    let journal = said_to(folder.path(), line, true);
+    let journal = printed_to(folder.path(), line, true);
     let lines: Vec<&str> = journal.lines().collect();
     assert_eq!(lines.len(), 2, "{journal}");
     assert!(
@@ -113,7 +113,7 @@ fn a_failure_has_its_priority_in_the_journal_and_nowhere_else() {
         lines[1].starts_with("<3>name an existing text file"),
         "{journal}"
     );
-    let plain = said_to(folder.path(), line, false);
+    let plain = printed_to(folder.path(), line, false);
     assert!(plain.contains("missing.toml"), "{plain}");
     assert!(
         !plain.contains("<3>") && !plain.contains('\u{1b}'),

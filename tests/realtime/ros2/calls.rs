@@ -14,12 +14,12 @@ fn key(service: &str) -> String {
 /// Calls a service. Returns success and message.
 fn call(router: &mut Peer, service: &str) -> (bool, String) {
     let command = json!({ "do": "call", "key": key(service), "attachment": true });
-    let said = router.ask(&command);
-    let answers: Vec<&Value> = said
+    let printed = router.ask(&command);
+    let answers: Vec<&Value> = printed
         .iter()
         .filter(|v| v.get("answered").is_some())
         .collect();
-    assert_eq!(answers.len(), 1, "{said:?}");
+    assert_eq!(answers.len(), 1, "{printed:?}");
     let answer = answers[0];
     assert_eq!(
         (&answer["own"], &answer["later"]),
@@ -78,11 +78,12 @@ fn a_capture_is_begun_and_stopped_by_calls() {
 
     // A request that is not rmw_zenoh's moves nothing.
     let command = json!({ "do": "call", "key": key("start_capture"), "attachment": false });
-    let said = router.ask(&command);
+    let printed = router.ask(&command);
     assert!(
-        said.iter()
+        printed
+            .iter()
             .any(|v| v["refused"].to_string().contains("33 bytes")),
-        "{said:?}"
+        "{printed:?}"
     );
     assert_eq!(rig.status()["activity"]["doing"], "idle");
     assert_eq!(
@@ -110,9 +111,9 @@ fn nothing_moves_by_ros_unless_it_is_configured() {
     connected(&rig, true);
     rig.ready();
     let command = json!({ "do": "call", "key": key("start_capture"), "attachment": true });
-    let said = router.ask(&command);
-    let answered = said.iter().any(|v| v.get("answered").is_some());
-    assert!(!answered, "{said:?}");
+    let printed = router.ask(&command);
+    let answered = printed.iter().any(|v| v.get("answered").is_some());
+    assert!(!answered, "{printed:?}");
     assert!(call(&mut router, "stop_capture").0);
     assert_eq!(scans(&rig), 0);
 }

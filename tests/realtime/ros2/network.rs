@@ -10,19 +10,19 @@ const MOUNT: &str = "0/tf_static";
 
 /// The single message of the mount that `who` received.
 fn mount(peer: &Peer, who: &str) -> Value {
-    let heard = wait("the mount", || {
-        let heard = peer.heard(who, "/tf_static");
-        (!heard.is_empty()).then_some(heard)
+    let received = wait("the mount", || {
+        let received = peer.received(who, "/tf_static");
+        (!received.is_empty()).then_some(received)
     });
-    assert_eq!(heard.len(), 1, "{heard:?}");
-    heard[0].clone()
+    assert_eq!(received.len(), 1, "{received:?}");
+    received[0].clone()
 }
 
 /// The mount is sent once. Early subscribers, late subscribers and those at another router each get
 /// it once.
 #[test]
 #[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
-fn a_router_that_is_late_and_comes_back_finds_everything_again() {
+fn a_router_that_starts_late_or_restarts_gets_everything() {
     let python = python();
     let place = endpoint();
     let rig = daemon(&place, "");
@@ -35,10 +35,10 @@ fn a_router_that_is_late_and_comes_back_finds_everything_again() {
     let before = mount(&router, "before");
     router.subscribe("later", Topic::StaticTransforms, MOUNT);
     let later = mount(&router, "later");
-    for key in ["said", "number", "gid", "sent_ns"] {
+    for key in ["printed", "number", "gid", "sent_ns"] {
         assert_eq!(before[key], later[key], "{key}");
     }
-    let transforms = &before["said"]["transforms"];
+    let transforms = &before["printed"]["transforms"];
     let of = |number: usize| {
         let one = &transforms[number];
         (one["parent"].as_str(), one["child"].as_str())
@@ -65,7 +65,7 @@ fn a_router_that_is_late_and_comes_back_finds_everything_again() {
     again.sort();
     assert_eq!(tokens, again);
     router.subscribe("again", Topic::StaticTransforms, MOUNT);
-    assert_eq!(mount(&router, "again")["said"], before["said"]);
+    assert_eq!(mount(&router, "again")["printed"], before["printed"]);
 }
 
 /// A capture does not wait for a blocked router. Once the router reads again it gets new messages.
@@ -79,8 +79,8 @@ fn a_router_that_stalls_costs_the_capture_nothing() {
     router.subscribe("a", Topic::Diagnostics, "0/diagnostics");
     let rig = daemon(&place, "");
     connected(&rig, true);
-    let heard = |router: &Peer| router.heard("a", "/diagnostics").len();
-    wait("diagnostics", || (heard(&router) > 0).then_some(()));
+    let received = |router: &Peer| router.received("a", "/diagnostics").len();
+    wait("diagnostics", || (received(&router) > 0).then_some(()));
 
     let id = sweep(rig.address);
     router.signal("-STOP");
@@ -94,11 +94,11 @@ fn a_router_that_stalls_costs_the_capture_nothing() {
     router.signal("-CONT");
 
     connected(&rig, true);
-    let before = heard(&router);
+    let before = received(&router);
     wait("new diagnostics", || {
-        (heard(&router) > before + 2).then_some(())
+        (received(&router) > before + 2).then_some(())
     });
-    let frames = router.heard("a", "/velomotion/live_points").len() as u64;
+    let frames = router.received("a", "/velomotion/live_points").len() as u64;
     assert!(frames <= figure(&rig, "ros2_frames"));
 }
 

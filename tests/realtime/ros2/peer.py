@@ -87,7 +87,7 @@ def transform(message):
     }
 
 
-def said(name, message):
+def content(name, message):
     if name == "sensor_msgs/msg/PointCloud2":
         return cloud(message)
     if name == "sensor_msgs/msg/JointState":
@@ -115,7 +115,7 @@ def said(name, message):
     raise ValueError(name)
 
 
-def heard(who):
+def listener(who):
     def callback(sample):
         try:
             key = str(sample.key_expr)
@@ -131,12 +131,12 @@ def heard(who):
             if topic.endswith("/velomotion/points"):
                 (folder / f"{who}-{attachment['number']}.cdr").write_bytes(payload)
             say(
-                heard=topic,
+                received=topic,
                 who=who,
                 domain=domain,
                 type=name,
                 hash=digest,
-                said=said(name, message),
+                printed=content(name, message),
                 **attachment,
             )
         except Exception as error:  # a callback's own errors go nowhere
@@ -218,14 +218,14 @@ with zenoh.open(config) as session:
     for line in sys.stdin:
         command = json.loads(line)
         if command["do"] == "subscribe":
-            kept.append(session.declare_subscriber(command["key"], heard(command["who"])))
+            kept.append(session.declare_subscriber(command["key"], listener(command["who"])))
         elif command["do"] == "subscribe_latched":
             # What rmw_zenoh makes of a transient local, reliable subscription.
             kept.append(
                 zenoh.ext.declare_advanced_subscriber(
                     session,
                     command["key"],
-                    heard(command["who"]),
+                    listener(command["who"]),
                     history=zenoh.ext.HistoryConfig(detect_late_publishers=True, max_samples=1),
                     recovery=zenoh.ext.RecoveryConfig(heartbeat=True),
                     subscriber_detection=True,

@@ -15,7 +15,7 @@ use crate::rig::{Rig, wait};
 pub struct Peer {
     child: Child,
     mouth: ChildStdin,
-    said: Arc<Mutex<Vec<Value>>>,
+    printed: Arc<Mutex<Vec<Value>>>,
     /// Folder in which it writes clouds.
     pub folder: tempfile::TempDir,
 }
@@ -46,8 +46,8 @@ impl Peer {
             .spawn()
             .unwrap();
         let mouth = child.stdin.take().unwrap();
-        let said = Arc::new(Mutex::new(Vec::new()));
-        let (lines, hearing) = (child.stdout.take().unwrap(), Arc::clone(&said));
+        let printed = Arc::new(Mutex::new(Vec::new()));
+        let (lines, hearing) = (child.stdout.take().unwrap(), Arc::clone(&printed));
         std::thread::spawn(move || {
             for line in BufReader::new(lines).lines().map_while(Result::ok) {
                 let value = serde_json::from_str(&line).unwrap_or_else(|e| panic!("{e}: {line}"));
@@ -57,7 +57,7 @@ impl Peer {
         let peer = Self {
             child,
             mouth,
-            said,
+            printed,
             folder,
         };
         peer.until("the peer", |value| value.get("ready").map(|_| ()));
@@ -66,11 +66,11 @@ impl Peer {
 
     /// All printed values that `pick` accepts. Fails on errors of the peer.
     pub fn all<T>(&self, pick: impl Fn(&Value) -> Option<T>) -> Vec<T> {
-        let said = self.said.lock().unwrap();
-        for value in said.iter() {
+        let printed = self.printed.lock().unwrap();
+        for value in printed.iter() {
             assert!(value.get("error").is_none(), "{value}");
         }
-        said.iter().filter_map(pick).collect()
+        printed.iter().filter_map(pick).collect()
     }
 
     /// Waits for a printed value that `pick` accepts, past ones included.
@@ -84,8 +84,8 @@ impl Peer {
         writeln!(self.mouth, "{command}").unwrap();
         self.mouth.flush().unwrap();
         wait("an answer of the peer", || {
-            let said = self.all(|value| Some(value.clone()));
-            let news = &said[before..];
+            let printed = self.all(|value| Some(value.clone()));
+            let news = &printed[before..];
             let done = news.iter().any(|value| value["done"] == command["do"]);
             done.then(|| news.to_vec())
         })
@@ -105,8 +105,8 @@ impl Peer {
     }
 
     /// Messages of a topic that `who` received.
-    pub fn heard(&self, who: &str, topic: &str) -> Vec<Value> {
-        self.all(|value| (value["heard"] == topic && value["who"] == who).then(|| value.clone()))
+    pub fn received(&self, who: &str, topic: &str) -> Vec<Value> {
+        self.all(|value| (value["received"] == topic && value["who"] == who).then(|| value.clone()))
     }
 
     /// Present liveliness tokens.

@@ -51,29 +51,29 @@ fn points_of(mut socket: WebSocket<TcpStream>) -> u64 {
     }
 }
 
-fn numbers(heard: &[Value]) -> Vec<i64> {
-    heard
+fn numbers(received: &[Value]) -> Vec<i64> {
+    received
         .iter()
         .map(|one| one["number"].as_i64().unwrap())
         .collect()
 }
 
-fn sum_of_points(heard: &[Value]) -> u64 {
-    heard
+fn sum_of_points(received: &[Value]) -> u64 {
+    received
         .iter()
-        .map(|one| one["said"]["points"].as_u64().unwrap())
+        .map(|one| one["printed"]["points"].as_u64().unwrap())
         .sum()
 }
 
-fn stamps(heard: &[Value]) -> Vec<i64> {
-    let stamp = |one: &Value| one["said"]["stamp_ns"].as_i64();
-    heard.iter().map(|one| stamp(one).unwrap()).collect()
+fn stamps(received: &[Value]) -> Vec<i64> {
+    let stamp = |one: &Value| one["printed"]["stamp_ns"].as_i64();
+    received.iter().map(|one| stamp(one).unwrap()).collect()
 }
 
 /// Two subscribers, one at the router and one behind it, and eight WebSockets.
 #[test]
 #[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
-fn a_sweep_is_heard_whole_by_everybody_and_the_capture_loses_nothing() {
+fn every_client_gets_the_whole_sweep_and_the_capture_loses_nothing() {
     let python = python();
     let place = endpoint();
     let mut near = Peer::start(&python, "router", &place);
@@ -86,7 +86,7 @@ fn a_sweep_is_heard_whole_by_everybody_and_the_capture_loses_nothing() {
     connected(&rig, true);
     for peer in [(&near, "near"), (&far, "far")] {
         wait("diagnostics", || {
-            (!peer.0.heard(peer.1, "/diagnostics").is_empty()).then_some(())
+            (!peer.0.received(peer.1, "/diagnostics").is_empty()).then_some(())
         });
     }
     let mut before = (0, 0);
@@ -106,7 +106,8 @@ fn a_sweep_is_heard_whole_by_everybody_and_the_capture_loses_nothing() {
         let live_points = "/left/velomotion/live_points";
         for (peer, who) in [(&near, "near"), (&far, "far")] {
             wait("all live points", || {
-                (sum_of_points(&peer.heard(who, live_points)) >= before.0 + live[0]).then_some(())
+                (sum_of_points(&peer.received(who, live_points)) >= before.0 + live[0])
+                    .then_some(())
             });
         }
         if scan["state"] != "whole" && attempt < 4 {
@@ -122,16 +123,16 @@ fn a_sweep_is_heard_whole_by_everybody_and_the_capture_loses_nothing() {
         assert!(live.iter().all(|points| *points == live[0]), "{live:?}");
         let points = scan["points"].as_u64().unwrap();
         for (peer, who) in [(&near, "near"), (&far, "far")] {
-            let heard = wait("the cloud", || {
-                let heard = peer.heard(who, "/left/velomotion/points");
-                (sum_of_points(&heard) >= before.1 + points).then_some(heard)
+            let received = wait("the cloud", || {
+                let received = peer.received(who, "/left/velomotion/points");
+                (sum_of_points(&received) >= before.1 + points).then_some(received)
             });
-            assert_eq!(sum_of_points(&heard), before.1 + points);
-            assert_eq!(figure(&rig, "ros2_clouds"), heard.len() as u64);
-            let frames = peer.heard(who, live_points);
+            assert_eq!(sum_of_points(&received), before.1 + points);
+            assert_eq!(figure(&rig, "ros2_clouds"), received.len() as u64);
+            let frames = peer.received(who, live_points);
             assert_eq!(sum_of_points(&frames), before.0 + live[0]);
             assert_eq!(figure(&rig, "ros2_frames"), frames.len() as u64);
-            check_clouds(&heard, &frames);
+            check_clouds(&received, &frames);
             check_motion(peer, who);
             check_attachments(peer, who);
         }
@@ -146,18 +147,21 @@ fn a_sweep_is_heard_whole_by_everybody_and_the_capture_loses_nothing() {
 
 fn check_clouds(clouds: &[Value], frames: &[Value]) {
     for cloud in clouds.iter().chain(frames) {
-        let said = &cloud["said"];
-        assert_eq!(said["frame"], "left/tilt_base");
+        let printed = &cloud["printed"];
+        assert_eq!(printed["frame"], "left/tilt_base");
         let fields = json!(["x", "y", "z", "intensity", "ring", "time"]);
-        assert_eq!((&said["fields"], &said["rings"]), (&fields, &json!(16)));
-        let far = said["farthest_m"].as_f64().unwrap();
+        assert_eq!(
+            (&printed["fields"], &printed["rings"]),
+            (&fields, &json!(16))
+        );
+        let far = printed["farthest_m"].as_f64().unwrap();
         // A frame of a few milliseconds may see only the nearest wall.
-        assert!((1.0..120.0).contains(&far), "{said}");
-        assert_eq!(said["first_s"], 0.0, "{said}");
+        assert!((1.0..120.0).contains(&far), "{printed}");
+        assert_eq!(printed["first_s"], 0.0, "{printed}");
     }
     // The sweep of 45 deg at 56.25 deg/s.
     let last = clouds.last().unwrap();
-    let lasts = last["said"]["last_s"].as_f64().unwrap();
+    let lasts = last["printed"]["last_s"].as_f64().unwrap();
     assert!((0.7..1.5).contains(&lasts), "{lasts}");
     assert!(frames.len() > 5 && stamps(frames).is_sorted());
 }
@@ -166,32 +170,32 @@ fn check_clouds(clouds: &[Value], frames: &[Value]) {
 fn check_motion(peer: &Peer, who: &str) {
     // The final angle is sent at standstill.
     let joints = wait("the end of the sweep", || {
-        let joints = peer.heard(who, "/left/joint_states");
-        let angle = joints.last()?["said"]["position"][0].as_f64()?;
+        let joints = peer.received(who, "/left/joint_states");
+        let angle = joints.last()?["printed"]["position"][0].as_f64()?;
         ((angle.to_degrees() + 45.0).abs() < 0.1).then_some(joints)
     });
-    let transforms = peer.heard(who, "/tf");
+    let transforms = peer.received(who, "/tf");
     let by_time: BTreeMap<i64, &Value> = transforms
         .iter()
         .map(|one| {
-            let transform = &one["said"]["transforms"][0];
+            let transform = &one["printed"]["transforms"][0];
             (transform["stamp_ns"].as_i64().unwrap(), transform)
         })
         .collect();
-    assert_eq!(by_time.len(), transforms.len(), "a time was said twice");
+    assert_eq!(by_time.len(), transforms.len(), "a time was printed twice");
     let times = stamps(&joints);
     assert!(times.is_sorted_by(|a, b| a < b), "{times:?}");
     let mut compared = 0;
     let mut lowest: f64 = 0.0;
     for joint in &joints {
-        let said = &joint["said"];
+        let printed = &joint["printed"];
         assert_eq!(
-            (&said["name"], &said["others"]),
+            (&printed["name"], &printed["others"]),
             (&json!(["tilt"]), &json!(0))
         );
-        let angle = said["position"][0].as_f64().unwrap();
+        let angle = printed["position"][0].as_f64().unwrap();
         lowest = lowest.min(angle.to_degrees());
-        let Some(transform) = by_time.get(&said["stamp_ns"].as_i64().unwrap()) else {
+        let Some(transform) = by_time.get(&printed["stamp_ns"].as_i64().unwrap()) else {
             continue;
         };
         compared += 1;
@@ -215,14 +219,14 @@ fn check_attachments(peer: &Peer, who: &str) {
     let tokens = peer.tokens();
     for (_, key) in TOPICS {
         let name = key.strip_prefix('0').unwrap();
-        let heard = peer.heard(who, name);
-        let said = numbers(&heard);
+        let received = peer.received(who, name);
+        let printed = numbers(&received);
         assert!(
-            said.windows(2).all(|w| w[1] == w[0] + 1),
-            "{name}: {said:?}"
+            printed.windows(2).all(|w| w[1] == w[0] + 1),
+            "{name}: {printed:?}"
         );
         if name.contains("points") {
-            assert_eq!(said[0], 1, "{name}");
+            assert_eq!(printed[0], 1, "{name}");
         }
         let mangled = format!("/{}/", name.replace('/', "%"));
         let token = tokens
@@ -235,7 +239,7 @@ fn check_attachments(peer: &Peer, who: &str) {
             .map(|byte| format!("{byte:02x}"))
             .collect();
         let now = io::clock::now().as_nanos();
-        for one in &heard {
+        for one in &received {
             assert_eq!(one["gid"], gid, "{name}");
             let age = now - one["sent_ns"].as_i64().unwrap();
             assert!((0..600_000_000_000).contains(&age), "{name}: {age} ns");
@@ -254,8 +258,8 @@ fn check_bytes(rig: &Rig, id: &str, peer: &Peer) {
         .filter(|message| message.channel.topic == "/velomotion/points")
         .map(|message| message.data.to_vec())
         .collect();
-    let heard = numbers(&peer.heard("near", "/left/velomotion/points"));
-    let last = &heard[heard.len() - recorded.len()..];
+    let received = numbers(&peer.received("near", "/left/velomotion/points"));
+    let last = &received[received.len() - recorded.len()..];
     for (number, recorded) in last.iter().zip(&recorded) {
         let file = peer.folder.path().join(format!("near-{number}.cdr"));
         let sent = std::fs::read(file).unwrap();
@@ -273,8 +277,8 @@ fn check_bytes(rig: &Rig, id: &str, peer: &Peer) {
 
 /// Checks what another implementation of the format reads in the tokens.
 fn check_graph(peer: &mut Peer) {
-    let said = peer.ask(&json!({ "do": "graph", "domain": 0 }));
-    let graph = said.iter().find(|value| value.get("topics").is_some());
+    let printed = peer.ask(&json!({ "do": "graph", "domain": 0 }));
+    let graph = printed.iter().find(|value| value.get("topics").is_some());
     let graph = graph.unwrap();
     let wanted = |kind: &str, quality: (&str, &str, u32)| {
         json!({
@@ -307,8 +311,8 @@ fn check_graph(peer: &mut Peer) {
 }
 
 fn check_diagnostics(rig: &Rig, peer: &Peer) {
-    let heard = peer.heard("near", "/diagnostics");
-    let last = &heard.last().unwrap()["said"]["status"];
+    let received = peer.received("near", "/diagnostics");
+    let last = &received.last().unwrap()["printed"]["status"];
     for part in ["drive", "lidar", "scans", "ros2"] {
         let status = &last[format!("left/velomotion: {part}")];
         assert_eq!(status["level"], 0, "{part}: {status}");

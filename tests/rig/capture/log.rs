@@ -1,4 +1,4 @@
-//! The log that the program would have written of what both devices said.
+//! The log that the program would have written.
 
 use std::path::Path;
 
@@ -19,7 +19,7 @@ pub(super) struct Owned {
     pub(super) frame: Vec<u8>,
 }
 
-/// Stamps the packets from `from` on as by a clock that was set forward by `by`.
+/// Stamps the packets after `from` with a clock that was set forward by `by`.
 pub(super) fn set_lidar(packets: &mut [Arrived], from: Stamp<Host>, by: Span) {
     let data = packets
         .iter_mut()
@@ -32,8 +32,8 @@ pub(super) fn set_lidar(packets: &mut [Arrived], from: Stamp<Host>, by: Span) {
     }
 }
 
-/// Writes both devices' records in the order in which they came; their number. From an instant on
-/// they may be stamped by a clock that was set.
+/// Writes the records of both devices in order of arrival and returns their number. After a given
+/// instant the stamps may be those of a clock that was set.
 pub(super) fn write_log(
     path: &Path,
     config: &ScanConfig,

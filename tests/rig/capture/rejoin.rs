@@ -1,4 +1,4 @@
-//! Another client comes after the one that moved the axis has gone.
+//! A second client connects after the one that moved the axis has gone.
 
 use std::sync::Arc;
 
@@ -14,23 +14,23 @@ use units::Span;
 
 use crate::port::VirtualPort;
 
-/// What the drive did after whoever moved it had gone.
+/// Motion of the drive after its client had gone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rejoined {
-    /// How long it went on moving.
+    /// How long it kept moving.
     pub went_on: Span,
-    /// Whether it stood before the next client came.
+    /// Whether it stopped before the next client connected.
     pub by_itself: bool,
-    /// How long after the next client came it stood, its power stage off.
+    /// Time from the next client's connection until the axis stood with its power stage off.
     pub safe_after: Span,
 }
 
-/// How often a program that was started anew tries to connect before somebody else must look at it.
+/// Connection attempts of a restarted program before it reports failure.
 const TRIES: u32 = 5;
-/// A serial line that is silent for so long has nothing more to say.
+/// Silence after which a serial line has nothing more to deliver.
 const QUIET: Span = Span::from_millis(100);
 
-/// Lets the drive alone for a while, then connects to it as a program does that was started anew.
+/// Leaves the drive alone for a while, then connects as a restarted program does.
 pub(super) fn rejoin(
     port: &VirtualPort,
     (axis, link): (AxisConfig, DriveLink),
@@ -50,7 +50,7 @@ pub(super) fn rejoin(
     let came = quiet.now();
     let mut safe_after = None;
     for _ in 0..TRIES {
-        // Answers on a serial line do not say what they answer: what is late is let pass.
+        // Answers on a serial line carry no address of their request: late ones are drained.
         while link != DriveLink::Can && quiet.read(&mut [0; 512], QUIET).unwrap().is_some() {}
         let line: Box<dyn Port> = match attached {
             Attachment::Slcan => Box::new(BusLine(

@@ -1,4 +1,4 @@
-//! What is captured, over what links, and what goes wrong meanwhile.
+//! Moves, links and faults of a capture.
 
 use engine::capture::moves::SweepRequest;
 use firmware_sim::epos2::Servo;
@@ -10,51 +10,51 @@ use crate::inject::Fault;
 use crate::port::{Arrived, Links};
 use crate::random::Random;
 
-/// What to capture, and over what.
+/// Settings of a capture.
 #[derive(Clone, Copy, Debug)]
 pub struct Setting {
     /// The moves.
     pub wish: SweepRequest,
-    /// The links' delays.
+    /// Delays of the links.
     pub links: Links,
-    /// When it begins.
+    /// Host time of the beginning.
     pub start: Stamp<Host>,
-    /// The lidar's clock then, microseconds past the hour.
+    /// The lidar's clock at the beginning, microseconds past the hour.
     pub lidar_clock_us: u32,
-    /// What goes wrong, and how long after the begin.
+    /// The fault, and the time from the beginning to it.
     pub fault: Option<(Fault, Span)>,
-    /// How long after the begin the host's clock is set, and how far forward.
+    /// Time from the beginning at which the host's clock is set, and by how much.
     pub host_set: Option<(Span, Span)>,
-    /// The same of the lidar's clock.
+    /// The same for the lidar's clock.
     pub lidar_set: Option<(Span, Span)>,
-    /// What the network loses of the lidar's packets.
+    /// Lost packets of the lidar.
     pub packets_lost: Option<PacketLoss>,
-    /// How long after the end the next client connects, over a line that is whole again.
+    /// Time from the end until the next client connects over a repaired line.
     pub rejoined_after: Option<Span>,
-    /// How long after the begin the user presses Ctrl-C.
+    /// Time from the beginning to Ctrl-C.
     pub interrupt_after: Option<Span>,
-    /// How the motor follows its demand; `None`: exactly.
+    /// The servo; `None` follows exactly.
     pub servo: Option<Servo>,
-    /// What the gear adds; `None`: nothing.
+    /// The gear's ripple; `None` has none.
     pub ripple: Option<GearRipple>,
-    /// Least time between two polls; `None`: as the axis has it.
+    /// Least time between two polls; `None` is the axis's own.
     pub poll_period: Option<Span>,
 }
 
-/// Packets that a network loses.
+/// Packets that the network loses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PacketLoss {
-    /// How long after the begin.
+    /// Time from the beginning.
     pub after: Span,
-    /// For how long.
+    /// Duration.
     pub span: Span,
-    /// How many of a thousand.
+    /// Share of packets, per mille.
     pub per_mille: u64,
 }
 
 impl PacketLoss {
-    /// Loses what is to be lost; how many data packets that were, and how many of them between two
-    /// that came.
+    /// Drops the lost packets. Returns the number of dropped data packets, and of those between two
+    /// received ones.
     pub(super) fn lose(
         &self,
         packets: &mut Vec<Arrived>,
@@ -84,7 +84,7 @@ impl PacketLoss {
 }
 
 impl Default for Setting {
-    /// The card's command: 45 degrees at 56.25 deg/s over USB, 2026-11-21 02:05:33 UTC.
+    /// 45 deg at 56.25 deg/s over USB, 2026-11-21 02:05:33 UTC.
     fn default() -> Self {
         Self {
             wish: SweepRequest {
@@ -112,7 +112,7 @@ impl Default for Setting {
 }
 
 impl Setting {
-    /// The card's command over another way to the drive.
+    /// The same capture over another attachment.
     #[must_use]
     pub fn over(attached: Attachment) -> Self {
         Self {

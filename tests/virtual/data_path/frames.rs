@@ -1,5 +1,5 @@
-//! Frames of a tilting scan: all of its points, turn by turn, and organised with the shots that
-//! brought nothing back.
+//! Frames of a tilting scan: all of its points by revolution, and organised clouds with empty
+//! shots.
 
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -35,8 +35,7 @@ fn frames(log: &Path, output: &Path, organised: bool) -> ScanReport {
     replay::frames(&request, &plan).unwrap()
 }
 
-/// The clouds in a folder, in order of their numbers, without what stands before `mark`, and the
-/// header up to it.
+/// The clouds in a folder by number: header up to `mark`, and the data behind it.
 fn clouds(folder: &Path, mark: &str) -> Vec<(String, Vec<u8>)> {
     let mut paths: Vec<_> = std::fs::read_dir(folder)
         .unwrap()
@@ -63,7 +62,7 @@ fn frames_hold_the_whole_cloud_in_its_order() {
     let folder = tempfile::tempdir().unwrap();
     let scan = frames(&captured.log(), &folder.path().join("turn.ply"), false);
     let clouds = clouds(folder.path(), "end_header\n");
-    // 0.81 s at 10 Hz, cut where it falls.
+    // 0.81 s at 10 Hz, cut at any azimuth.
     assert!((9..=10).contains(&clouds.len()), "{}", clouds.len());
     assert_eq!(scan.clouds, Some(clouds.len() as u64));
     let rows: Vec<u8> = clouds.into_iter().flat_map(|(_, rows)| rows).collect();
@@ -72,7 +71,7 @@ fn frames_hold_the_whole_cloud_in_its_order() {
     let mut rounded = 0;
     for (a, b) in cloud.chunks(29).zip(rows.chunks(29)) {
         // x, y, z; intensity, ring, time; tilt. Frames are placed point by point, the cloud in
-        // blocks: a nanometre may round a place to the next of what a float holds.
+        // blocks: a nanometre may round a coordinate to the neighbouring f32.
         assert_eq!(a[12..25], b[12..25], "the frames are not the cloud");
         for at in [0, 4, 8, 25] {
             let bits = |row: &[u8]| u32::from_le_bytes(row[at..at + 4].try_into().unwrap());

@@ -1,4 +1,4 @@
-//! The same scan over every way to the drive.
+//! The same scan over every attachment of the drive.
 
 use sim::Attachment;
 use velomotion_tests::capture::{Captured, Setting};
@@ -37,7 +37,7 @@ fn the_cards_scan_is_true_over_every_way_to_the_drive() {
     }
 }
 
-/// The log of every way gives the same bytes again.
+/// The log of every attachment replays to the same bytes.
 #[test]
 fn replay_is_bit_identical_over_every_way_to_the_drive() {
     for attached in WAYS {

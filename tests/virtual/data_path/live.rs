@@ -1,4 +1,4 @@
-//! The cloud while it is measured: the same records one by one.
+//! The live cloud: the same records one by one.
 
 use cloud::{Fields, Points};
 use engine::reconstruct::source::Source;
@@ -8,7 +8,7 @@ use sim::Attachment;
 use units::Span;
 use velomotion_tests::capture::{Captured, Setting};
 
-/// The newest angle may be this much ahead of the cloud.
+/// Longest lag of the cloud behind the newest angle.
 const MOST_LAG: Span = Span::from_millis(50);
 
 #[test]
@@ -53,7 +53,7 @@ fn the_live_cloud_is_close_behind_and_a_replay_is_at_least_as_good() {
             offline.worst_m * 1e3
         );
         assert!(most < MOST_LAG, "{attached:?}: {most:?}");
-        // Where the link is even, both are as good as the ranges' 2 mm: equal to one in a hundred.
+        // With constant delays both are limited by the range's 2 mm: equal to 1 %.
         assert!(
             offline.rms_m <= live.rms_m * 1.01 && offline.worst_m <= live.worst_m,
             "{attached:?}"

@@ -1,8 +1,8 @@
-//! A drive and a gear as they are: a servo that lags at 15 Hz, and a platform that is off what the
-//! encoder says by 0.003 degrees once a turn of the motor. Polls take 0.8 to 2.5 ms, one in fifty
-//! up to 5 ms more, at 400 Hz; over CAN the positions come with SYNC.
+//! A realistic drive and gear: a servo with 15 Hz of bandwidth, and a platform that differs from
+//! the encoder by 0.003 deg once per revolution of the motor. Polls take 0.8 to 2.5 ms, one in
+//! fifty up to 5 ms more, at 400 Hz; over CAN positions come with SYNC.
 //!
-//! The angles of the points are held against the platform's own at the instants of their firings.
+//! The angles of the points are compared with the platform's at the instants of their firings.
 //! `cargo test -p velomotion-tests --test virtual -- --nocapture real_drive` prints the figures.
 
 use cloud::Points;
@@ -14,7 +14,7 @@ use units::{DegPerS2, Degrees, Span};
 use velomotion_tests::capture::{Captured, Setting};
 use velomotion_tests::port::Links;
 
-/// Half of a poll.
+/// One direction of a poll.
 const HALF: LinkModel = LinkModel {
     min: Span::from_micros(400),
     max: Span::from_micros(1_250),
@@ -44,14 +44,14 @@ fn setting(attached: Attachment, seed: u64) -> Setting {
     setting.links.answer = HALF;
     setting.links.seed = 1_000 * seed + 3;
     setting.poll_period = Some(Span::from_micros(2_500));
-    // Another day: other phases of polls, rotor and control cycle.
+    // Other phases of polls, rotor and control cycle.
     setting.start += Span::from_micros(137_731 * seed as i64);
     setting.lidar_clock_us += 7_919_111 * seed as u32;
     setting.ripple = Some(RIPPLE);
     setting
 }
 
-/// Differences to the platform's own angles, once the delay that suits best is taken away.
+/// Differences to the platform's angles after the best common delay is removed.
 #[derive(Clone, Copy, Debug)]
 struct Off {
     worst_deg: f64,
@@ -59,8 +59,7 @@ struct Off {
     delay_us: f64,
 }
 
-/// One point in so many is compared: some 5000 instants, so that neither polls nor ripple keep in
-/// step with them.
+/// Number of points per compared one: about 5000 instants, not synchronous with polls or ripple.
 const EVERY: usize = 37;
 
 fn off(captured: &Captured, cloud: &Points) -> Off {
@@ -93,8 +92,8 @@ fn off(captured: &Captured, cloud: &Points) -> Off {
 
 const SEEDS: u64 = 4;
 
-/// The bar: worst below 0.011 degrees, and root mean square over days below 0.0028, of which the
-/// ripple alone, which no encoder sees, is 0.0021.
+/// Checks the worst error, below 0.011 deg, and the root mean square over all seeds, below 0.0028
+/// deg. The ripple, which no encoder sees, accounts for 0.0021 deg.
 fn as_true_as_its_gear(day: impl Fn(u64) -> Setting, servo: Servo) {
     let mut sum = 0.0;
     for seed in 0..SEEDS {
@@ -137,7 +136,7 @@ fn a_real_drive_over_can_is_as_true_as_its_gear() {
     }
 }
 
-/// A bus of the machine itself, with SYNC each millisecond.
+/// An on-board bus with SYNC each millisecond.
 #[test]
 fn a_real_drive_over_a_quick_can_is_as_true_as_its_gear() {
     let usual = |day| Setting {

@@ -1,4 +1,4 @@
-//! From the devices' bytes to the cloud, in virtual time, held against what truly happened.
+//! From the devices' bytes to the cloud in virtual time, compared with the truth.
 
 mod frames;
 mod links;
@@ -11,7 +11,7 @@ use engine::devices::drive_session::SessionError;
 use units::{DegPerS, DegPerS2, Host, Span, Stamp};
 use velomotion_tests::capture::{Captured, Setting};
 
-/// The card's scan: 45 degrees at 56.25 deg/s in a hall no surface of which is farther than 20 m.
+/// The scan of the quick start: 45 deg at 56.25 deg/s in a hall whose surfaces are within 20 m.
 #[test]
 fn the_cards_scan_is_true_to_a_few_millimetres() {
     let captured = Captured::new(Setting::default());
@@ -38,13 +38,13 @@ fn the_cards_scan_is_true_to_a_few_millimetres() {
         "{sweep:?}"
     );
     assert!((sweep.cruise_deg_s + 56.25).abs() < 0.1, "{sweep:?}");
-    // 45 / 56.25 s of cruise and a ramp's worth: 0.811 s, seen through polls a millisecond or two
-    // apart.
+    // 45 / 56.25 s of cruise and the time of a ramp: 0.811 s, sampled by polls one or two
+    // milliseconds apart.
     assert!((sweep.duration_s - 0.811).abs() < 0.006, "{sweep:?}");
     assert_eq!(scan.contents.lost_packets, 0);
 }
 
-/// Every other seed is another day on the same link.
+/// Each seed has other phases on the same link.
 #[test]
 fn the_error_does_not_depend_on_the_day() {
     for seed in 2..8 {
@@ -68,8 +68,8 @@ fn the_error_does_not_depend_on_the_day() {
 fn a_scan_across_the_hour_is_whole() {
     let usual = Captured::new(Setting::default());
     let mut setting = Setting::default();
-    // Homing takes some seconds: the hour turns during the sweep for some of these starts, around
-    // it for the others.
+    // Homing takes some seconds: the hour turns during the sweep for some of these starts, and
+    // around it for the others.
     let usual_points = usual.cloud().len() as i64;
     let mut turned_inside = 0;
     for before in [2_000, 3_000, 3_500, 4_000, 4_500, 5_000] {
@@ -133,8 +133,8 @@ fn one_way_sweeps_leave_the_way_back_out() {
     );
 }
 
-/// Wherever Ctrl-C falls, the axis comes to rest, is disabled, and stays where it is; a sweep that
-/// had begun becomes a cloud.
+/// After Ctrl-C at any time the axis comes to rest, is disabled, and stays; a sweep that had begun
+/// becomes a cloud.
 #[test]
 fn an_interrupted_capture_stops_the_axis_and_keeps_what_there_was() {
     let mut clouds = 0;

@@ -14,7 +14,7 @@ use protocol::record::{Record, Wire};
 use scanner::TiltSource;
 use velomotion_tests::capture::{Captured, Setting};
 
-/// The log with every lidar packet once more from each of `others`.
+/// Copies a log and repeats every lidar packet from each of `others`.
 fn with_others(log: &Path, others: &[([u8; 4], u16)], to: &Path) {
     let head = LogConfig {
         metadata: String::new(),

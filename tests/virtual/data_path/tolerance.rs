@@ -1,4 +1,4 @@
-//! An accuracy instead of a method.
+//! A tolerance in place of a method.
 
 use cloud::{Fields, Points};
 use engine::reconstruct::source::Source;
@@ -20,8 +20,8 @@ fn solve(captured: &Captured, tolerance: &str) -> Result<Alignment, ScanError> {
     survey.solve(&config, &TiltSource::Log, Accuracy::Within(tolerance))
 }
 
-/// The range's share of a point's error: half of 2 mm, and the azimuth's 0.01 degrees at the
-/// distance of this room's corners.
+/// The range's part of a point's error: half of 2 mm, and 0.01 deg of azimuth at the room's
+/// corners.
 const RANGES_M: f64 = 2e-3;
 
 #[test]
@@ -41,7 +41,7 @@ fn the_cheapest_method_that_is_good_enough_is_taken_and_is() {
                 .all(|(_, bound)| bound.0 > choice.tolerance.off.0)
         );
         methods.push(method);
-        // What it promises holds.
+        // The promised tolerance holds.
         let mut points = Points::new(Fields::ALL);
         let mut placer = Placer::new(&alignment, lidar::Options::default(), &mut points);
         let mut recording = Recording::open(captured.log()).unwrap();
@@ -74,13 +74,13 @@ fn the_cheapest_method_that_is_good_enough_is_taken_and_is() {
 }
 
 #[test]
-fn where_no_method_is_good_enough_it_is_said_what_would_be() {
+fn without_a_method_that_meets_the_tolerance_a_slower_sweep_is_suggested() {
     let captured = Captured::new(Setting::over(Attachment::Usb));
     let Err(ScanError::UnreachableTolerance(out)) = solve(&captured, "1mm@100m") else {
         panic!("polls of a millisecond and more cannot be that accurate");
     };
     assert!(out.bound.0 > 1e-3 && out.fastest.0 < -55.0, "{out:?}");
-    // Round trips are what is in the way, and a slower sweep would do.
+    // Round trips dominate; a slower sweep meets the tolerance.
     assert!(out.delay_share > 0.5, "{out:?}");
     let slower = out.speed_that_would_do().unwrap().0;
     assert!((0.05..10.0).contains(&slower), "{slower}");

@@ -1,11 +1,11 @@
-//! Light, from a scene file to what a decoder reads: range, reflectivity and incidence.
+//! Light from scene file to decoder: range, reflectivity and incidence.
 
 use scanner::TiltSource;
 
 use super::{Simulated, replayed};
 
-/// What a decoder reads of a VLP-16 that stands in a scene: where from its own middle, metres, and
-/// the reflectivity it reports. And the shots it took.
+/// Simulates a VLP-16 in a scene. Returns each decoded return (position from the sensor, metres,
+/// and reflectivity) and the number of shots.
 fn seen(scene: &str, duration_s: f64) -> (Vec<([f64; 3], u8)>, u64) {
     let text = format!("[motion]\nkind = \"fixed\"\nduration_s = {duration_s}\n{scene}");
     let scene = Simulated::new(&text, |_| {});
@@ -23,7 +23,7 @@ fn length(a: [f64; 3]) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// The normal distribution's probability below `x`: its density added up.
+/// The normal distribution's probability below `x`, by adding up its density.
 fn normal_below(x: f64) -> f64 {
     let steps = 20_000;
     let width = (x + 10.0).max(0.0) / f64::from(steps);
@@ -34,9 +34,9 @@ fn normal_below(x: f64) -> f64 {
     (0..steps).map(|step| width * density(step)).sum()
 }
 
-/// From 1 to 100 m; within, what has light enough: a target of 10 % half the time at 50 m, light
-/// falling with the square of range, noise a fifth of the threshold. What is noticed is reported
-/// with its own reflectivity at any range.
+/// Detection from 1 to 100 m: a target of 10 % is detected half the time at 50 m; light falls with
+/// the square of range, and noise is a fifth of the threshold. Detected returns report their
+/// reflectivity at any range.
 #[test]
 fn targets_of_known_reflectivity_are_seen_as_far_as_the_manual_says_and_reported_as_they_are() {
     for (range_m, reflectivities) in [
@@ -72,19 +72,19 @@ fn targets_of_known_reflectivity_are_seen_as_far_as_the_manual_says_and_reported
             );
             for (point, reported) in points {
                 assert_eq!(reported, reflectivity, "{what}");
-                // The lasers are up to 11 mm off the middle.
+                // The lasers are up to 11 mm from the centre.
                 assert!((length(point) - range_m).abs() < 0.013, "{what}: {point:?}");
             }
         }
     }
 }
 
-/// The normal comes from the caster, and the cosine of incidence shows in what is reported.
+/// The caster gives the normal, and the reported value shows the cosine of incidence.
 #[test]
 fn a_plane_that_is_tilted_reports_less_by_the_cosine_of_incidence() {
     let wall = "[materials]\nwhite = { reflectivity = 90 }\n[[objects]]\nmaterial = \"white\"\nplane = {}\nposition_m = [0, 12, 0]\n\
                 rotation_deg = [60, 0, 30]\n";
-    // About x by 60 degrees, then about z by 30.
+    // About x by 60 deg, then about z by 30 deg.
     let (sin, cos) = (60_f64.to_radians().sin(), 0.5);
     let normal = [0.5 * sin, -30_f64.to_radians().cos() * sin, cos];
     let (points, _) = seen(&format!("{wall}[effects.reflectance]\n"), 0.1);
@@ -100,15 +100,15 @@ fn a_plane_that_is_tilted_reports_less_by_the_cosine_of_incidence() {
         "{} {least}",
         points.len()
     );
-    // Nobody asks how it lies: all of it is as white as the next.
+    // Without incidence every return is equally bright.
     for unasked in ["", "[effects.reflectance]\nincidence = false\n"] {
         let (points, _) = seen(&format!("{wall}{unasked}"), 0.02);
         assert!(!points.is_empty() && points.iter().all(|(_, reported)| *reported == 90));
     }
 }
 
-/// Asphalt from 1.2 m above: `0.14 sin(e)^3 / 1.2^2` comes back at e below level, and 4e-5 is
-/// noticed half the time: at 4.3 degrees.
+/// Asphalt from 1.2 m above: `0.14 sin(e)^3 / 1.2^2` returns at e below level, and 4e-5 is detected
+/// half the time: at 4.3 deg.
 #[test]
 fn ground_that_is_grazed_drops_out() {
     let ground = "[materials]\nasphalt = { reflectivity = 14 }\n[[objects]]\nmaterial = \"asphalt\"\nplane = {}\nposition_m = [0, 0, -1.2]\n";
@@ -129,8 +129,8 @@ fn ground_that_is_grazed_drops_out() {
     assert!(five > 0.98 && three < 0.01, "{five} {three}");
 }
 
-/// A window 25 m ahead: it dazzles where it faces the sensor, and elsewhere is too dark to be
-/// noticed, 1.2 % of a white wall.
+/// A window 25 m ahead: it dazzles where it faces the sensor and is elsewhere too dark to be
+/// detected, 1.2 % of a white wall.
 #[test]
 fn glass_returns_where_it_faces_the_sensor() {
     let window = "[materials]\nglass = { reflectivity = 6, specular = 0.8 }\n[[objects]]\nmaterial = \"glass\"\nplane = {}\n\

@@ -1,4 +1,4 @@
-//! Simulated scenes through their logs: what is read out of them is what truly was there.
+//! Simulated scenes through their logs, compared with the truth.
 
 mod light;
 mod models;
@@ -23,7 +23,7 @@ use velomotion::cli::Common;
 use velomotion::commands::simulate;
 use velomotion::terminal::Progress;
 
-/// A scene that was simulated: its log, and the truth by firing and laser.
+/// A simulated scene: its log, and the truth by firing and laser.
 struct Simulated {
     folder: TempDir,
     report: simulate::Report,
@@ -51,7 +51,7 @@ impl SimulationSink for Truth {
 }
 
 impl Simulated {
-    /// Simulates it twice: into a log, and for the truth alone. `more` adds to the scene.
+    /// Simulates twice: into a log, and for the truth alone. `more` adds to the scene.
     fn new(text: &str, more: impl Fn(&mut SceneFile)) -> Self {
         let read = || {
             let mut scene = simulate::read("test", text, None, None).unwrap();
@@ -102,15 +102,14 @@ impl Simulated {
         self.folder.path().join("scene.pcapng")
     }
 
-    /// The firing whose laser fired at a time of the lidar's hour: its delay is less than a period.
+    /// The firing of a laser at a time of the lidar's hour: its delay is less than a period.
     fn key(&self, device_ns: i64, laser: u8) -> (i64, u8) {
         let since = (device_ns - self.clock_ns).rem_euclid(3_600_000_000_000);
-        // Stamps are cut off to whole microseconds.
+        // Stamps are truncated to microseconds.
         ((since + 1_000) / self.firing_ns, laser)
     }
 
-    /// Every point of a cloud with the truth nearest to it among those of its firing and laser:
-    /// distance and range, metres.
+    /// Distance from every point to the nearest truth of its firing and laser, and range, metres.
     fn errors(&self, cloud: &Points) -> Vec<(f64, f64)> {
         let shots = cloud.device_time().iter().zip(cloud.laser());
         cloud
@@ -133,7 +132,7 @@ impl Simulated {
     }
 }
 
-/// The program's report and the cloud of a log.
+/// The report and the cloud of a log.
 fn replayed(log: &Path, tilt: TiltSource) -> (ScanReport, Points) {
     let mut points = Points::new(Fields::ALL);
     let request = replay::Reconstruction {

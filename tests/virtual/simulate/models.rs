@@ -1,4 +1,4 @@
-//! Every model and return mode: the decoder reads out of the packets what the simulator put in.
+//! Every model and return mode: the decoder reads what the simulator wrote.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use sim::scene_file::EffectLine;
 
 use super::{Simulated, replayed};
 
-/// Millimetres of a unit of distance.
+/// Millimetres per unit of distance.
 const MODELS: [(&str, &str, f64); 5] = [
     ("vlp16", "VLP-16", 2.0),
     ("hi-res", "Puck Hi-Res", 2.0),
@@ -52,8 +52,8 @@ fn scene(model: &str, returns: &str) -> String {
     )
 }
 
-/// Half a unit of range; half a hundredth of a degree of azimuth, or three quarters in the last
-/// packet, whose rate nobody follows up.
+/// Half a unit of range, and half a hundredth of a degree of azimuth, or three quarters in the last
+/// packet, whose rate is extrapolated.
 fn bound_m(range_m: f64, unit_mm: f64) -> f64 {
     let across = range_m * 0.0076_f64.to_radians();
     (0.5e-3 * unit_mm).hypot(across) + 1e-6
@@ -68,7 +68,7 @@ fn every_model_is_read_as_it_was_made() {
             let what = format!("{model} {returns}: {:?}", scan.contents);
             assert!(what.contains(name), "{what}");
             assert_eq!(scan.contents.lost_packets, 0, "{what}");
-            // One return each: a pair of equal ones is told once.
+            // One return each: equal pairs count once.
             assert_eq!(cloud.len() as u64, scene.report.returns, "{what}");
             assert_eq!(scene.report.returned, scene.report.returns, "{what}");
             assert!(cloud.len() > 900, "{what}");

@@ -15,8 +15,7 @@ fn shipped(of: &str) -> &'static str {
     SHIPPED.iter().find(|(name, _)| *name == of).unwrap().1
 }
 
-/// Range in steps of 2 mm and azimuth in hundredths of a degree are all that the ideal scanner
-/// loses.
+/// The ideal scanner loses only range steps of 2 mm and azimuth steps of 0.01 deg.
 #[test]
 fn the_hall_comes_back_as_it_was() {
     let scene = Simulated::new(shipped("hall"), |scene| scene.effects.leave_out(|_| true));
@@ -56,19 +55,18 @@ fn sweeps_both_ways_without_ramps_come_back() {
 
 #[test]
 fn noise_of_ranges_is_as_large_as_asked_for() {
-    // The same room, which asks for no effect.
+    // The same room, whose scene calls for no effect.
     let text = shipped("rig").to_owned() + "\n[effects.range_noise]\nsd_m = 0.03\n";
     let scene = Simulated::new(&text, |_| {});
     assert_eq!(scene.report.effects.len(), 1);
     let (_, cloud) = replayed(&scene.log(), TiltSource::Log);
     let (rms_m, worst_m) = rms_and_worst(&scene.errors(&cloud));
-    // 3 cm and half a percent of it for 2.4e5 draws; none beyond six standard deviations.
+    // 3 cm within half a percent for 2.4e5 draws; none over six standard deviations.
     assert!((rms_m - 0.03).abs() < 2e-4, "{rms_m}");
     assert!((0.11..0.19).contains(&worst_m), "{worst_m}");
 }
 
-/// The hall as it comes and the footprint of the beam: noise of 1 cm, and at edges some points that
-/// lie between two surfaces.
+/// The hall with its beam footprint: noise of 1 cm, and at edges some points between two surfaces.
 #[test]
 fn the_hall_as_a_real_scanner_would_see_it() {
     let text = shipped("hall").to_owned() + "\n[effects.divergence]\n";
@@ -95,9 +93,9 @@ fn the_hall_as_a_real_scanner_would_see_it() {
     );
 }
 
-/// One request or answer in fifty is lost. The host gives it up after 20 ms and asks for a marker,
-/// so nothing after it is taken for something else; were it not to, every later answer could belong
-/// to either of two requests and the sweep would seem to end there.
+/// One request or answer in fifty is lost. The host gives it up after 20 ms and sends a probe
+/// request, so that no later answer is paired with the wrong request. Otherwise every later answer
+/// could belong to either of two requests and the sweep would seem to end.
 #[test]
 fn lost_answers_of_the_drive_cost_samples_and_nothing_else() {
     for seed in [3, 5, 8] {
@@ -122,7 +120,7 @@ fn lost_answers_of_the_drive_cost_samples_and_nothing_else() {
 /// Such a cloud would look right and be wrong.
 #[test]
 fn a_mount_that_a_log_cannot_say_is_warned_of() {
-    for (mount, told) in [
+    for (mount, reported) in [
         ("d_m = 0.1", true),
         ("position_m = [0, 0, 0.2]", true),
         ("position_m = [0.01, 0, 0.2]", false),
@@ -132,6 +130,6 @@ fn a_mount_that_a_log_cannot_say_is_warned_of() {
             "scene = \"hall\"\n[motion]\nkind = \"fixed\"\nduration_s = 0.1\n[mount]\n{mount}\n"
         );
         let scene = Simulated::new(&text, |_| {});
-        assert_eq!(scene.report.warnings.is_empty(), told, "{mount}");
+        assert_eq!(scene.report.warnings.is_empty(), reported, "{mount}");
     }
 }

@@ -63,7 +63,7 @@ fn status(rig: &Rig) -> u16 {
 }
 
 #[test]
-fn who_never_reads_keeps_nobody_out() {
+fn clients_that_never_read_lock_no_others_out() {
     let rig = guarded(Duration::from_secs(600));
     let client = Client::at(rig.folder.path().join(SOCKET));
     wait("the drive", || {

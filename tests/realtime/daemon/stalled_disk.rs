@@ -18,7 +18,7 @@ impl Drop for Stalled {
 }
 
 #[test]
-fn a_disk_that_stalls_keeps_nobody_from_stopping_the_axis() {
+fn a_stalled_disk_does_not_delay_a_stop() {
     let stalls = Arc::new(AtomicBool::new(false));
     let waiting = Arc::new(AtomicBool::new(false));
     let (disk, waits) = (Arc::clone(&stalls), Arc::clone(&waiting));

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde_json::json;
 
-use super::rig::{Rig, kept_waiting, post, request, wait};
+use super::rig::{Rig, machine_was_busy, post, request, wait};
 
 /// A list is not an object: its numbers in order must not begin a sweep.
 #[test]
@@ -75,7 +75,7 @@ fn looking_at_the_axis_has_no_move_refused() {
         .collect();
     for to in [-1.0, 0.0].repeat(6) {
         let moved = rig.post("/api/v1/tilt/goto", &json!({ "to_deg": to }));
-        let late = kept_waiting(&moved.text());
+        let late = machine_was_busy(&moved.text());
         assert!(moved.status == 200 || late, "{}", moved.text());
     }
     over.store(true, Ordering::Relaxed);

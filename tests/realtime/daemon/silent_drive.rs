@@ -81,7 +81,7 @@ impl Drop for Cable {
 }
 
 #[test]
-fn an_axis_that_could_not_be_stopped_is_said_to_move_until_it_is_brought_to_rest() {
+fn an_unstopped_axis_is_reported_as_moving_until_it_rests() {
     let table = tempfile::tempdir().unwrap();
     let link = table.path().join("epos");
     let axis = engine::config::Config::default().axis;
@@ -102,14 +102,14 @@ fn an_axis_that_could_not_be_stopped_is_said_to_move_until_it_is_brought_to_rest
     wait("a move", || (cable.seen().1 != home).then_some(()));
     cable.cut.store(true, Ordering::Release);
     let refused = goto.join().unwrap();
-    let said = refused.json();
-    assert!(refused.status >= 400, "{said}");
+    let printed = refused.json();
+    assert!(refused.status >= 400, "{printed}");
     assert!(
-        said["error"]
+        printed["error"]
             .as_str()
             .unwrap()
             .contains("stopping the axis failed"),
-        "{said}"
+        "{printed}"
     );
     // The axis moves on, and the status reports it after every retry.
     let (state, was) = cable.seen();
@@ -120,7 +120,7 @@ fn an_axis_that_could_not_be_stopped_is_said_to_move_until_it_is_brought_to_rest
     wait("its end", || (!connecting()).then_some(()));
     let problem = rig.status()["drive"].clone();
     assert_eq!(problem["state"], "fault", "{problem}");
-    assert_eq!(problem["problem"]["error"], said["error"], "{problem}");
+    assert_eq!(problem["problem"]["error"], printed["error"], "{problem}");
     assert!(
         problem["problem"]["help"]
             .as_str()

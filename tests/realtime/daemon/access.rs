@@ -2,7 +2,7 @@
 
 use std::net::SocketAddr;
 
-use super::rig::{Answer, Rig, request, run, said};
+use super::rig::{Answer, Rig, printed, request, run};
 
 const TOKEN: &str = "0123456789abcdef-secret";
 
@@ -66,8 +66,11 @@ fn a_proxy_with_tls_is_let_in_where_it_is_named() {
         "https://scanner.example.evil.example",
     ] {
         let refused = from(other);
-        let said = refused.refused(403, other).json();
-        assert!(said["help"].as_str().unwrap().contains("origins"), "{said}");
+        let printed = refused.refused(403, other).json();
+        assert!(
+            printed["help"].as_str().unwrap().contains("origins"),
+            "{printed}"
+        );
     }
     // A host name does not replace the token.
     let bare = "host: scanner.example\r\norigin: https://scanner.example\r\n";
@@ -75,7 +78,7 @@ fn a_proxy_with_tls_is_let_in_where_it_is_named() {
 }
 
 #[test]
-fn a_token_is_asked_of_everybody() {
+fn every_request_needs_the_token() {
     let rig = Rig::with(&format!("token = '{TOKEN}'"), |_| {});
     let with = |given: &str| status(rig.address, &format!("authorization: {given}\r\n"));
     assert_eq!(with(&format!("Bearer {TOKEN}")).status, 200);
@@ -141,15 +144,15 @@ fn a_browser_signs_in_once() {
 }
 
 #[test]
-fn nobody_else_is_let_in_without_a_token() {
+fn requests_without_a_token_are_refused() {
     let folder = super::rig::place();
     for address in ["0.0.0.0:0", "[::]:0"] {
         let output = run(folder.path(), &format!("daemon --listen {address}"));
         assert_eq!(output.status.code(), Some(2));
-        let said = said(&output);
+        let printed = printed(&output);
         assert!(
-            said.contains("without a token") && said.contains("help:"),
-            "{said}"
+            printed.contains("without a token") && printed.contains("help:"),
+            "{printed}"
         );
     }
     assert!(!folder.path().join("velomotion").exists());

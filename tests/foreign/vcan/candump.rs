@@ -1,4 +1,4 @@
-//! `candump` of can-utils on the bus: what somebody else's program hears there.
+//! `candump` of can-utils on the bus.
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -11,17 +11,17 @@ use units::Span;
 
 use crate::{BUS, bus};
 
-/// Between two looks at the file.
+/// Interval between reads of the file.
 const LOOK: Span = Span::from_millis(10);
-/// Bytes of its socket's queue: it, too, loses what does not fit.
+/// Bytes of its socket's queue; `candump` loses frames that do not fit.
 const RECEIVE_BUFFER: &str = "4194304";
 
-/// Frames that nobody answers to, by which is seen how far `candump` is: at its beginning, and at
-/// its end.
+/// Frames without an answer. They mark in the file how far `candump` has come: at its beginning and
+/// at its end.
 const BEGIN: u8 = b'?';
 const END: u8 = b'!';
 
-/// Whether this is one of them.
+/// Whether the frame is such a mark.
 pub fn is_probe(frame: &CanFrame) -> bool {
     [BEGIN, END].map(probe).contains(frame)
 }
@@ -31,44 +31,44 @@ fn probe(mark: u8) -> CanFrame {
 }
 
 /// A `candump` that writes a file.
-pub struct Onlooker {
+pub struct Candump {
     process: Child,
     file: PathBuf,
     bus: SocketCan,
 }
 
-impl Onlooker {
-    /// Starts it and waits until it receives frames of the bus.
+impl Candump {
+    /// Starts it and waits until it receives frames.
     pub fn start(file: &Path) -> Self {
         let process = Command::new("candump")
             .args(["-L", "-r", RECEIVE_BUFFER, BUS])
             .stdout(File::create(file).unwrap())
             .spawn()
             .unwrap();
-        let mut onlooker = Self {
+        let mut candump = Self {
             process,
             file: file.to_owned(),
             bus: SocketCan::open(BUS).unwrap(),
         };
-        onlooker.send_until_heard(BEGIN);
-        onlooker
+        candump.send_until_received(BEGIN);
+        candump
     }
 
-    /// Ends it when it has written all that was on the bus so far.
+    /// Ends it once it has written all frames sent so far.
     pub fn finish(mut self) {
-        self.send_until_heard(END);
+        self.send_until_received(END);
         self.process.kill().unwrap();
         self.process.wait().unwrap();
     }
 
-    /// Sends a probe again and again, until it is in the file and with it all that came before it.
-    fn send_until_heard(&mut self, mark: u8) {
+    /// Sends a mark repeatedly until the file holds it, and with it all earlier frames.
+    fn send_until_received(&mut self, mark: u8) {
         let line = format!("{:X}#{mark:02X}\n", CobId::MAX.get());
-        let end = clock::now() + bus::PATIENCE;
+        let end = clock::now() + bus::TIME_LIMIT;
         while !fs::read_to_string(&self.file).unwrap().contains(&line) {
             assert!(clock::now() < end, "candump hears nothing");
             self.bus.write_frame(&probe(mark)).unwrap();
-            // What others say is of no interest here: the read is a pause that the bus may shorten.
+            // Received frames do not matter here: the read is a pause that traffic may shorten.
             self.bus.read(LOOK).unwrap();
         }
     }

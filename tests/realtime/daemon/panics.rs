@@ -39,7 +39,7 @@ fn a_panic_while_the_axis_moves_stops_it_and_the_daemon_goes_on() {
         defect.store(false, Ordering::Release);
         attempt += 1;
         assert!(
-            attempt < 4 && super::rig::kept_waiting(&scan["why"].to_string()),
+            attempt < 4 && super::rig::machine_was_busy(&scan["why"].to_string()),
             "{scan}"
         );
     };
