@@ -1,4 +1,4 @@
-"""The benchmark's measurements as Markdown tables, and what is measured: a section, who, what it is told, what that is."""
+"""Markdown tables of the benchmark, and the list of measurements."""
 
 import statistics
 
@@ -6,31 +6,31 @@ import statistics
 POINT_BYTES = 42
 OURS, DECODER, LIDAR = "velomotion", "velodyne-decoder", "velodyne-lidar"
 
-# Section, who, what it is told to do, what that is.
+# Section, program, name of the work, description.
 WORK = [
-    ("memory", DECODER, "handed on, floats", "a turn at a time, rows of f32"),
-    ("memory", DECODER, "handed on, structs", "a turn at a time, structs"),
-    ("memory", DECODER, "kept, structs", "a turn at a time, structs, all kept"),
-    ("memory", LIDAR, "handed on", "a turn at a time"),
-    ("memory", LIDAR, "kept", "a turn at a time, all kept"),
-    ("memory", OURS, "blocks", "blocks alone, no points"),
+    ("memory", DECODER, "handed on, floats", "one revolution at a time, rows of f32"),
+    ("memory", DECODER, "handed on, structs", "one revolution at a time, structs"),
+    ("memory", DECODER, "kept, structs", "one revolution at a time, structs, all kept"),
+    ("memory", LIDAR, "handed on", "one revolution at a time"),
+    ("memory", LIDAR, "kept", "one revolution at a time, all kept"),
+    ("memory", OURS, "blocks", "firing blocks only, no points"),
     ("memory", OURS, "sensor, handed on", "sensor frame, in batches"),
     ("memory", OURS, "tilted, handed on", "**tilted, in batches**"),
-    ("memory", OURS, "tilted, one cloud", "tilted, all in one cloud, memory used before"),
-    ("memory", OURS, "tilted, one new cloud", "tilted, all in one cloud, new memory"),
+    ("memory", OURS, "tilted, one cloud", "tilted, one cloud, memory in use before"),
+    ("memory", OURS, "tilted, one new cloud", "tilted, one cloud, new memory"),
     ("file", DECODER, "file, floats", "read_pcap, rows of f32"),
     ("file", DECODER, "file, structs", "read_pcap, structs"),
     ("file", LIDAR, "file", "frame_xyz_iter_from_file"),
     ("file", OURS, "file, sensor", "both passes, sensor frame"),
     ("file", OURS, "file, tilted", "**both passes, tilted**"),
-    ("limits", OURS, "write, batch", "columns written, a batch over and over"),
+    ("limits", OURS, "write, batch", "columns written, the same batch repeatedly"),
     ("limits", OURS, "write, cloud", "columns written, one cloud"),
     ("limits", OURS, "copy, cloud", "columns copied, batch to cloud"),
     ("limits", OURS, "write, big cloud", "columns written, 512 MiB"),
     ("limits", OURS, "copy, big cloud", "columns copied, 512 MiB"),
     ("limits", OURS, "tilted, big cloud", "**wire bytes to tilted points**, 512 MiB"),
 ]
-# Each of ours that is held against what memory allows, and that limit.
+# Work of velomotion and the memory limit that it is compared with.
 SHARES = [
     ("tilted, handed on", "write, batch"),
     ("tilted, one cloud", "write, cloud"),
@@ -79,7 +79,7 @@ def tables(result):
     for section, title in [("memory", "Packets in memory to points in memory"), ("file", "File to points in memory")]:
         best = best_peer(result, section)
         yield f"### {title}\n"
-        yield "| | | points | million points/s | ns a point | against the best peer |\n|---|---|---:|---:|---:|---:|"
+        yield "| | | points | million points/s | ns per point | relative to the best peer |\n|---|---|---:|---:|---:|---:|"
         for of, who, name, what in WORK:
             entry = result["work"].get(f"{of}/{who}/{name}")
             if of != section or entry is None:
@@ -94,8 +94,8 @@ def tables(result):
 
 
 def limits(result):
-    yield "### What memory allows\n"
-    yield f"| {POINT_BYTES} bytes a point | million points/s | GB/s |\n|---|---:|---:|"
+    yield "### Memory bandwidth\n"
+    yield f"| {POINT_BYTES} bytes per point | million points/s | GB/s |\n|---|---:|---:|"
     for section, who, name, what in WORK:
         if section == "limits":
             each = rates(result["work"][f"{section}/{who}/{name}"])
@@ -120,7 +120,7 @@ def times(theirs, ours):
 def ply(result):
     theirs = read_pcap(result)
     yield f"### File to PLY file, {result['ply_bytes'] / 1e6:.1f} MB\n"
-    yield "| | ms | times as fast | CPU ms | times as fast |\n|---|---:|---:|---:|---:|"
+    yield "| | ms | speed | CPU ms | speed |\n|---|---:|---:|---:|---:|"
     ms = lambda seconds: spread([1e3 * s for s in seconds])
     yield f"| {DECODER}: read_pcap alone, nothing written | {ms(theirs['wall_s'])} | 1 | {ms(theirs['seconds'])} | 1 |"
     of = {"disk": "on disk, synced", "memory": "in memory (tmpfs)"}
@@ -129,19 +129,19 @@ def ply(result):
         wall, cpu = times(theirs["wall_s"], each[0]), times(theirs["seconds"], each[1])
         yield f"| **{OURS} replay --tilt**, the whole program, {of[place]} | {ms(each[0])} | {wall} | {ms(each[1])} | {cpu} |"
         alone = entry["bytes_alone_s"]
-        yield f"| as many bytes written and nothing else, {of[place]} | {ms(alone)} | {times(theirs['wall_s'], alone)} | | |"
+        yield f"| plain write of as many bytes, {of[place]} | {ms(alone)} | {times(theirs['wall_s'], alone)} | | |"
     entry = result["ply"]["disk"]
     alone = entry["not_synced_s"]
-    yield f"| as many bytes written and nothing else, on disk, not synced | {ms(alone)} | {times(theirs['wall_s'], alone)} | | |"
-    yield f"| the program's start and end alone (--version) | {ms(entry['start_s'])} | | | |"
+    yield f"| plain write of as many bytes, on disk, not synced | {ms(alone)} | {times(theirs['wall_s'], alone)} | | |"
+    yield f"| start and end of the program only (--version) | {ms(entry['start_s'])} | | | |"
     yield ""
 
 
 def equality(result):
     same = result["equality"]
-    yield f"### The same points as {DECODER}?\n"
+    yield f"### Points compared with {DECODER}\n"
     if same["theirs"] != same["ours"]:
-        yield f"No: {same['theirs']} points there, {same['ours']} here.\n"
+        yield f"Different numbers: {same['theirs']} points of {DECODER}, {same['ours']} of {OURS}.\n"
         return
     agree = all(same[f"same_{what}"] for what in ("rings", "packets", "intensities"))
     yield (
@@ -149,7 +149,7 @@ def equality(result):
         f"Farther than 1 mm apart: {same['over_1_mm']}, at most {same['max_mm']:.2f} mm "
         f"(the farthest point is {same['farthest_m']:.1f} m away).\n"
     )
-    yield "| | points | over 1 mm | at most, mm | azimuths apart, deg | theirs from their rule, deg | ours turned onto their azimuth, mm | and lasers at one height, mm |\n|---|---:|---:|---:|---:|---:|---:|---:|"
+    yield "| | points | over 1 mm | at most, mm | azimuth difference, deg | theirs from their rule, deg | after azimuth correction, mm | after height correction, mm |\n|---|---:|---:|---:|---:|---:|---:|---:|"
     for name, kind in same["kinds"].items():
         if kind["points"]:
             yield (
@@ -161,24 +161,24 @@ def equality(result):
 
 def bars(results):
     largest = max(results, key=lambda result: result["info"]["points"])
-    yield "## Bars\n"
-    yield "| | bar | " + " | ".join(result["recording"] for result in results) + " |"
+    yield "## Targets\n"
+    yield "| | target | " + " | ".join(result["recording"] for result in results) + " |"
     yield "|---|---:|" + "---:|" * len(results)
     row = lambda what, bar, each: f"| {what} | {bar} | " + " | ".join(each(result) for result in results) + " |"
     tilted = lambda result: rate(result, "tilted, handed on")
     yield row("wire bytes to tilted points, million/s", "150", lambda r: f"{tilted(r):.0f}")
     channels = lambda r: tilted(r) * r["info"]["channels"] / r["info"]["points"]
     yield row("the same, channels", "", lambda r: f"{channels(r):.0f}")
-    yield row("against the best peer", "3", lambda r: f"{tilted(r) / best_peer(r, 'memory'):.2f}")
+    yield row("relative to the best peer", "3", lambda r: f"{tilted(r) / best_peer(r, 'memory'):.2f}")
     in_file = lambda r: rate(r, "file, tilted") / best_peer(r, "file")
-    yield row("file to points, against the best peer", "", lambda r: f"{in_file(r):.1f}")
+    yield row("file to points, relative to the best peer", "", lambda r: f"{in_file(r):.1f}")
     for place in largest["ply"]:
         name = {"disk": "on disk, synced", "memory": "in memory (tmpfs)"}[place]
         wall = lambda r: times(read_pcap(r)["wall_s"], r["ply"][place]["seconds"])
-        yield row(f"PLY {name}: times as fast as read_pcap", "10", wall)
+        yield row(f"PLY {name}: speed relative to read_pcap", "10", wall)
         cpu = lambda r: times(read_pcap(r)["seconds"], r["ply"][place]["cpu_s"])
         yield row("the same, CPU time", "", cpu)
     apart = lambda r, key: f"{r['equality'][key]:.2f}" if key in r["equality"] else "-"
-    yield row("apart from velodyne-decoder at most, mm", "1", lambda r: apart(r, "max_mm"))
-    yield row("the same, azimuths aside, mm", "1", lambda r: apart(r, "max_turned_mm"))
+    yield row("largest difference to velodyne-decoder, mm", "1", lambda r: apart(r, "max_mm"))
+    yield row("the same without azimuth differences, mm", "1", lambda r: apart(r, "max_turned_mm"))
     yield ""

@@ -1,7 +1,7 @@
 """velodyne-decoder's side of the benchmark: velodyne_decoder_worker.py FOLDER RECORDING MODEL
 
-Does what it is told, a name a line of stdin, and answers with seconds on the core and by the clock, passes and points. "equality" compares its points with ours
-(points.bin) and answers with what it found. RECORDING is one that the package agrees to read as MODEL.
+Reads a name of a measurement per line of stdin, and answers with CPU seconds, seconds, passes and points. "equality" compares its points with velomotion's
+(points.bin). The package must accept RECORDING as MODEL.
 """
 
 import json
@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import velodyne_decoder as vd
 
-LEAST_S = 0.1  # as on the other sides
+LEAST_S = 0.1  # as in the other workers
 RECORD = 8 + vd.PACKET_SIZE
 
 folder, recording, model_name = Path(sys.argv[1]), sys.argv[2], sys.argv[3]
@@ -22,7 +22,7 @@ MODELS = {
     "HDL-32E": vd.Model.HDL32E,
     "VLP-32C": vd.Model.VLP32C,
 }
-# Nothing is to be left out by range: neither do we.
+# No points are omitted by range, as in velomotion.
 config = vd.Config(model=MODELS[model_name], min_range=0.0, max_range=1000.0)
 product = {"VLP-16": 0x22, "Puck Hi-Res": 0x24, "HDL-32E": 0x21, "VLP-32C": 0x28}[model_name]
 
@@ -34,13 +34,13 @@ def packets():
     raw = (folder / "packets.bin").read_bytes()
     for at in range(0, len(raw), RECORD):
         nanoseconds = int.from_bytes(raw[at : at + 8], "little", signed=True)
-        # It refuses packets whose factory byte is of another model than it was told.
+        # The package refuses packets with the factory byte of another model.
         payload = raw[at + 8 : at + RECORD - 1] + bytes([product])
         yield vd.VelodynePacket(nanoseconds * 1e-9, payload), payload
 
 
-def turns():
-    """The packets of a turn of the head together, as its own stream decoder cuts them, but in memory and converted beforehand."""
+def revolutions():
+    """The packets of each revolution, cut as its own stream decoder does, but converted beforehand."""
     scans, scan, turned, last = [], [], 0, None
     for packet, payload in packets():
         azimuth = int.from_bytes(payload[2:4], "little")
@@ -54,18 +54,18 @@ def turns():
     return scans + [vd.PacketVector(scan)]
 
 
-SCANS = turns()
+SCANS = revolutions()
 DECODER = vd.ScanDecoder(config)
 
 
-def per_turn(structs):
+def per_revolution(structs):
     points = 0
     for scan in SCANS:
         points += len(DECODER.decode(scan, structs)[1])
     return points
 
 
-def per_turn_kept(structs):
+def per_revolution_kept(structs):
     return sum(map(len, [DECODER.decode(scan, structs)[1] for scan in SCANS]))
 
 
@@ -77,9 +77,9 @@ def from_file(structs):
 
 
 WORK = {
-    "handed on, floats": lambda: per_turn(False),
-    "handed on, structs": lambda: per_turn(True),
-    "kept, structs": lambda: per_turn_kept(True),
+    "handed on, floats": lambda: per_revolution(False),
+    "handed on, structs": lambda: per_revolution(True),
+    "kept, structs": lambda: per_revolution_kept(True),
     "file, floats": lambda: from_file(False),
     "file, structs": lambda: from_file(True),
 }
@@ -97,14 +97,14 @@ TIMING = {
 
 
 def theirs_by_packet():
-    """Points of every packet apart, so that a point is known by packet, firing, ring and distance. That it is what read_pcap gives
-    is checked."""
+    """The points of each packet, so that packet, firing, ring and distance identify a point. The result is compared with
+    read_pcap."""
     clouds, numbers, blocks = [], [], []
     for number, (packet, payload) in enumerate(packets()):
         cloud = DECODER.decode(vd.PacketVector([packet]), True)[1]
         clouds.append(cloud)
         numbers.append(np.full(len(cloud), number))
-        # The two blocks of a dual pair have one azimuth.
+        # Both blocks of a dual pair have the same azimuth.
         azimuths = [payload[at + 2 : at + 4] for at in range(0, 1200, 200 if DUAL else 100)]
         blocks.append([int.from_bytes(azimuth, "little") for azimuth in azimuths])
     cloud = np.concatenate(clouds)
@@ -121,7 +121,7 @@ def equality():
     if len(theirs) != len(ours):
         return result
     firings = INFO["firings"] // INFO["packets"]
-    # Of a dual pair the two returns stand in another order here and there.
+    # The order of the two returns of a dual pair differs.
     them = np.stack([-theirs["y"], theirs["x"], theirs["z"]], axis=1).astype(float)
     reach = np.linalg.norm(them, axis=1), np.linalg.norm(ours["xyz"], axis=1)
     order = np.lexsort((reach[0], theirs["ring"], theirs["column"], packet))
@@ -131,14 +131,14 @@ def equality():
     result["same_rings"] = bool(np.array_equal(theirs["ring"], ours["ring"]))
     result["same_packets"] = bool(np.array_equal(packet, ours["firing"] // firings))
     result["same_intensities"] = bool(np.array_equal(theirs["intensity"].astype("u1"), ours["intensity"]))
-    # Nearly all that differs is a turn about the vertical axis: the azimuth. Ours are turned onto theirs, and compared again.
+    # Most of the difference is azimuth. Rotate velomotion's points to the other azimuths and compare again.
     angle = np.arctan2(them[:, 0], them[:, 1]) - np.arctan2(us[:, 0], us[:, 1])
     angle = (angle + np.pi) % (2 * np.pi) - np.pi
     sin, cos = np.sin(angle), np.cos(angle)
     turned = np.stack([us[:, 0] * cos + us[:, 1] * sin, us[:, 1] * cos - us[:, 0] * sin, us[:, 2]], axis=1)
     raw_mm = np.abs(them - us).max(axis=1) * 1e3
     turned_mm = np.abs(them - turned).max(axis=1) * 1e3
-    # What is left may be a height of its own for every laser: where its ray starts.
+    # The rest may be the height at which each laser's ray starts.
     up = them[:, 2] - turned[:, 2]
     rings = ours["ring"].astype(int)
     heights = np.array([np.median(up[rings == ring]) if (rings == ring).any() else 0.0 for ring in range(32)])
@@ -146,10 +146,10 @@ def equality():
     explained_mm = np.abs(them - turned).max(axis=1) * 1e3
     degrees = np.abs(np.degrees(angle))
     steps = np.diff(blocks, axis=1) % 36000
-    # A step many times the usual one: the field of view is limited and the packet lies on both sides of the gap.
+    # A much larger step: the field of view is limited and the packet spans the gap.
     straddling = (steps.max(axis=1) > 10 * np.maximum(1, np.median(steps, axis=1)))[packet]
-    # Its azimuths: the block's own, carried on at the mean pace of the packet, in whole hundredths of a degree. We carry on at the pace
-    # to the next block, of the next packet where there is one.
+    # Its azimuths extrapolate the block's at the mean rate of the packet, rounded to 0.01 deg. velomotion interpolates to the next block,
+    # also to that of the next packet.
     many, firing_us, laser_us, at_once = TIMING[model_name]
     in_packet = ours["firing"] % firings
     after = (in_packet % many * firing_us + ours["laser"] // at_once * laser_us) / (many * firing_us)
