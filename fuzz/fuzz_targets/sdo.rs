@@ -1,4 +1,4 @@
-//! Runs `properties::sdo` on whatever libFuzzer thinks of.
+//! Runs `properties::sdo` on libFuzzer's inputs.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|data: &[u8]| properties::sdo::holds(data));

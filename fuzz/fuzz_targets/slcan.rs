@@ -1,4 +1,4 @@
-//! Runs `properties::slcan` on whatever libFuzzer thinks of.
+//! Runs `properties::slcan` on libFuzzer's inputs.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|data: &[u8]| properties::slcan::holds(data));

@@ -1,4 +1,4 @@
-//! Runs `properties::vlp16_data` on whatever libFuzzer thinks of.
+//! Runs `properties::vlp16_data` on libFuzzer's inputs.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|data: &[u8]| {

@@ -1,16 +1,16 @@
-//! CAN frames from an input: mostly those that the simulated unit listens to.
+//! CAN frames from an input, mostly with identifiers of the simulated unit.
 
 use protocol::canopen::{CanFrame, CanId, CobId, ExtendedId};
 
 use super::input::Input;
 
-/// Identifiers that mean something to node 1.
+/// Identifiers with a meaning for node 1.
 const KNOWN: [u16; 16] = [
     0x000, 0x080, 0x081, 0x100, 0x181, 0x201, 0x281, 0x301, 0x381, 0x401, 0x481, 0x501, 0x581,
     0x601, 0x701, 0x77F,
 ];
 
-/// A frame of the next bytes: what identifier, data or remote, how long, the data.
+/// Builds a frame from the next bytes: identifier, data or remote, length, data.
 pub fn frame(input: &mut Input<'_>) -> CanFrame {
     let head = input.u8();
     let id = match head >> 6 {

@@ -1,12 +1,11 @@
-//! The drive's client on a bad link: a script says what is started, how far time goes, and what is
+//! The drive's client on a bad link. A script selects commands, time steps, and bytes that are
 //! delivered, late, lost or forged.
 //!
-//! Behind the link is the simulated unit. A sample must have been carried by the bytes that
-//! completed it, whatever those were; and as long as nothing was forged, it must be where the shaft
-//! was at a time between its stamps, even though requests and answers are lost and late. So that
-//! one look cannot be taken for another, each may see a position of its own ([`Marks`]). A listener
-//! that looks on must not say otherwise. Left out: bytes that a line flips by itself, as a script
-//! finds the one flip in 65536 that a checksum misses.
+//! The other end of the link is the simulated unit. Each sample must be contained in the bytes that
+//! completed it. Without forgery it must be the shaft's position at a time between its stamps, even
+//! if requests and answers are lost or late. Each position read may return a unique value
+//! ([`Marks`]), so that answers cannot be confused. A listener must agree with the client. Random
+//! bit flips are excluded: a script finds the one flip in 65536 that a checksum misses.
 
 use std::collections::VecDeque;
 
@@ -25,21 +24,21 @@ use units::{Degrees, Host, Rpm, RpmPerS, Span, Stamp};
 use super::drive_marks::Marks;
 use super::input::Input;
 
-/// Where a script's time begins.
+/// Start time of a script.
 const START: Stamp<Host> = Stamp::from_nanos(1_795_000_000_000_000_000);
-/// A script ends after so many control cycles, whatever it still says.
-const MOST_TICKS: u64 = 3_000;
-/// And after so many turns of its owner's loop.
-const MOST_TURNS: u32 = 4_000;
+/// Maximum control cycles of a script.
+const MAX_TICKS: u64 = 3_000;
+/// Maximum iterations of the client's loop.
+const MAX_ITERATIONS: u32 = 4_000;
 
-/// Runs a script; how many samples the client gave.
+/// Runs a script; returns the number of the client's samples.
 pub fn holds(input: &mut Input<'_>) -> usize {
     let head = input.u8();
     let link = [DriveLink::Usb, DriveLink::Rs232, DriveLink::Can][usize::from(head & 0x7F) % 3];
     let mut world = World::new(link, head & 0x80 != 0);
-    while !input.is_empty() && world.ticks < MOST_TICKS && world.turns < MOST_TURNS {
+    while !input.is_empty() && world.ticks < MAX_TICKS && world.turns < MAX_ITERATIONS {
         world.act(input);
-        world.look();
+        world.compare();
     }
     world.samples
 }
@@ -51,8 +50,8 @@ enum Server {
     Can(Box<CanServer>),
 }
 
-/// Bytes under way, and since when.
-type Way = VecDeque<(Stamp<Host>, Vec<u8>)>;
+/// Bytes in transit, with the time of sending.
+type Transit = VecDeque<(Stamp<Host>, Vec<u8>)>;
 
 struct World {
     link: DriveLink,
@@ -63,22 +62,22 @@ struct World {
     now: Stamp<Host>,
     ticks: u64,
     turns: u32,
-    to_node: Way,
-    to_host: Way,
-    /// When the client handed something out.
+    to_node: Transit,
+    to_host: Transit,
+    /// When the client sent bytes.
     handed_out: Vec<Stamp<Host>>,
-    /// When the unit took something, and where the shaft was.
+    /// When the unit received bytes, with the shaft's position.
     truth: Vec<(Stamp<Host>, i32)>,
-    /// Each look at the shaft gives another position.
+    /// Gives each position read a unique value.
     marks: Option<Marks>,
-    /// Nothing but what the unit said was delivered.
-    honest: bool,
+    /// Only bytes of the unit were delivered.
+    unforged: bool,
     /// The last bytes delivered.
-    heard: Vec<u8>,
+    received: Vec<u8>,
     decoder: UsbDecoder,
-    /// Values of the answers among them (USB).
+    /// Position values of the answers among them (USB).
     values: Vec<i32>,
-    /// What the listener made of them.
+    /// The listener's samples.
     observed: Vec<ShaftSample>,
     samples: usize,
 }
@@ -86,7 +85,7 @@ struct World {
 impl World {
     fn new(link: DriveLink, marked: bool) -> Self {
         let mut axis = AxisConfig::default();
-        // Where it stands is home: a script need not wait for a search.
+        // Method 35 homes at the current position, so that a script need not wait.
         axis.homing.method = 35;
         axis.homing.offset = Degrees(0.0);
         axis.homing.home_position = Degrees(0.0);
@@ -103,13 +102,13 @@ impl World {
             now: START,
             ticks: 0,
             turns: 0,
-            to_node: Way::new(),
-            to_host: Way::new(),
+            to_node: Transit::new(),
+            to_host: Transit::new(),
             handed_out: Vec::new(),
             truth: Vec::new(),
             marks: marked.then(|| Marks::new(link)),
-            honest: true,
-            heard: Vec::new(),
+            unforged: true,
+            received: Vec::new(),
             decoder: UsbDecoder::new(),
             values: Vec::new(),
             observed: Vec::new(),
@@ -117,10 +116,10 @@ impl World {
         }
     }
 
-    /// How long bytes may be under way in one direction. The client counts on it: on USB it expects
-    /// no answer after two seconds, on RS232 none after a quiet of 20 ms, on CAN none to a SYNC of
-    /// 100 ms ago.
-    fn patience(&self) -> Span {
+    /// Longest transit time in one direction. The client relies on it: on USB it expects no answer
+    /// after two seconds, on RS232 none after 20 ms of silence, on CAN none to a SYNC of 100 ms
+    /// ago.
+    fn max_transit(&self) -> Span {
         Span::from_millis(match self.link {
             DriveLink::Usb => 900,
             DriveLink::Rs232 => 8,
@@ -130,9 +129,9 @@ impl World {
 
     fn act(&mut self, input: &mut Input<'_>) {
         match input.u8() % 16 {
-            0 | 1 => (0..=input.u8()).for_each(|_| self.turn()),
+            0 | 1 => (0..=input.u8()).for_each(|_| self.iterate()),
             2 => {
-                (0..16 * u32::from(input.u8())).for_each(|_| self.turn());
+                (0..16 * u32::from(input.u8())).for_each(|_| self.iterate());
             }
             3 | 4 => self.start(input),
             5 => self.pass(Span::from_micros(input.u8().into())),
@@ -168,11 +167,11 @@ impl World {
             7 => DriveCommand::ClearFaults,
             _ => DriveCommand::Status,
         };
-        // Refused where it does not fit; that is no matter here.
+        // A refused command does not matter here.
         let _ = self.client.start(command);
     }
 
-    /// Something happens to the unit.
+    /// Disturbs the unit.
     fn disturb(&mut self, input: &mut Input<'_>) {
         match input.u8() % 4 {
             0 => self.node.inject(DeviceError::OVERCURRENT),
@@ -182,9 +181,9 @@ impl World {
         }
     }
 
-    /// The host hears what the unit never said.
+    /// Delivers bytes that the unit never sent.
     fn forge(&mut self, input: &mut Input<'_>) {
-        self.honest = false;
+        self.unforged = false;
         let choice = input.u8();
         let bytes = match (choice & 3, self.link) {
             (0, DriveLink::Usb) => {
@@ -198,7 +197,7 @@ impl World {
                 frame.to_socketcan().to_vec()
             }
             (1, _) => {
-                // What is under way comes damaged.
+                // Damage bytes in transit.
                 let damaged = self.to_host.pop_front();
                 let mut bytes = damaged.map_or_else(Vec::new, |(_, bytes)| bytes);
                 let at = usize::from(input.u8()) % bytes.len().max(1);
@@ -211,9 +210,9 @@ impl World {
         self.hear(&bytes);
     }
 
-    /// One turn of the owner's loop with nothing in the way.
-    fn turn(&mut self) {
-        if self.ticks >= MOST_TICKS || self.turns >= MOST_TURNS {
+    /// Runs one undisturbed iteration of the client's loop.
+    fn iterate(&mut self) {
+        if self.ticks >= MAX_TICKS || self.turns >= MAX_ITERATIONS {
             return;
         }
         self.turns += 1;
@@ -232,14 +231,14 @@ impl World {
         self.pass(until.saturating_since(self.now));
         self.reach_host(usize::MAX);
         self.client.handle_timeout(self.now);
-        self.look();
+        self.compare();
     }
 
     fn pass(&mut self, span: Span) {
         self.now = self.now.saturating_add(span);
         let since_us = self.now.saturating_since(START).as_nanos() / 1_000;
         let due = u64::try_from(since_us / 1_000).unwrap_or_default();
-        while self.ticks < due.min(MOST_TICKS) {
+        while self.ticks < due.min(MAX_TICKS) {
             self.ticks += 1;
             self.node.tick();
             if let Server::Can(server) = &mut self.server {
@@ -250,7 +249,7 @@ impl World {
             }
         }
         self.node.set_phase_us((since_us % 1_000) as u32);
-        let born = self.now.saturating_add(-self.patience());
+        let born = self.now.saturating_add(-self.max_transit());
         for way in [&mut self.to_node, &mut self.to_host] {
             while way.front().is_some_and(|(since, _)| *since < born) {
                 way.pop_front();
@@ -292,8 +291,7 @@ impl World {
             .extend(said.into_iter().map(|bytes| (self.now, bytes)));
     }
 
-    /// The host reads up to `len` bytes of what is next, or on CAN, whose frames come whole, all of
-    /// it.
+    /// Delivers up to `len` bytes to the host; on CAN, one frame.
     fn reach_host(&mut self, len: usize) {
         let all = len == usize::MAX;
         while let Some((since, mut bytes)) = self.to_host.pop_front() {
@@ -309,7 +307,7 @@ impl World {
     }
 
     fn hear(&mut self, bytes: &[u8]) {
-        self.heard.extend(bytes);
+        self.received.extend(bytes);
         let pushed = bytes.iter().filter_map(|&byte| self.decoder.push(byte));
         self.values.extend(
             pushed
@@ -317,7 +315,7 @@ impl World {
                 .filter_map(|frame| SerialAnswer::parse(&frame).ok()?.value().ok())
                 .map(u32::cast_signed),
         );
-        // As a recorder does: one record a frame on a CAN bus.
+        // One record per frame on a CAN bus, as a recorder writes them.
         let piece = match self.link {
             DriveLink::Can => SOCKETCAN_LEN,
             DriveLink::Usb | DriveLink::Rs232 => bytes.len().max(1),
@@ -326,7 +324,7 @@ impl World {
             self.observe(Direction::FromDevice, record);
         }
         self.client.handle_input(bytes, self.now);
-        self.look();
+        self.compare();
     }
 
     fn observe(&mut self, direction: Direction, bytes: &[u8]) {
@@ -339,44 +337,44 @@ impl World {
             });
     }
 
-    /// Takes what client and listener say, and holds it against what passed.
-    fn look(&mut self) {
+    /// Takes the samples of client and listener and compares them with the bytes.
+    fn compare(&mut self) {
         while let Some(event) = self.client.poll_event() {
             if let DriveEvent::Sample(sample) = event {
                 self.check(&sample, "client");
                 self.samples += 1;
                 let seen = self.observed.iter().any(|seen| is_same(&sample, seen));
-                assert!(seen || !self.honest, "the listener missed {sample:?}");
+                assert!(seen || !self.unforged, "the listener missed {sample:?}");
             }
         }
         for sample in std::mem::take(&mut self.observed) {
             self.check(&sample, "listener");
         }
         if self.link == DriveLink::Rs232 {
-            // The longest body may come in pieces.
-            let old = self.heard.len().saturating_sub(rs232_memory());
-            self.heard.drain(..old);
+            // The longest body may arrive in pieces.
+            let old = self.received.len().saturating_sub(rs232_memory());
+            self.received.drain(..old);
         } else {
-            self.heard.clear();
+            self.received.clear();
         }
         self.values.clear();
     }
 
     fn check(&self, sample: &ShaftSample, who: &str) {
         let (request, answer, position) = (sample.request, sample.answer, sample.position);
-        // A listener knows on RS232 when the answer was announced.
+        // On RS232 a listener knows when the answer was announced.
         let is_past = self.link == DriveLink::Rs232 && answer < self.now;
         assert!(answer == self.now || is_past, "{who}: {sample:?}");
-        // Both in the order of time.
-        let asked = self.handed_out.binary_search(&request).is_ok();
-        assert!(asked, "{who}: {sample:?}");
+        // Both are in order of time.
+        let is_sent = self.handed_out.binary_search(&request).is_ok();
+        assert!(is_sent, "{who}: {sample:?}");
         let bytes = position.0.to_le_bytes();
         let carried = match self.link {
             DriveLink::Usb => self.values.contains(&position.0),
-            DriveLink::Rs232 | DriveLink::Can => self.heard.windows(4).any(|w| w == bytes),
+            DriveLink::Rs232 | DriveLink::Can => self.received.windows(4).any(|w| w == bytes),
         };
-        assert!(carried, "{who}: {sample:?} in none of {:X?}", self.heard);
-        if self.honest {
+        assert!(carried, "{who}: {sample:?} in none of {:X?}", self.received);
+        if self.unforged {
             let begin = self.truth.partition_point(|&(at, _)| at < request);
             let held = self.truth.get(begin..).unwrap_or_default();
             let held = held
@@ -387,7 +385,7 @@ impl World {
     }
 }
 
-/// Whether a listener's sample is the client's.
+/// Whether a listener's sample equals the client's.
 fn is_same(client: &ShaftSample, listener: &ShaftSample) -> bool {
     let mut at_latest = *listener;
     at_latest.answer = at_latest.answer.max(client.answer);
@@ -398,7 +396,7 @@ const fn rs232_memory() -> usize {
     2 * protocol::epos2::rs232::MAX_BYTES
 }
 
-/// Where the shaft is now, asked over an interface of one's own.
+/// The current shaft position, read over a separate interface.
 fn position(node: &mut Node) -> i32 {
     let read = ReadObject {
         node: node.node_id(),

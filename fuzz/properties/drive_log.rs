@@ -1,8 +1,7 @@
-//! The listener on a log of anything: records of any link, direction, content and time.
+//! The listener on arbitrary records: any link, direction, content and time.
 //!
-//! It says at most what the records can carry: a sample's stamps are those of a record to the drive
-//! and of one from it (the one at hand, but on RS232 that of the announcement), and its value is in
-//! the bytes that came from it.
+//! Each sample must follow from the records. Its stamps are those of a record to the drive and of
+//! one from it, which on RS232 is the announcement. Its value is in the bytes from the drive.
 
 use std::collections::BTreeSet;
 
@@ -17,14 +16,14 @@ use units::{Span, Stamp};
 use super::can_frames;
 use super::input::Input;
 
-/// Runs a log of these records.
+/// Runs the listener on a log of these records.
 pub fn holds(input: &mut Input<'_>) {
     let mut listener = DriveListener::new(1);
-    // When something went to the device, and when something came from it.
-    let mut asked = BTreeSet::new();
+    // Times of records to and from the device.
+    let mut sent = BTreeSet::new();
     let mut answered = BTreeSet::new();
-    // Everything that came from the device on a serial link, without stuffing.
-    let mut heard: Vec<u8> = Vec::new();
+    // All bytes from the device on a serial link, unstuffed.
+    let mut received: Vec<u8> = Vec::new();
     let mut now = Stamp::from_nanos(input.i64());
     while !input.is_empty() {
         let head = input.u8();
@@ -38,16 +37,16 @@ pub fn holds(input: &mut Input<'_>) {
         let direction = [Direction::ToDevice, Direction::FromDevice][usize::from(head >> 5 & 1)];
         let record = match head >> 3 & 3 {
             0 => input.short().to_vec(),
-            1 => sound(link, direction, input.u32()),
+            1 => valid_message(link, direction, input.u32()),
             _ => frame(link, input),
         };
         match direction {
             Direction::ToDevice => {
-                asked.insert(now);
+                sent.insert(now);
             }
             Direction::FromDevice => {
                 answered.insert(now);
-                heard.extend(&record);
+                received.extend(&record);
             }
         }
         let mut observations = 0;
@@ -56,28 +55,28 @@ pub fn holds(input: &mut Input<'_>) {
             if let Observation::Sample(sample) = seen {
                 let in_time = sample.answer == now || link == DriveLink::Rs232;
                 assert!(in_time && answered.contains(&sample.answer), "{sample:?}");
-                assert!(asked.contains(&sample.request), "{sample:?}");
-                check(&sample, &heard);
+                assert!(sent.contains(&sample.request), "{sample:?}");
+                check(&sample, &received);
             }
         });
         assert!(observations <= record.len() + 1);
     }
 }
 
-/// The bytes of the position were there.
-fn check(sample: &ShaftSample, heard: &[u8]) {
+/// Checks that the bytes contain the position.
+fn check(sample: &ShaftSample, received: &[u8]) {
     // 90 is doubled on USB.
     let plain = sample.position.0.to_le_bytes();
     let stuffed: Vec<u8> = plain
         .iter()
         .flat_map(|&byte| std::iter::repeat_n(byte, if byte == usb::DLE { 2 } else { 1 }))
         .collect();
-    let within = |part: &[u8]| heard.windows(part.len()).any(|window| window == part);
+    let within = |part: &[u8]| received.windows(part.len()).any(|window| window == part);
     assert!(within(&plain) || within(&stuffed), "{sample:?}");
 }
 
-/// A question for the position, or an answer to it.
-fn sound(link: DriveLink, direction: Direction, value: u32) -> Vec<u8> {
+/// A valid request for the position, or an answer to it.
+fn valid_message(link: DriveLink, direction: Direction, value: u32) -> Vec<u8> {
     let address = objects::POSITION_ACTUAL.address;
     let node = NodeId::new(1).expect("an id");
     let message = match direction {
@@ -124,7 +123,7 @@ fn frame(link: DriveLink, input: &mut Input<'_>) -> Vec<u8> {
                 DriveLink::Usb => usb::to_bytes(&frame).as_slice().to_vec(),
                 _ => {
                     let mut bytes = Vec::new();
-                    // A body of no words is none.
+                    // A body without words is not encoded.
                     let _ = protocol::epos2::rs232::encode_body(&frame, &mut bytes);
                     bytes
                 }

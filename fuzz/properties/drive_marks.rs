@@ -1,8 +1,6 @@
-//! Positions that no two looks share: what the unit says of its shaft is replaced by a number that
-//! counts the looks.
+//! Unique positions: replaces the position in the unit's answers by a counter of position reads.
 //!
-//! A shaft at rest hides an answer that was taken for another's; a number does not. Left out:
-//! everything else that the unit says.
+//! A shaft at rest hides a wrongly assigned answer; a counter does not.
 
 use protocol::canopen::sdo::{Expedited, Initiate, SdoResponse};
 use protocol::canopen::{CanFrame, CommunicationObject, NodeId, PdoNumber};
@@ -13,19 +11,19 @@ use protocol::epos2::usb::{self, UsbDecoder};
 use protocol::epos2::{CommError, SerialFrame};
 use protocol::record::DriveLink;
 
-/// Counts looks at the shaft.
+/// Counts position reads.
 #[derive(Debug)]
 pub struct Marks {
     link: DriveLink,
-    /// What the look under way sees.
+    /// Value of the current read.
     qc: i32,
-    /// RS232: the opcode that was sent last, and what the answer that waits for its handshake saw.
+    /// RS232: the opcode sent last, and the value of the answer that waits for its handshake.
     opcode: u8,
     waiting: Option<i32>,
 }
 
 impl Marks {
-    /// The first look sees 1.
+    /// The first read returns 1.
     pub const fn new(link: DriveLink) -> Self {
         Self {
             link,
@@ -35,30 +33,30 @@ impl Marks {
         }
     }
 
-    /// Ends a look: what it saw.
+    /// Ends a read and returns its value.
     pub const fn next(&mut self) -> i32 {
         self.qc += 1;
         self.qc - 1
     }
 
-    /// Puts the mark into what the unit says to what it was told, if that is its position.
-    pub fn put(&mut self, told: &[u8], said: &mut Vec<u8>) {
+    /// Puts the counter into the unit's answer if that is a position.
+    pub fn put(&mut self, request_bytes: &[u8], answer_bytes: &mut Vec<u8>) {
         match self.link {
             DriveLink::Usb => {
-                let request = decode_usb(told);
+                let request = decode_usb(request_bytes);
                 if let (Some(true), Some(answer)) =
-                    (request.as_ref().map(is_read), decode_usb(said))
+                    (request.as_ref().map(is_read), decode_usb(answer_bytes))
                 {
-                    *said = usb::to_bytes(&marked(&answer, self.qc)).as_slice().to_vec();
+                    *answer_bytes = usb::to_bytes(&marked(&answer, self.qc)).as_slice().to_vec();
                 }
             }
-            DriveLink::Rs232 => self.put_rs232(told, said),
-            DriveLink::Can => self.put_can(said),
+            DriveLink::Rs232 => self.put_rs232(request_bytes, answer_bytes),
+            DriveLink::Can => self.put_can(answer_bytes),
         }
     }
 
-    fn put_rs232(&mut self, told: &[u8], said: &mut Vec<u8>) {
-        match (told, said.as_slice()) {
+    fn put_rs232(&mut self, request_bytes: &[u8], answer_bytes: &mut Vec<u8>) {
+        match (request_bytes, answer_bytes.as_slice()) {
             (&[opcode], &[rs232::OKAY]) => self.opcode = opcode,
             // The answer is ready and waits.
             (body, &[SerialFrame::ANSWER]) => {
@@ -70,15 +68,15 @@ impl Marks {
                 if let (Some(qc), Some(answer)) =
                     (self.waiting, decode_body(SerialFrame::ANSWER, body))
                 {
-                    said.clear();
-                    let _ = rs232::encode_body(&marked(&answer, qc), said);
+                    answer_bytes.clear();
+                    let _ = rs232::encode_body(&marked(&answer, qc), answer_bytes);
                 }
             }
         }
     }
 
-    fn put_can(&self, said: &mut Vec<u8>) {
-        let Ok(frame) = CanFrame::from_socketcan(said) else {
+    fn put_can(&self, answer_bytes: &mut Vec<u8>) {
+        let Ok(frame) = CanFrame::from_socketcan(answer_bytes) else {
             return;
         };
         let node = NodeId::new(1).expect("an id");
@@ -87,18 +85,18 @@ impl Marks {
         if channel == Some(CommunicationObject::TransmitPdo(PdoNumber::One, node))
             && frame.data().len() == 8
         {
-            // Position and time: what the client has it send.
+            // Position and time, as the client configured the process data.
             let data = [&self.qc.to_le_bytes(), &frame.data()[4..]].concat();
             let id = frame.id();
             let frame = CanFrame::new(id, &data).expect("eight bytes");
-            *said = frame.to_socketcan().to_vec();
+            *answer_bytes = frame.to_socketcan().to_vec();
         } else if let Ok((_, SdoResponse::InitiateUpload { address: got, .. })) =
             SdoResponse::parse(&frame)
             && got == address
         {
             let transfer = Initiate::Expedited(Expedited::of(self.qc));
             let answer = SdoResponse::InitiateUpload { address, transfer };
-            *said = answer.to_frame(node).to_socketcan().to_vec();
+            *answer_bytes = answer.to_frame(node).to_socketcan().to_vec();
         }
     }
 }
@@ -117,7 +115,7 @@ fn decode_body(opcode: u8, bytes: &[u8]) -> Option<SerialFrame> {
     bytes.iter().find_map(|&byte| decoder.push(byte))?.ok()
 }
 
-/// The answer with another value.
+/// The answer with another position.
 fn marked(answer: &SerialFrame, qc: i32) -> SerialFrame {
     match SerialAnswer::parse(answer) {
         Ok(parsed) if parsed.error == CommError::NONE && parsed.value().is_ok() => {

@@ -1,18 +1,18 @@
-//! Reads a fuzz input front to back as numbers and byte strings; beyond its end everything is zero
+//! Reads a fuzz input front to back as numbers and byte strings; after its end everything is zero
 //! or empty.
 
-/// The rest of an input.
+/// The unread part of an input.
 #[derive(Clone, Copy, Debug)]
 pub struct Input<'a>(&'a [u8]);
 
 impl<'a> Input<'a> {
-    /// The whole of `bytes`.
+    /// Starts at the front of `bytes`.
     #[must_use]
     pub const fn new(bytes: &'a [u8]) -> Self {
         Self(bytes)
     }
 
-    /// Whether nothing is left.
+    /// Whether everything was read.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.0.is_empty()
@@ -25,12 +25,12 @@ impl<'a> Input<'a> {
         taken
     }
 
-    /// All that is left.
+    /// All remaining bytes.
     pub fn rest(&mut self) -> &'a [u8] {
         std::mem::take(&mut self.0)
     }
 
-    /// As many bytes as the next byte says.
+    /// A byte string whose length is the next byte.
     pub fn short(&mut self) -> &'a [u8] {
         let len = usize::from(self.u8());
         self.take(len)
@@ -49,17 +49,17 @@ impl<'a> Input<'a> {
         u8::from_le_bytes(self.array())
     }
 
-    /// Two bytes, low first.
+    /// Two bytes, little-endian.
     pub fn u16(&mut self) -> u16 {
         u16::from_le_bytes(self.array())
     }
 
-    /// Four bytes, low first.
+    /// Four bytes, little-endian.
     pub fn u32(&mut self) -> u32 {
         u32::from_le_bytes(self.array())
     }
 
-    /// Eight bytes, low first.
+    /// Eight bytes, little-endian.
     pub fn i64(&mut self) -> i64 {
         i64::from_le_bytes(self.array())
     }

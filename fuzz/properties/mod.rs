@@ -1,9 +1,9 @@
-//! What must hold for any bytes at all: one module a fuzz target, and one function `holds` in each,
-//! which panics where it does not.
+//! Properties of arbitrary input: one module per fuzz target, each with a function `holds` that
+//! panics on a violation.
 //!
-//! The fuzz targets run these on what libFuzzer thinks of, `tests/virtual/fuzz_regressions.rs` on
-//! what was once found, so that findings stay found on stable Rust. An input is read as a script
-//! ([`input::Input`]): a mode, then steps. Left out: memory, which libFuzzer limits from outside.
+//! The fuzz targets run them on libFuzzer's inputs, `tests/virtual/fuzz_regressions.rs` on past
+//! findings with stable Rust. An input is read as a script ([`input::Input`]): a mode, then steps.
+//! libFuzzer limits the memory.
 
 pub mod can_frames;
 pub mod drive_link;

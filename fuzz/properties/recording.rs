@@ -1,6 +1,6 @@
-//! Recordings of any bytes: reading ends, says how, yields no more than the file holds, and counts
-//! all of it. How the bytes arrive is no matter, and a file cut off in the middle says the same up
-//! to there.
+//! Recordings of any bytes: reading ends with a result, returns no more than the file contains, and
+//! counts everything. The result does not depend on how the bytes arrive, and a file that is cut
+//! off gives the same result up to the cut.
 
 use std::io::Read;
 
@@ -8,18 +8,18 @@ use io::log::OwnedRecord;
 use io::recording::{Recording, RecordingCounts};
 use protocol::record::Wire;
 
-/// The shortest record that carries anything: classic pcap's header.
+/// The shortest record with data: the header of classic pcap.
 const SHORTEST_RECORD: usize = 16;
 
 /// Reads the bytes as a file: at once, in small pieces, and without their last quarter.
 pub fn holds(data: &[u8]) {
-    // Every other input as a tool that wants the strangers' datagrams, too.
-    let strangers = data.len() % 2 == 1;
-    let whole = read(data, data.len(), strangers);
-    assert_eq!(read(Pieces(data), data.len(), strangers), whole);
+    // Every other input is read with the datagrams of other senders.
+    let other_senders = data.len() % 2 == 1;
+    let whole = read(data, data.len(), other_senders);
+    assert_eq!(read(Pieces(data), data.len(), other_senders), whole);
     let cut = &data[..data.len() - data.len() / 4];
-    let cut = read(cut, cut.len(), strangers);
-    // Behind damage, what comes later helps to find where to go on.
+    let cut = read(cut, cut.len(), other_senders);
+    // After damage, later bytes influence where reading resumes.
     if let (Ok(whole), Ok(cut)) = (whole, cut)
         && whole.counts.damaged == 0
         && cut.counts.damaged == 0
@@ -28,7 +28,7 @@ pub fn holds(data: &[u8]) {
     }
 }
 
-/// A file that comes a few bytes at a time, as through a pipe.
+/// A file that arrives in pieces of a few bytes, as through a pipe.
 struct Pieces<'a>(&'a [u8]);
 
 impl Read for Pieces<'_> {
@@ -41,19 +41,19 @@ impl Read for Pieces<'_> {
     }
 }
 
-/// All that a recording says.
+/// The result of reading a recording.
 #[derive(Debug, PartialEq)]
-struct Said {
+struct ReadResult {
     head: String,
     records: Vec<OwnedRecord>,
     end: String,
     counts: RecordingCounts,
 }
 
-/// Reads a file of `size` bytes, or says why it is no recording.
-fn read(file: impl Read, size: usize, strangers: bool) -> Result<Said, String> {
+/// Reads a file of `size` bytes, or returns why it is not a recording.
+fn read(file: impl Read, size: usize, other_senders: bool) -> Result<ReadResult, String> {
     let mut recording = Recording::new(file, "fuzz").map_err(|error| error.to_string())?;
-    if strangers {
+    if other_senders {
         recording = recording.keep_foreign();
     }
     let head = format!("{:?}", recording.metadata());
@@ -66,9 +66,9 @@ fn read(file: impl Read, size: usize, strangers: bool) -> Result<Said, String> {
     }
     assert!(matches!(recording.next_record(), Ok(None)), "it goes on");
     let counts = recording.counts().clone();
-    add_up(&counts, &records, size, strangers);
+    add_up(&counts, &records, size, other_senders);
     let end = recording.end().expect("it ended").to_string();
-    Ok(Said {
+    Ok(ReadResult {
         head,
         records,
         end,
@@ -76,7 +76,7 @@ fn read(file: impl Read, size: usize, strangers: bool) -> Result<Said, String> {
     })
 }
 
-fn add_up(counts: &RecordingCounts, records: &[OwnedRecord], size: usize, strangers: bool) {
+fn add_up(counts: &RecordingCounts, records: &[OwnedRecord], size: usize, other_senders: bool) {
     let datagrams = counts.datagrams.values().sum::<u64>() + counts.more_datagrams;
     let driven = counts.to_drive + counts.from_drive;
     let kinds = [
@@ -95,7 +95,7 @@ fn add_up(counts: &RecordingCounts, records: &[OwnedRecord], size: usize, strang
     let is_lidar = |record: &&OwnedRecord| matches!(record.as_record().wire, Wire::Lidar { .. });
     let yielded = records.iter().filter(is_lidar).count() as u64;
     assert_eq!(records.len() as u64 - yielded, driven);
-    if strangers {
+    if other_senders {
         assert!((datagrams..=datagrams + counts.other).contains(&yielded));
     } else {
         assert_eq!(yielded, datagrams);

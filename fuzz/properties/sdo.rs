@@ -1,5 +1,5 @@
-//! SDO on both ends: the client takes only what answers its question, the simulated unit answers
-//! what it is asked, and both survive any frame of the bus at any time.
+//! SDO on both ends: the client accepts only answers to its request, the simulated unit answers
+//! every request, and both survive any frame of the bus at any time.
 
 use firmware_sim::epos2::{CanServer, Node, NodeConfig, UsbServer};
 use protocol::canopen::sdo::{
@@ -16,12 +16,12 @@ use units::{Host, Span, Stamp};
 use super::can_frames;
 use super::input::Input;
 
-/// Room of the client under test: little, so that objects that are too long occur.
+/// Buffer of the client under test, small enough that objects exceed it.
 const ROOM: usize = 24;
 const TIMEOUT: Span = Span::from_millis(20);
 
-/// Mode 0: the client and a script of answers. 1: the unit and any frames. Else the client and the
-/// unit, beside its USB side.
+/// Mode 0: the client and scripted answers. 1: the unit and any frames. Else the client and the
+/// unit, compared with its USB interface.
 pub fn holds(data: &[u8]) {
     let mut input = Input::new(data);
     match input.u8() % 3 {
@@ -35,7 +35,7 @@ fn node_1() -> NodeId {
     NodeId::new(1).expect("an id")
 }
 
-/// Objects of every kind and some that are none.
+/// Objects of every kind, and invalid ones.
 fn address(input: &mut Input<'_>) -> Address {
     const KNOWN: [(u16, u8); 13] = [
         (0x6064, 0),
@@ -59,8 +59,8 @@ fn address(input: &mut Input<'_>) -> Address {
     }
 }
 
-/// A client, what it was asked, and what it has said and taken since.
-struct Asked {
+/// A client with its request, its frames, and its answers.
+struct ClientUnderTest {
     client: SdoClient<ROOM>,
     now: Stamp<Host>,
     address: Address,
@@ -70,7 +70,7 @@ struct Asked {
 }
 
 fn client(input: &mut Input<'_>) {
-    let mut asked = Asked {
+    let mut client = ClientUnderTest {
         client: SdoClient::new(node_1(), TIMEOUT),
         now: Stamp::from_nanos(0),
         address: Address::default(),
@@ -79,12 +79,12 @@ fn client(input: &mut Input<'_>) {
         taken: Vec::new(),
     };
     while !input.is_empty() {
-        asked.act(input);
+        client.act(input);
     }
-    asked.finish();
+    client.finish();
 }
 
-impl Asked {
+impl ClientUnderTest {
     fn act(&mut self, input: &mut Input<'_>) {
         match input.u8() % 8 {
             0 => self.read(address(input)),
@@ -97,7 +97,7 @@ impl Asked {
             4 if input.u8() & 7 == 0 => self.client.cancel(),
             _ => {
                 let frame = self.answer(input);
-                self.hear(&frame);
+                self.receive(&frame);
             }
         }
         // Fetched at once or later.
@@ -140,7 +140,7 @@ impl Asked {
         }
     }
 
-    /// An answer that may fit, nearly fits, or does not.
+    /// An answer that fits, nearly fits, or does not fit.
     fn answer(&self, input: &mut Input<'_>) -> CanFrame {
         let choice = input.u8();
         let toggle = choice & 0x80 != 0;
@@ -187,7 +187,7 @@ impl Asked {
         answer.to_frame(node_1())
     }
 
-    fn hear(&mut self, frame: &CanFrame) {
+    fn receive(&mut self, frame: &CanFrame) {
         let was_busy = self.client.is_busy();
         let handled = self.client.handle_frame(frame);
         let answer = SdoResponse::parse(frame).ok().map(|(_, answer)| answer);
@@ -214,12 +214,12 @@ impl Asked {
                 self.taken.push(answer);
             }
             FrameDisposition::Stale => {}
-            FrameDisposition::Unsolicited => assert!(!was_busy || !self.was_asked()),
+            FrameDisposition::Unsolicited => assert!(!was_busy || !self.was_sent()),
         }
     }
 
-    /// Whether every question so far is out.
-    fn was_asked(&self) -> bool {
+    /// Whether all requests were sent.
+    fn was_sent(&self) -> bool {
         let mut client = self.client.clone();
         client.poll_transmit(self.now).is_none()
     }
@@ -255,7 +255,7 @@ impl Asked {
         }
     }
 
-    /// A value that was read is the answers', put together a second time.
+    /// Checks a read value against a second implementation.
     fn was_read(&self, value: &SdoValue<ROOM>) {
         let [
             SdoResponse::InitiateUpload { address, transfer },
@@ -287,7 +287,7 @@ impl Asked {
         assert_eq!(value.sized, !matches!(transfer, Initiate::Unsized(_)));
     }
 
-    /// What was written went out whole and was confirmed piece by piece.
+    /// Checks that the written value was sent completely and confirmed segment by segment.
     fn was_written(&self) {
         let [SdoResponse::InitiateDownload { address }, confirmed @ ..] = &self.taken[..] else {
             panic!("written by {:?}", self.taken);
@@ -319,7 +319,7 @@ impl Asked {
         assert_eq!(self.sent.len(), self.taken.len());
     }
 
-    /// Left alone, every transfer comes to its end.
+    /// Checks that every transfer ends without further frames.
     fn finish(&mut self) {
         self.transmit();
         if let Some(deadline) = self.client.poll_timeout() {
@@ -330,25 +330,25 @@ impl Asked {
     }
 }
 
-/// The unit between any frames, any spans of time.
+/// The unit between any frames and any time spans.
 fn server(input: &mut Input<'_>) {
     let mut node = Node::new(NodeConfig::default());
     let mut server = CanServer::new();
-    // Other services may be put on the identifier of the answers; from there on they cannot be told
-    // apart.
-    let mut told_apart = true;
+    // Other services may use the identifier of the answers; from then on they cannot be
+    // distinguished.
+    let mut distinguishable = true;
     while !input.is_empty() {
         match input.u8() % 4 {
             0 => pass_time(&mut node, &mut server, input.u8()),
             1 => {
                 let request = request(input);
-                ask(&mut node, &mut server, &request, &mut told_apart);
+                check_request(&mut node, &mut server, &request, &mut distinguishable);
             }
             _ => {
                 let frame = can_frames::frame(input);
                 match SdoRequest::parse(&frame) {
                     Ok((to, request)) if to.get() == node.node_id() => {
-                        ask(&mut node, &mut server, &request, &mut told_apart);
+                        check_request(&mut node, &mut server, &request, &mut distinguishable);
                     }
                     _ => server.input(&mut node, &frame, &mut |frame| is_whole(frame)),
                 }
@@ -407,11 +407,16 @@ fn is_whole(frame: &CanFrame) {
     assert_eq!(CanFrame::from_socketcan(&frame.to_socketcan()), Ok(*frame));
 }
 
-/// A request has at most one answer, and that is about its object.
-fn ask(node: &mut Node, server: &mut CanServer, request: &SdoRequest, told_apart: &mut bool) {
+/// A request has at most one answer, about its object.
+fn check_request(
+    node: &mut Node,
+    server: &mut CanServer,
+    request: &SdoRequest,
+    distinguishable: &mut bool,
+) {
     if let SdoRequest::InitiateDownload { address, .. } = request {
-        // 1014, 1400 to 1BFF: where emergencies and process data go. 2000: the node's id.
-        *told_apart &= !matches!(address.index, 0x1014 | 0x1400..=0x1BFF | 0x2000);
+        // 1014, 1400 to 1BFF: identifiers of emergencies and process data. 2000: the node's id.
+        *distinguishable &= !matches!(address.index, 0x1014 | 0x1400..=0x1BFF | 0x2000);
     }
     let Some(id) = NodeId::new(node.node_id()) else {
         return;
@@ -419,14 +424,14 @@ fn ask(node: &mut Node, server: &mut CanServer, request: &SdoRequest, told_apart
     let mut answers = Vec::new();
     server.input(node, &request.to_frame(id), &mut |frame| {
         is_whole(frame);
-        if *told_apart {
+        if *distinguishable {
             BusMessage::parse(frame).expect("a message of the predefined set");
         }
         if frame.cob_id() == Some(CommunicationObject::SdoResponse(id).cob_id()) {
             answers.push(*frame);
         }
     });
-    if !*told_apart {
+    if !*distinguishable {
         return;
     }
     let answers: Vec<_> = answers
@@ -467,8 +472,7 @@ fn ask(node: &mut Node, server: &mut CanServer, request: &SdoRequest, told_apart
     }
 }
 
-/// The client and the unit with nothing between them: each object is what the unit's USB side says
-/// it is.
+/// The client and the unit directly connected: each object equals that of the unit's USB interface.
 fn dialogue(input: &mut Input<'_>) {
     let mut node = Node::new(NodeConfig::default());
     let mut server = CanServer::new();
@@ -483,7 +487,7 @@ fn dialogue(input: &mut Input<'_>) {
             read_is_the_same(&mut node, address, &got);
         } else {
             let data = input.take(usize::from(choice >> 2) % 9);
-            // The node's id and its place on the bus stay.
+            // The node's id and bit rate stay unchanged.
             if matches!(address.index, 0x2000 | 0x1010 | 0x1011) {
                 continue;
             }
@@ -512,7 +516,7 @@ fn exchange(client: &mut SdoClient<ROOM>, node: &mut Node, server: &mut CanServe
             return outcome.result;
         }
     }
-    // A node told to be silent by what was written.
+    // The write silenced the node.
     client.cancel();
     while client.poll_transmit(now).is_some() {}
     client.poll_outcome().expect("a cancelled transfer").result
@@ -539,7 +543,7 @@ fn read_is_the_same(node: &mut Node, address: Address, got: &Exchanged) {
             assert_eq!(*value.bytes, words[..value.bytes.len()], "{address:?}");
         }
         Err(TransferError::Aborted(error)) => assert_eq!(said.error, *error, "{address:?}"),
-        // Longer than the interface, or the client, has room for; or the unit is silent.
+        // Longer than the interface's or the client's buffer, or the unit is silent.
         _ => {}
     }
 }

@@ -1,6 +1,6 @@
-//! EPOS2 frames on serial lines: what is encoded decodes to itself, noise costs at most one frame,
-//! the simulated unit answers with whole frames whatever it is told, and client and listener keep
-//! to what passed on the wire ([`super::drive_link`], [`super::drive_log`]).
+//! EPOS2 frames on serial lines: frames decode to what was encoded, noise destroys at most one
+//! frame, the simulated unit answers with complete frames. Client and listener agree with the bytes
+//! on the line ([`super::drive_link`], [`super::drive_log`]).
 
 use firmware_sim::epos2::{Node, NodeConfig, Rs232Server, UsbServer};
 use protocol::epos2::message::{SerialAnswer, SerialRequest};
@@ -11,7 +11,7 @@ use protocol::epos2::{MAX_WORDS, SerialFrame, SerialFrameError};
 use super::input::Input;
 use super::{drive_link, drive_log};
 
-/// The first byte chooses what the rest is for.
+/// The first byte selects the property.
 pub fn holds(data: &[u8]) {
     let mut input = Input::new(data);
     match input.u8() % 8 {
@@ -42,7 +42,7 @@ fn decode_usb(bytes: &[u8]) -> Vec<Result<SerialFrame, SerialFrameError>> {
     pushed.flatten().collect()
 }
 
-/// Any bytes: each frame in them encodes to the bytes it came from.
+/// Any bytes: each decoded frame encodes to the same bytes.
 fn usb_bytes(bytes: &[u8]) {
     let mut decoder = UsbDecoder::new();
     for (end, &byte) in (1..).zip(bytes) {
@@ -55,8 +55,7 @@ fn usb_bytes(bytes: &[u8]) {
     }
 }
 
-/// Whatever a frame holds, reading it as a message ends well, and an answer is written as it was
-/// read.
+/// Any frame can be read as a message, and an answer encodes to the same frame.
 fn read_message(frame: &SerialFrame) {
     if let Ok(answer) = SerialAnswer::parse(frame) {
         assert_eq!(answer.to_frame(), *frame);
@@ -69,8 +68,7 @@ fn read_message(frame: &SerialFrame) {
     }
 }
 
-/// Noise may end in the first half of a pair and so swallow the beginning of one frame, never of
-/// two.
+/// Noise may end in the first half of a pair and destroy the start of one frame, never of two.
 fn usb_frame_behind_noise(input: &mut Input<'_>) {
     let frame = frame(input);
     let whole = usb::to_bytes(&frame);
@@ -84,8 +82,7 @@ fn usb_frame_behind_noise(input: &mut Input<'_>) {
     }
 }
 
-/// Any bytes as bodies of one opcode: a frame is the bytes it came from, and what is none is passed
-/// over.
+/// Any bytes as bodies of one opcode: a valid frame encodes to the same bytes, others are skipped.
 fn rs232_bytes(input: &mut Input<'_>) {
     let opcode = input.u8();
     let bytes = input.rest();
@@ -109,14 +106,14 @@ fn rs232_frame(input: &mut Input<'_>) {
         return;
     }
     let mut decoder = BodyDecoder::new(frame.opcode);
-    // Twice: after a body the next one is awaited.
+    // Twice: after a body the next one is expected.
     for _ in 0..2 {
         let got: Vec<_> = body.iter().filter_map(|&byte| decoder.push(byte)).collect();
         assert_eq!(got, [Ok(frame)]);
     }
 }
 
-/// What is done to a simulated unit between bytes.
+/// Events of a simulated unit between bytes.
 fn pass_time(node: &mut Node, input: &mut Input<'_>) {
     match input.u8() {
         long @ 0xF0.. => (0..50 * u32::from(long & 0xF)).for_each(|_| node.tick()),
@@ -125,7 +122,7 @@ fn pass_time(node: &mut Node, input: &mut Input<'_>) {
     }
 }
 
-/// Requests of any content, well framed or not: at most one answer a request, each one whole frame.
+/// Requests of any content and framing: at most one answer per request, each a complete frame.
 fn usb_server(input: &mut Input<'_>) {
     let mut node = Node::new(NodeConfig::default());
     let mut server = UsbServer::new(1);
@@ -153,7 +150,7 @@ fn usb_server(input: &mut Input<'_>) {
     }
 }
 
-/// Any bytes: what the unit says are handshakes, announcements of an answer, and whole bodies.
+/// Any bytes: the unit sends handshakes, announcements of an answer, and complete bodies only.
 fn rs232_server(input: &mut Input<'_>) {
     let mut node = Node::new(NodeConfig::default());
     let mut server = Rs232Server::new(1);

@@ -1,5 +1,5 @@
-//! SLCAN lines in both directions, and the simulated adapter: what was decoded encodes to itself,
-//! noise never costs a frame behind a CR, and every command has its answer.
+//! SLCAN lines in both directions, and the simulated adapter: lines decode to what was encoded,
+//! noise never destroys a frame after a CR, and every command is answered.
 
 use firmware_sim::epos2::{Node, NodeConfig, SlcanServer};
 use protocol::canopen::slcan::{CommandDecoder, ReplyDecoder, SlcanCommand, SlcanReply};
@@ -7,8 +7,7 @@ use protocol::canopen::slcan::{CommandDecoder, ReplyDecoder, SlcanCommand, Slcan
 use super::can_frames::frame;
 use super::input::Input;
 
-/// Mode 0: any bytes to both decoders. 1: a frame behind any bytes. Else the adapter with a unit
-/// behind it.
+/// Mode 0: any bytes to both decoders. 1: a frame after any bytes. Else the adapter with a unit.
 pub fn holds(data: &[u8]) {
     let mut input = Input::new(data);
     match input.u8() % 3 {
@@ -66,7 +65,7 @@ fn frame_behind_noise(input: &mut Input<'_>) {
 fn adapter(input: &mut Input<'_>) {
     let mut node = Node::new(NodeConfig::default());
     let mut server = SlcanServer::new();
-    // The same bytes to a decoder of our own tell how many answers there must be.
+    // A second decoder of the same bytes counts the expected answers.
     let mut shadow = CommandDecoder::new();
     while !input.is_empty() {
         match input.u8() % 4 {
@@ -82,24 +81,24 @@ fn adapter(input: &mut Input<'_>) {
             2 => {
                 let mut line = Vec::new();
                 SlcanCommand::Transmit(frame(input)).encode(&mut line);
-                tell(&mut server, &mut node, &mut shadow, &line);
+                feed(&mut server, &mut node, &mut shadow, &line);
             }
-            _ => tell(&mut server, &mut node, &mut shadow, input.short()),
+            _ => feed(&mut server, &mut node, &mut shadow, input.short()),
         }
     }
 }
 
-/// The adapter takes bytes; each command is answered once, frames of the bus come on top.
-fn tell(server: &mut SlcanServer, node: &mut Node, shadow: &mut CommandDecoder, bytes: &[u8]) {
-    let asked = bytes.iter().filter_map(|&byte| shadow.push(byte)).count();
+/// Passes bytes to the adapter; each command is answered once, in addition to frames of the bus.
+fn feed(server: &mut SlcanServer, node: &mut Node, shadow: &mut CommandDecoder, bytes: &[u8]) {
+    let commands = bytes.iter().filter_map(|&byte| shadow.push(byte)).count();
     let mut answered = 0;
     server.input(node, bytes, &mut |line| {
         answered += usize::from(!is_frame(line));
     });
-    assert_eq!(answered, asked);
+    assert_eq!(answered, commands);
 }
 
-/// Whether a whole line brings a frame; else it is one answer to a command.
+/// Whether a line contains a frame; else it answers a command.
 fn is_frame(line: &[u8]) -> bool {
     match replies(line).as_slice() {
         [Some(SlcanReply::Received { .. })] => true,

@@ -1,5 +1,5 @@
-//! The data packet and the decoder: whatever packets come in whatever order, their firings come out
-//! in the order of time, within the circle, and every packet is accounted for.
+//! The data packet and the decoder: for any packets in any order, firings are in order of time,
+//! azimuths are within the circle, and every packet is counted.
 
 use std::collections::BTreeSet;
 
@@ -11,7 +11,7 @@ use units::{Lidar, Span, Stamp};
 
 use super::input::Input;
 
-/// Decodes a sequence of packets; how many firings came out.
+/// Decodes a sequence of packets; returns the number of firings.
 pub fn holds(data: &[u8]) -> u64 {
     let mut input = Input::new(data);
     let mut sensor = Sensor::new(&mut input);
@@ -23,7 +23,7 @@ pub fn holds(data: &[u8]) -> u64 {
     decoding.finish()
 }
 
-/// The options of a script, from those that nobody chose.
+/// The options of a script, based on the defaults.
 fn options(choice: u8, mut options: Options) -> Options {
     options.model = match choice & 7 {
         4 => Some(&VLP_16),
@@ -45,7 +45,7 @@ fn is_all(choice: u8) -> bool {
     choice & 16 != 0
 }
 
-/// Where a script's packets come from.
+/// The source of a script's packets.
 struct Sensor {
     host_ns: i64,
     stamp_us: u32,
@@ -69,10 +69,10 @@ impl Sensor {
         }
     }
 
-    /// The next packet of the script, and when it arrives.
+    /// The next packet of the script, and its arrival time.
     fn packet(&mut self, input: &mut Input<'_>) -> (i64, Vec<u8>) {
         let head = input.u8();
-        // Time first: as it should, by a little, by anything.
+        // Time first: correct, slightly off, or arbitrary.
         let period_us = if self.dual { 664 } else { 1_327 };
         let (device_us, host_ns) = match head & 3 {
             0 => (period_us, i64::from(period_us) * 1_000),
@@ -96,7 +96,7 @@ impl Sensor {
             9 => self.factory[1] = [0x22, 0x21, 0x28, input.u8()][usize::from(head >> 6)],
             10 => self.dual = !self.dual,
             11 => self.host_ns = input.i64(),
-            // The same again, something else, or nothing of the kind.
+            // The same packet again, another one, or arbitrary bytes.
             12 => return (self.host_ns, self.last.clone()),
             13 => return (self.host_ns, input.short().to_vec()),
             14 => {
@@ -144,15 +144,15 @@ impl Sensor {
     }
 }
 
-/// A decoder and what it must add up to.
+/// A decoder and the expected counts.
 struct Decoding {
     decoder: Decoder,
     timekeeper: Timekeeper,
-    /// When packets were fired, by the timekeeper alone.
+    /// Packet times of the timekeeper alone.
     fired: BTreeSet<i64>,
-    /// Sound packets that it told no time of, and packets emitted at a time that it had not told.
+    /// Valid packets without a time from the timekeeper, and packets emitted at another time.
     untimed: u64,
-    untold: u64,
+    unexpected: u64,
     last: Option<Stamp<Lidar>>,
     backwards: u64,
     given: u64,
@@ -172,7 +172,7 @@ impl Decoding {
             decoder: Decoder::new(options()),
             fired: BTreeSet::new(),
             untimed: 0,
-            untold: 0,
+            unexpected: 0,
             last: None,
             backwards: 0,
             given: 0,
@@ -204,12 +204,12 @@ impl Decoding {
     fn take(&mut self, seen: &[Seen]) {
         if let Some(first) = seen.first() {
             self.emitted += 1;
-            // Whose model is told by the packet behind it has no time before.
-            self.untold += u64::from(!self.fired.contains(&first.start.as_nanos()));
-            assert!(self.untold <= self.untimed, "{first:?}");
+            // A packet whose model follows from the next packet has no time before.
+            self.unexpected += u64::from(!self.fired.contains(&first.start.as_nanos()));
+            assert!(self.unexpected <= self.untimed, "{first:?}");
         }
-        // Within a packet, and from packet to packet. Packets that overlap (two sensors on one
-        // port) interleave.
+        // Within a packet and between packets. Overlapping packets (two sensors on one port)
+        // interleave.
         let mut ascending = seen.iter().zip(seen.iter().skip(1));
         assert!(ascending.all(|(a, b)| a.start < b.start), "{seen:?}");
         if let Some(first) = seen.first() {
@@ -260,7 +260,7 @@ impl Decoding {
     }
 }
 
-/// What is kept of a firing.
+/// The stored part of a firing.
 #[derive(Debug)]
 struct Seen {
     start: Stamp<Lidar>,

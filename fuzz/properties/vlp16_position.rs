@@ -1,5 +1,5 @@
-//! The position packet: what is read is what stands there, whatever stands there; a sentence's time
-//! is read a second way.
+//! The position packet: fields equal the bytes for any content; a second parser confirms a
+//! sentence's time.
 
 use firmware_sim::vlp16::position_packet;
 use lidar::{Decoder, Options};
@@ -8,8 +8,8 @@ use units::Stamp;
 
 use super::input::Input;
 
-/// Mode 0: any payload, read a second way and counted once. 1: a packet of our own making, read
-/// back. 2: any sentence with a checksum that holds. Else a sentence of any date and time.
+/// Mode 0: any payload, parsed twice and counted once. 1: a generated packet, read back. 2: any
+/// sentence with a valid checksum. Else a sentence of any date and time.
 pub fn holds(data: &[u8]) {
     let mut input = Input::new(data);
     match input.u8() % 4 {
@@ -47,7 +47,7 @@ fn any_payload(payload: &[u8]) {
     any_sentence(nmea);
 }
 
-/// `body` as a sentence.
+/// `body` as a sentence with checksum.
 fn summed(body: &[u8]) -> Vec<u8> {
     let sum = body.iter().fold(0, |sum, byte| sum ^ byte);
     [b"$", body, format!("*{sum:02X}").as_bytes()].concat()
@@ -76,13 +76,13 @@ fn any_sentence(sentence: &[u8]) {
     date_counts_back(&utc);
 }
 
-/// What is wrong stands in the sentence, or just behind it.
+/// An error points into the sentence or to its end.
 fn offset_is_inside(error: &NmeaError, len: usize) {
     assert!((206..=206 + len).contains(&error.offset), "{error}");
     assert!(!error.to_string().is_empty());
 }
 
-/// The date of a Unix time, by whole eras of 400 years from March on, is the one it was made of.
+/// The date of a Unix time, computed in eras of 400 years from March on, equals the original.
 fn date_counts_back(utc: &UtcTime) {
     let nanos = utc.unix_nanos();
     assert_eq!(nanos.rem_euclid(1_000_000_000), i64::from(utc.nanosecond));
@@ -98,7 +98,7 @@ fn date_counts_back(utc: &UtcTime) {
     assert_eq!((year, month, day), expected);
 }
 
-/// Year, month and day so many days after 1970-01-01.
+/// Year, month and day of a number of days after 1970-01-01.
 fn civil(days: i64) -> (i64, i64, i64) {
     // Days since 0000-03-01.
     let days = days + 719_468;
@@ -115,7 +115,7 @@ fn civil(days: i64) -> (i64, i64, i64) {
     (400 * era + year + i64::from(month <= 2), month, day)
 }
 
-/// Digits of a date and a time, which need not exist.
+/// Digits of a date and a time, possibly invalid ones.
 fn own_sentence(input: &mut Input<'_>) {
     let mut two = || input.u8() % 100;
     let [hour, minute, second, day, month, year] = std::array::from_fn(|_| two());
@@ -140,7 +140,7 @@ fn own_sentence(input: &mut Input<'_>) {
     }
 }
 
-/// Whatever it is, the decoder counts it under one heading and emits nothing.
+/// Any payload: the decoder counts it in one class and emits nothing.
 fn counted_once(payload: &[u8]) {
     let mut decoder = Decoder::new(Options::default());
     let mut firings = 0;
@@ -149,7 +149,7 @@ fn counted_once(payload: &[u8]) {
     let counts = [stats.data, stats.position, stats.malformed, stats.other];
     assert_eq!(counts.iter().sum::<u64>(), 1);
     assert_eq!(firings, 0, "a packet is held until its successor is there");
-    // A payload of this length that opens like a data packet is a damaged one of those.
+    // A payload of this length that starts like a data packet is a damaged data packet.
     if payload.len() == POSITION_LEN && !payload.starts_with(&[0xFF, 0xEE]) {
         assert_eq!(stats.position, 1);
     }

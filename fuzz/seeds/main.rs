@@ -1,8 +1,8 @@
-//! Writes the first inputs of every target to `corpus/TARGET`, made by our own encoders and
+//! Writes the first inputs of every target to `corpus/TARGET`, made by velomotion's encoders and
 //! simulated devices.
 //!
-//! `cargo run --release --bin seeds` in this directory; what is there already stays. Nothing here
-//! is a recording of anybody's.
+//! `cargo run --release --bin seeds` in this directory; existing files stay. No input is from a
+//! real recording.
 
 mod recording;
 mod sdo;
@@ -14,7 +14,7 @@ mod vlp16_position;
 use std::path::Path;
 use std::{fs, io};
 
-/// A name for its file, and an input.
+/// A file name and an input.
 type Seed = (String, Vec<u8>);
 
 fn main() -> io::Result<()> {

@@ -1,4 +1,4 @@
-//! Logs as we write them, and the same datagrams in the other formats that are read.
+//! velomotion's logs, and the same datagrams in the other readable formats.
 
 use firmware_sim::vlp16::{DataPacketBuilder, PacketModel, Pps, ReturnMode, position_packet};
 use io::log::{LogConfig, LogWriter};
@@ -63,7 +63,7 @@ pub fn seeds() -> Vec<Seed> {
             ));
         }
     }
-    // The same datagram in two fragments, in order and the other way round.
+    // The same datagram in two fragments, in both orders.
     let (first, last) = packet.split_at(28);
     let fragment = |flags: u16, payload: &[u8]| {
         let mut fragment = [&packet[..20], payload].concat();
@@ -78,7 +78,7 @@ pub fn seeds() -> Vec<Seed> {
     let [first, last] = fragments;
     let file = pcap(0xA1B2_C3D4, 101, &[last, first], false);
     seeds.push(("fragments-late".to_owned(), file));
-    // Damage between sound blocks, and an old capture in the other byte order.
+    // Damage between valid blocks, and an old capture in the other byte order.
     let mut damaged = log(DriveLink::Usb, &[2368]);
     let at = damaged.len() / 3;
     damaged[at..at + 40].fill(0x5A);

@@ -7,9 +7,9 @@ const CLIENT: u8 = 0;
 const UNIT: u8 = 1;
 const BOTH: u8 = 2;
 
-/// Behind each of the client's steps: fetch the outcome.
+/// After each of the client's steps: fetch the outcome.
 const FETCH: u8 = 1;
-/// Sends what is to be sent.
+/// Sends the pending frames.
 const SEND: [u8; 2] = [2, FETCH];
 
 pub fn seeds() -> Vec<Seed> {
@@ -74,7 +74,8 @@ pub fn seeds() -> Vec<Seed> {
             &[5, 0x86, FETCH],
         ],
     );
-    // Step 1 asks the unit: kind, object, arguments; step 0 lets time pass; else a frame.
+    // Step 1 sends a request to the unit: kind, object, arguments; step 0 advances time; else a
+    // frame.
     let objects: Vec<u8> = (0..13)
         .flat_map(|object| [1, 0, object, 1, 2, 1, 0x82])
         .collect();

@@ -101,8 +101,8 @@ fn requests() -> Vec<SerialFrame> {
     ]
 }
 
-/// Steps of `properties::drive_link`: 3 starts, 2 runs undisturbed for 16 turns a count, 7 to 12
-/// move what is under way.
+/// Steps of `properties::drive_link`: 3 starts, 2 runs undisturbed for 16 iterations per count, 7
+/// to 12 move bytes in transit.
 fn sessions() -> [(&'static str, Vec<u8>); 5] {
     let connect = [3, 0, 0, 2, 60];
     let home = [3, 0, 1, 2, 40];
@@ -147,10 +147,9 @@ fn sessions() -> [(&'static str, Vec<u8>); 5] {
     ]
 }
 
-/// Records of `properties::drive_log`: questions for the position and answers, a tenth of a
-/// millisecond apart.
+/// Records of `properties::drive_log`: requests for the position and answers, 0.1 ms apart.
 fn log(link: u8) -> Vec<u8> {
-    // The smallest head of the link: its number modulo 3 chooses it, the bits above say the rest.
+    // The smallest header of the link: its number modulo 3 selects the link, higher bits the rest.
     let head = |bits: u8| {
         (bits..=bits + 7)
             .find(|head| head % 3 == link)

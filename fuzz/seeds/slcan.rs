@@ -1,4 +1,5 @@
-//! SLCAN sessions: lines of both directions, and a host that opens the adapter and asks the unit.
+//! SLCAN sessions: lines of both directions, and a host that opens the adapter and sends requests
+//! to the unit.
 
 use protocol::canopen::sdo::Request;
 use protocol::canopen::slcan::{Bitrate, SlcanCommand, SlcanReply};
@@ -21,7 +22,7 @@ pub fn seeds() -> Vec<Seed> {
             [&[FRAME, 0x3D], &[0x40; 8][..], &[0, 1], &host()].concat(),
         ),
     ];
-    // Step 3: so many bytes; step 0: so many ticks; step 1: a phase.
+    // Step 3: a number of bytes; step 0: a number of ticks; step 1: a phase.
     let host = host();
     let mut session = vec![ADAPTER];
     for part in host.chunks(200) {
@@ -75,7 +76,11 @@ fn replies() -> Vec<u8> {
         SlcanReply::Sent,
         SlcanReply::SentExtended,
     ];
-    for reply in flat.into_iter().chain(frames).chain([SlcanReply::Status(0x24)]) {
+    for reply in flat
+        .into_iter()
+        .chain(frames)
+        .chain([SlcanReply::Status(0x24)])
+    {
         reply.encode(&mut bytes);
     }
     bytes.extend(b"V1013\rNA123\rxyz\r");

@@ -1,11 +1,11 @@
-//! Scripts of a simulated sensor: in order, late, lost, damaged, over the hour, with a limited
+//! Scripts of a simulated sensor: in order, late, lost, damaged, across the hour, with a limited
 //! field of view.
 
 use crate::Seed;
 
 pub fn seeds() -> Vec<Seed> {
-    // Step: bits 0 and 1 when (0 in time), bits 2 to 5 what (0 to 5 a packet), the rest which kind
-    // of it.
+    // Step: bits 0 and 1 time (0 on time), bits 2 to 5 kind (0 to 5 a packet), the rest its
+    // variant.
     let head = |host_ns: i64, stamp_us: u32, options: u8| {
         let mut script = host_ns.to_le_bytes().to_vec();
         script.extend(stamp_us.to_le_bytes());

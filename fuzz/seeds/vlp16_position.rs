@@ -1,4 +1,4 @@
-//! Position packets as the simulated sensor sends them, and scripts that make some.
+//! Position packets of the simulated sensor, and scripts that generate some.
 
 use firmware_sim::vlp16::{Pps, position_packet};
 

@@ -1,9 +1,8 @@
 //! velomotion's side of the benchmark: `peers-ours RECORDING FOLDER`.
 //!
-//! It first puts what the others need into FOLDER (`packets.bin`, `points.bin`, `angles.csv`) and
-//! says what the recording is, in one line of JSON. Then it does what it is told, a name a line,
-//! and answers with seconds on the core and by the clock, passes and points. Left out: who runs
-//! when, and what the figures mean; `run` knows that.
+//! It first writes the input of the other workers into FOLDER (`packets.bin`, `points.bin`,
+//! `angles.csv`) and describes the recording in one line of JSON. Then it reads a name of a
+//! measurement per line and answers with CPU seconds, seconds, passes and points. `run` starts it.
 
 mod limits;
 mod prepare;
@@ -15,7 +14,7 @@ use std::time::Instant;
 
 use work::Work;
 
-/// A measurement lasts at least so long; short recordings are gone through several times.
+/// Minimum duration of a measurement; short recordings are decoded several times.
 const LEAST_S: f64 = 0.1;
 
 fn main() {
@@ -29,7 +28,7 @@ fn main() {
     let mut work = Work::new(recording, packets);
     for line in std::io::stdin().lock().lines() {
         let line = line.expect("a line of stdin");
-        // Once for nothing: memory and caches.
+        // An untimed pass fills memory and caches.
         work.pass(&line);
         let (mut passes, mut points) = (0, 0);
         let (start, core) = (Instant::now(), core_s());
@@ -44,7 +43,7 @@ fn main() {
     }
 }
 
-/// Seconds for which this process has had the core.
+/// CPU seconds of this process.
 fn core_s() -> f64 {
     let clock = nix::time::ClockId::CLOCK_PROCESS_CPUTIME_ID;
     let time = clock.now().expect("Linux");

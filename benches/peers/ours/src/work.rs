@@ -1,5 +1,5 @@
-//! What is measured of velomotion, by name. A pass goes once through the recording and says how
-//! many points that made.
+//! Measurements of velomotion by name. A pass decodes the recording once and returns the number of
+//! points.
 
 use std::hint::black_box;
 
@@ -12,14 +12,14 @@ use scanner::{Accuracy, Alignment, Placer, ScanConfig, Survey, TiltSource};
 use crate::limits::Columns;
 use crate::prepare::Packets;
 
-/// Points of a batch, as the product hands them on.
+/// Points per batch, as in the program.
 const BATCH: usize = 1 << 12;
-/// Bytes of the cloud that no cache holds.
+/// Bytes of a cloud larger than any cache.
 const BIG_BYTES: usize = 512 << 20;
 /// x, y, z, time and tilt of eight bytes, intensity and ring of one.
 pub const POINT_BYTES: usize = 5 * 8 + 2;
 
-/// A recording and all that is kept from pass to pass.
+/// A recording and the state kept between passes.
 pub struct Work {
     path: String,
     packets: Packets,
@@ -34,7 +34,7 @@ pub struct Work {
     big_columns: Option<Columns>,
 }
 
-/// Takes batches and looks at nothing but their number.
+/// Counts points only.
 #[derive(Default)]
 struct Count(usize);
 

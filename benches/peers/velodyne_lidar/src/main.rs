@@ -1,8 +1,8 @@
 //! velodyne-lidar's side of the benchmark: `peers-velodyne-lidar FOLDER RECORDING CONFIGURATION`.
 //!
-//! Does what it is told, a name a line of stdin, and answers with seconds on the core and by the
-//! clock, passes and points. Points are the returns with a distance; the crate gives a point for
-//! every channel, and never the last turn, which it keeps waiting for the next one.
+//! Reads a name of a measurement per line of stdin, and answers with CPU seconds, seconds, passes
+//! and points. Points are the returns with a distance; the crate outputs a point for every channel,
+//! and never the last revolution, which it keeps until the next one.
 
 use std::hint::black_box;
 use std::io::{BufRead, Write};
@@ -13,7 +13,7 @@ use velodyne_lidar::types::frame_xyz::FrameXyz;
 use velodyne_lidar::types::measurements::Measurement;
 use velodyne_lidar::{Config, DataPacket, iter};
 
-/// As on the other side.
+/// As in the other workers.
 const LEAST_S: f64 = 0.1;
 const PACKET: usize = 1206;
 const HOST_TIME: usize = 8;
@@ -35,7 +35,7 @@ fn main() -> eyre::Result<()> {
         .chunks_exact(HOST_TIME + PACKET)
         .filter_map(|record| record[HOST_TIME..].try_into().ok())
         .collect();
-    // Its types are the bytes themselves, so that bytes outside its enums must not reach them.
+    // Its types are casts of the bytes, so invalid bytes must not reach them.
     let sound = |bytes: &&[u8; PACKET]| {
         let flags = bytes.chunks_exact(100).take(12);
         let factory = matches!(bytes[1204], 0x37..=0x39)
