@@ -157,13 +157,14 @@ fn about(scenes: &[BvhScene], rays: usize) -> Vec<String> {
     vec![
         format!(
             "Trees over the simulator's {} and a {}, and {rays} rays of a sweep through the quarry, cast on one thread in the order of a lidar. \
-             A cut through the middle halves the triangles along their widest axis; bins are parts of each axis between which a cut is tried, and the one with \
-             the least expected cost by areas is made. Triangles that share a box are tested together once it is entered.",
+             A middle cut halves the triangles along their widest axis. Bins divide each axis: the cut between two bins with the smallest \
+             cost by the surface area heuristic is taken. Triangles in one box are tested together.",
             counts.get(1).map_or("", String::as_str),
             counts.first().map_or("", String::as_str),
         ),
-        "What rays meet is the same in every tree, object, triangle and distance to the last bit: the last column counts those for which it is not. The tree is built once a \
-         run, so what it should cost depends on how many rays follow: 3 million are ten seconds of a VLP-16. Nobody chooses the scene, so each has a front of its own."
+        "Every tree gives the same object, triangle and distance, bit for bit; the last column counts differences. The tree is built once \
+         per run, so the best build time depends on the number of rays: 3 million are ten seconds of a VLP-16. The scene is given, so each \
+         has a separate front."
             .to_owned(),
     ]
 }

@@ -104,11 +104,13 @@ fn about(seconds: i64, runs: usize) -> Vec<String> {
     vec![
         format!(
             "{seconds} s of a VLP-16's packets over simulated links: a quiet Ethernet port, the same with interrupts every 125 us, and an adapter on a busy USB, with spikes of \
-             up to 20 ms and an oscillator that is up to 50 ppm off and wanders. Errors are beyond the link's least delay, which no timing sees, averaged over {runs} \
-             recordings: the bias is the size of their mean, the worst error the greatest from the first second on. 18 us are 0.001 degrees at 56.25 deg/s."
+             up to 20 ms and an oscillator that is up to 50 ppm off and wanders. Errors exclude the link's minimum delay, which timing \
+             cannot observe, and are averaged over {runs} \
+             recordings: the bias is the magnitude of their mean, the worst error the largest after the first second. 18 us are 0.001 \
+             degrees at 56.25 deg/s."
         ),
-        "Arrivals and the online clock are known when a packet comes, the line and the clock of the whole once all have. \
-         Nobody chooses the link, so each has a front of its own."
+        "Arrivals and the online clock are known when a packet arrives; the line and the envelope of the whole need all packets. The link \
+         is given, so each has a separate front."
             .to_owned(),
     ]
 }

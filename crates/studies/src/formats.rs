@@ -105,11 +105,12 @@ fn about(points: usize) -> Vec<String> {
     vec![
         format!(
             "{points} points of a sweep through the simulator's hall (nothing farther than 20 m) with {} mm of range noise, written to memory as velomotion writes files, in \
-             batches, with intensity, ring, time and tilt. Disks are not in it.",
+             batches, with intensity, ring, time and tilt. Disk access is not included.",
             NOISE_M * 1e3
         ),
-        "Bytes are those beyond an empty file's. The error is the greatest distance of a point read back from the one that was written. f32 coordinates (.ply, .pcd, .e57, .mcap) err more \
-         the farther they are, 4 um at 100 m; steps of 0.1 mm (.las, .laz) the same everywhere."
+        "Bytes exclude those of an empty file. The error is the largest distance between a point written and the same point read back. f32 \
+         coordinates (.ply, .pcd, .e57, .mcap) have an error that grows with distance, 4 um at 100 m; steps of 0.1 mm (.las, .laz) the same \
+         everywhere."
             .to_owned(),
     ]
 }

@@ -58,7 +58,7 @@ impl Study for Granularity {
     }
 
     fn title(&self) -> &'static str {
-        "How often angles are worked out"
+        "How often angles are computed"
     }
 
     fn measure(&self, bench: &mut Bench<'_>) -> Result<StudyFindings, StudyError> {
@@ -119,12 +119,13 @@ impl Study for Granularity {
 fn about(points: usize) -> Vec<String> {
     vec![
         format!(
-            "A VLP-16 at 10 turns a second on a platform that tilts at 56.25 deg/s, everything {RANGE_M} m away ({points} points). \
-             Angles are those at the start of their packet, block or firing, or each return's own. The error is the distance to where \
-             the definition puts the point, with time and angles looked up for each return by itself; at 10 m it is a tenth."
+            "A VLP-16 at 10 revolutions a second on a platform that tilts at 56.25 deg/s, with all surfaces {RANGE_M} m away ({points} points). \
+             Angles are those at the start of the packet, block or firing, or of each return. The error is the distance to the point by \
+             definition, with time and angles looked up for each return; at 10 m it is a tenth."
         ),
-        "All but the last are plain loops over decoded distances in f64, with the library's sine, that write x, y and z. The last is velomotion's own path: \
-         from the packets' bytes, with clocks and angles looked up, both angles a return, carried on from the start of a block."
+        "All rows but the last are plain loops over decoded distances in f64, with the library's sine, that write x, y and z. The last row \
+         is velomotion's path from the packets' bytes: it looks up clock and angle and extrapolates both angles from the start of a block \
+         to each return."
             .to_owned(),
     ]
 }

@@ -84,12 +84,12 @@ impl Study for Trigonometry {
 fn about(points: usize) -> Vec<String> {
     vec![
         format!(
-            "The same tilt, {points} points at {RANGE_M} m, each return with its own azimuth and tilt. Eq. 1-6 are worked out in f64 or wholly in f32, angles \
-             and distances included. The error is the distance to where f64 and the library's sine put the point."
+            "The same tilt, {points} points at {RANGE_M} m, each return with its own azimuth and tilt. Eq. 1-6 are computed in f64, or \
+             entirely in f32 with angles and distances. The error is the distance to the point computed in f64 with the library's sine."
         ),
-        "Library: sine and cosine of both angles for every return. SineTable: those of the nearest hundredth of a degree, 36,000 places; azimuth table: \
-             for the azimuth alone. Addition: the library's for the first laser of a firing, carried on to the others by the sum's sine and cosine, of a little angle whose series \
-         ends at the third power; velomotion does this in f64, a block at a time."
+        "Library: sine and cosine of both angles for every return. Table: those of the nearest hundredth of a degree, 36,000 entries; \
+         azimuth table: for the azimuth only. Addition: the library's for the first laser of a firing, and for the others the angle \
+         addition formulas with a third-order series of the small difference; velomotion does this in f64 per block."
             .to_owned(),
     ]
 }

@@ -107,7 +107,7 @@ fn a_scan_is_started_seen_and_counted() {
         page.run(WATCH).await;
         start(&page, "hall", "56.25", "-30").await;
         page.until_has("#view-title", "Live: hall").await;
-        page.until_has(".scan .badge[data-state]", "whole").await;
+        page.until_has(".scan .badge[data-state]", "complete").await;
         // The final cloud replaces the live one.
         page.until("#view-title", "hall", |text| text == "hall")
             .await;
@@ -344,7 +344,7 @@ fn a_scan_is_deleted_only_when_that_is_meant() {
     driver.test(PHONE, async |page| {
         ready(&page, &url).await;
         start(&page, "short", "56.25", "-5").await;
-        page.until_has(".scan .badge[data-state]", "whole").await;
+        page.until_has(".scan .badge[data-state]", "complete").await;
         page.click(".scan [data-role=delete]").await;
         page.until_has("#delete-what", "short").await;
         page.audit("a question").await;

@@ -123,8 +123,11 @@ impl Study for KFunction {
             name: self.name(),
             title: self.title(),
             about: vec![
-                format!("An RMBL of {points} points: a VLP-16 at 901 azimuths, turned on step by step from 0 to 180 degrees; 151 bins of equal angle; one thread."),
-                "The error is the largest of D, the share of all pairs, against every pair; the bound is what the method reports: for samples a confidence interval with a risk of 1 in 1000. Harmonics have no bound: their error is only known where it is measured.".to_owned(),
+                format!("An RMBL of {points} points: a VLP-16 at 901 azimuths, rotated in steps from 0 to 180 degrees; 151 bins of equal \
+                angle; one thread."),
+                "The error is the largest error of D, the share of all pairs, relative to the exact count. The bound is the method's: for \
+                 samples a confidence interval with a risk of 1 in 1000. Harmonics have no bound: their error is known only if it is \
+                 measured.".to_owned(),
             ],
             choice: "way",
             columns: [("time_ms", "ms"), ("error", "error of D"), ("bound", "its bound")]

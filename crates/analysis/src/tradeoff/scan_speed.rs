@@ -87,19 +87,22 @@ fn columns() -> Vec<StudyColumn> {
 fn about(phases: u32, step_deg: f64) -> Vec<String> {
     vec![
         format!(
-            "A tilt of {WAY_DEG} degrees with ramps of {ACCEL_DEG_S2} deg/s2, computed from the directions of the scan lines: what one laser sweeps in one turn. \
-             The mean vertical resolution is the paper's, as analyze has it: the vertical field of view, 75 degrees, over 16 lasers times the turns that 45 degrees take at cruise speed, \
-             0.80 s and 8 turns at 56.25 deg/s. Ramps do not count for it, but for the scan time. It is not the tilt per turn, 5.6 degrees there."
+            "A tilt of {WAY_DEG} degrees with ramps of {ACCEL_DEG_S2} deg/s2, computed from the directions of the scan lines; a scan line \
+             is what one laser sweeps in one revolution. The mean vertical resolution is that of the paper and of analyze: the vertical \
+             field of view, 75 degrees, divided by 16 lasers and by the revolutions in 45 degrees at cruise speed (0.80 s and 8 revolutions \
+             at 56.25 deg/s). It excludes ramps, the scan time includes them. It is not the tilt per revolution, which is 5.6 degrees there."
         ),
         format!(
-            "The widest gap is the greatest angle between neighbouring scan lines in the plane across the tilt axis, where tilting spreads them most, the ends \
-             of the field of view counted as lines, at the worst of {phases} azimuths of the lidar at the start. Near its ends the field is seen by one laser \
-             alone, whose lines are a turn's tilt apart. In the middle, 15 degrees that all lasers pass, they fill each other's gaps, but where their 2 degrees are a \
-             multiple of a turn's tilt: there all lines coincide, and 20 deg/s shows no more than one frame does."
+            "The widest gap is the largest angle between neighbouring scan lines in the plane across the tilt axis, where they are farthest \
+             apart. The ends of the field of view count as lines. It is the worst of {phases} azimuths of the lidar at the start. Near its \
+             ends only one laser covers the field, and its lines are the tilt per revolution apart. In the middle 15 degrees, which all \
+             lasers pass, they fill each other's gaps, unless their spacing of 2 degrees is a multiple of the tilt per revolution: then all \
+             lines coincide, and 20 deg/s shows no more than one frame."
         ),
         format!(
-            "The widest unseen circle is the largest about any direction of the field of view, on a grid of {step_deg} degrees, that no scan line enters; its \
-             diameter. About the tilt axis 2 degrees stay blind at any speed: the lasers at -1 and +1 degrees circle around the poles."
+            "The widest unseen circle is the diameter of the largest circle around any direction of the field of view, on a grid of \
+             {step_deg} degrees, that no scan line enters. Around the tilt axis 2 degrees remain unseen at any speed: the lasers at -1 and \
+             +1 degrees circle around the poles."
         ),
     ]
 }

@@ -155,17 +155,21 @@ fn about(counts: &[String]) -> Vec<String> {
     let [columns, rows] = FINE;
     vec![
         format!(
-            "Shots of a VLP-16 all over a sweep through scenes that come with the simulator ({}). The beam lights 3 x 1.5 mrad. The reference is {columns} x {rows} sub-rays of every \
-             shot; at edges are those shots whose sub-rays do not all meet one plane within 2 mm.",
+            "Shots of a VLP-16 spread over a sweep through built-in scenes ({}). The beam divergence is 3 x 1.5 mrad. The reference is \
+             {columns} x {rows} sub-rays of every \
+             shot; a shot is at an edge unless all its sub-rays hit one plane within 2 mm.",
             counts.join("; ")
         ),
         format!(
-            "The error is that of the strongest return's range where both have one: it is a mean over the footprint where surfaces are less than 1 m apart, and metres where another \
-             return is taken for the strongest. Two returns are wrong where either is more than {ANOTHER_M} m off or not there, as a share of the shots for which reference or sampling has two. \
-             The time is that of a whole shot, casting the middle included; looking for edges comes with \"at edges\", but for the map of where the scene is plain, made once a run by 228,000 rays."
+            "The error is that of the strongest return's range, if both have one. The range is a mean over the footprint if surfaces are \
+             less than 1 m apart; the error is metres if another return is chosen as the strongest. Two returns are wrong if either is more \
+             than {ANOTHER_M} m off or missing, as a share of the shots for which reference or sampling has two. \
+             The time is that of a complete shot, including the central ray; the search for edges belongs to \"at edges\", except for the \
+             map of flat directions, made once per run by 228,000 rays."
         ),
-        "At edges: velomotion casts sub-rays only where the map and the corners of the footprint leave room for an edge; edges of what fits between the corners are missed. Everywhere: the same sub-rays at every \
-         shot. 5 x 3 at edges is what a scene gets that says no numbers. Nobody chooses the scene, so each has a front of its own."
+        "At edges: velomotion casts sub-rays only where the map and the corners of the footprint permit an edge; edges of objects between \
+         the corners are missed. Everywhere: the same sub-rays at every \
+         shot. 5 x 3 at edges is the default. The scene is given, so each has a separate front."
             .to_owned(),
     ]
 }

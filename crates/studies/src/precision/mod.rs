@@ -139,15 +139,18 @@ fn columns() -> Vec<StudyColumn> {
 fn about(rays: usize) -> Vec<String> {
     vec![
         format!(
-            "{rays} rays from inside a lumpy ball {:.0} to {:.0} m around, one third of them exactly towards vertices of its triangles, one towards edges, one anywhere. Each is tested against \
-             the {TRIANGLES} triangles around where it goes, eight rays at a time, and meets the nearest. The error is the distance to where exact rays meet exact triangles, \
-             in doubled f64 (106 bits): rounding the coordinates is part of it. The ball is closed; who meets nothing has slipped through. A test is one ray and one triangle.",
+            "{rays} rays from inside a rough sphere {:.0} to {:.0} m in radius, one third of them exactly towards vertices of its \
+             triangles, one third towards edges, one third in random directions. Each is tested against \
+             the {TRIANGLES} nearest triangles, eight rays at a time, and hits the first. The error is the distance to the hit of exact \
+             rays with exact triangles in double-double arithmetic (106 bits), including rounding of coordinates. The sphere is closed: a \
+             ray without a hit has slipped through. A test is one ray and one triangle.",
             RADIUS_M * (1.0 - LUMPS),
             RADIUS_M * (1.0 + LUMPS)
         ),
-        "Moeller and Trumbore's test solves for each triangle by itself. The watertight one (Woop, Benthin and Wald) moves and shears vertices until the ray is an axis, with \
-         Kahan's difference of products; in f64 it is velomotion's. A local origin is taken away in f64 before coordinates are rounded: velomotion does so for every mesh. \
-         f32 is twice as many numbers a register, yet of a whole cast the triangles are a part only: boxes of trees are f32 anyway."
+        "Moeller and Trumbore's test solves for each triangle separately. The watertight test (Woop, Benthin and Wald) translates and \
+         shears vertices until the ray is an axis, with Kahan's difference of products; velomotion uses it in f64. A local origin is \
+         subtracted in f64 before coordinates are rounded, as velomotion does for every mesh. A register holds twice as many f32 numbers, \
+         but triangle tests are only a part of a cast: the boxes of trees are f32 anyway."
             .to_owned(),
     ]
 }

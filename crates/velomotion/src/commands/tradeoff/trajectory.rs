@@ -177,13 +177,13 @@ fn about(seeds: u64) -> Vec<String> {
     let (hz, damping) = SERVO;
     vec![
         format!(
-            "A sweep of 45 degrees at 56.25 deg/s with ramps of 500 deg/s2, polled at three rates. The error is the greatest difference to the true angle at any block of \
-             the sweep, averaged over {seeds} runs; 0.01 degrees are 1.7 mm at 10 m. The time is that of a whole sweep: making the curve of the polls, and \
-             asking it for the angle at each of its blocks."
+            "A sweep of 45 degrees at 56.25 deg/s with ramps of 500 deg/s2, polled at three rates. The error is the largest difference to \
+             the true angle at any block of the sweep, averaged over {seeds} runs; 0.01 degrees are 1.7 mm at 10 m. The time is that of a \
+             whole sweep: fitting the curve to the polls and evaluating it at each block."
         ),
         format!(
-            "Ideal polls are exact; the others come in the encoder's steps of {QUANTUM_DEG} degrees, at instants known to 0.1 or 0.5 ms (one standard deviation). \
-             The axis follows the commanded motion, in the last column behind a servo of second order, {hz} Hz, damping {damping}."
+            "Ideal polls are exact; the others have the encoder's steps of {QUANTUM_DEG} degrees and times known to 0.1 or 0.5 ms (one standard deviation). \
+             The axis follows the commanded motion, in the last column with a second-order servo of {hz} Hz, damping {damping}."
         ),
     ]
 }
