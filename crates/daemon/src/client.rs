@@ -6,8 +6,8 @@ use std::os::unix::net::UnixStream;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use serde::Serialize;
 use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 
 use super::sockets;
 use engine::config::Device;
@@ -32,6 +32,33 @@ struct Answer {
     status: u16,
     length: u64,
     body: BufReader<UnixStream>,
+}
+
+/// What clients of this program read of the status.
+#[derive(Debug, Deserialize)]
+pub struct RemoteStatus {
+    /// The task of the axis.
+    pub activity: RemoteActivity,
+    /// The drive.
+    pub drive: RemoteDrive,
+}
+
+/// The task of the axis.
+#[derive(Debug, Deserialize)]
+pub struct RemoteActivity {
+    /// Number of the move, from 1.
+    pub step: usize,
+    /// Lidar packets of the capture so far.
+    pub packets: u64,
+}
+
+/// The drive.
+#[derive(Debug, Deserialize)]
+pub struct RemoteDrive {
+    /// Port.
+    pub port: Option<PathBuf>,
+    /// Angle of the axis, degrees.
+    pub angle_deg: Option<f64>,
 }
 
 impl Client {
@@ -63,20 +90,20 @@ impl Client {
 
     /// Whether the drive that it found is at this port.
     fn has_port(&self, port: Option<&Path>) -> bool {
-        #[derive(serde::Deserialize)]
-        struct Status {
-            drive: Drive,
-        }
-        #[derive(serde::Deserialize)]
-        struct Drive {
-            port: Option<PathBuf>,
-        }
         let real = |port: &Path| port.canonicalize().ok();
-        let Ok(status) = self.get::<Status>("/api/v1/status") else {
+        let Ok(status) = self.status() else {
             return false;
         };
         let found = status.drive.port.as_deref().and_then(real);
         found.is_some() && found == port.and_then(real)
+    }
+
+    /// The status.
+    ///
+    /// # Errors
+    /// As [`Client::get`].
+    pub fn status(&self) -> Result<RemoteStatus, Failure> {
+        self.get("/api/v1/status")
     }
 
     /// The daemon that answers at a socket.
@@ -157,7 +184,7 @@ impl Client {
 
     /// What the daemon says when it says no.
     fn refused(&self, answer: Answer) -> Failure {
-        #[derive(serde::Deserialize)]
+        #[derive(Deserialize)]
         struct Said {
             error: String,
             help: Option<String>,

@@ -13,13 +13,12 @@ use std::time::Duration;
 use cloud::Fields;
 use cloud::formats::Format;
 use io::files::{NewFile, Overwrite};
-use scanner::{Accuracy, TiltSource};
+use scanner::Accuracy;
 use sim::Truth;
 
 use engine::capture::run;
 use engine::failure::{Failure, Kind};
 use engine::output::{Buffered, Target, file_failure};
-use engine::reconstruct::replay::TimeReference;
 use engine::reconstruct::replay::{self, Reconstruction};
 use engine::reconstruct::report::ScanReport;
 use engine::reconstruct::source::Source;
@@ -30,7 +29,7 @@ use crate::disk_quota::{DiskQuota, QuotaFile};
 use crate::plan;
 use crate::scans::THUMBNAIL;
 use crate::state::{Counters, DaemonState};
-use crate::thumbnail;
+use crate::thumbnail::Thumbnail;
 
 /// Between two checks whether the disk has room again.
 const ROOM_POLL: Duration = Duration::from_secs(1);
@@ -61,15 +60,11 @@ pub(crate) fn unfinished(state: &DaemonState) -> Vec<CloudJob> {
 /// The job of a scan, made from its record.
 fn job_again(state: &DaemonState, id: String) -> CloudJob {
     let record = state.scans.record(&id);
-    let lost_records = record.as_ref().map_or(0, |record| record.lost_records);
-    let asked = record.and_then(|record| record.head.asked);
     CloudJob {
-        accuracy: asked
-            .and_then(|asked| asked.accuracy().ok())
-            .unwrap_or(Accuracy::Best),
+        accuracy: record.as_ref().map_or(Accuracy::Best, |r| r.accuracy()),
+        lost_records: record.map_or(0, |record| record.lost_records),
         id,
         truth: None,
-        lost_records,
     }
 }
 
@@ -125,7 +120,8 @@ pub fn run(state: &Arc<DaemonState>, queue: &Receiver<CloudJob>) {
 fn build(state: &Arc<DaemonState>, job: &CloudJob) {
     let id = job.id.as_str();
     let quota = DiskQuota::of_scan(state);
-    let made = catch_unwind(AssertUnwindSafe(|| cloud(state, job, &quota)));
+    let thumbnail = Thumbnail::default();
+    let made = catch_unwind(AssertUnwindSafe(|| cloud(state, job, &quota, &thumbnail)));
     let made = made.unwrap_or_else(|_| {
         Err(Failure::new(
             Kind::Incomplete,
@@ -141,7 +137,7 @@ fn build(state: &Arc<DaemonState>, job: &CloudJob) {
     };
     let (cloud, log) = (state.cloud(id), state.log(id));
     if made.is_ok()
-        && let Err(failure) = make_thumbnail(&cloud, &state.scans.place(id).join(THUMBNAIL))
+        && let Err(failure) = store_thumbnail(&thumbnail, &state.scans.place(id).join(THUMBNAIL))
     {
         let events = state.events();
         events.message(MessageLevel::Warning, failure.message, failure.help);
@@ -185,27 +181,18 @@ fn build(state: &Arc<DaemonState>, job: &CloudJob) {
     });
 }
 
-/// Makes the thumbnail of a cloud. A panic in it is a failure.
-fn make_thumbnail(cloud: &Path, to: &Path) -> Result<(), Failure> {
-    catch_unwind(|| draw(cloud, to)).unwrap_or_else(|_| {
-        Err(Failure::new(
-            Kind::Incomplete,
-            format!("{}: a defect of the program: no thumbnail", to.display()),
-        )
-        .help("the scan is complete without it; run the daemon with -vv and report the messages"))
-    })
-}
-
-fn draw(cloud: &Path, to: &Path) -> Result<(), Failure> {
+/// Draws and stores a thumbnail. A panic in it is a failure.
+fn store_thumbnail(thumbnail: &Thumbnail, to: &Path) -> Result<(), Failure> {
     let cannot = |error: &dyn std::fmt::Display| {
         Failure::new(
             Kind::Incomplete,
             format!("{}: no thumbnail: {error}", to.display()),
         )
-        .help("the scan is complete without it; see whether the disk is full")
+        .help("the scan is complete without it; see whether the disk is full, else report the daemon's messages with -vv")
     };
-    let mut cloud = fs::File::open(cloud).map_err(|error| cannot(&error))?;
-    let png = thumbnail::of_ply(&mut cloud).map_err(|error| cannot(&error))?;
+    let png = catch_unwind(AssertUnwindSafe(|| thumbnail.png()))
+        .map_err(|_| cannot(&"a defect of the program"))?
+        .map_err(|error| cannot(&error))?;
     let mut file = NewFile::create(to, Overwrite::Replace).map_err(|error| file_failure(&error))?;
     file.write_all(&png).map_err(|error| cannot(&error))?;
     file.commit().map_err(|error| file_failure(&error))
@@ -215,22 +202,17 @@ fn cloud(
     state: &DaemonState,
     job: &CloudJob,
     quota: &Arc<DiskQuota>,
+    thumbnail: &Thumbnail,
 ) -> Result<ScanReport, Failure> {
     let target = Target::file(&state.cloud(&job.id), true, |file| {
         let file = Buffered::new(QuotaFile::new(file, Arc::clone(quota)));
-        Format::Ply.writer(file, Fields::FILE)
+        Box::new((Format::Ply.writer(file, Fields::FILE), thumbnail.clone()))
     })?;
     let source = Source::open(&state.log(&job.id), None)?;
     let request = Reconstruction {
-        recording: &source,
-        tilt: TiltSource::Log,
-        options: lidar::Options::default(),
-        time: TimeReference::Host,
-        accuracy: job.accuracy,
-        pace: None,
         truth: job.truth.as_ref(),
         lost_records: job.lost_records,
-        interrupt: &state.abandon,
+        ..Reconstruction::of_log(&source, job.accuracy, &state.abandon)
     };
     replay::make(&request, target).map_err(|failure| match quota.refused() {
         Some(full) => full.clone(),

@@ -79,7 +79,7 @@ pub struct Daemon {
     cloud_builder: JoinHandle<()>,
     health_monitor: JoinHandle<()>,
     health_monitor_end: Sender<()>,
-    ros2: Option<ros2_bridge::Bridge>,
+    stop_ros2: Option<ros2_bridge::StopBridge>,
     /// Keeps other daemons out of the scans folder.
     _lock: std::fs::File,
 }
@@ -116,7 +116,7 @@ impl Daemon {
         let state = DaemonState::new(service, scans, options.free_bytes, jobs.clone());
         let state = Arc::new(state);
         state.refresh_disk();
-        let ros2 = ros2_bridge::start(&state)?;
+        let stop_ros2 = ros2_bridge::start(&state)?;
         for unfinished in cloud_builder::unfinished(&state) {
             // The receiver is `queue`.
             let _ = jobs.send(unfinished);
@@ -136,7 +136,7 @@ impl Daemon {
             cloud_builder,
             health_monitor,
             health_monitor_end,
-            ros2,
+            stop_ros2,
             _lock: lock,
         })
     }
@@ -182,7 +182,7 @@ impl Daemon {
             std::thread::sleep(POLL);
         }
         let clouds = self.cloud_builder.join().is_ok();
-        let ros2 = self.ros2.is_none_or(ros2_bridge::Bridge::stop);
+        let ros2 = self.stop_ros2.is_none_or(|stop| stop());
         drop(self.health_monitor_end);
         let health = self.health_monitor.join().is_ok();
         let events = Arc::clone(state.events());

@@ -7,20 +7,8 @@ use engine::failure::{Failure, Kind};
 
 use crate::state::DaemonState;
 
-#[cfg(feature = "ros2")]
-pub use ros2::Bridge;
-
-/// The bridge, which this build does not have.
-#[cfg(not(feature = "ros2"))]
-pub enum Bridge {}
-
-#[cfg(not(feature = "ros2"))]
-impl Bridge {
-    /// Ends it.
-    pub fn stop(self) -> bool {
-        match self {}
-    }
-}
+/// Stops the bridge; false if its thread had panicked.
+pub type StopBridge = Box<dyn FnOnce() -> bool + Send>;
 
 /// Refuses a configuration with ROS 2 in a build without it.
 ///
@@ -44,13 +32,14 @@ pub fn check(settings: Option<&Ros2>) -> Result<(), Failure> {
 ///
 /// # Errors
 /// As [`check`], and as the bridge's own start.
-pub fn start(state: &Arc<DaemonState>) -> Result<Option<Bridge>, Failure> {
+pub fn start(state: &Arc<DaemonState>) -> Result<Option<StopBridge>, Failure> {
     check(state.settings().ros2.as_ref())?;
     #[cfg(feature = "ros2")]
     if let Some(settings) = &state.settings().ros2 {
         let scans: Arc<dyn ros2::ScanService> = Arc::new(BridgeScans(Arc::clone(state)));
         let counts = Arc::clone(&state.ros2);
-        return Bridge::start(&scans, settings.clone(), counts).map(Some);
+        let bridge = ros2::Bridge::start(&scans, settings.clone(), counts)?;
+        return Ok(Some(Box::new(move || bridge.stop())));
     }
     Ok(None)
 }

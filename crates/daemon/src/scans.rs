@@ -129,20 +129,19 @@ impl Scans {
         let now = std::time::SystemTime::now();
         let (id, place) = self.new_place(asked.name.as_deref(), now, simulated)?;
         let started = now.duration_since(std::time::UNIX_EPOCH);
-        let mut record = ScanRecord::new(ScanHead {
-            id: id.clone(),
-            name: asked.name.clone(),
-            state: ScanState::Recording,
-            why: None,
-            waits_for_room: false,
-            // Whole milliseconds, which JSON gives back to the last bit.
-            started_s: started.map_or(0.0, |since| since.as_millis() as f64 / 1e3),
-            simulated,
-            asked: Some(asked.clone()),
-            points: None,
-            duration_s: None,
-        });
-        record.number = next_number(&self.scans());
+        let record = ScanRecord {
+            head: ScanHead {
+                id: id.clone(),
+                name: asked.name.clone(),
+                // Whole milliseconds, which JSON gives back to the last bit.
+                started_s: started.map_or(0.0, |since| since.as_millis() as f64 / 1e3),
+                simulated,
+                asked: Some(asked.clone()),
+                ..ScanHead::default()
+            },
+            number: next_number(&self.scans()),
+            ..ScanRecord::default()
+        };
         let stored = store(&place, &record);
         io::files::sync_folder(&place);
         if let Err(failure) = stored {
@@ -293,33 +292,26 @@ impl Scans {
     /// Those that are being recorded or made.
     #[must_use]
     pub fn under_way(&self) -> Vec<ScanView> {
-        let records: Vec<ScanRecord> = {
-            let scans = self.scans();
-            let open = scans.values().filter(|record| !record.state.is_final());
-            open.cloned().collect()
-        };
+        let records = self.select(|record| !record.state.is_final());
         records.iter().map(|record| self.view_of(record)).collect()
+    }
+
+    fn select(&self, wanted: impl Fn(&ScanRecord) -> bool) -> Vec<ScanRecord> {
+        let scans = self.scans();
+        scans.values().filter(|r| wanted(r)).cloned().collect()
     }
 
     /// Those whose log waits for a cloud.
     #[must_use]
     pub fn unfinished(&self) -> Vec<String> {
-        let scans = self.scans();
-        let making = scans.values().filter(|r| r.state == ScanState::Making);
-        making.map(|record| record.id.clone()).collect()
+        let making = self.select(|record| record.state == ScanState::Making);
+        making.into_iter().map(|record| record.head.id).collect()
     }
 
     /// Those whose cloud is made once there is room for it, the oldest first.
     #[must_use]
     pub fn waiting(&self) -> Vec<String> {
-        let mut waiting: Vec<ScanRecord> = {
-            let scans = self.scans();
-            scans
-                .values()
-                .filter(|r| r.waits_for_room)
-                .cloned()
-                .collect()
-        };
+        let mut waiting = self.select(|record| record.waits_for_room);
         waiting.sort_by(|a, b| a.started_s.total_cmp(&b.started_s));
         waiting.into_iter().map(|record| record.head.id).collect()
     }

@@ -1,12 +1,11 @@
 //! A picture of a cloud for lists: its points from above and one side, coloured by height, edges
 //! shaded by depth, on nothing.
 //!
-//! The view is the one that the page opens with. Left out: every format but the PLY that this
-//! program writes, and the other columns.
+//! The view is the one that the page opens with.
 
-use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
+use std::sync::{Arc, Mutex, PoisonError};
 
-use thiserror::Error;
+use cloud::{Points, Sink, SinkError};
 
 /// Pixels of the picture.
 pub const WIDTH: usize = 324;
@@ -15,10 +14,8 @@ pub const HEIGHT: usize = 216;
 
 /// Samples of a pixel along either side.
 const FINE: usize = 2;
-/// Points that are drawn; of more, every second, third and so on.
-const MOST_POINTS: u64 = 300_000;
-/// A header longer than this is none.
-const HEADER_BYTES: u64 = 64 << 10;
+/// Most points that are drawn; of more, every second, fourth and so on.
+const MOST_POINTS: usize = 300_000;
 /// Where the eye is as seen from the scanner: from x towards y, and above the horizon, radians.
 const AZIMUTH: f64 = -2.05;
 const ELEVATION: f64 = 0.62;
@@ -49,121 +46,52 @@ const VIRIDIS: [[u8; 3]; 17] = [
     [253, 231, 37],
 ];
 
-/// Why there is no picture.
-#[derive(Debug, Error)]
-pub enum ThumbnailError {
-    /// The cloud cannot be read.
-    #[error("thumbnail: {0}")]
-    Read(#[from] std::io::Error),
-    /// It is no cloud of this program.
-    #[error("thumbnail: the cloud's header: expected {expected}, got {got}")]
-    Header {
-        /// What should be there.
-        expected: &'static str,
-        /// What is.
-        got: String,
-    },
-    /// The picture cannot be packed.
-    #[error("thumbnail: {0}")]
-    Png(#[from] png::EncodingError),
-}
-
 type Point = [f64; 3];
 
-/// The picture of a PLY cloud, as PNG with a transparent ground.
-///
-/// # Errors
-/// Where the cloud cannot be read or is none of this program's. One that ends too early is drawn as
-/// far as it goes.
-pub fn of_ply(cloud: &mut (impl Read + Seek)) -> Result<Vec<u8>, ThumbnailError> {
-    let mut cloud = BufReader::with_capacity(1 << 16, cloud);
-    let header = Header::read(&mut cloud)?;
-    encode(&picture(&header.points(&mut cloud)?))
+/// A sink that keeps an even sample of a cloud's positions. Clones share it.
+#[derive(Clone, Default)]
+pub struct Thumbnail(Arc<Mutex<SampledPoints>>);
+
+#[derive(Default)]
+struct SampledPoints {
+    points: Vec<Point>,
+    /// Points of the cloud so far.
+    count: usize,
+    /// One of 2 to this power of the points is kept.
+    halvings: u32,
 }
 
-/// Where positions are.
-struct Header {
-    points: u64,
-    row_bytes: usize,
-    /// Offsets of x, y and z in a row.
-    position: [usize; 3],
-    /// Where the rows begin.
-    begin: u64,
-}
-
-fn header_error(expected: &'static str, got: impl Into<String>) -> ThumbnailError {
-    let got = got.into();
-    ThumbnailError::Header { expected, got }
-}
-
-impl Header {
-    fn read(cloud: &mut (impl BufRead + Seek)) -> Result<Self, ThumbnailError> {
-        let (mut points, mut row_bytes, mut position) = (None, 0, [None; 3]);
-        let mut bounded = cloud.take(HEADER_BYTES);
-        for number in 0_u64.. {
-            let mut line = Vec::new();
-            bounded.read_until(b'\n', &mut line)?;
-            let line = String::from_utf8_lossy(&line);
-            let words: Vec<&str> = line.split_whitespace().collect();
-            match words.as_slice() {
-                ["ply"] if number == 0 => {}
-                _ if number == 0 => return Err(header_error("ply", line)),
-                ["comment", ..] => {}
-                ["format", "binary_little_endian", "1.0"] => {}
-                ["element", "vertex", count] => points = count.parse().ok(),
-                ["property", kind, name] => {
-                    let axis = ["x", "y", "z"].iter().position(|axis| axis == name);
-                    if let Some(axis) = axis.and_then(|axis| position.get_mut(axis)) {
-                        *axis = (*kind == "float").then_some(row_bytes);
-                    }
-                    row_bytes += match *kind {
-                        "uchar" => 1,
-                        "float" => 4,
-                        "double" => 8,
-                        _ => return Err(header_error("uchar, float or double", *kind)),
-                    };
-                }
-                ["end_header"] => break,
-                _ => return Err(header_error("a line of a binary PLY cloud", line)),
+impl Sink for Thumbnail {
+    fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
+        let mut sample = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        for position in batch.positions() {
+            let is_kept = sample.count.trailing_zeros() >= sample.halvings;
+            sample.count += 1;
+            if !is_kept || !position.iter().all(|value| value.is_finite()) {
+                continue;
+            }
+            sample.points.push(position);
+            if sample.points.len() >= MOST_POINTS {
+                let mut is_even = false;
+                sample.points.retain(|_| {
+                    is_even = !is_even;
+                    is_even
+                });
+                sample.halvings += 1;
             }
         }
-        let begin = cloud.stream_position()?;
-        match (points, position) {
-            (Some(points), [Some(x), Some(y), Some(z)]) => Ok(Self {
-                points,
-                row_bytes,
-                position: [x, y, z],
-                begin,
-            }),
-            _ => Err(header_error(
-                "a vertex count and float x, y, z",
-                "one without",
-            )),
-        }
+        Ok(())
     }
+}
 
-    /// An even sample of the positions, metres.
-    fn points(&self, cloud: &mut (impl BufRead + Seek)) -> Result<Vec<Point>, ThumbnailError> {
-        let end = cloud.seek(SeekFrom::End(0))?;
-        cloud.seek(SeekFrom::Start(self.begin))?;
-        let row_bytes = u64::try_from(self.row_bytes).unwrap_or(u64::MAX).max(1);
-        let there = self.points.min(end.saturating_sub(self.begin) / row_bytes);
-        let stride = there.div_ceil(MOST_POINTS).max(1);
-        let skip = i64::try_from((stride - 1).saturating_mul(row_bytes)).unwrap_or(i64::MAX);
-        let mut row = vec![0; self.row_bytes];
-        let mut points = Vec::new();
-        for _ in 0..there / stride {
-            cloud.read_exact(&mut row)?;
-            let position = self.position.map(|at| {
-                let bytes = row.get(at..).and_then(|rest| rest.first_chunk());
-                bytes.map_or(f64::NAN, |bytes| f64::from(f32::from_le_bytes(*bytes)))
-            });
-            if position.iter().all(|value| value.is_finite()) {
-                points.push(position);
-            }
-            cloud.seek_relative(skip)?;
-        }
-        Ok(points)
+impl Thumbnail {
+    /// The picture of the points so far, as PNG with a transparent ground.
+    ///
+    /// # Errors
+    /// Where the picture cannot be encoded.
+    pub fn png(&self) -> Result<Vec<u8>, png::EncodingError> {
+        let sample = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        encode(&picture(&sample.points))
     }
 }
 
@@ -341,7 +269,7 @@ impl Picture {
     }
 }
 
-fn encode(picture: &Picture) -> Result<Vec<u8>, ThumbnailError> {
+fn encode(picture: &Picture) -> Result<Vec<u8>, png::EncodingError> {
     let pixels: Vec<u8> = (0..WIDTH * HEIGHT)
         .flat_map(|place| picture.pixel(place % WIDTH, place / WIDTH))
         .collect();
@@ -356,25 +284,21 @@ fn encode(picture: &Picture) -> Result<Vec<u8>, ThumbnailError> {
 mod tests {
     use std::io::Cursor;
 
-    use cloud::Sink;
-    use cloud::formats::ply::PlyWriter;
+    use cloud::Fields;
 
     use super::*;
 
-    /// A cloud as this program writes it.
-    fn ply(points: &[Point]) -> Vec<u8> {
-        let mut writer = PlyWriter::new(Cursor::new(Vec::new()));
-        let mut batch = cloud::Points::new(writer.fields());
+    fn thumbnail(points: &[Point]) -> Thumbnail {
+        let mut batch = Points::new(Fields::NONE);
         for &position_m in points {
             batch.push(cloud::Point {
                 position_m,
                 ..cloud::Point::default()
             });
         }
-        writer.begin(&cloud::Metadata::default()).unwrap();
-        writer.points(&batch).unwrap();
-        writer.finish().unwrap();
-        writer.into_inner().into_inner()
+        let mut thumbnail = Thumbnail::default();
+        thumbnail.points(&batch).unwrap();
+        thumbnail
     }
 
     /// A floor of 10 m by 10 m, 1 m below the scanner, and a wall 4 m high behind it as seen from
@@ -395,7 +319,7 @@ mod tests {
     }
 
     fn picture_of(points: &[Point]) -> Vec<[u8; 4]> {
-        decoded(&of_ply(&mut Cursor::new(ply(points))).unwrap())
+        decoded(&thumbnail(points).png().unwrap())
     }
 
     #[test]
@@ -446,41 +370,11 @@ mod tests {
     }
 
     #[test]
-    fn a_cloud_that_is_cut_off_is_drawn_as_far_as_it_goes() {
-        let mut bytes = ply(&corner());
-        bytes.truncate(bytes.len() / 2);
-        let pixels = decoded(&of_ply(&mut Cursor::new(bytes)).unwrap());
-        assert!(pixels.iter().any(|pixel| pixel[3] > 0));
-    }
-
-    #[test]
-    fn of_many_points_an_even_sample_is_read() {
+    fn an_even_sample_of_many_points_is_drawn() {
         let many: Vec<Point> = (0..700_000).map(|i| [f64::from(i), 0.0, 0.0]).collect();
-        let mut file = BufReader::new(Cursor::new(ply(&many)));
-        let points = Header::read(&mut file).unwrap().points(&mut file).unwrap();
-        assert_eq!(points.len(), 233_333);
-        assert_eq!((points[1][0], points[233_332][0]), (3.0, 3.0 * 233_332.0));
-    }
-
-    #[test]
-    fn what_is_no_cloud_is_refused() {
-        let mut endless = b"ply\n".to_vec();
-        endless.extend(b"comment and so on\n".repeat(10_000));
-        for wrong in [
-            b"".as_slice(),
-            b"PNG",
-            b"ply\nformat ascii 1.0\n",
-            b"ply\nproperty list uchar int x\n",
-            b"ply\nformat binary_little_endian 1.0\nelement vertex 1\nend_header\n",
-            b"ply\nelement vertex 1\nproperty double x\nproperty float y\nproperty float z\nend_header\n",
-            &endless,
-        ] {
-            let refused = of_ply(&mut Cursor::new(wrong));
-            assert!(
-                matches!(refused, Err(ThumbnailError::Header { .. })),
-                "{:?}",
-                String::from_utf8_lossy(&wrong[..wrong.len().min(60)])
-            );
-        }
+        let thumbnail = thumbnail(&many);
+        let points = &thumbnail.0.lock().unwrap().points;
+        assert_eq!(points.len(), 175_000);
+        assert_eq!((points[1][0], points[174_999][0]), (4.0, 4.0 * 174_999.0));
     }
 }

@@ -14,42 +14,37 @@ mod lidar_stats;
 pub mod live_preview;
 mod motion_reporter;
 mod open_devices;
+mod options;
 pub mod scan_record;
+mod service_state;
 pub mod status;
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
 use std::time::{Duration, Instant};
 
-use io::discover::ConnectedDevices;
 use sim::Truth;
 use tokio::sync::{oneshot, watch};
-use units::{Rpm, Span};
+use units::Span;
 
 pub use device_thread::DeviceThread;
 pub use lease::{AxisLease, LeaseError};
+pub use options::{Environment, Lifetime, ServiceOptions};
 
-use crate::capture::jog::{self, AxisReport, JogRequest};
+use crate::capture::jog::{self, AxisReport, JogRequest, StopAnswer, StoppedCommand};
 use crate::capture::request::CapturePlan;
-use crate::capture::run::{self, Outcome};
+use crate::capture::run::Outcome;
 use crate::config::{Config, Device};
 use crate::devices::lidar_receiver::{LidarReceiver, PacketTap};
-use crate::devices::{lidar_sockets, profile};
+use crate::devices::profile;
 use crate::failure::{Failure, Kind};
 use device_thread::Order;
-use events::{Event, Events, MessageLevel};
-use lease::StopSignal;
+use events::Events;
 use lidar_stats::LidarStats;
 use live_preview::{LivePreview, PreviewInput};
-use status::{
-    Activity, AxisStatus, AxisTask, ClientsStatus, DeviceHealth, DiskStatus, DriveSnapshot,
-    LidarStatus, ServiceStatus,
-};
+use service_state::ServiceState;
+use status::{AxisTask, DeviceHealth};
 
-/// A report of the drive younger than this is not asked for again.
-const REPORT_LIFETIME: Duration = Duration::from_millis(500);
-/// A lidar that sends nothing for this long is absent: it sends 754 packets per second.
-const LIDAR_SILENCE: Duration = Duration::from_secs(2);
 /// Wait for a lidar that may have been switched on a moment ago; it is looked for every second.
 const LIDAR_WAIT: Duration = Duration::from_secs(3);
 const LIDAR_POLL: Duration = Duration::from_millis(50);
@@ -59,55 +54,6 @@ const READ_WAIT: Duration = Duration::from_secs(5);
 const STOP_ATTEMPTS: usize = 16;
 /// Suspensions shorter than this are the difference of two clock readings.
 const SHORTEST_SUSPENSION: Span = Span::from_millis(500);
-
-/// What the service takes from the machine. Tests replace it.
-#[derive(Clone)]
-pub struct Environment {
-    /// Lists the devices that are plugged in.
-    pub plugged: Arc<dyn Fn() -> ConnectedDevices + Send + Sync>,
-    /// Time that the machine has been suspended since it was booted.
-    pub suspended: Arc<dyn Fn() -> Span + Send + Sync>,
-    /// Called on the device thread at every heartbeat.
-    pub heartbeat: Arc<dyn Fn(AxisTask) + Send + Sync>,
-}
-
-impl Default for Environment {
-    fn default() -> Self {
-        Self {
-            plugged: Arc::new(io::discover::discover),
-            suspended: Arc::new(io::clock::suspended),
-            heartbeat: Arc::new(|_| {}),
-        }
-    }
-}
-
-/// How long the service keeps its devices.
-#[derive(Clone)]
-pub enum Lifetime {
-    /// Until it ends: absent devices are waited for, lost ones are opened again.
-    Resident,
-    /// For one command: devices are opened once, at the start, and errors end the command.
-    Command {
-        /// Whether the lidar is needed.
-        lidar: bool,
-        /// Flag that stops whatever moves the axis, such as that of Ctrl-C.
-        interrupt: Arc<AtomicBool>,
-    },
-}
-
-/// What a service is made of.
-pub struct ServiceOptions {
-    /// The configuration.
-    pub config: Config,
-    /// Name of the device's profile.
-    pub name: String,
-    /// The device.
-    pub device: Device,
-    /// How long the devices are kept.
-    pub lifetime: Lifetime,
-    /// The machine.
-    pub environment: Environment,
-}
 
 /// The end of a capture whose motion began.
 pub struct CaptureEnd {
@@ -119,31 +65,6 @@ pub struct CaptureEnd {
 
 /// The end of a capture, or why nothing was recorded.
 pub type CaptureResult = Result<CaptureEnd, Failure>;
-
-/// Who stopped the axis.
-#[derive(Clone, Debug)]
-pub enum Stopped {
-    /// This service, which then asked the drive for its state.
-    Reported(Box<AxisReport>),
-    /// The command that owns this service, which ends now.
-    ByCommand,
-}
-
-/// ServiceState that clients follow. Locked for moments only, never while a device or disk is waited for.
-#[derive(Clone, Default)]
-struct ServiceState {
-    activity: Activity,
-    /// Stop signal of the current lease.
-    stop: Option<StopSignal>,
-    drive: DriveSnapshot,
-    lidar: LidarStatus,
-    disk: DiskStatus,
-    report: Option<AxisReport>,
-    /// Time of the report, unless something has happened since.
-    reported_at: Option<Instant>,
-    /// Whether the axis may move although no lease is held.
-    may_move: bool,
-}
 
 /// The devices and their status.
 pub struct DeviceService {
@@ -405,12 +326,15 @@ impl DeviceService {
     ///
     /// # Errors
     /// [`LeaseError`] where the axis could not be stopped.
-    pub async fn stop_axis(self: &Arc<Self>) -> Result<Stopped, LeaseError> {
+    pub async fn stop_axis(self: &Arc<Self>) -> Result<StopAnswer, LeaseError> {
         if let Lifetime::Command { .. } = self.lifetime {
             self.stop(None);
             self.wait_idle().await;
             return match self.state.borrow().may_move {
-                false => Ok(Stopped::ByCommand),
+                false => Ok(StopAnswer::Command(StoppedCommand {
+                    device: self.name.clone(),
+                    stopped: true,
+                })),
                 true => Err(LeaseError::Failure(
                     Failure::new(
                         Kind::DeviceFault,
@@ -428,7 +352,7 @@ impl DeviceService {
             match self.run_jog(JogRequest::Stop).await {
                 // Another client was quicker: its motion is stopped, too.
                 Err(LeaseError::Busy(_)) if attempts < STOP_ATTEMPTS => {}
-                done => return done.map(|report| Stopped::Reported(Box::new(report))),
+                done => return done.map(|report| StopAnswer::Report(Box::new(report))),
             }
         }
     }
@@ -509,154 +433,6 @@ impl DeviceService {
         self.orders.send(order).map_err(|_| LeaseError::ending())
     }
 
-    // Status.
-
-    /// The status as it is known now, without waiting for a device.
-    #[must_use]
-    pub fn status(&self) -> ServiceStatus {
-        let axis = &self.config.axis;
-        let state = self.state.borrow();
-        ServiceStatus {
-            version: env!("CARGO_PKG_VERSION"),
-            device: self.name.clone(),
-            simulated: self.simulated(),
-            started_s: self.started_s,
-            now_s: now_s(),
-            activity: state.activity.clone(),
-            drive: state.drive.clone(),
-            lidar: state.lidar.clone(),
-            axis: AxisStatus {
-                min_deg: axis.min_deg,
-                max_deg: axis.max_deg,
-                max_speed_deg_s: axis.max_speed_deg_s,
-                min_speed_deg_s: self.axis.gearing.rate(Rpm(1)).0.abs(),
-                max_accel_deg_s2: axis.max_accel_deg_s2,
-                accel_deg_s2: self.device.accel_deg_s2,
-                home_deg: axis.homing.to_deg,
-            },
-            disk: state.disk,
-            clients: ClientsStatus {
-                events: self.events.clients(),
-                dropped: self.events.disconnected(),
-            },
-        }
-    }
-
-    /// Sends the status to all subscribers.
-    pub fn send_status(&self) {
-        if self.events.has_subscribers() {
-            let status = Box::new(self.status());
-            self.events.send(Event::Status { status });
-        }
-    }
-
-    /// The task of the axis.
-    #[must_use]
-    pub fn activity(&self) -> Activity {
-        self.state.borrow().activity.clone()
-    }
-
-    /// The lidar's status.
-    #[must_use]
-    pub fn lidar(&self) -> LidarStatus {
-        self.state.borrow().lidar.clone()
-    }
-
-    /// Angle of the axis, degrees; `None` while unknown.
-    #[must_use]
-    pub fn angle_deg(&self) -> Option<f64> {
-        self.state.borrow().drive.angle_deg
-    }
-
-    /// Sets the status of the disk.
-    pub fn set_disk(&self, disk: DiskStatus) {
-        self.state.send_modify(|state| state.disk = disk);
-    }
-
-    /// The drive's report where it need not be asked: while the axis is busy, and shortly after
-    /// the last report.
-    #[must_use]
-    pub fn known_report(&self) -> Option<AxisReport> {
-        let state = self.state.borrow();
-        let busy = state.activity.doing != AxisTask::Idle;
-        let fresh = |at: Instant| at.elapsed() < REPORT_LIFETIME;
-        if !busy && !state.reported_at.is_some_and(fresh) {
-            return None;
-        }
-        let mut report = state.report.clone()?;
-        report.angle_deg = state.drive.angle_deg;
-        Some(report)
-    }
-
-    fn is_referenced(&self) -> bool {
-        let state = self.state.borrow();
-        state
-            .report
-            .as_ref()
-            .is_some_and(|report| report.referenced)
-    }
-
-    fn set_report(&self, report: Option<AxisReport>) {
-        self.state.send_modify(|state| {
-            state.reported_at = report.is_some().then(Instant::now);
-            state.report = report;
-        });
-    }
-
-    fn update_activity(&self, change: impl FnOnce(&mut Activity)) {
-        self.state.send_modify(|state| change(&mut state.activity));
-    }
-
-    /// Changes the drive's status and reports a change of its state.
-    fn update_drive(&self, change: impl FnOnce(&mut DriveSnapshot)) {
-        let mut changed = None;
-        self.state.send_modify(|state| {
-            let drive = &mut state.drive;
-            let before = (drive.state, drive.problem.clone());
-            change(drive);
-            let after = (drive.state, drive.problem.clone());
-            if before != after {
-                state.reported_at = None;
-                changed = Some(after);
-            }
-        });
-        self.report_device("drive", changed);
-    }
-
-    /// Changes the lidar's status and reports a change of its state.
-    fn update_lidar(&self, change: impl FnOnce(&mut LidarStatus)) {
-        let mut changed = None;
-        self.state.send_modify(|state| {
-            let lidar = &mut state.lidar;
-            let before = (lidar.state, lidar.problem.clone());
-            change(lidar);
-            let after = (lidar.state, lidar.problem.clone());
-            if before != after {
-                state.reported_at = None;
-                changed = Some(after);
-            }
-        });
-        self.report_device("lidar", changed);
-    }
-
-    fn report_device(&self, device: &str, changed: Option<(DeviceHealth, Option<Failure>)>) {
-        let Some((state, problem)) = changed else {
-            return;
-        };
-        match (state, problem) {
-            (_, Some(problem)) => {
-                let text = format!("{device}: {}", problem.message);
-                self.events.message(MessageLevel::Error, text, problem.help);
-            }
-            (DeviceHealth::Connected, None) => {
-                let text = format!("{device}: connected");
-                self.events.message(MessageLevel::Info, text, None);
-            }
-            (DeviceHealth::Absent | DeviceHealth::Fault, None) => {}
-        }
-        self.send_status();
-    }
-
     // The lidar.
 
     /// Takes records of the lidar into its statistics and the preview.
@@ -685,38 +461,6 @@ impl DeviceService {
         let old = std::mem::replace(&mut *locked(&self.receiver), receiver);
         // Joins its thread, without the lock.
         drop(old);
-    }
-
-    /// Updates the lidar's status from the packets received; called every second.
-    pub fn refresh_lidar(&self) {
-        let Some(receiver) = self.receiver() else {
-            return;
-        };
-        let counts = receiver.counts();
-        drop(receiver);
-        let summary = locked(&self.lidar_stats).summary();
-        let (state, problem) = match &counts {
-            Err(failure) => (DeviceHealth::Fault, Some(failure.clone())),
-            Ok(_) if summary.silence >= LIDAR_SILENCE => {
-                let config = lidar_sockets::listen_config(&self.device);
-                (DeviceHealth::Absent, Some(run::silence(&config)))
-            }
-            Ok(_) if summary.packets > 0 => (DeviceHealth::Connected, None),
-            Ok(_) => (DeviceHealth::Absent, None),
-        };
-        self.update_lidar(|lidar| {
-            lidar.state = state;
-            lidar.problem = problem;
-            lidar.model = summary.model;
-            lidar.return_mode = summary.return_mode;
-            lidar.rpm = summary.rpm;
-            lidar.packets = summary.packets;
-            lidar.packets_per_s = summary.packets_per_s;
-            lidar.lost_packets = summary.lost_packets;
-            if let Ok(counts) = counts {
-                lidar.dropped_by_kernel = counts.dropped;
-            }
-        });
     }
 }
 

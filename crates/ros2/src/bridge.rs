@@ -104,7 +104,7 @@ impl Bridge {
 }
 
 fn run(context: &Context, [calls_runtime, events_runtime, scans_runtime]: &[Runtime; 3]) {
-    let router = context.settings.router.endpoint();
+    let router = &context.settings.router;
     let events = context.devices().events();
     let mut reported = false;
     while !context.stop.is_set() {
@@ -144,7 +144,7 @@ fn run(context: &Context, [calls_runtime, events_runtime, scans_runtime]: &[Runt
 pub(crate) fn report_connection(context: &Context, link: &RouterLink) {
     let before = context.counts.is_connected();
     let now = link.update_connection();
-    let router = context.settings.router.endpoint();
+    let router = &context.settings.router;
     let events = context.devices().events();
     match (before, now) {
         (false, true) => {

@@ -80,7 +80,7 @@ pub fn declare(
     service: Service,
     inbox: &Inbox,
 ) -> Result<LivelinessToken, Error> {
-    let name = settings.namespace.resolve(service.name());
+    let name = settings.resolve(service.name());
     let inbox = inbox.clone();
     session
         .declare_queryable(rmw::key(settings, &name, &TRIGGER))

@@ -10,11 +10,10 @@ use cloud::messages::{Cloud, Clouds, Frames, Topic};
 use cloud::{Sink, SinkError};
 use engine::failure::Failure;
 use engine::output::sink_failure;
-use engine::reconstruct::replay::{self, Reconstruction, TimeReference};
+use engine::reconstruct::replay::{self, Reconstruction};
 use engine::reconstruct::source::Source;
-use engine::service::events::{Event, MessageLevel, NoEvent};
+use engine::service::events::{Event, MessageLevel, RecvError};
 use engine::service::scan_record::{ScanState, ScanView};
-use scanner::{Accuracy, TiltSource};
 use tokio::runtime::Runtime;
 
 use crate::Context;
@@ -47,7 +46,7 @@ pub(crate) fn queue_finished(
                     context.counts.missed.fetch_add(1, Ordering::Relaxed);
                 }
             }
-            Ok(Err(NoEvent::Closed)) => return,
+            Ok(Err(RecvError::Closed)) => return,
             _ => {}
         }
     }
@@ -92,21 +91,8 @@ pub(crate) fn run(context: &Context, link: &RouterLink, finished: Receiver<Arc<E
 
 fn send(context: &Context, link: &RouterLink, scan: &ScanView) -> Result<(), Failure> {
     let source = Source::open(&context.scans.log(&scan.id), None)?;
-    let asked = scan.asked.as_ref();
-    let request = Reconstruction {
-        recording: &source,
-        tilt: TiltSource::Log,
-        options: lidar::Options::default(),
-        time: TimeReference::Host,
-        accuracy: asked
-            .and_then(|asked| asked.accuracy().ok())
-            .unwrap_or(Accuracy::Best),
-        pace: None,
-        truth: None,
-        lost_records: 0,
-        interrupt: context.stop.flag(),
-    };
-    let frames = Frames::with_prefix(&context.settings.frame_prefix.0);
+    let request = Reconstruction::of_log(&source, scan.accuracy(), context.stop.flag());
+    let frames = Frames::with_prefix(&context.settings.frame_prefix);
     let mut sink = Clouds::new(frames, |cloud: Cloud<'_>| {
         match link.send(Topic::Points, cloud.bytes) {
             Ok(true) => Ok(()),

@@ -11,7 +11,7 @@ use cloud::{Diagnostic, DiagnosticLevel, Fields};
 use units::{Degrees, Host, Metres, Stamp};
 
 use engine::failure::Failure;
-use engine::service::events::{Event, NoEvent, PointsRequest};
+use engine::service::events::{Event, PointsRequest, RecvError};
 use engine::service::live_preview::PreviewFrame;
 use engine::service::status::{AxisTask, DeviceHealth, ServiceStatus};
 use tokio::runtime::Runtime;
@@ -38,8 +38,8 @@ pub(crate) fn run(context: &Context, link: &RouterLink, runtime: &Runtime) -> Re
     let mut publisher = Publisher {
         context,
         link,
-        node: settings.namespace.resolve("/").trim_matches('/').to_owned(),
-        frames: Frames::with_prefix(&settings.frame_prefix.0),
+        node: settings.resolve("/").trim_matches('/').to_owned(),
+        frames: Frames::with_prefix(&settings.frame_prefix),
         cloud: CloudMessage::new(Fields::NONE),
         cdr: Cdr::new(),
         last_angle: None,
@@ -56,11 +56,11 @@ pub(crate) fn run(context: &Context, link: &RouterLink, runtime: &Runtime) -> Re
         let next = async { tokio::time::timeout(STOP_POLL, subscription.next()).await };
         let event = match runtime.block_on(next) {
             Ok(Ok(event)) => event,
-            Ok(Err(NoEvent::Lagged(missed))) => {
+            Ok(Err(RecvError::Lagged(missed))) => {
                 context.counts.missed.fetch_add(missed, Ordering::Relaxed);
                 continue;
             }
-            Ok(Err(NoEvent::Closed)) => return Ok(()),
+            Ok(Err(RecvError::Closed)) => return Ok(()),
             Err(_elapsed) => continue,
         };
         let sent = match &*event {

@@ -61,7 +61,7 @@ const fn priority(topic: Topic) -> Priority {
 fn name(settings: &Ros2, topic: Topic) -> String {
     match topic {
         Topic::Transforms | Topic::StaticTransforms | Topic::Diagnostics => topic.name().to_owned(),
-        _ => settings.namespace.resolve(topic.name()),
+        _ => settings.resolve(topic.name()),
     }
 }
 
@@ -90,7 +90,7 @@ impl RouterLink {
         let config = serde_json::json!({
             "mode": "client",
             "connect": {
-                "endpoints": [settings.router.endpoint()],
+                "endpoints": [settings.router],
                 "timeout_ms": CONNECT_MS,
                 "retry": {
                     "period_init_ms": RETRY_MS.0,

@@ -61,7 +61,7 @@ fn mangled(name: &str) -> String {
 /// Key of a topic or service whose full name is `name`.
 #[must_use]
 pub fn key(settings: &Ros2, name: &str, kind: &MessageType) -> String {
-    let domain = settings.domain.0;
+    let domain = settings.domain;
     let name = name.trim_matches('/');
     format!("{domain}/{name}/{}/{}", type_name(kind), kind.hash)
 }
@@ -106,7 +106,7 @@ pub fn token(
 
 fn token_begin(settings: &Ros2, zid: &str, id: u32, entity: &str) -> String {
     // No security enclave is the root.
-    let (domain, namespace) = (settings.domain.0, mangled(settings.namespace.name()));
+    let (domain, namespace) = (settings.domain, mangled(&settings.namespace));
     format!("@ros2_lv/{domain}/{zid}/{NODE_ID}/{id}/{entity}/%/{namespace}/{NODE}")
 }
 

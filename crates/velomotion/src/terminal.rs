@@ -51,22 +51,27 @@ impl Progress {
     /// Starts the bar of a move.
     pub fn begin_move(&mut self, plan: &MovePlan) {
         self.end_move();
-        if self.quiet || !self.terminal {
-            return;
-        }
         let length = plan.duration.as_nanos() / MILLISECONDS;
-        let bar = ProgressBar::with_draw_target(
-            Some(length.max(1).unsigned_abs()),
-            ProgressDrawTarget::stderr_with_hz(20),
-        );
-        if let Ok(style) = ProgressStyle::with_template("{bar:40} {msg}") {
-            bar.set_style(style);
+        self.sweep = self
+            .bar(length.unsigned_abs(), "{bar:40} {msg}")
+            .map(|bar| MoveBar {
+                bar,
+                plan: *plan,
+                started: None,
+            });
+    }
+
+    /// A bar, if there is a terminal to draw it on.
+    fn bar(&self, length: u64, template: &str) -> Option<ProgressBar> {
+        if self.quiet || !self.terminal {
+            return None;
         }
-        self.sweep = Some(MoveBar {
-            bar,
-            plan: *plan,
-            started: None,
-        });
+        let target = ProgressDrawTarget::stderr_with_hz(20);
+        let bar = ProgressBar::with_draw_target(Some(length.max(1)), target);
+        match ProgressStyle::with_template(template) {
+            Ok(style) => Some(bar.with_style(style)),
+            Err(_) => Some(bar),
+        }
     }
 
     /// Updates the bar: the axis is at `angle` at `now`, and `packets` lidar packets were received.
@@ -92,16 +97,7 @@ impl Progress {
     /// Starts the bar of a simulation of `seconds`.
     pub fn begin_run(&mut self, seconds: f64) {
         self.end_run();
-        if self.quiet || !self.terminal {
-            return;
-        }
-        let length = ((seconds * 1e3) as u64).max(1);
-        let bar =
-            ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::stderr_with_hz(20));
-        if let Ok(style) = ProgressStyle::with_template("{bar:40} {msg}, {eta} left") {
-            bar.set_style(style);
-        }
-        self.run = Some(bar);
+        self.run = self.bar((seconds * 1e3) as u64, "{bar:40} {msg}, {eta} left");
     }
 
     /// Updates the bar of a simulation.
@@ -118,17 +114,7 @@ impl Progress {
     /// Starts the bar of `count` items.
     pub fn begin_count(&mut self, count: u64) {
         self.end_run();
-        if self.quiet || !self.terminal {
-            return;
-        }
-        let bar = ProgressBar::with_draw_target(
-            Some(count.max(1)),
-            ProgressDrawTarget::stderr_with_hz(20),
-        );
-        if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos} of {len}, {eta} left") {
-            bar.set_style(style);
-        }
-        self.run = Some(bar);
+        self.run = self.bar(count, "{bar:40} {pos} of {len}, {eta} left");
     }
 
     /// Updates the bar of items.

@@ -16,7 +16,7 @@ use engine::service::{AxisLease, DeviceService, LeaseError};
 use serde::de::DeserializeOwned;
 
 use super::Api;
-use super::refusal::{Reason, Refusal};
+use super::refusal::Refusal;
 use crate::plan as plans;
 use crate::state::{Counters, DaemonState};
 
@@ -32,7 +32,7 @@ pub fn body<T: DeserializeOwned>(headers: &HeaderMap, body: &Bytes) -> Result<T,
     if !kind.is_some_and(|kind| kind.eq_ignore_ascii_case("application/json")) {
         return Err(Refusal::new(
             StatusCode::UNSUPPORTED_MEDIA_TYPE,
-            Reason::Usage,
+            Kind::Usage,
             "expected a body in JSON",
             "send Content-Type: application/json",
         ));

@@ -2,24 +2,23 @@
 //! from there, never all of it in memory.
 
 use std::fs::File;
-use std::io::{Read, Seek, SeekFrom};
+use std::io::{Seek, SeekFrom};
 use std::path::{Path as FilePath, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
 
-use axum::body::{Body, Bytes};
+use axum::body::Body;
 use axum::extract::rejection::QueryRejection;
 use axum::extract::{Path, Query, State};
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use cloud::Fields;
 use cloud::formats::Format;
-use futures_util::stream::unfold;
-use scanner::{Accuracy, TiltSource};
+use futures_util::stream::try_unfold;
+use scanner::Accuracy;
 use serde::Deserialize;
-use tokio::runtime::Handle;
-use tokio::sync::{OwnedSemaphorePermit, mpsc};
+use tokio::io::AsyncReadExt;
+use tokio::sync::OwnedSemaphorePermit;
 
 use super::Api;
 use super::refusal::Refusal;
@@ -28,14 +27,11 @@ use crate::plan;
 use crate::scans::{LOG, THUMBNAIL};
 use engine::failure::{Failure, Kind};
 use engine::output::Buffered;
-use engine::reconstruct::replay::TimeReference;
 use engine::reconstruct::replay::{self, Reconstruction};
 use engine::reconstruct::source::Source;
 
 /// Bytes that are read at once.
 const PIECE: usize = 256 << 10;
-/// Pieces that wait for the client.
-const PIECES: usize = 2;
 
 /// Query of `GET /scans/ID/cloud`.
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -72,12 +68,12 @@ pub async fn cloud(
         && plain
         && let Ok(stored) = open(api.state.cloud(&id)).await?
     {
-        return stream(&api, stored, &file_name, content_type("ply"), permit);
+        return stream(stored, &file_name, content_type("ply"), permit);
     }
     let making = Arc::clone(&api.making).try_acquire_owned();
     let making = making.map_err(|_| Refusal::too_many("clouds being made"))?;
     let (points, state) = (record.points, Arc::clone(&api.state));
-    let accuracy = record.head.asked.and_then(|asked| asked.accuracy().ok());
+    let accuracy = record.accuracy();
     let mut fields = Fields::FILE;
     if wanted.uncertainty {
         fields |= Fields::SD;
@@ -98,7 +94,7 @@ pub async fn cloud(
             (state.scans.folder(), &quota.map_err(Refusal::no_room)?),
             format,
             fields,
-            accuracy.unwrap_or(Accuracy::Best),
+            accuracy,
             &interrupt,
         )
     });
@@ -110,13 +106,7 @@ pub async fn cloud(
         .help("run velomotion replay on the log with -vv and report the messages")
     })??;
     drop(client);
-    stream(
-        &api,
-        file,
-        &file_name,
-        content_type(format.extension()),
-        permit,
-    )
+    stream(file, &file_name, content_type(format.extension()), permit)
 }
 
 /// Interrupts the making of a cloud when its client disconnects.
@@ -146,17 +136,7 @@ fn make(
         .help("free some space on that disk")
     };
     let source = Source::open(log, None)?;
-    let request = Reconstruction {
-        recording: &source,
-        tilt: TiltSource::Log,
-        options: lidar::Options::default(),
-        time: TimeReference::Host,
-        accuracy,
-        pace: None,
-        truth: None,
-        lost_records: 0,
-        interrupt,
-    };
+    let request = Reconstruction::of_log(&source, accuracy, interrupt);
     let mut file = io::files::scratch_in(folder).map_err(cannot)?;
     let out = QuotaFile::new(file.try_clone().map_err(cannot)?, Arc::clone(quota));
     let out = Buffered::new(out);
@@ -184,7 +164,7 @@ pub async fn log(State(api): State<Arc<Api>>, Path(id): Path<String>) -> Result<
     let file = open(api.state.log(&id)).await?;
     let file = file.map_err(|_| Refusal::no_file(LOG))?;
     let name = format!("velomotion-{id}.pcapng");
-    stream(&api, file, &name, content_type("pcapng"), permit)
+    stream(file, &name, content_type("pcapng"), permit)
 }
 
 /// `GET /scans/ID/thumbnail`.
@@ -198,7 +178,7 @@ pub async fn thumbnail(
     let file = open(api.state.scans.place(&id).join(THUMBNAIL)).await?;
     let file = file.map_err(|_| Refusal::no_file(THUMBNAIL))?;
     let name = format!("velomotion-{id}.png");
-    stream(&api, file, &name, content_type("png"), permit)
+    stream(file, &name, content_type("png"), permit)
 }
 
 fn downloading(api: &Api) -> Result<OwnedSemaphorePermit, Refusal> {
@@ -228,23 +208,22 @@ async fn open(path: PathBuf) -> Result<std::io::Result<Opened>, Refusal> {
 
 /// Sends the rest of a file as it is now, a piece at a time: as fast as the client takes it.
 fn stream(
-    api: &Api,
     (file, length): Opened,
     name: &str,
     content: &'static str,
     permit: OwnedSemaphorePermit,
 ) -> Result<Response, Refusal> {
-    let (pieces, inbox) = mpsc::channel(PIECES);
-    let (wait, runtime) = (api.waits.download, Handle::current());
-    tokio::task::spawn_blocking(move || {
-        let _permit = permit;
-        // Whoever reads the stream sees that it ends too early.
-        read(file, length, &pieces, wait, &runtime)
-    });
-    let body = Body::from_stream(unfold(inbox, |mut inbox| async move {
-        let piece: std::io::Result<Bytes> = inbox.recv().await?;
-        Some((piece, inbox))
-    }));
+    // A log may grow while it is read: the announced length is sent.
+    let file = tokio::fs::File::from_std(file).take(length);
+    let body = Body::from_stream(try_unfold(
+        (file, permit),
+        |(mut file, permit)| async move {
+            let mut piece = vec![0; PIECE];
+            let read = file.read(&mut piece).await?;
+            piece.truncate(read);
+            Ok::<_, std::io::Error>((read > 0).then_some((piece, (file, permit))))
+        },
+    ));
     let headers = [
         (header::CONTENT_TYPE, content.to_owned()),
         (header::CONTENT_LENGTH, length.to_string()),
@@ -255,33 +234,6 @@ fn stream(
         (header::CACHE_CONTROL, "no-store".to_owned()),
     ];
     Ok((StatusCode::OK, headers, body).into_response())
-}
-
-fn read(
-    file: File,
-    length: u64,
-    pieces: &mpsc::Sender<std::io::Result<Bytes>>,
-    wait: Duration,
-    runtime: &Handle,
-) {
-    // A log may grow while it is read: what was announced is sent.
-    let mut file = file.take(length);
-    loop {
-        let mut piece = vec![0; PIECE];
-        let read = match file.read(&mut piece) {
-            Ok(0) => return,
-            Ok(read) => read,
-            Err(error) => {
-                let _ = runtime.block_on(pieces.send(Err(error)));
-                return;
-            }
-        };
-        piece.truncate(read);
-        let sent = runtime.block_on(tokio::time::timeout(wait, pieces.send(Ok(piece.into()))));
-        if !matches!(sent, Ok(Ok(()))) {
-            return;
-        }
-    }
 }
 
 fn content_type(extension: &str) -> &'static str {

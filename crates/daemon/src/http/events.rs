@@ -10,11 +10,13 @@ use axum::extract::ws::{CloseFrame, Message, Utf8Bytes, WebSocket, WebSocketUpgr
 use axum::extract::{Query, State};
 use axum::http::StatusCode;
 use axum::response::Response;
-use engine::service::events::{Event, NoEvent, PointsRequest, Subscription};
+use engine::service::events::{Event, PointsRequest, RecvError, Subscription};
 use serde::Deserialize;
 
+use engine::failure::Kind;
+
 use super::Api;
-use super::refusal::{Reason, Refusal};
+use super::refusal::Refusal;
 use crate::limits::CLIENT_MESSAGE_BYTES;
 
 /// Highest thinning of points: one in this many is sent.
@@ -60,7 +62,7 @@ pub async fn events(
     let upgrade = upgrade.map_err(|rejection| {
         Refusal::new(
             StatusCode::BAD_REQUEST,
-            Reason::Usage,
+            Kind::Usage,
             rejection.body_text(),
             "this path is for WebSockets",
         )
@@ -134,8 +136,8 @@ async fn forward(
                 Ok(Event::Points(_)) if !query.points => continue,
                 Ok(Event::Points(frame)) => Message::Binary(frame.bytes(query.thin)),
                 Ok(event) => Message::Text(json(event)),
-                Err(NoEvent::Lagged(_)) => return Disconnect::Lagged,
-                Err(NoEvent::Closed) => return Disconnect::Ending,
+                Err(RecvError::Lagged(_)) => return Disconnect::Lagged,
+                Err(RecvError::Closed) => return Disconnect::Ending,
             },
             received = socket.recv() => match received {
                 Some(Ok(Message::Close(_)) | Err(_)) | None => return Disconnect::Gone,

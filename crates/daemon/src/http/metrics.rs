@@ -13,8 +13,10 @@ use prometheus_client::metrics::counter::ConstCounter;
 use prometheus_client::metrics::gauge::ConstGauge;
 use prometheus_client::registry::Registry;
 
+use engine::failure::Kind;
+
 use super::Api;
-use super::refusal::{Reason, Refusal};
+use super::refusal::Refusal;
 use crate::state::DaemonState;
 use engine::service::status::{AxisTask, DeviceHealth};
 
@@ -26,7 +28,7 @@ pub async fn metrics(State(api): State<Arc<Api>>) -> Result<Response, Refusal> {
     text::encode(&mut metrics, &registry).map_err(|error| {
         Refusal::new(
             StatusCode::INTERNAL_SERVER_ERROR,
-            Reason::Incomplete,
+            Kind::Incomplete,
             error.to_string(),
             "this is a defect of the program",
         )

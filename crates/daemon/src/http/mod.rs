@@ -22,7 +22,7 @@ use axum::http::StatusCode;
 use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{MethodRouter, delete, get, post};
-use engine::failure::Failure;
+use engine::failure::{Failure, Kind};
 use engine::service::DeviceService;
 use tokio::sync::{Semaphore, watch};
 
@@ -140,7 +140,7 @@ pub(crate) fn serve(
 async fn in_use() -> Refusal {
     Refusal::new(
         StatusCode::CONFLICT,
-        refusal::Reason::NoDevice,
+        Kind::NoDevice,
         "another velomotion command uses the device",
         "wait for its end, or stop it (tilt stop)",
     )
@@ -149,7 +149,7 @@ async fn in_use() -> Refusal {
 async fn no_method() -> Refusal {
     Refusal::new(
         StatusCode::METHOD_NOT_ALLOWED,
-        refusal::Reason::Usage,
+        Kind::Usage,
         "this path does not have that method",
         "GET /api/v1/openapi.json lists paths and methods",
     )
@@ -180,7 +180,7 @@ pub async fn with_disk<T: Send + 'static>(
     tokio::task::spawn_blocking(what).await.map_err(|_| {
         Refusal::new(
             StatusCode::INTERNAL_SERVER_ERROR,
-            refusal::Reason::Incomplete,
+            Kind::Incomplete,
             "a defect of the program",
             "run the daemon with -vv and report the messages",
         )
@@ -199,7 +199,7 @@ pub fn json(status: StatusCode, body: &impl serde::Serialize) -> Response {
         }
         Err(error) => Refusal::new(
             StatusCode::INTERNAL_SERVER_ERROR,
-            refusal::Reason::Incomplete,
+            Kind::Incomplete,
             format!("the answer has no JSON form: {error}"),
             "this is a defect of the program",
         )

@@ -8,6 +8,8 @@ use axum::http::{HeaderMap, Method, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
 
+use engine::failure::Kind;
+
 use super::Api;
 use super::captures;
 use super::refusal::{Reason, Refusal};
@@ -147,7 +149,7 @@ pub async fn login(
     let cookie = api.sessions.begin().map_err(|error| {
         Refusal::new(
             StatusCode::CONFLICT,
-            Reason::Incomplete,
+            Kind::Incomplete,
             format!("the system gives no random bytes: {error}"),
             "use Authorization: Bearer TOKEN",
         )

@@ -24,18 +24,6 @@ pub struct Refusal {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Reason {
-    /// Invalid request.
-    Usage,
-    /// A file is missing or invalid.
-    BadInput,
-    /// A device is absent.
-    NoDevice,
-    /// A device reports a fault or does not answer.
-    DeviceFault,
-    /// Not all could be done.
-    Incomplete,
-    /// The operation was stopped.
-    Interrupted,
     /// The axis is busy.
     Busy,
     /// No such scan, file or path.
@@ -44,18 +32,14 @@ pub enum Reason {
     Denied,
     /// A limit is exceeded.
     Limit,
+    /// A failure.
+    #[serde(untagged)]
+    Failure(Kind),
 }
 
 impl From<Kind> for Reason {
     fn from(kind: Kind) -> Self {
-        match kind {
-            Kind::Usage => Self::Usage,
-            Kind::BadInput => Self::BadInput,
-            Kind::NoDevice => Self::NoDevice,
-            Kind::DeviceFault => Self::DeviceFault,
-            Kind::Incomplete => Self::Incomplete,
-            Kind::Interrupted => Self::Interrupted,
-        }
+        Self::Failure(kind)
     }
 }
 
@@ -64,7 +48,7 @@ impl Refusal {
     #[must_use]
     pub fn new(
         status: StatusCode,
-        kind: Reason,
+        kind: impl Into<Reason>,
         error: impl Into<String>,
         help: impl Into<String>,
     ) -> Self {
@@ -72,7 +56,7 @@ impl Refusal {
             status,
             error: error.into(),
             help: Some(help.into()),
-            kind,
+            kind: kind.into(),
         }
     }
 
@@ -81,7 +65,7 @@ impl Refusal {
     pub fn usage(error: impl Into<String>) -> Self {
         Self::new(
             StatusCode::BAD_REQUEST,
-            Reason::Usage,
+            Kind::Usage,
             error,
             "GET /api/v1/openapi.json describes all requests",
         )

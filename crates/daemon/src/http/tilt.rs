@@ -6,8 +6,8 @@ use axum::body::Bytes;
 use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::Response;
-use engine::capture::jog::{AxisReport, JogRequest};
-use engine::service::{DeviceService, Stopped};
+use engine::capture::jog::JogRequest;
+use engine::service::DeviceService;
 use serde::{Deserialize, Serialize};
 
 use super::captures::body;
@@ -32,26 +32,6 @@ pub struct Goto {
 /// The default of `tilt goto --speed`.
 const fn default_speed() -> f64 {
     10.0
-}
-
-/// Answer to `POST /tilt/stop` of a service that ends with its command.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct StoppedCommand {
-    /// Name of the device's profile.
-    pub device: String,
-    /// Whether the axis was stopped.
-    pub stopped: bool,
-}
-
-/// Answer to `POST /tilt/stop`.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(untagged)]
-pub enum StopAnswer {
-    /// Of a daemon: the drive's state.
-    Report(Box<AxisReport>),
-    /// Of a command.
-    Command(StoppedCommand),
 }
 
 fn ok(answer: &impl Serialize) -> Response {
@@ -93,14 +73,7 @@ pub async fn goto(
 
 /// `POST /tilt/stop`: stops any motion and sets the brake.
 pub async fn stop(State(service): Service) -> Result<Response, Refusal> {
-    let answer = match service.stop_axis().await? {
-        Stopped::Reported(report) => StopAnswer::Report(report),
-        Stopped::ByCommand => StopAnswer::Command(StoppedCommand {
-            device: service.device().0.to_owned(),
-            stopped: true,
-        }),
-    };
-    Ok(ok(&answer))
+    Ok(ok(&service.stop_axis().await?))
 }
 
 /// `POST /tilt/clear`.

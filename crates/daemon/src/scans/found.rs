@@ -84,18 +84,17 @@ fn unreadable(place: &Path, name: &str, error: &dyn std::fmt::Display) -> ScanRe
 
 /// What a folder says of itself.
 fn of_folder(place: &Path, name: &str) -> ScanRecord {
-    ScanRecord::new(ScanHead {
+    let head = ScanHead {
         id: name.to_owned(),
-        name: None,
         state: ScanState::Failed,
-        why: None,
-        waits_for_room: false,
         started_s: modified_s(&place.join(LOG)),
         simulated: name.contains("simulated"),
-        asked: None,
-        points: None,
-        duration_s: None,
-    })
+        ..ScanHead::default()
+    };
+    ScanRecord {
+        head,
+        ..ScanRecord::default()
+    }
 }
 
 /// What is said of a scan that nobody ended.

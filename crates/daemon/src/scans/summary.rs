@@ -83,19 +83,18 @@ mod tests {
         has_log: bool,
         no_cloud: Option<String>,
     ) -> String {
-        let mut record = ScanRecord::new(ScanHead {
-            id: "hall".to_owned(),
-            name: None,
-            state,
-            why: Some(why),
-            waits_for_room: waits,
-            started_s: 0.0,
-            simulated: true,
-            asked: None,
-            points: None,
-            duration_s: None,
-        });
-        record.no_cloud = no_cloud;
+        let record = ScanRecord {
+            head: ScanHead {
+                id: "hall".to_owned(),
+                state,
+                why: Some(why),
+                waits_for_room: waits,
+                simulated: true,
+                ..ScanHead::default()
+            },
+            no_cloud,
+            ..ScanRecord::default()
+        };
         of(&record, Path::new(PLACE), has_log).unwrap()
     }
 

@@ -54,10 +54,30 @@ pub struct DriveFault {
     pub remedy: Option<String>,
 }
 
-/// A request to look at or move the axis outside a capture.
+/// Answer to `POST /tilt/stop` of a service that ends with its command.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StoppedCommand {
+    /// Name of the device's profile.
+    pub device: String,
+    /// Whether the axis was stopped.
+    pub stopped: bool,
+}
+
+/// Answer to `POST /tilt/stop`.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum StopAnswer {
+    /// Of a daemon: the drive's state.
+    Report(Box<AxisReport>),
+    /// Of a command.
+    Command(StoppedCommand),
+}
+
+/// A request to read the drive or move the axis outside a capture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum JogRequest {
-    /// AxisReport the state; nothing moves.
+    /// Report the state; nothing moves.
     Status,
     /// Find the zero position at the limit switch.
     Home,

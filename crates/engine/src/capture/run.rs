@@ -11,7 +11,7 @@ use drive::{CommandProgress, DriveClient, DriveEvent, ShaftSample};
 use io::port::{Port, RecordingPort};
 use io::udp::ListenConfig;
 use protocol::record::{DriveLink, Record};
-use scanner::{ScanConfig, TiltSource};
+use scanner::ScanConfig;
 use sim::Truth;
 use units::{Degrees, Host, Stamp};
 
@@ -24,7 +24,7 @@ use crate::devices::lidar_receiver::LidarReceiver;
 use crate::devices::lidar_sockets::listen_config;
 use crate::failure::{Failure, Kind};
 use crate::output::Target;
-use crate::reconstruct::replay::{self, Reconstruction, TimeReference};
+use crate::reconstruct::replay::{self, Reconstruction};
 use crate::reconstruct::report::{Reception, ScanReport};
 use crate::reconstruct::source::Source;
 
@@ -237,15 +237,9 @@ pub fn cloud(
 ) -> Result<ScanReport, Failure> {
     let source = Source::open(&plan.log, None)?;
     let request = Reconstruction {
-        recording: &source,
-        tilt: TiltSource::Log,
-        options: lidar::Options::default(),
-        time: TimeReference::Host,
-        accuracy: plan.accuracy,
-        pace: None,
         truth,
         lost_records,
-        interrupt,
+        ..Reconstruction::of_log(&source, plan.accuracy, interrupt)
     };
     replay::make(&request, target)
 }

@@ -2,7 +2,8 @@
 //!
 //! Every build parses it, so that a build without ROS 2 can report what it lacks.
 
-use serde::Deserialize;
+use serde::de::Error;
+use serde::{Deserialize, Deserializer};
 
 use crate::capture_request::CaptureRequest;
 
@@ -12,140 +13,99 @@ const LONGEST: usize = 200;
 const LAST_DOMAIN: u8 = 232;
 
 /// The `[daemon.ros2]` table.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Ros2 {
-    /// The zenoh router.
-    pub router: Router,
+    /// The zenoh router in zenoh's notation: `tcp/HOST:PORT`.
+    #[serde(deserialize_with = "router")]
+    pub router: String,
     /// `ROS_DOMAIN_ID` of the subscribers.
-    pub domain: Domain,
-    /// Namespace of the node and its topics.
-    pub namespace: Namespace,
+    #[serde(deserialize_with = "domain")]
+    pub domain: u8,
+    /// Namespace of the node and its topics: `/`, or names each preceded by a slash.
+    #[serde(deserialize_with = "namespace")]
+    pub namespace: String,
     /// Prefix of the frame names.
-    pub frame_prefix: FramePrefix,
+    #[serde(deserialize_with = "frame_prefix")]
+    pub frame_prefix: String,
     /// Capture that the service `start_capture` starts; without it the service is absent.
     pub capture: Option<CaptureRequest>,
 }
 
-/// An endpoint in zenoh's notation: `tcp/HOST:PORT`.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
-#[serde(try_from = "String")]
-pub struct Router(String);
-
-impl Default for Router {
-    /// Default address of `rmw_zenohd`.
+impl Default for Ros2 {
     fn default() -> Self {
-        Self("tcp/localhost:7447".to_owned())
-    }
-}
-
-impl Router {
-    /// The endpoint.
-    #[must_use]
-    pub fn endpoint(&self) -> &str {
-        &self.0
-    }
-}
-
-impl TryFrom<String> for Router {
-    type Error = String;
-
-    fn try_from(text: String) -> Result<Self, String> {
-        let place = text
-            .strip_prefix("tcp/")
-            .and_then(|place| place.rsplit_once(':'));
-        let allowed = |byte: u8| byte.is_ascii_alphanumeric() || b"-._:[]%".contains(&byte);
-        let is_host = |host: &str| (1..=LONGEST).contains(&host.len()) && host.bytes().all(allowed);
-        let is_port = |port: &str| port.parse::<u16>().is_ok_and(|port| port > 0);
-        match place {
-            Some((host, port)) if is_host(host) && is_port(port) => Ok(Self(text)),
-            _ => Err(format!(
-                "router: expected tcp/HOST:PORT, such as tcp/localhost:7447, got {text:?}"
-            )),
+        Self {
+            // Default address of `rmw_zenohd`.
+            router: "tcp/localhost:7447".to_owned(),
+            domain: 0,
+            namespace: "/".to_owned(),
+            frame_prefix: String::new(),
+            capture: None,
         }
     }
 }
 
-/// A ROS domain.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(try_from = "u64")]
-pub struct Domain(pub u8);
-
-impl TryFrom<u64> for Domain {
-    type Error = String;
-
-    fn try_from(number: u64) -> Result<Self, String> {
-        let small = u8::try_from(number).ok().filter(|n| *n <= LAST_DOMAIN);
-        small
-            .map(Self)
-            .ok_or_else(|| format!("domain: expected 0 to {LAST_DOMAIN}, got {number}"))
-    }
-}
-
-/// A namespace: `/`, or names each preceded by a slash.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
-#[serde(try_from = "String")]
-pub struct Namespace(String);
-
-impl Default for Namespace {
-    fn default() -> Self {
-        Self("/".to_owned())
-    }
-}
-
-impl Namespace {
-    /// The namespace with its leading slash.
-    #[must_use]
-    pub fn name(&self) -> &str {
-        &self.0
-    }
-
+impl Ros2 {
     /// Absolute name of `topic`, which begins with a slash.
     #[must_use]
     pub fn resolve(&self, topic: &str) -> String {
-        match self.0.as_str() {
-            "/" => topic.to_owned(),
-            namespace => format!("{namespace}{topic}"),
-        }
+        format!("{}{topic}", self.namespace.trim_end_matches('/'))
     }
 }
 
-impl TryFrom<String> for Namespace {
-    type Error = String;
+/// The text, if it is valid.
+fn checked<'de, D: Deserializer<'de>>(
+    from: D,
+    expected: &str,
+    is_valid: impl FnOnce(&str) -> bool,
+) -> Result<String, D::Error> {
+    let text = String::deserialize(from)?;
+    if is_valid(&text) {
+        return Ok(text);
+    }
+    Err(D::Error::custom(format!("{expected}, got {text:?}")))
+}
 
-    fn try_from(text: String) -> Result<Self, String> {
+fn router<'de, D: Deserializer<'de>>(from: D) -> Result<String, D::Error> {
+    let expected = "router: expected tcp/HOST:PORT, such as tcp/localhost:7447";
+    checked(from, expected, |text| {
+        let allowed = |byte: u8| byte.is_ascii_alphanumeric() || b"-._:[]%".contains(&byte);
+        let is_host = |host: &str| (1..=LONGEST).contains(&host.len()) && host.bytes().all(allowed);
+        let is_port = |port: &str| port.parse::<u16>().is_ok_and(|port| port > 0);
+        let place = text.strip_prefix("tcp/");
+        let place = place.and_then(|place| place.rsplit_once(':'));
+        place.is_some_and(|(host, port)| is_host(host) && is_port(port))
+    })
+}
+
+fn domain<'de, D: Deserializer<'de>>(from: D) -> Result<u8, D::Error> {
+    let number = i64::deserialize(from)?;
+    let domain = u8::try_from(number).ok().filter(|n| *n <= LAST_DOMAIN);
+    domain.ok_or_else(|| {
+        D::Error::custom(format!("domain: expected 0 to {LAST_DOMAIN}, got {number}"))
+    })
+}
+
+fn namespace<'de, D: Deserializer<'de>>(from: D) -> Result<String, D::Error> {
+    let expected = "namespace: expected / or names of letters, digits and _ with a slash before each, such as /left";
+    checked(from, expected, |text| {
         let is_name = |name: &str| {
             let begins = name.bytes().next().is_some_and(|b| !b.is_ascii_digit());
             begins && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
         };
         let names = text.strip_prefix('/');
-        let whole = names.is_some_and(|names| names.is_empty() || names.split('/').all(is_name));
-        if whole && text.len() <= LONGEST {
-            return Ok(Self(text));
-        }
-        Err(format!(
-            "namespace: expected / or names of letters, digits and _ with a slash before each, such as /left, got {text:?}"
-        ))
-    }
+        let complete = names.is_some_and(|names| names.is_empty() || names.split('/').all(is_name));
+        complete && text.len() <= LONGEST
+    })
 }
 
-/// Prefix of frame names; empty by default.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(try_from = "String")]
-pub struct FramePrefix(pub String);
-
-impl TryFrom<String> for FramePrefix {
-    type Error = String;
-
-    fn try_from(text: String) -> Result<Self, String> {
+fn frame_prefix<'de, D: Deserializer<'de>>(from: D) -> Result<String, D::Error> {
+    let expected =
+        "frame_prefix: expected letters, digits, _, - and /, no slash first, such as left/";
+    checked(from, expected, |text| {
         let allowed = |byte: u8| byte.is_ascii_alphanumeric() || b"_-/".contains(&byte);
-        if text.len() <= LONGEST && text.bytes().all(allowed) && !text.starts_with('/') {
-            return Ok(Self(text));
-        }
-        Err(format!(
-            "frame_prefix: expected letters, digits, _, - and /, no slash first, such as left/, got {text:?}"
-        ))
-    }
+        text.len() <= LONGEST && text.bytes().all(allowed) && !text.starts_with('/')
+    })
 }
 
 #[cfg(test)]
@@ -159,9 +119,9 @@ mod tests {
     #[test]
     fn nothing_said_is_the_router_of_this_machine_and_no_motion() {
         let usual = settings("").unwrap();
-        assert_eq!(usual.router.endpoint(), "tcp/localhost:7447");
-        assert_eq!((usual.domain.0, usual.namespace.name()), (0, "/"));
-        assert_eq!(usual.namespace.resolve("/tf"), "/tf");
+        assert_eq!(usual.router, "tcp/localhost:7447");
+        assert_eq!((usual.domain, usual.namespace.as_str()), (0, "/"));
+        assert_eq!(usual.resolve("/tf"), "/tf");
         assert!(usual.capture.is_none());
     }
 
@@ -172,7 +132,7 @@ mod tests {
              [capture]\nspeed_deg_s = 20.0\nboth_ways = true",
         )
         .unwrap();
-        assert_eq!(said.namespace.resolve("/x/y"), "/left/top_2/x/y");
+        assert_eq!(said.resolve("/x/y"), "/left/top_2/x/y");
         assert!(said.capture.unwrap().both_ways);
     }
 

@@ -258,7 +258,7 @@ pub fn contents(
     let counts = &pass.counts;
     let tilt = drive.map(|(link, samples)| TiltReport {
         samples,
-        transport: transport(link).to_owned(),
+        transport: link_name(link).to_owned(),
     });
     Contents {
         model: stats.model.map(|model| model.name.to_owned()),
@@ -343,7 +343,9 @@ fn warnings(stats: &Stats, pass: &Pass, steps: &[ClockStep]) -> Vec<String> {
     warnings
 }
 
-fn transport(link: DriveLink) -> &'static str {
+/// Name of a link.
+#[must_use]
+pub const fn link_name(link: DriveLink) -> &'static str {
     match link {
         DriveLink::Usb => "usb",
         DriveLink::Rs232 => "rs232",

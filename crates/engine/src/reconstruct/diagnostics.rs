@@ -17,9 +17,9 @@ pub fn of(scan: &ScanReport) -> Vec<Diagnostic> {
 }
 
 /// Names and values of a check, without unknown values.
-struct Values(Vec<(String, String)>);
+struct NamedValues(Vec<(String, String)>);
 
-impl Values {
+impl NamedValues {
     const fn new() -> Self {
         Self(Vec::new())
     }
@@ -37,7 +37,7 @@ impl Values {
     }
 }
 
-fn check(name: &str, doubt: Option<String>, fine: &str, values: Values) -> Diagnostic {
+fn check(name: &str, doubt: Option<String>, fine: &str, values: NamedValues) -> Diagnostic {
     Diagnostic {
         name: format!("velomotion: {name}"),
         level: match doubt {
@@ -53,7 +53,7 @@ fn devices(contents: &Contents) -> Diagnostic {
     let doubt = contents
         .simulated
         .then(|| "SIMULATED: software devices, not a scan of anything real".to_owned());
-    let values = Values::new().with("simulated", contents.simulated);
+    let values = NamedValues::new().with("simulated", contents.simulated);
     check("devices", doubt, "real devices", values)
 }
 
@@ -62,7 +62,7 @@ fn lidar(scan: &ScanReport) -> Diagnostic {
     let lost = contents.lost_packets.saturating_add(scan.lost_records);
     let doubt = (lost > 0).then(|| format!("{lost} packets were lost"));
     let packets = contents.packets;
-    let values = Values::new()
+    let values = NamedValues::new()
         .with_some("model", contents.model.as_ref())
         .with_some("return_mode", contents.return_mode.as_ref())
         .with_some("rpm", contents.rpm)
@@ -79,7 +79,7 @@ fn lidar(scan: &ScanReport) -> Diagnostic {
 fn clock(sync: &SyncReport) -> Diagnostic {
     let steps = sync.steps.len();
     let doubt = (steps > 0).then(|| format!("clocks were set {steps} times, which was undone"));
-    let values = Values::new()
+    let values = NamedValues::new()
         .with("method", sync.clock_method)
         .with("residual_us", sync.clock_residual_us)
         .with("bound_us", sync.clock_bound_us)
@@ -92,7 +92,7 @@ fn clock(sync: &SyncReport) -> Diagnostic {
 fn tilt(scan: &ScanReport) -> Diagnostic {
     let sync = &scan.sync;
     let tilt = scan.contents.tilt.as_ref();
-    let values = Values::new()
+    let values = NamedValues::new()
         .with("method", sync.angle_method)
         .with_some("residual_rms_deg", sync.angle_rms_deg)
         .with_some("bound_deg", sync.angle_bound_deg)
@@ -108,7 +108,7 @@ fn tilt(scan: &ScanReport) -> Diagnostic {
 
 fn cloud(scan: &ScanReport) -> Diagnostic {
     let contents = &scan.contents;
-    let mut values = Values::new()
+    let mut values = NamedValues::new()
         .with("points", scan.points)
         .with("returns_left_out", scan.left_out);
     let doubts: Vec<&String> = contents

@@ -60,6 +60,24 @@ pub struct Reconstruction<'a> {
     pub interrupt: &'a AtomicBool,
 }
 
+impl<'a> Reconstruction<'a> {
+    /// The cloud of a log with its own tilt angles, in the recording host's time.
+    #[must_use]
+    pub fn of_log(recording: &'a Source, accuracy: Accuracy, interrupt: &'a AtomicBool) -> Self {
+        Self {
+            recording,
+            tilt: TiltSource::Log,
+            options: Options::default(),
+            time: TimeReference::Host,
+            accuracy,
+            pace: None,
+            truth: None,
+            lost_records: 0,
+            interrupt,
+        }
+    }
+}
+
 /// Makes the cloud of a recording and commits it to `target`.
 ///
 /// # Errors

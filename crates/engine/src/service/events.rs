@@ -7,9 +7,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 
 use serde::Serialize;
-use tokio::sync::broadcast::error::RecvError;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore, broadcast};
 use units::{Host, Stamp};
+
+pub use tokio::sync::broadcast::error::RecvError;
 
 use super::live_preview::PreviewFrame;
 use super::scan_record::ScanView;
@@ -186,25 +187,13 @@ pub struct Subscription {
     _permit: Option<OwnedSemaphorePermit>,
 }
 
-/// Why there is no next event.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NoEvent {
-    /// The subscriber was too slow and missed this many events.
-    Lagged(u64),
-    /// The sender is gone.
-    Closed,
-}
-
 impl Subscription {
     /// The next event.
     ///
     /// # Errors
-    /// [`NoEvent`].
-    pub async fn next(&mut self) -> Result<Arc<Event>, NoEvent> {
-        self.receiver.recv().await.map_err(|error| match error {
-            RecvError::Lagged(missed) => NoEvent::Lagged(missed),
-            RecvError::Closed => NoEvent::Closed,
-        })
+    /// [`RecvError`].
+    pub async fn next(&mut self) -> Result<Arc<Event>, RecvError> {
+        self.receiver.recv().await
     }
 
     /// Whether events have been lost already, though the next call has not reported it yet.
@@ -263,13 +252,13 @@ mod tests {
     }
 
     /// The next event without waiting.
-    fn next(subscription: &mut Subscription) -> Result<Arc<Event>, NoEvent> {
+    fn next(subscription: &mut Subscription) -> Result<Arc<Event>, RecvError> {
         use std::future::Future;
         use std::task::{Context, Poll, Waker};
         let mut next = std::pin::pin!(subscription.next());
         match next.as_mut().poll(&mut Context::from_waker(Waker::noop())) {
             Poll::Ready(event) => event,
-            Poll::Pending => Err(NoEvent::Closed),
+            Poll::Pending => Err(RecvError::Closed),
         }
     }
 
@@ -288,7 +277,7 @@ mod tests {
             assert!(text(&event).contains(&format!("\"{number}\"")));
         }
         assert!(idle.has_lagged() && !reader.has_lagged());
-        assert_eq!(next(&mut idle).unwrap_err(), NoEvent::Lagged(3));
+        assert_eq!(next(&mut idle).unwrap_err(), RecvError::Lagged(3));
         // It goes on with the oldest event that is left.
         for number in 3..QUEUE + 3 {
             let event = next(&mut idle).unwrap();

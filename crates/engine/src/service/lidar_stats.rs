@@ -10,6 +10,7 @@ use protocol::record::{Record, Wire};
 use protocol::vlp16::{DataPacket, Model};
 use units::{Lidar, Stamp};
 
+use super::status::LidarStatus;
 use crate::reconstruct::contents::return_mode_name;
 
 /// One revolution, hundredths of a degree.
@@ -32,18 +33,6 @@ pub(super) struct LidarStats {
     last_summary: (Instant, u64),
     /// Time of the last summary that had new packets.
     last_packets: Instant,
-}
-
-/// A summary of the statistics; fields as in the lidar's status.
-pub(super) struct LidarSummary {
-    pub(super) model: Option<&'static str>,
-    pub(super) return_mode: Option<String>,
-    pub(super) rpm: Option<f64>,
-    pub(super) packets: u64,
-    pub(super) packets_per_s: f64,
-    pub(super) lost_packets: u64,
-    /// Time since a summary had new packets.
-    pub(super) silence: Duration,
 }
 
 impl Default for LidarStats {
@@ -99,8 +88,9 @@ impl LidarStats {
         }
     }
 
-    /// The statistics so far, and rates since the last summary.
-    pub(super) fn summary(&mut self) -> LidarSummary {
+    /// The statistics so far with rates since the last summary, and the time since a summary had
+    /// new packets.
+    pub(super) fn summary(&mut self) -> (LidarStatus, Duration) {
         let now = (Instant::now(), self.packets);
         let (before, packets_before) = std::mem::replace(&mut self.last_summary, now);
         if self.packets != packets_before {
@@ -110,14 +100,15 @@ impl LidarStats {
         let minutes = self.swept_ns as f64 * 1e-9 / 60.0;
         let rpm = (self.swept_ns > 0).then(|| self.swept_cdeg as f64 / REVOLUTION as f64 / minutes);
         (self.swept_cdeg, self.swept_ns) = (0, 0);
-        LidarSummary {
+        let status = LidarStatus {
             model: self.model,
             return_mode: self.mode.clone(),
             rpm,
             packets: self.packets,
             packets_per_s: (self.packets - packets_before) as f64 / passed,
             lost_packets: self.lost,
-            silence: self.last_packets.elapsed(),
-        }
+            ..LidarStatus::default()
+        };
+        (status, self.last_packets.elapsed())
     }
 }

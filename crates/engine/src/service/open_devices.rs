@@ -4,7 +4,6 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 use io::udp::ListenConfig;
-use protocol::record::DriveLink;
 
 use super::device_thread::{Backoff, Worker};
 use super::drive_connection::DriveConnection;
@@ -17,6 +16,7 @@ use crate::devices::lidar_receiver::LidarReceiver;
 use crate::devices::lidar_sockets::{LidarSockets, listen_config};
 use crate::devices::simulated::{self, LidarPorts, Simulated};
 use crate::failure::{Failure, Kind};
+use crate::reconstruct::contents::link_name;
 
 /// UDP port that nothing reads (discard, RFC 863), for a software lidar that is not needed.
 const DISCARD: LidarPorts = LidarPorts {
@@ -123,11 +123,7 @@ impl Worker {
         let opened = drive_port::open(&service.device, place)?;
         service.update_drive(|drive| {
             drive.port = Some(place.display().to_string());
-            drive.link = Some(match opened.link {
-                DriveLink::Usb => "usb",
-                DriveLink::Rs232 => "rs232",
-                DriveLink::Can => "can",
-            });
+            drive.link = Some(link_name(opened.link));
         });
         if let Some(warning) = &opened.warning {
             let events = service.events();

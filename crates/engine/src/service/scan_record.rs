@@ -2,6 +2,7 @@
 
 use std::ops::{Deref, DerefMut};
 
+use scanner::Accuracy;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::capture::run::Outcome;
@@ -12,11 +13,12 @@ use crate::reconstruct::report::Reception;
 /// Longest name of a scan, bytes.
 pub const NAME_BYTES: usize = 60;
 
-/// ServiceState of a scan.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// State of a scan.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ScanState {
     /// The devices are recorded.
+    #[default]
     Recording,
     /// The log is complete, the cloud is being made.
     Making,
@@ -37,14 +39,14 @@ impl ScanState {
 }
 
 /// The part of a scan's record that every form of it has.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ScanHead {
     /// The name of its folder.
     pub id: String,
     /// Name given by the user.
     #[serde(default)]
     pub name: Option<String>,
-    /// ServiceState.
+    /// State.
     pub state: ScanState,
     /// Why it is incomplete.
     pub why: Option<Failure>,
@@ -64,6 +66,17 @@ pub struct ScanHead {
     pub duration_s: Option<f64>,
 }
 
+impl ScanHead {
+    /// The requested accuracy of its cloud.
+    #[must_use]
+    pub fn accuracy(&self) -> Accuracy {
+        let asked = self.asked.as_ref();
+        asked
+            .and_then(|asked| asked.accuracy().ok())
+            .unwrap_or(Accuracy::Best)
+    }
+}
+
 /// The request, if this version can read it. New requests with unknown options are refused, but the
 /// scan of one is kept.
 fn if_understood<'de, D: Deserializer<'de>>(from: D) -> Result<Option<CaptureRequest>, D::Error> {
@@ -72,7 +85,7 @@ fn if_understood<'de, D: Deserializer<'de>>(from: D) -> Result<Option<CaptureReq
 }
 
 /// The file `scan.json` in a scan's folder.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ScanRecord {
     /// Head.
     #[serde(flatten)]
@@ -105,22 +118,6 @@ pub struct ScanRecord {
 }
 
 impl ScanRecord {
-    /// A record of a scan that begins.
-    #[must_use]
-    pub const fn new(head: ScanHead) -> Self {
-        Self {
-            head,
-            number: 0,
-            unreadable: false,
-            messages: Vec::new(),
-            recording: None,
-            lost_records: 0,
-            reception: None,
-            no_cloud: None,
-            report: None,
-        }
-    }
-
     /// The outcome of its recording.
     #[must_use]
     pub fn outcome(&self) -> Outcome {

@@ -50,7 +50,7 @@ pub struct Activity {
     pub packets: u64,
 }
 
-/// ServiceState of a device.
+/// State of a device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DeviceHealth {
@@ -66,7 +66,7 @@ pub enum DeviceHealth {
 /// The drive.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct DriveSnapshot {
-    /// ServiceState.
+    /// State.
     pub state: DeviceHealth,
     /// What is wrong and what to do about it.
     pub problem: Option<Failure>,
@@ -74,7 +74,7 @@ pub struct DriveSnapshot {
     pub port: Option<String>,
     /// usb, rs232 or can.
     pub link: Option<&'static str>,
-    /// ServiceState of the CiA 402 state machine.
+    /// State of the CiA 402 state machine.
     pub cia402: Option<String>,
     /// Whether the axis is homed.
     pub referenced: bool,
@@ -89,7 +89,7 @@ pub struct DriveSnapshot {
 /// The lidar.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct LidarStatus {
-    /// ServiceState.
+    /// State.
     pub state: DeviceHealth,
     /// What is wrong and what to do about it.
     pub problem: Option<Failure>,

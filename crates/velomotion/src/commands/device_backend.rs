@@ -8,8 +8,9 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use daemon::client::Client;
-use daemon::http::tilt::{Goto, StopAnswer};
+use daemon::http::tilt::Goto;
 use daemon::local::LocalService;
+use engine::capture::jog::StopAnswer;
 use engine::capture::request::CapturePlan;
 use engine::capture::run::Outcome;
 use engine::capture_request::CaptureRequest;
@@ -20,7 +21,6 @@ use engine::service::scan_record::{ScanDetails, ScanState, ScanView};
 use engine::service::status::AxisTask;
 use engine::service::{CaptureResult, LeaseError};
 use io::files::NewFile;
-use serde::Deserialize;
 use sim::Truth;
 use tokio::sync::oneshot;
 use units::{Degrees, Span, Stamp};
@@ -242,24 +242,9 @@ impl<'a> DaemonCapture<'a> {
 
 impl CaptureBackend for DaemonCapture<'_> {
     fn poll(&mut self, plan: &CapturePlan) -> Result<CaptureProgress, Failure> {
-        /// The part of the status that is shown.
-        #[derive(Deserialize)]
-        struct Status {
-            activity: Activity,
-            drive: Drive,
-        }
-        #[derive(Deserialize)]
-        struct Activity {
-            step: usize,
-            packets: u64,
-        }
-        #[derive(Deserialize)]
-        struct Drive {
-            angle_deg: Option<f64>,
-        }
         let details = self.details()?;
         if details.scan.state == ScanState::Recording {
-            let status: Status = self.client.get("/api/v1/status")?;
+            let status = self.client.status()?;
             return Ok(CaptureProgress {
                 messages: details.messages,
                 axis: Some(AxisProgress {

@@ -1,9 +1,8 @@
 //! `velomotion tilt`: jogs of the axis.
 
 use daemon::client::Client;
-use daemon::http::tilt::StopAnswer;
 use daemon::local::LocalService;
-use engine::capture::jog::{self, AxisReport};
+use engine::capture::jog::{self, AxisReport, StopAnswer};
 use engine::config;
 use engine::devices::profile;
 use engine::failure::Failure;

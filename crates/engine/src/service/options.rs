@@ -1,0 +1,59 @@
+//! What a service is started with.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use io::discover::ConnectedDevices;
+use units::Span;
+
+use super::status::AxisTask;
+use crate::config::{Config, Device};
+
+/// What the service takes from the machine. Tests replace it.
+#[derive(Clone)]
+pub struct Environment {
+    /// Lists the devices that are plugged in.
+    pub plugged: Arc<dyn Fn() -> ConnectedDevices + Send + Sync>,
+    /// Time that the machine has been suspended since it was booted.
+    pub suspended: Arc<dyn Fn() -> Span + Send + Sync>,
+    /// Called on the device thread at every heartbeat.
+    pub heartbeat: Arc<dyn Fn(AxisTask) + Send + Sync>,
+}
+
+impl Default for Environment {
+    fn default() -> Self {
+        Self {
+            plugged: Arc::new(io::discover::discover),
+            suspended: Arc::new(io::clock::suspended),
+            heartbeat: Arc::new(|_| {}),
+        }
+    }
+}
+
+/// How long the service keeps its devices.
+#[derive(Clone)]
+pub enum Lifetime {
+    /// Until it ends: absent devices are waited for, lost ones are opened again.
+    Resident,
+    /// For one command: devices are opened once, at the start, and errors end the command.
+    Command {
+        /// Whether the lidar is needed.
+        lidar: bool,
+        /// Flag that stops whatever moves the axis, such as that of Ctrl-C.
+        interrupt: Arc<AtomicBool>,
+    },
+}
+
+/// What a service is made of.
+pub struct ServiceOptions {
+    /// The configuration.
+    pub config: Config,
+    /// Name of the device's profile.
+    pub name: String,
+    /// The device.
+    pub device: Device,
+    /// How long the devices are kept.
+    pub lifetime: Lifetime,
+    /// The machine.
+    pub environment: Environment,
+}

@@ -1,0 +1,217 @@
+//! State that clients follow: the status of the devices and of what they do.
+
+use std::time::{Duration, Instant};
+
+use units::Rpm;
+
+use super::events::{Event, MessageLevel};
+use super::lease::StopSignal;
+use super::status::{
+    Activity, AxisStatus, AxisTask, ClientsStatus, DeviceHealth, DiskStatus, DriveSnapshot,
+    LidarStatus, ServiceStatus,
+};
+use super::{DeviceService, locked, now_s};
+use crate::capture::jog::AxisReport;
+use crate::capture::run;
+use crate::devices::lidar_sockets;
+use crate::failure::Failure;
+
+/// A report of the drive younger than this is not asked for again.
+const REPORT_LIFETIME: Duration = Duration::from_millis(500);
+/// A lidar that sends nothing for this long is absent: it sends 754 packets per second.
+const LIDAR_SILENCE: Duration = Duration::from_secs(2);
+
+/// State that clients follow. Locked for moments only, never while a device or disk is waited for.
+#[derive(Clone, Default)]
+pub(super) struct ServiceState {
+    pub(super) activity: Activity,
+    /// Stop signal of the current lease.
+    pub(super) stop: Option<StopSignal>,
+    pub(super) drive: DriveSnapshot,
+    pub(super) lidar: LidarStatus,
+    pub(super) disk: DiskStatus,
+    pub(super) report: Option<AxisReport>,
+    /// Time of the report, unless something has happened since.
+    pub(super) reported_at: Option<Instant>,
+    /// Whether the axis may move although no lease is held.
+    pub(super) may_move: bool,
+}
+
+impl DeviceService {
+    /// The status as it is known now, without waiting for a device.
+    #[must_use]
+    pub fn status(&self) -> ServiceStatus {
+        let axis = &self.config.axis;
+        let state = self.state.borrow();
+        ServiceStatus {
+            version: env!("CARGO_PKG_VERSION"),
+            device: self.name.clone(),
+            simulated: self.simulated(),
+            started_s: self.started_s,
+            now_s: now_s(),
+            activity: state.activity.clone(),
+            drive: state.drive.clone(),
+            lidar: state.lidar.clone(),
+            axis: AxisStatus {
+                min_deg: axis.min_deg,
+                max_deg: axis.max_deg,
+                max_speed_deg_s: axis.max_speed_deg_s,
+                min_speed_deg_s: self.axis.gearing.rate(Rpm(1)).0.abs(),
+                max_accel_deg_s2: axis.max_accel_deg_s2,
+                accel_deg_s2: self.device.accel_deg_s2,
+                home_deg: axis.homing.to_deg,
+            },
+            disk: state.disk,
+            clients: ClientsStatus {
+                events: self.events.clients(),
+                dropped: self.events.disconnected(),
+            },
+        }
+    }
+
+    /// Sends the status to all subscribers.
+    pub fn send_status(&self) {
+        if self.events.has_subscribers() {
+            let status = Box::new(self.status());
+            self.events.send(Event::Status { status });
+        }
+    }
+
+    /// The task of the axis.
+    #[must_use]
+    pub fn activity(&self) -> Activity {
+        self.state.borrow().activity.clone()
+    }
+
+    /// The lidar's status.
+    #[must_use]
+    pub fn lidar(&self) -> LidarStatus {
+        self.state.borrow().lidar.clone()
+    }
+
+    /// Angle of the axis, degrees; `None` while unknown.
+    #[must_use]
+    pub fn angle_deg(&self) -> Option<f64> {
+        self.state.borrow().drive.angle_deg
+    }
+
+    /// Sets the status of the disk.
+    pub fn set_disk(&self, disk: DiskStatus) {
+        self.state.send_modify(|state| state.disk = disk);
+    }
+
+    /// The drive's report where it need not be asked: while the axis is busy, and shortly after
+    /// the last report.
+    #[must_use]
+    pub fn known_report(&self) -> Option<AxisReport> {
+        let state = self.state.borrow();
+        let busy = state.activity.doing != AxisTask::Idle;
+        let fresh = |at: Instant| at.elapsed() < REPORT_LIFETIME;
+        if !busy && !state.reported_at.is_some_and(fresh) {
+            return None;
+        }
+        let mut report = state.report.clone()?;
+        report.angle_deg = state.drive.angle_deg;
+        Some(report)
+    }
+
+    pub(super) fn is_referenced(&self) -> bool {
+        let state = self.state.borrow();
+        state
+            .report
+            .as_ref()
+            .is_some_and(|report| report.referenced)
+    }
+
+    pub(super) fn set_report(&self, report: Option<AxisReport>) {
+        self.state.send_modify(|state| {
+            state.reported_at = report.is_some().then(Instant::now);
+            state.report = report;
+        });
+    }
+
+    pub(super) fn update_activity(&self, change: impl FnOnce(&mut Activity)) {
+        self.state.send_modify(|state| change(&mut state.activity));
+    }
+
+    /// Changes the drive's status and reports a change of its state.
+    pub(super) fn update_drive(&self, change: impl FnOnce(&mut DriveSnapshot)) {
+        let mut changed = None;
+        self.state.send_modify(|state| {
+            let drive = &mut state.drive;
+            let before = (drive.state, drive.problem.clone());
+            change(drive);
+            let after = (drive.state, drive.problem.clone());
+            if before != after {
+                state.reported_at = None;
+                changed = Some(after);
+            }
+        });
+        self.report_device("drive", changed);
+    }
+
+    /// Changes the lidar's status and reports a change of its state.
+    pub(super) fn update_lidar(&self, change: impl FnOnce(&mut LidarStatus)) {
+        let mut changed = None;
+        self.state.send_modify(|state| {
+            let lidar = &mut state.lidar;
+            let before = (lidar.state, lidar.problem.clone());
+            change(lidar);
+            let after = (lidar.state, lidar.problem.clone());
+            if before != after {
+                state.reported_at = None;
+                changed = Some(after);
+            }
+        });
+        self.report_device("lidar", changed);
+    }
+
+    pub(super) fn report_device(
+        &self,
+        device: &str,
+        changed: Option<(DeviceHealth, Option<Failure>)>,
+    ) {
+        let Some((state, problem)) = changed else {
+            return;
+        };
+        match (state, problem) {
+            (_, Some(problem)) => {
+                let text = format!("{device}: {}", problem.message);
+                self.events.message(MessageLevel::Error, text, problem.help);
+            }
+            (DeviceHealth::Connected, None) => {
+                let text = format!("{device}: connected");
+                self.events.message(MessageLevel::Info, text, None);
+            }
+            (DeviceHealth::Absent | DeviceHealth::Fault, None) => {}
+        }
+        self.send_status();
+    }
+
+    /// Updates the lidar's status from the packets received; called every second.
+    pub fn refresh_lidar(&self) {
+        let Some(receiver) = self.receiver() else {
+            return;
+        };
+        let counts = receiver.counts();
+        drop(receiver);
+        let (status, silence) = locked(&self.lidar_stats).summary();
+        let (state, problem) = match &counts {
+            Err(failure) => (DeviceHealth::Fault, Some(failure.clone())),
+            Ok(_) if silence >= LIDAR_SILENCE => {
+                let config = lidar_sockets::listen_config(&self.device);
+                (DeviceHealth::Absent, Some(run::silence(&config)))
+            }
+            Ok(_) if status.packets > 0 => (DeviceHealth::Connected, None),
+            Ok(_) => (DeviceHealth::Absent, None),
+        };
+        self.update_lidar(|lidar| {
+            *lidar = LidarStatus {
+                state,
+                problem,
+                dropped_by_kernel: counts.map_or(lidar.dropped_by_kernel, |counts| counts.dropped),
+                ..status
+            };
+        });
+    }
+}
