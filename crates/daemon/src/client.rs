@@ -62,7 +62,7 @@ pub struct RemoteDrive {
 }
 
 impl Client {
-    /// The daemon that has the device, if one runs. One that this user may not speak to is said.
+    /// The daemon that has the device, if one runs. A daemon that denies access is logged.
     #[must_use]
     pub fn find(profile: &str, device: &Device) -> Option<Self> {
         let named = sockets::candidates(profile, device).into_iter();
@@ -112,7 +112,7 @@ impl Client {
         Self { socket }
     }
 
-    /// Where it is.
+    /// Its socket.
     #[must_use]
     pub fn socket(&self) -> &Path {
         &self.socket
@@ -121,7 +121,7 @@ impl Client {
     /// `GET`, in JSON.
     ///
     /// # Errors
-    /// What the daemon says, or that it is gone.
+    /// The daemon's own failure, or that it is gone.
     pub fn get<T: DeserializeOwned>(&self, path: &str) -> Result<T, Failure> {
         self.json(self.request("GET", path, None)?)
     }
@@ -197,7 +197,7 @@ impl Client {
         };
         let kind = serde_json::from_value(serde_json::Value::String(said.kind));
         Failure {
-            // Busy is what a port is that another program has.
+            // `busy` has no kind of its own: another client moves the axis.
             kind: kind.unwrap_or(Kind::NoDevice),
             message: said.error,
             help: said.help,

@@ -72,6 +72,10 @@ pub fn lock(folder: &Path) -> Result<fs::File, Failure> {
     }
 }
 
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 impl Scans {
     /// The scans in `folder`, which is made where it is missing. Those that were under way when
     /// nobody could end them are [`ScanState::Making`]: [`Scans::unfinished`] lists them.
@@ -103,7 +107,7 @@ impl Scans {
     }
 
     fn scans(&self) -> MutexGuard<'_, BTreeMap<String, ScanRecord>> {
-        self.scans.lock().unwrap_or_else(PoisonError::into_inner)
+        locked(&self.scans)
     }
 
     /// The folder.
@@ -207,9 +211,9 @@ impl Scans {
             None => return Ok(None),
         }
         let stored = self.write(id);
-        self.sizes().remove(id);
+        locked(&self.sizes).remove(id);
         if let Err(failure) = stored {
-            self.unwritten().insert(id.to_owned());
+            locked(&self.unwritten).insert(id.to_owned());
             return Err(failure);
         }
         Ok(self.view(id))
@@ -217,7 +221,7 @@ impl Scans {
 
     /// Writes what is known of a scan now.
     fn write(&self, id: &str) -> Result<(), Failure> {
-        let _writing = self.writing.lock().unwrap_or_else(PoisonError::into_inner);
+        let _writing = locked(&self.writing);
         match self.record(id) {
             Some(record) if !record.unreadable => store(&self.place(id), &record),
             _ => Ok(()),
@@ -226,22 +230,12 @@ impl Scans {
 
     /// Writes what the disk did not take when it was told.
     pub fn settle(&self) {
-        let waiting = std::mem::take(&mut *self.unwritten());
+        let waiting = std::mem::take(&mut *locked(&self.unwritten));
         for id in waiting {
             if self.write(&id).is_err() {
-                self.unwritten().insert(id);
+                locked(&self.unwritten).insert(id);
             }
         }
-    }
-
-    fn sizes(&self) -> MutexGuard<'_, BTreeMap<String, u64>> {
-        self.sizes.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn unwritten(&self) -> MutexGuard<'_, BTreeSet<String>> {
-        self.unwritten
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Adds a sentence to what was said of a scan, unless much was said already. It reaches the
@@ -347,7 +341,7 @@ impl Scans {
         let (place, gone) = (self.place(id), self.folder.join(format!(".{id}.deleted")));
         fs::rename(&place, &gone).map_err(|error| cannot(&place, "delete", &error))?;
         self.scans().remove(id);
-        self.sizes().remove(id);
+        locked(&self.sizes).remove(id);
         fs::remove_dir_all(&gone).map_err(|error| cannot(&gone, "delete", &error))?;
         Ok(Some(view))
     }
@@ -361,7 +355,7 @@ impl Scans {
             .map(|record| (record.id.clone(), record.state.is_final()))
             .collect();
         drop(heads);
-        let mut known = self.sizes();
+        let mut known = locked(&self.sizes);
         let kept = scans.iter().map(|(id, is_final)| match known.get(id) {
             Some(&bytes) if *is_final => bytes,
             _ => {

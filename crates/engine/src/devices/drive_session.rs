@@ -209,8 +209,7 @@ impl<P: Port> Drop for Session<P> {
     fn drop(&mut self) {
         if self.unsafe_to_leave && self.client.start(DriveCommand::Stop).is_ok() {
             let until = self.port.now().saturating_add(LAST_RESORT);
-            // There is nobody left to tell; whoever dropped the session has the error that led
-            // here.
+            // The error that dropped the session has been reported already.
             let _ = self.pump(&mut |_| {}, false, Some(until));
         }
     }

@@ -130,7 +130,7 @@ impl LidarReceiver {
         counts.recv_timeout(TURN_LIMIT).unwrap_or_else(|_| {
             Err(
                 Failure::new(Kind::Incomplete, "the lidar's thread does not answer")
-                    .help("this is a defect of the program; run with -vv and report what it says"),
+                    .help("this is a defect of the program; run with -vv and report the messages"),
             )
         })
     }
@@ -150,7 +150,7 @@ impl Drop for LidarReceiver {
         self.shared.stop.store(true, Ordering::Release);
         self.come_round();
         if let Some(thread) = self.thread.take() {
-            // A panic of that thread has been told to whoever asked for its counts.
+            // A panic of that thread has been reported by the requests for its counts.
             let _ = thread.join();
         }
     }
@@ -176,7 +176,7 @@ fn listen(sockets: LidarSockets, mut onlooker: PacketTap, shared: &ReceiverState
             if let Some(wanted) = request.log {
                 log = wanted;
             }
-            // Whoever went away needs no answer.
+            // A client that has ended needs no answer.
             let _ = request.answer.send(heard.clone());
         }
         if let Err(failure) = heard {

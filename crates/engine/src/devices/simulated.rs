@@ -122,7 +122,7 @@ impl Simulated {
         self.stop.store(true, Ordering::Relaxed);
         let failed = |why: String| {
             Failure::new(Kind::DeviceFault, format!("the simulator failed: {why}"))
-                .help("run with -vv and report what it says; the log of what came before is kept")
+                .help("run with -vv and report the messages; the log of what came before is kept")
         };
         match self.thread.join() {
             Ok(Ok(truth)) => Ok(truth),
@@ -143,7 +143,7 @@ fn run(
     while !stop.load(Ordering::Relaxed) {
         while let Ok(request) = requests.try_recv() {
             match request {
-                // Whoever went away needs no answer.
+                // A client that has ended needs no answer.
                 SimulatorRequest::Truth(answer) => drop(answer.send(rig.truth())),
                 SimulatorRequest::Forget(host) => rig.forget_before(host),
             }

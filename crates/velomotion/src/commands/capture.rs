@@ -15,9 +15,10 @@ use engine::devices::profile;
 use engine::failure::{Failure, Kind};
 use engine::output::{self, Aside, Target};
 use engine::reconstruct::report::ScanReport;
+use engine::service::CaptureEnd;
 
 use super::CommandOutput;
-use super::device_backend::{DaemonCapture, LocalCapture, RecordedScan, record};
+use super::device_backend::{DaemonCapture, LocalCapture, record};
 use crate::cli::{self, Common};
 use crate::signals;
 use crate::terminal::Progress;
@@ -52,7 +53,7 @@ pub fn run(arguments: &cli::Capture, common: &Common) -> Result<CommandOutput, F
     interrupt.store(false, Ordering::Relaxed);
     progress.say("making the cloud");
     let stdout = target.is_stdout();
-    let RecordedScan { outcome, truth } = recording;
+    let CaptureEnd { outcome, truth } = recording;
     let mut made = run::cloud(
         &plan,
         truth.as_ref(),
@@ -81,7 +82,7 @@ fn record_locally(
     config: Config,
     interrupt: &Arc<AtomicBool>,
     progress: &mut Progress,
-) -> Result<RecordedScan, Failure> {
+) -> Result<CaptureEnd, Failure> {
     let device = (plan.name.clone(), plan.device.clone());
     let local = LocalService::start(config, device, true, interrupt)?;
     if let Some(warning) = local.port_warning() {

@@ -19,9 +19,8 @@ use engine::output::{self, file_failure, overwrite};
 use engine::reconstruct::report;
 use engine::service::scan_record::{ScanDetails, ScanState, ScanView};
 use engine::service::status::AxisTask;
-use engine::service::{CaptureResult, LeaseError};
+use engine::service::{CaptureEnd, CaptureResult, LeaseError};
 use io::files::NewFile;
-use sim::Truth;
 use tokio::sync::oneshot;
 use units::{Degrees, Span, Stamp};
 
@@ -35,14 +34,6 @@ const INTERRUPT_POLL: Duration = Duration::from_millis(5);
 /// Polls of the progress between two updates of the lidar's status: 1 s.
 const LIDAR_REFRESH: u32 = 20;
 
-/// A recorded capture.
-pub struct RecordedScan {
-    /// What became of it.
-    pub outcome: Outcome,
-    /// The simulator's truth, of a capture of this process with software devices.
-    pub truth: Option<Truth>,
-}
-
 /// Progress of a capture.
 #[derive(Default)]
 pub struct CaptureProgress {
@@ -51,7 +42,7 @@ pub struct CaptureProgress {
     /// The axis, until the recording has ended.
     axis: Option<AxisProgress>,
     /// The end.
-    end: Option<RecordedScan>,
+    end: Option<CaptureEnd>,
 }
 
 /// Progress of the axis during a capture.
@@ -86,7 +77,7 @@ pub fn record(
     plan: &CapturePlan,
     interrupt: &AtomicBool,
     progress: &mut Progress,
-) -> Result<RecordedScan, Failure> {
+) -> Result<CaptureEnd, Failure> {
     let (mut printed, mut stopped, mut step) = (0, false, 0);
     let begin = Instant::now();
     loop {
@@ -158,10 +149,7 @@ impl CaptureBackend for LocalCapture<'_> {
                 return Ok(CaptureProgress {
                     messages: warnings.map(|line| format!("warning: {line}")).collect(),
                     axis: None,
-                    end: Some(RecordedScan {
-                        outcome: end.outcome,
-                        truth: end.truth,
-                    }),
+                    end: Some(end),
                 });
             }
             Err(oneshot::error::TryRecvError::Empty) => {}
@@ -265,7 +253,7 @@ impl CaptureBackend for DaemonCapture<'_> {
         Ok(CaptureProgress {
             messages: details.messages,
             axis: None,
-            end: Some(RecordedScan {
+            end: Some(CaptureEnd {
                 outcome: Outcome {
                     failure: details.recording,
                     lost_records: details.lost_records,
