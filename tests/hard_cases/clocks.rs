@@ -162,7 +162,7 @@ fn the_year_2100() {
         .map(|t| arrival(t, EPOCH + t + t / 25_000))
         .collect();
     let clock = LidarClock::fit(&arrivals).unwrap();
-    let mut online = OnlineClock::new();
+    let mut online = OnlineClock::default();
     for a in &arrivals {
         online.observe(*a);
         assert!((clock.host(a.device) - a.host).as_nanos().abs() <= 1);
@@ -217,7 +217,7 @@ fn packets_out_of_order() {
         LidarClock::fit(&in_order).unwrap(),
         LidarClock::fit(&shuffled).unwrap(),
     );
-    let mut online = OnlineClock::new();
+    let mut online = OnlineClock::default();
     for a in &shuffled {
         assert!(!online.observe(*a));
     }
@@ -241,7 +241,7 @@ fn the_online_clock_begins_anew() {
         (-400_000_000, 0, 1),
         (800_000_000_000, 0, 1),
     ] {
-        let mut online = OnlineClock::new();
+        let mut online = OnlineClock::default();
         let mut noticed = None;
         for i in 0..20_000i64 {
             let (mut device, mut host) = (i * 1_327_104, i * 1_327_104 + i * 7_919 % 60_000);

@@ -171,7 +171,7 @@ fn hulls(packets: &[TimedPacket], block_s: f64) -> Off {
 /// Olson's algorithm from one second after the start: errors, the share of packets within its
 /// bound, and the mean bound.
 fn online(packets: &[TimedPacket]) -> (Off, f64, f64) {
-    let mut clock = OnlineClock::new();
+    let mut clock = OnlineClock::default();
     let mut errors = Vec::new();
     let (mut held, mut bounds_us) = (0, 0.0);
     let mut last = Stamp::from_nanos(i64::MIN);

@@ -26,7 +26,7 @@ use crate::command::{CommandKind, DriveCommand};
 use crate::config::AxisConfig;
 use crate::error::DriveError;
 use crate::event::{CommandOutcome, CommandProgress, DriveEvent};
-use crate::link::{Link, LinkStats};
+use crate::link::{LinkStats, RequestLink};
 use crate::ops::{Core, Ops, SharedCore, lock};
 use crate::procedures;
 
@@ -49,7 +49,7 @@ impl DriveClient {
     pub fn new(config: AxisConfig, link: DriveLink) -> Self {
         let node = NodeId::new(config.node).filter(|_| link == DriveLink::Can);
         let core = Core {
-            link: Link::new(Codec::new(link, config.node)),
+            link: RequestLink::new(Codec::new(link, config.node)),
             can: node.map(|node| CanServices::new(node, config.can)),
             referenced: false,
             now: Stamp::from_nanos(0),

@@ -2,9 +2,9 @@
 
 use std::fmt;
 
-use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::DeviceState;
 use protocol::epos2::objects::Address;
+use protocol::epos2::{Bounded, DeviceError};
 use units::{Degrees, Host, Quadcounts, Stamp};
 
 use crate::command::CommandKind;
@@ -138,30 +138,19 @@ pub struct DriveIdentity {
 
 /// Name of a device: up to 16 ASCII characters, empty if unknown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct DeviceName {
-    bytes: [u8; 16],
-    len: usize,
-}
+pub struct DeviceName(Bounded<u8, 16>);
 
 impl DeviceName {
     /// The name in an object's bytes, up to the first that is not printable ASCII.
     pub(crate) fn new(bytes: &[u8]) -> Self {
-        let mut name = Self::default();
-        let printable = bytes
-            .iter()
-            .take_while(|byte| byte.is_ascii_graphic() || **byte == b' ');
-        for (to, from) in name.bytes.iter_mut().zip(printable) {
-            *to = *from;
-            name.len += 1;
-        }
-        name
+        let is_printable = |byte: &u8| byte.is_ascii_graphic() || *byte == b' ';
+        Self(bytes.iter().copied().take_while(is_printable).collect())
     }
 
     /// The name as text.
     #[must_use]
     pub fn as_str(&self) -> &str {
-        let bytes = self.bytes.get(..self.len).unwrap_or_default();
-        std::str::from_utf8(bytes).unwrap_or_default()
+        std::str::from_utf8(&self.0).unwrap_or_default()
     }
 }
 

@@ -19,7 +19,7 @@ pub struct ScanConfig {
     /// Accuracy of the lidar.
     pub lidar: LidarConfig,
     /// The tilt axis.
-    pub axis: AxisConfig,
+    pub axis: TiltAxisConfig,
     /// Speed of the drive's RS232 line, baud; absent on every other link.
     pub rs232_baud: Option<u32>,
     /// The planned sweeps; absent if none were planned.
@@ -61,7 +61,7 @@ pub struct LidarConfig {
 /// Encoder, gear and node id.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct AxisConfig {
+pub struct TiltAxisConfig {
     /// Node id of the drive.
     pub node: u8,
     /// Lines of the encoder on the motor shaft.
@@ -97,7 +97,7 @@ impl Default for ScanConfig {
             simulated: false,
             mount: MountConfig::default(),
             lidar: LidarConfig::default(),
-            axis: AxisConfig::default(),
+            axis: TiltAxisConfig::default(),
             rs232_baud: None,
             sweep: None,
         }
@@ -119,7 +119,7 @@ impl Default for LidarConfig {
     }
 }
 
-impl Default for AxisConfig {
+impl Default for TiltAxisConfig {
     /// 500 lines behind 120:1: 0.0015 deg per quadcount, 0.05 deg/s per rpm.
     fn default() -> Self {
         Self {
@@ -138,7 +138,7 @@ impl MountConfig {
     }
 }
 
-impl AxisConfig {
+impl TiltAxisConfig {
     /// The gearing.
     ///
     /// # Errors
@@ -150,15 +150,24 @@ impl AxisConfig {
 }
 
 impl SweepPlan {
-    /// Whether a move from `from` towards `target` is a sweep of the plan, forward or `back`.
+    /// Whether a move from `from` towards `target` is the plan's next sweep after `done` sweeps.
+    ///
+    /// The first goes forward, with `both_ways` the next one back, and so on, up to the planned
+    /// number. The way to the starting place is thereby excluded, even from end to end.
     #[must_use]
-    pub fn is_sweep(&self, from: Degrees, target: Degrees, back: bool, tolerance_deg: f64) -> bool {
+    pub fn is_next_sweep(
+        &self,
+        done: usize,
+        from: Degrees,
+        target: Degrees,
+        tolerance_deg: f64,
+    ) -> bool {
         let near = |a: f64, b: f64| (a - b).abs() <= tolerance_deg;
-        let (start, end) = if back {
+        let (start, end) = if self.both_ways && done % 2 == 1 {
             (self.to_deg, self.from_deg)
         } else {
             (self.from_deg, self.to_deg)
         };
-        near(from.0, start) && near(target.0, end)
+        (done as u64) < u64::from(self.sweeps) && near(from.0, start) && near(target.0, end)
     }
 }

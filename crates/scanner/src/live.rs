@@ -21,7 +21,7 @@ use crate::clock::{DeviceClock, Moment, OnlineClock};
 use crate::config::{ScanConfig, SweepPlan};
 use crate::error::ScanError;
 use crate::fast::{FiringBlockPlacer, MAX_PACKET_POINTS};
-use crate::survey::{DriveEvent, DriveFrame, RecordReader};
+use crate::survey::{RecordReader, ShaftEvent};
 use crate::sweeps::{MoveWatch, SweepWatch};
 use crate::trajectory::{Method, StreamingFit, Trajectory};
 
@@ -77,7 +77,7 @@ impl<'a> Live<'a> {
             gearing,
             plan: config.sweep,
             reader: RecordReader::new(config, options.clone()),
-            clock: OnlineClock::new(),
+            clock: OnlineClock::default(),
             slow_polls: SlowPollFilter::default(),
             moves: MoveWatch::new(gearing),
             sweeps: SweepWatch::new(gearing),
@@ -102,21 +102,12 @@ impl<'a> Live<'a> {
     pub fn observe(&mut self, record: &Record<'_>) -> Result<(), SinkError> {
         match record.wire {
             Wire::Lidar { payload, .. } => self.packet(record.host, payload),
-            Wire::Drive {
-                link,
-                direction,
-                frame,
-            } => {
-                let frame = DriveFrame {
-                    link,
-                    direction,
-                    frame,
-                };
+            Wire::Drive { .. } => {
                 let (reader, moves) = (&mut self.reader, &mut self.moves);
                 let mut samples = Vec::new();
-                reader.frame(record.host, frame, &mut |event| match event {
-                    DriveEvent::Sample(sample) => samples.push(sample),
-                    DriveEvent::Write(write) => {
+                reader.frame(record.host, &record.wire, &mut |event| match event {
+                    ShaftEvent::Sample(sample) => samples.push(sample),
+                    ShaftEvent::Write(write) => {
                         moves.wrote(write.address, write.value, write.request)
                     }
                 });

@@ -105,22 +105,17 @@ impl Timeline {
         let mut total = Span::ZERO;
         for ((jump, clock), rise) in cuts.iter().zip(rises) {
             let first = arrivals.get(jump.at)?;
-            let when = before(first.host, total);
-            let by = match clock {
-                SetClock::Host => rise,
-                SetClock::Lidar => Span::ZERO.saturating_sub(rise),
-            };
+            let mut when = before(first.host, total);
+            let mut by = Span::ZERO.saturating_sub(rise);
             if *clock == SetClock::Host {
+                by = rise;
+                when = before(when, by);
                 total = total.saturating_add(by);
                 for arrival in corrected.get_mut(jump.at..).unwrap_or_default() {
                     arrival.host = before(arrival.host, by);
                 }
                 line.set(clock_steps.boundary(jump.at, by), by);
             }
-            let when = match clock {
-                SetClock::Host => before(when, by),
-                SetClock::Lidar => when,
-            };
             steps.push(ClockStep {
                 clock: *clock,
                 when,

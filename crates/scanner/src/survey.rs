@@ -2,7 +2,7 @@
 //! writes of the drive.
 
 use drive::objects::Address;
-use drive::record::{Direction, DriveLink, Record, Wire};
+use drive::record::{DriveLink, Record, Wire};
 use drive::{DriveListener, Observation, ShaftSample};
 use lidar::{Options, Timekeeper};
 use units::{Gearing, Host, Span, Stamp};
@@ -58,25 +58,17 @@ impl Survey {
                     self.arrivals.push(arrival);
                 }
             }
-            Wire::Drive {
-                link,
-                direction,
-                frame,
-            } => {
+            Wire::Drive { link, .. } => {
                 self.link = Some(link);
                 let host = self.clock_steps.monotonic(record.host);
-                let frame = DriveFrame {
-                    link,
-                    direction,
-                    frame,
-                };
-                self.reader.frame(host, frame, &mut |event| match event {
-                    DriveEvent::Sample(sample) => {
-                        self.samples.push(sample);
-                        self.clock_steps.sample();
-                    }
-                    DriveEvent::Write(write) => self.writes.push(write),
-                });
+                self.reader
+                    .frame(host, &record.wire, &mut |event| match event {
+                        ShaftEvent::Sample(sample) => {
+                            self.samples.push(sample);
+                            self.clock_steps.sample();
+                        }
+                        ShaftEvent::Write(write) => self.writes.push(write),
+                    });
             }
         }
     }
@@ -123,16 +115,8 @@ pub(crate) struct RecordReader {
     request_transmission_time: Span,
 }
 
-/// One frame to or from the drive.
-#[derive(Clone, Copy)]
-pub(crate) struct DriveFrame<'a> {
-    pub link: DriveLink,
-    pub direction: Direction,
-    pub frame: &'a [u8],
-}
-
 /// What a frame of the drive completes.
-pub(crate) enum DriveEvent {
+pub(crate) enum ShaftEvent {
     Sample(ShaftSample),
     Write(AcknowledgedWrite),
 }
@@ -162,23 +146,26 @@ impl RecordReader {
         })
     }
 
-    /// Passes on what a frame stamped `host` completes.
+    /// Passes on what a frame of the drive completes, stamped `host`.
     pub(crate) fn frame(
         &mut self,
         host: Stamp<Host>,
-        frame: DriveFrame<'_>,
-        emit: &mut impl FnMut(DriveEvent),
+        wire: &Wire<'_>,
+        emit: &mut impl FnMut(ShaftEvent),
     ) {
-        let DriveFrame {
+        let Wire::Drive {
             link,
             direction,
             frame,
-        } = frame;
+        } = *wire
+        else {
+            return;
+        };
         // The drive takes the position after it has the whole request.
         let transmission = self.request_transmission_time;
         self.listener
             .observe(link, direction, frame, host, &mut |seen| match seen {
-                Observation::Sample(sample) => emit(DriveEvent::Sample(ShaftSample {
+                Observation::Sample(sample) => emit(ShaftEvent::Sample(ShaftSample {
                     request: sample.answer.min(sample.request + transmission),
                     ..sample
                 })),
@@ -188,7 +175,7 @@ impl RecordReader {
                     request,
                     ..
                 } => {
-                    emit(DriveEvent::Write(AcknowledgedWrite {
+                    emit(ShaftEvent::Write(AcknowledgedWrite {
                         address,
                         value,
                         request,

@@ -159,16 +159,11 @@ impl MoveWatch {
     }
 }
 
-/// The plan's sweeps among the moves: the first goes forward, with `both_ways` the next one back,
-/// and so on, up to the planned number. The way to the starting place is thereby excluded, even
-/// from end to end.
+/// The plan's sweeps among the moves.
 fn planned(moved: impl Iterator<Item = (Sweep, Degrees)>, plan: &SweepPlan) -> Vec<Sweep> {
     let mut sweeps: Vec<Sweep> = Vec::new();
     for (sweep, target) in moved {
-        let back = plan.both_ways && sweeps.len() % 2 == 1;
-        if (sweeps.len() as u64) < u64::from(plan.sweeps)
-            && plan.is_sweep(sweep.from, target, back, END_TOLERANCE_DEG)
-        {
+        if plan.is_next_sweep(sweeps.len(), sweep.from, target, END_TOLERANCE_DEG) {
             sweeps.push(sweep);
         }
     }

@@ -195,7 +195,7 @@ fn straight(packets: &[TimedPacket]) -> Option<Vec<Stamp<Host>>> {
 
 /// The host time of each packet as known at its arrival.
 fn online(packets: &[TimedPacket]) -> Option<Vec<Stamp<Host>>> {
-    let mut clock = OnlineClock::new();
+    let mut clock = OnlineClock::default();
     arrivals(packets)
         .map(|arrival| {
             clock.observe(arrival);

@@ -2,7 +2,7 @@
 //! its end. The meaning of most codes depends on the device.
 
 use super::cob_id::{CommunicationObject, NodeId};
-use super::error::{MessageError, MessageKind};
+use super::error::{CanopenLayer, MessageError};
 use super::frame::CanFrame;
 use super::message::{bytes, wrong_id};
 
@@ -47,7 +47,7 @@ impl Emergency {
     /// # Errors
     /// [`MessageError`].
     pub fn parse(frame: &CanFrame) -> Result<Self, MessageError> {
-        let layer = MessageKind::Emergency;
+        let layer = CanopenLayer::Emergency;
         let Some(CommunicationObject::Emergency(node)) =
             frame.cob_id().map(CommunicationObject::of)
         else {

@@ -6,7 +6,7 @@ use super::frame::{CanFrame, CanId};
 
 /// The kind of message in which an error was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum MessageKind {
+pub enum CanopenLayer {
     /// Network management.
     Nmt,
     /// Synchronisation.
@@ -23,7 +23,7 @@ pub enum MessageKind {
     Heartbeat,
 }
 
-impl core::fmt::Display for MessageKind {
+impl core::fmt::Display for CanopenLayer {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str(match self {
             Self::Nmt => "NMT message",
@@ -91,7 +91,7 @@ pub enum MessageError {
     #[error("{layer}: CAN id {got}, expected {expected}")]
     Id {
         /// The service.
-        layer: MessageKind,
+        layer: CanopenLayer,
         /// Its identifiers.
         expected: &'static str,
         /// The identifier of the frame.
@@ -101,13 +101,13 @@ pub enum MessageError {
     #[error("{layer}: a remote frame, expected data")]
     Remote {
         /// The service.
-        layer: MessageKind,
+        layer: CanopenLayer,
     },
     /// The number of data bytes is wrong.
     #[error("{layer}: {got} data bytes, expected {expected}")]
     Length {
         /// The service.
-        layer: MessageKind,
+        layer: CanopenLayer,
         /// The number of the message.
         expected: usize,
         /// The number in the frame.
@@ -117,7 +117,7 @@ pub enum MessageError {
     #[error("{layer}: data byte {offset} is {got:02X}, expected {expected}")]
     Value {
         /// The service.
-        layer: MessageKind,
+        layer: CanopenLayer,
         /// Offset of the data byte.
         offset: usize,
         /// Permitted values.
@@ -129,7 +129,7 @@ pub enum MessageError {
 
 /// The data of a frame that must have `N` bytes of it.
 pub(super) fn data<const N: usize>(
-    layer: MessageKind,
+    layer: CanopenLayer,
     frame: &CanFrame,
 ) -> Result<&[u8; N], MessageError> {
     if frame.is_remote() {
@@ -144,7 +144,7 @@ pub(super) fn data<const N: usize>(
 
 /// The error of a frame with the identifier of another service.
 pub(super) fn wrong_id(
-    layer: MessageKind,
+    layer: CanopenLayer,
     expected: &'static str,
     frame: &CanFrame,
 ) -> MessageError {

@@ -5,7 +5,7 @@
 use units::{Host, Span, Stamp};
 
 use super::cob_id::{CommunicationObject, NodeId};
-use super::error::{MessageError, MessageKind};
+use super::error::{CanopenLayer, MessageError};
 use super::frame::CanFrame;
 use super::message::{bytes, wrong_id};
 use super::nmt::NmtState;
@@ -34,7 +34,7 @@ impl Heartbeat {
     /// # Errors
     /// [`MessageError`].
     pub fn parse(frame: &CanFrame) -> Result<Self, MessageError> {
-        let layer = MessageKind::Heartbeat;
+        let layer = CanopenLayer::Heartbeat;
         let Some(CommunicationObject::Heartbeat(node)) =
             frame.cob_id().map(CommunicationObject::of)
         else {

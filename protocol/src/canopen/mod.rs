@@ -21,7 +21,7 @@ pub mod sync;
 
 pub use abort_code::AbortCode;
 pub use cob_id::{CobId, CommunicationObject, NodeId, PdoNumber};
-pub use error::{CanFrameError, MessageError, MessageKind};
+pub use error::{CanFrameError, CanopenLayer, MessageError};
 pub use frame::{CanFrame, CanId, ExtendedId, SOCKETCAN_LEN};
 pub use message::BusMessage;
 pub use object::{Address, Scalar, TypedObject};

@@ -5,7 +5,7 @@
 use core::fmt;
 
 use super::cob_id::{CobId, NodeId};
-use super::error::{MessageError, MessageKind};
+use super::error::{CanopenLayer, MessageError};
 use super::frame::CanFrame;
 use super::message::{bytes, wrong_id};
 use crate::codes::byte_codes;
@@ -48,7 +48,7 @@ impl Nmt {
     /// # Errors
     /// [`MessageError`]; a node above 127 is [`MessageError::Value`].
     pub fn parse(frame: &CanFrame) -> Result<Self, MessageError> {
-        let layer = MessageKind::Nmt;
+        let layer = CanopenLayer::Nmt;
         if frame.cob_id() != Some(CobId::NMT) {
             return Err(wrong_id(layer, "000", frame));
         }
@@ -127,7 +127,7 @@ mod tests {
         assert_eq!(
             Nmt::parse(&frame),
             Err(MessageError::Value {
-                layer: MessageKind::Nmt,
+                layer: CanopenLayer::Nmt,
                 offset: 1,
                 expected: "0 to 127",
                 got: 128
@@ -136,7 +136,7 @@ mod tests {
         assert_eq!(
             Nmt::parse(&CanFrame::of(CobId::NMT, [1])),
             Err(MessageError::Length {
-                layer: MessageKind::Nmt,
+                layer: CanopenLayer::Nmt,
                 expected: 2,
                 got: 1
             })

@@ -1,7 +1,7 @@
 //! SYNC (CiA 301, "Synchronisation object"): nodes sample and send their process data on it.
 
 use super::cob_id::CobId;
-use super::error::{MessageError, MessageKind};
+use super::error::{CanopenLayer, MessageError};
 use super::frame::CanFrame;
 use super::message::{bytes, wrong_id};
 
@@ -28,7 +28,7 @@ impl SyncMessage {
     /// # Errors
     /// [`MessageError`].
     pub fn parse(frame: &CanFrame) -> Result<Self, MessageError> {
-        let layer = MessageKind::Sync;
+        let layer = CanopenLayer::Sync;
         if frame.cob_id() != Some(CobId::SYNC) {
             return Err(wrong_id(layer, "080", frame));
         }

@@ -14,7 +14,7 @@ use super::pdo::{CommunicationId, TransmissionType};
 use super::sdo::{Expedited, Initiate, SdoRequest, SdoResponse, SdoSegment};
 use super::sync::SyncMessage;
 use super::{
-    BusMessage, CanFrame, CanId, CobId, ExtendedId, MessageError, MessageKind, NodeId, PdoNumber,
+    BusMessage, CanFrame, CanId, CanopenLayer, CobId, ExtendedId, MessageError, NodeId, PdoNumber,
 };
 use crate::Bounded;
 use crate::canopen::AbortCode;
@@ -316,12 +316,15 @@ fn another_length_and_another_service_are_refused() {
         })
     };
     for (text, error) in [
-        ("581#4B416000400100", length(MessageKind::SdoResponse, 8, 7)),
-        ("601#", length(MessageKind::SdoRequest, 8, 0)),
-        ("701#0500", length(MessageKind::Heartbeat, 1, 2)),
-        ("080#0000", length(MessageKind::Sync, 0, 2)),
-        ("081#11862000", length(MessageKind::Emergency, 8, 4)),
-        ("000#", length(MessageKind::Nmt, 2, 0)),
+        (
+            "581#4B416000400100",
+            length(CanopenLayer::SdoResponse, 8, 7),
+        ),
+        ("601#", length(CanopenLayer::SdoRequest, 8, 0)),
+        ("701#0500", length(CanopenLayer::Heartbeat, 1, 2)),
+        ("080#0000", length(CanopenLayer::Sync, 0, 2)),
+        ("081#11862000", length(CanopenLayer::Emergency, 8, 4)),
+        ("000#", length(CanopenLayer::Nmt, 2, 0)),
     ] {
         assert_eq!(BusMessage::parse(&frame(text)), error, "{text}");
     }
@@ -332,22 +335,22 @@ fn another_length_and_another_service_are_refused() {
         expected,
         got,
     };
-    assert_eq!(Nmt::parse(&other), Err(id(MessageKind::Nmt, "000")));
+    assert_eq!(Nmt::parse(&other), Err(id(CanopenLayer::Nmt, "000")));
     assert_eq!(
         SyncMessage::parse(&other),
-        Err(id(MessageKind::Sync, "080"))
+        Err(id(CanopenLayer::Sync, "080"))
     );
     assert_eq!(
         Emergency::parse(&other),
-        Err(id(MessageKind::Emergency, "081 to 0FF"))
+        Err(id(CanopenLayer::Emergency, "081 to 0FF"))
     );
     assert_eq!(
         Heartbeat::parse(&other),
-        Err(id(MessageKind::Heartbeat, "701 to 77F"))
+        Err(id(CanopenLayer::Heartbeat, "701 to 77F"))
     );
     assert_eq!(
         SdoRequest::parse(&other),
-        Err(id(MessageKind::SdoRequest, "601 to 67F"))
+        Err(id(CanopenLayer::SdoRequest, "601 to 67F"))
     );
     // A 29-bit identifier with the same number is no message of CANopen.
     let extended = CanFrame::new(ExtendedId::new(0x581).unwrap(), other.data()).unwrap();
@@ -365,7 +368,7 @@ fn another_length_and_another_service_are_refused() {
 fn a_remote_frame_is_no_message() {
     let id = CobId::new(0x701).unwrap();
     let guard = CanFrame::remote(id, 1).unwrap();
-    let layer = MessageKind::Heartbeat;
+    let layer = CanopenLayer::Heartbeat;
     assert_eq!(
         Heartbeat::parse(&guard),
         Err(MessageError::Remote { layer })

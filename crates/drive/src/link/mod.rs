@@ -44,7 +44,7 @@ enum LinkState {
 
 /// The link to the drive.
 #[derive(Debug)]
-pub(crate) struct Link {
+pub(crate) struct RequestLink {
     codec: Codec,
     matcher: RequestMatcher,
     state: LinkState,
@@ -66,7 +66,7 @@ pub(crate) struct Link {
 /// Time limit of an abandoned request: several times a reply's usual 2 to 20 ms.
 const ABANDONED_TIMEOUT: Span = Span::from_millis(50);
 
-impl Link {
+impl RequestLink {
     pub fn new(codec: Codec) -> Self {
         Self {
             codec,
@@ -117,7 +117,7 @@ impl Link {
         self.frames.pop_front()
     }
 
-    /// When [`Link::expire`] is due without input.
+    /// When [`RequestLink::expire`] is due without input.
     pub fn deadline(&self) -> Option<Stamp<Host>> {
         let state = match self.state {
             LinkState::AwaitReply { deadline, .. } | LinkState::Probing { deadline, .. } => {

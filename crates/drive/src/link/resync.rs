@@ -9,14 +9,14 @@ use crate::exchange::ObjectAccess;
 use crate::request_matcher::PROBES;
 
 use super::request::{ActiveRequest, LinkRequest, RequestFailure};
-use super::{Link, LinkState};
+use super::{LinkState, RequestLink};
 
 /// Unanswered probes before a request is given up.
 const MAX_PROBES: u8 = 2;
 /// Time limit of the rest of a reply: longer than a serial adapter's latency timer of 16 ms.
 const REST_TIMEOUT: Span = Span::from_millis(20);
 
-impl Link {
+impl RequestLink {
     /// Sends the probe that was not sent last, so that a late reply to the last is not taken for
     /// this one's. If that other probe is itself outstanding, repeats the last: its reply retires
     /// both.

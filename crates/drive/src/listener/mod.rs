@@ -20,7 +20,7 @@ use crate::event::{SampleTrigger, ShaftSample};
 use crate::exchange::{ObjectAccess, Reply, TransferRequest};
 use crate::request_matcher::{ReplyMatch, RequestMatcher, SentRequest};
 use can::{CanEvent, CanListener};
-use rs232::{Rs232Event, Rs232Listener};
+use rs232::{Rs232Listener, SerialEvent};
 
 /// An event shown by the traffic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -115,7 +115,7 @@ impl DriveListener {
             node,
             to_device: UsbDecoder::new(),
             from_device: UsbDecoder::new(),
-            rs232: Rs232Listener::new(),
+            rs232: Rs232Listener::default(),
             announced: Stamp::from_nanos(0),
             can: CanListener::new(node),
             matcher: RequestMatcher::default(),
@@ -133,69 +133,33 @@ impl DriveListener {
         emit: &mut impl FnMut(Observation),
     ) {
         let noise = Observation::Noise { direction, host };
-        match link {
-            DriveLink::Can => self.observe_can(bytes, host, noise, emit),
-            DriveLink::Usb => {
-                for &byte in bytes {
-                    self.observe_usb(direction, byte, host, noise, emit);
-                }
-            }
-            DriveLink::Rs232 => {
-                for &byte in bytes {
-                    self.observe_rs232(direction, byte, host, noise, emit);
-                }
-            }
+        if link == DriveLink::Can {
+            return self.observe_can(bytes, host, noise, emit);
         }
-    }
-
-    fn observe_usb(
-        &mut self,
-        direction: Direction,
-        byte: u8,
-        host: Stamp<Host>,
-        noise: Observation,
-        emit: &mut impl FnMut(Observation),
-    ) {
-        match direction {
-            Direction::ToDevice => {
-                if let Some(frame) = self.to_device.push(byte)
-                    && !self.handle_request(&frame, host)
-                {
-                    emit(noise);
+        for &byte in bytes {
+            let event = match (link, direction) {
+                (DriveLink::Rs232, _) => self.rs232.push(direction, byte),
+                (_, Direction::ToDevice) => self.to_device.push(byte).map(SerialEvent::Request),
+                (_, Direction::FromDevice) => self.from_device.push(byte).map(SerialEvent::Answer),
+            };
+            match event {
+                None => {}
+                Some(SerialEvent::Noise) => emit(noise),
+                Some(SerialEvent::Request(frame)) => {
+                    if !self.handle_request(&frame, host) {
+                        emit(noise);
+                    }
                 }
-            }
-            Direction::FromDevice => {
-                if let Some(frame) = self.from_device.push(byte) {
-                    self.handle_answer(&frame, host, noise, emit);
+                Some(SerialEvent::Announced) => self.announced = host,
+                Some(SerialEvent::Answer(frame)) => {
+                    // On RS232 the drive executed the request before it announced the answer; the
+                    // words take longer.
+                    let host = match link {
+                        DriveLink::Rs232 => self.announced,
+                        _ => host,
+                    };
+                    self.handle_answer(&frame, direction, host, emit);
                 }
-            }
-        }
-    }
-
-    fn observe_rs232(
-        &mut self,
-        direction: Direction,
-        byte: u8,
-        host: Stamp<Host>,
-        noise: Observation,
-        emit: &mut impl FnMut(Observation),
-    ) {
-        match self.rs232.push(direction, byte) {
-            None => {}
-            Some(Rs232Event::Noise) => emit(noise),
-            Some(Rs232Event::Request(frame)) => {
-                let is_valid = self.handle_request(&frame, host);
-                if !is_valid {
-                    emit(noise);
-                }
-            }
-            Some(Rs232Event::Announced) => self.announced = host,
-            Some(Rs232Event::Answer(frame)) => {
-                // The drive executed the request before it announced the answer; the words take
-                // longer.
-                let host = self.announced;
-                let noise = Observation::Noise { direction, host };
-                self.handle_answer(&frame, host, noise, emit);
             }
         }
     }
@@ -210,7 +174,9 @@ impl DriveListener {
         match self.can.observe(bytes, host, emit) {
             None => {}
             Some(CanEvent::Noise) => emit(noise),
-            Some(CanEvent::Request(address, access)) => self.handle_sent(address, access, host),
+            Some(CanEvent::Request(address, access)) => {
+                self.handle_sent(self.node, address, access, host);
+            }
             Some(CanEvent::Response(reply)) => match self.matcher.handle_reply(&reply) {
                 ReplyMatch::Request(sent) => {
                     self.can.learn_mapping(&sent, &reply);
@@ -234,36 +200,30 @@ impl DriveListener {
         else {
             return false;
         };
-        if node == self.node || node == 0 {
-            self.handle_sent(address, access, host);
-        } else {
-            self.matcher.handle_sent(SentRequest {
-                address,
-                access,
-                sent: host,
-                id: 0,
-            });
-        }
+        self.handle_sent(node, address, access, host);
         true
     }
 
-    fn handle_sent(&mut self, address: Address, access: ObjectAccess, sent: Stamp<Host>) {
-        self.last_id += 1;
+    /// Records a request; one to another node has the id 0.
+    fn handle_sent(&mut self, node: u8, address: Address, access: ObjectAccess, sent: Stamp<Host>) {
+        let is_own = node == self.node || node == 0;
+        self.last_id += u64::from(is_own);
         self.matcher.handle_sent(SentRequest {
             address,
             access,
             sent,
-            id: self.last_id,
+            id: if is_own { self.last_id } else { 0 },
         });
     }
 
     fn handle_answer(
         &mut self,
         frame: &Result<SerialFrame, SerialFrameError>,
+        direction: Direction,
         host: Stamp<Host>,
-        noise: Observation,
         emit: &mut impl FnMut(Observation),
     ) {
+        let noise = Observation::Noise { direction, host };
         let Ok(Ok(reply)) = frame.as_ref().map(Reply::parse) else {
             return emit(noise);
         };
@@ -280,15 +240,18 @@ impl DriveListener {
 /// The observation of a request with its reply; `None` for segments and other commands.
 fn observation(sent: &SentRequest, reply: &Reply, answer: Stamp<Host>) -> Option<Observation> {
     let (address, request) = (sent.address, sent.sent);
-    let is_read = match sent.access {
-        ObjectAccess::Read | ObjectAccess::Transfer(TransferRequest::InitiateUpload { .. }) => true,
-        ObjectAccess::Write { .. } => false,
-        ObjectAccess::Transfer(TransferRequest::InitiateDownload {
-            transfer: Initiate::Segmented { .. },
-            ..
-        }) => false,
+    match sent.access {
+        ObjectAccess::Read
+        | ObjectAccess::Write { .. }
+        | ObjectAccess::Transfer(
+            TransferRequest::InitiateUpload { .. }
+            | TransferRequest::InitiateDownload {
+                transfer: Initiate::Segmented { .. },
+                ..
+            },
+        ) => {}
         ObjectAccess::Transfer(_) | ObjectAccess::Other => return None,
-    };
+    }
     if !reply.error().is_none() {
         return Some(Observation::Refused {
             address,
@@ -297,13 +260,17 @@ fn observation(sent: &SentRequest, reply: &Reply, answer: Stamp<Host>) -> Option
             answer,
         });
     }
-    if let ObjectAccess::Write { value, .. } = sent.access {
-        return Some(Observation::Wrote {
-            address,
-            value,
-            request,
-            answer,
-        });
+    match sent.access {
+        ObjectAccess::Write { value, .. } => {
+            return Some(Observation::Wrote {
+                address,
+                value,
+                request,
+                answer,
+            });
+        }
+        ObjectAccess::Transfer(TransferRequest::InitiateDownload { .. }) => return None,
+        _ => {}
     }
     let origin = ValueOrigin {
         request,
@@ -311,10 +278,7 @@ fn observation(sent: &SentRequest, reply: &Reply, answer: Stamp<Host>) -> Option
         trigger: SampleTrigger::Request,
         device_us: None,
     };
-    is_read
-        .then(|| reply.value())
-        .flatten()
-        .map(|value| origin.observation(address, value))
+    Some(origin.observation(address, reply.value()?))
 }
 
 /// How and when a value was obtained.

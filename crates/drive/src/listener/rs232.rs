@@ -22,15 +22,16 @@ const OPCODES: [u8; 7] = [
 ];
 
 /// Decodes both sides of a dialogue.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Rs232Listener {
     awaiting: Awaiting,
 }
 
 /// The next byte of the dialogue.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 enum Awaiting {
     /// From the master: an opcode.
+    #[default]
     Opcode,
     /// From the unit: the handshake for this opcode.
     OpcodeHandshake(u8),
@@ -48,30 +49,24 @@ enum Awaiting {
     AnswerHandshake,
 }
 
-/// Result of a byte.
-pub(super) enum Rs232Event {
+/// Result of a byte on a serial link.
+pub(super) enum SerialEvent {
     Noise,
     Request(Result<SerialFrame, SerialFrameError>),
-    /// An answer is ready: the request has been executed.
+    /// An answer on RS232 is ready: the request has been executed.
     Announced,
     Answer(Result<SerialFrame, SerialFrameError>),
 }
 
 impl Rs232Listener {
-    pub fn new() -> Self {
-        Self {
-            awaiting: Awaiting::Opcode,
-        }
-    }
-
-    pub fn push(&mut self, direction: Direction, byte: u8) -> Option<Rs232Event> {
+    pub fn push(&mut self, direction: Direction, byte: u8) -> Option<SerialEvent> {
         match direction {
             Direction::ToDevice => self.push_from_master(byte),
             Direction::FromDevice => self.push_from_unit(byte),
         }
     }
 
-    fn push_from_master(&mut self, byte: u8) -> Option<Rs232Event> {
+    fn push_from_master(&mut self, byte: u8) -> Option<SerialEvent> {
         self.awaiting = match (&mut self.awaiting, byte) {
             (Awaiting::Body(decoder), _) => {
                 let frame = decoder.push(byte)?;
@@ -80,7 +75,7 @@ impl Rs232Listener {
                 } else {
                     Awaiting::Opcode
                 };
-                return Some(Rs232Event::Request(frame));
+                return Some(SerialEvent::Request(frame));
             }
             (Awaiting::AnswerOpcodeHandshake, OKAY) => {
                 Awaiting::Answer(BodyDecoder::new(SerialFrame::ANSWER))
@@ -92,23 +87,24 @@ impl Rs232Listener {
         None
     }
 
-    fn push_from_unit(&mut self, byte: u8) -> Option<Rs232Event> {
+    fn push_from_unit(&mut self, byte: u8) -> Option<SerialEvent> {
         let (next, event) = match (&mut self.awaiting, byte) {
             (Awaiting::OpcodeHandshake(opcode), OKAY) => {
                 (Awaiting::Body(BodyDecoder::new(*opcode)), None)
             }
             (Awaiting::BodyHandshake, OKAY) => (Awaiting::AnswerOpcode, None),
-            (Awaiting::AnswerOpcode, SerialFrame::ANSWER) => {
-                (Awaiting::AnswerOpcodeHandshake, Some(Rs232Event::Announced))
-            }
+            (Awaiting::AnswerOpcode, SerialFrame::ANSWER) => (
+                Awaiting::AnswerOpcodeHandshake,
+                Some(SerialEvent::Announced),
+            ),
             (Awaiting::OpcodeHandshake(_) | Awaiting::BodyHandshake, FAILED) => {
                 (Awaiting::Opcode, None)
             }
             (Awaiting::Answer(decoder), _) => {
                 let frame = decoder.push(byte)?;
-                (Awaiting::AnswerHandshake, Some(Rs232Event::Answer(frame)))
+                (Awaiting::AnswerHandshake, Some(SerialEvent::Answer(frame)))
             }
-            _ => (Awaiting::Opcode, Some(Rs232Event::Noise)),
+            _ => (Awaiting::Opcode, Some(SerialEvent::Noise)),
         };
         self.awaiting = next;
         event

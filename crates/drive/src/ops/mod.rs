@@ -20,12 +20,12 @@ use crate::config::AxisConfig;
 use crate::error::{DriveError, Operation, WrittenData};
 use crate::event::{CommandProgress, DriveEvent, SampleTrigger, ShaftSample};
 use crate::exchange::ObjectAccess;
-use crate::link::{Link, LinkRequest, RequestFailure, TimedReply};
+use crate::link::{LinkRequest, RequestFailure, RequestLink, TimedReply};
 
 /// State shared by the procedure and the client.
 #[derive(Debug)]
 pub(crate) struct Core {
-    pub link: Link,
+    pub link: RequestLink,
     /// Services other than SDO, on a CAN bus.
     pub can: Option<CanServices>,
     /// The axis has been referenced since it was connected.

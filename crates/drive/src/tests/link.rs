@@ -12,7 +12,7 @@ use units::{Host, Span, Stamp};
 
 use crate::codec::Codec;
 use crate::exchange::ObjectAccess;
-use crate::link::{Link, LinkRequest, RequestFailure};
+use crate::link::{LinkRequest, RequestFailure, RequestLink};
 use crate::request_matcher::PROBES;
 use crate::{AxisConfig, DriveClient, DriveCommand};
 
@@ -51,13 +51,13 @@ fn probe(kind: usize) -> Vec<u8> {
     Codec::usb(1).encode(PROBES[kind].0, ObjectAccess::Read, at(0))
 }
 
-fn value(link: &mut Link) -> Option<u32> {
+fn value(link: &mut RequestLink) -> Option<u32> {
     link.take_result()?.ok()?.reply.value()
 }
 
 #[test]
 fn a_late_reply_does_not_answer_the_next_request() {
-    let mut link = Link::new(Codec::usb(1));
+    let mut link = RequestLink::new(Codec::usb(1));
     link.submit(read(0x6064));
     let first = link.transmit(at(0)).unwrap();
     link.abandon();
@@ -78,7 +78,7 @@ fn a_late_reply_does_not_answer_the_next_request() {
 
 #[test]
 fn reads_are_repeated_a_bounded_number_of_times() {
-    let mut link = Link::new(Codec::usb(1));
+    let mut link = RequestLink::new(Codec::usb(1));
     link.submit(read(0x6064));
     let mut now = at(0);
     let mut sent = 0;
@@ -107,7 +107,7 @@ fn reads_are_repeated_a_bounded_number_of_times() {
 
 #[test]
 fn a_request_is_repeated_at_once_after_a_damaged_reply() {
-    let mut link = Link::new(Codec::usb(1));
+    let mut link = RequestLink::new(Codec::usb(1));
     link.submit(read(0x6064));
     link.transmit(at(0)).unwrap();
     let mut bad = answer(7);
@@ -122,7 +122,7 @@ fn a_request_is_repeated_at_once_after_a_damaged_reply() {
 
 #[test]
 fn noise_before_a_reply_does_not_lose_it() {
-    let mut link = Link::new(Codec::usb(1));
+    let mut link = RequestLink::new(Codec::usb(1));
     link.submit(request(0x6040, ObjectAccess::Write { value: 0, width: 2 }));
     link.transmit(at(0)).unwrap();
     link.handle_input(&[0x90, 2, 0x33, 1, 1, 1, 1, 1], at(1));
@@ -134,7 +134,7 @@ fn noise_before_a_reply_does_not_lose_it() {
 
 #[test]
 fn an_urgent_request_does_not_wait_for_the_marker() {
-    let mut link = Link::new(Codec::usb(1));
+    let mut link = RequestLink::new(Codec::usb(1));
     link.submit(read(0x6064));
     link.transmit(at(0)).unwrap();
     link.expire(at(100));
@@ -161,7 +161,7 @@ fn an_urgent_request_does_not_wait_for_the_marker() {
 
 #[test]
 fn silence_is_reported_after_two_probes() {
-    let mut link = Link::new(Codec::usb(1));
+    let mut link = RequestLink::new(Codec::usb(1));
     link.submit(read(0x6064));
     let mut frames = Vec::new();
     let mut now = at(0);
@@ -194,7 +194,7 @@ fn silence_is_reported_after_two_probes() {
 
 #[test]
 fn a_lost_probe_reply_does_not_keep_the_link_desynchronised() {
-    let mut link = Link::new(Codec::usb(1));
+    let mut link = RequestLink::new(Codec::usb(1));
     link.submit(read(0x6064));
     link.transmit(at(0)).unwrap();
     assert_eq!(link.transmit(at(100)), Some(probe(0)));
@@ -207,7 +207,7 @@ fn a_lost_probe_reply_does_not_keep_the_link_desynchronised() {
 
 #[test]
 fn a_request_rejected_for_its_checksum_is_repeated_even_if_it_writes() {
-    let mut link = Link::new(Codec::usb(1));
+    let mut link = RequestLink::new(Codec::usb(1));
     let write = LinkRequest {
         retries: 0,
         ..request(0x607A, ObjectAccess::Write { value: 5, width: 2 })
@@ -300,7 +300,7 @@ proptest! {
         fates in proptest::collection::vec(fate(), 1..60),
         abandons in proptest::collection::vec(any::<bool>(), 12),
     ) {
-        let mut link = Link::new(Codec::usb(1));
+        let mut link = RequestLink::new(Codec::usb(1));
         let mut wire: Vec<(Stamp<Host>, Vec<u8>)> = Vec::new();
         let mut fates = fates.into_iter().cycle();
         let mut now = at(0);
@@ -357,7 +357,7 @@ proptest! {
         abandons in proptest::collection::vec(prop::bool::weighted(0.3), 16),
     ) {
         let attached = if on_can { DriveLink::Can } else { DriveLink::Usb };
-        let mut link = Link::new(Codec::new(attached, 1));
+        let mut link = RequestLink::new(Codec::new(attached, 1));
         let mut wire: Vec<(Stamp<Host>, Vec<u8>)> = Vec::new();
         let mut fates = fates.into_iter().cycle();
         let mut sent: Vec<Stamp<Host>> = Vec::new();

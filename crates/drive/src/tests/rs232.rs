@@ -10,7 +10,7 @@ use units::{Host, Span, Stamp};
 
 use crate::codec::Codec;
 use crate::exchange::ObjectAccess;
-use crate::link::{Link, LinkRequest, RequestFailure};
+use crate::link::{LinkRequest, RequestFailure, RequestLink};
 use crate::request_matcher::PROBES;
 use crate::{AxisConfig, DriveClient, DriveCommand, DriveError, DriveEvent};
 
@@ -208,7 +208,7 @@ proptest! {
     /// executed at most once per reported success.
     #[test]
     fn replies_belong_to_their_requests(there in fates(), back in fates(), abandons in proptest::collection::vec(any::<bool>(), 12)) {
-        let mut link = Link::new(Codec::new(DriveLink::Rs232, 1));
+        let mut link = RequestLink::new(Codec::new(DriveLink::Rs232, 1));
         let mut unit = Unit::new();
         let (mut out, mut home) = (Line::new(there), Line::new(back));
         let mut now = at(0);

@@ -1,6 +1,6 @@
 //! `[axis]`: encoder, gear, limits, homing.
 
-use scanner::config::AxisConfig;
+use scanner::config::TiltAxisConfig;
 use serde::Deserialize;
 
 use super::{between, positive};
@@ -67,7 +67,7 @@ pub struct HomingSettings {
 
 impl Default for AxisSettings {
     fn default() -> Self {
-        let scan = AxisConfig::default();
+        let scan = TiltAxisConfig::default();
         Self {
             node: scan.node,
             encoder_lines: scan.encoder_lines,
@@ -110,8 +110,8 @@ impl Default for HomingSettings {
 impl AxisSettings {
     /// The part stored in a log.
     #[must_use]
-    pub fn scan(&self) -> AxisConfig {
-        AxisConfig {
+    pub fn scan(&self) -> TiltAxisConfig {
+        TiltAxisConfig {
             node: self.node,
             encoder_lines: self.encoder_lines,
             gear: self.gear,

@@ -130,15 +130,15 @@ pub(super) fn line(points: &[Point], hull: OffsetLine, tail: Tail) -> Option<(Of
     }
     low.select_nth_unstable_by(TENTH, |a, b| a.1.total_cmp(&b.1));
     let tenth = low.get(TENTH)?.1.max(LEAST_NS);
-    let side = (-UP * tenth, DOWN * tenth);
+    let first_side = (-UP * tenth, DOWN * tenth);
     let coarse = LineGrid {
-        begin: side,
-        end: side,
+        begin: first_side,
+        end: first_side,
     }
     .spread(&low, tail)?;
     let fine = LineGrid {
-        begin: coarse.begin_side(),
-        end: coarse.end_side(),
+        begin: side(coarse.begin),
+        end: side(coarse.end),
     };
     // If all of the likelihood is between two nodes the finer grid may miss it.
     let spread = fine.spread(&low, tail).unwrap_or(coarse);
@@ -192,19 +192,10 @@ impl LineGrid {
     }
 }
 
-impl LinePosterior {
-    fn begin_side(&self) -> (f64, f64) {
-        Self::side(self.begin)
-    }
-
-    fn end_side(&self) -> (f64, f64) {
-        Self::side(self.end)
-    }
-
-    fn side((mean, deviation): (f64, f64)) -> (f64, f64) {
-        let reach = REACH * deviation.max(1.0);
-        (mean - reach, mean + reach)
-    }
+/// The grid's side around a mean with a deviation.
+fn side((mean, deviation): (f64, f64)) -> (f64, f64) {
+    let reach = REACH * deviation.max(1.0);
+    (mean - reach, mean + reach)
 }
 
 /// Log likelihood of the line `begin` and `end` below the hull; `None` if a packet would precede

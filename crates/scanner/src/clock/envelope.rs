@@ -54,6 +54,7 @@ const UNKNOWN_NS: f64 = 1e9;
 pub(super) type Point = (f64, f64);
 
 /// The clock under the points of a recording.
+#[derive(Default)]
 pub(super) struct Envelope {
     pub lines: Vec<OffsetLine>,
     pub cells: Vec<ErrorCell>,
@@ -87,10 +88,7 @@ impl Envelope {
     /// The envelope of points sorted by time.
     pub fn below(points: &[Point]) -> Self {
         let (Some(first), Some(last)) = (points.first(), points.last()) else {
-            return Self {
-                lines: Vec::new(),
-                cells: Vec::new(),
-            };
+            return Self::default();
         };
         let length_ns = last.0 - first.0;
         let mut blocks: Vec<EnvelopeBlock<'_>> = blocks(first.0, length_ns)

@@ -41,7 +41,7 @@ pub struct OnlineClock {
 }
 
 /// Nanoseconds: x after the origin, y of offset.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 struct OnlineState {
     /// The packet that defines the clock.
     prompt: (f64, f64),
@@ -56,16 +56,6 @@ struct OnlineState {
 }
 
 impl OnlineClock {
-    /// A clock without packets.
-    #[must_use]
-    pub const fn new() -> Self {
-        Self {
-            origin_ns: 0,
-            whole: 0,
-            state: None,
-        }
-    }
-
     /// Takes a packet. Returns whether the clock restarted because one of the clocks was set.
     pub fn observe(&mut self, arrival: Arrival) -> bool {
         let (device, host) = (arrival.device.as_nanos(), arrival.host.as_nanos());
@@ -81,7 +71,7 @@ impl OnlineClock {
         let restarted = self.state.is_some();
         self.origin_ns = device;
         self.whole = host.wrapping_sub(device);
-        self.state = Some(OnlineState::new());
+        self.state = Some(OnlineState::default());
         restarted
     }
 
@@ -116,17 +106,6 @@ impl OnlineClock {
 }
 
 impl OnlineState {
-    fn new() -> Self {
-        Self {
-            prompt: (0.0, 0.0),
-            from: (0.0, 0.0),
-            last: (0.0, 0.0),
-            late: None,
-            intervals: [0.0; INTERVALS],
-            turn: 0,
-        }
-    }
-
     /// Greatest possible offset.
     fn target(&self, x: f64) -> f64 {
         self.prompt.1 + MAX_DRIFT * (x - self.prompt.0)

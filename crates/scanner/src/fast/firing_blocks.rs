@@ -53,7 +53,7 @@ struct Pose {
 }
 
 /// How to place a block.
-enum Placement {
+enum BlockPlacement {
     Together(Pose),
     Outside,
     OneByOne,
@@ -115,7 +115,7 @@ impl<'a> FiringBlockPlacer<'a> {
             return;
         }
         match self.placement(simd, block) {
-            Placement::Together(pose) => {
+            BlockPlacement::Together(pose) => {
                 if batch.fields().contains(Fields::SD) {
                     self.find_tilt_variances(block, &pose);
                 }
@@ -129,28 +129,30 @@ impl<'a> FiringBlockPlacer<'a> {
                 batch.keep(points);
                 counts.points += points as u64;
             }
-            Placement::Outside => {
+            BlockPlacement::Outside => {
                 let returns = first.kept().count_ones();
                 let second = second.map_or(0, |second| second.kept().count_ones());
                 counts.outside += u64::from(returns + second);
             }
-            Placement::OneByOne => one_by_one(self.alignment, self.received, block, batch, counts),
+            BlockPlacement::OneByOne => {
+                one_by_one(self.alignment, self.received, block, batch, counts)
+            }
         }
     }
 
     /// Looks up time and angle of a block.
     #[inline(always)]
-    fn placement<S: Simd>(&mut self, simd: S, block: &FiringBlock<'_>) -> Placement {
+    fn placement<S: Simd>(&mut self, simd: S, block: &FiringBlock<'_>) -> BlockPlacement {
         let Some(tangent) = self.clock.tangent(block.start, block.length()) else {
-            return Placement::OneByOne;
+            return BlockPlacement::OneByOne;
         };
         let start = tangent.at.host;
         let last = start
             .saturating_add(tangent.stretched(block.length()))
             .saturating_add(ROUNDING_MARGIN);
         match self.spans.within(start, last) {
-            Coverage::None => return Placement::Outside,
-            Coverage::Some => return Placement::OneByOne,
+            Coverage::None => return BlockPlacement::Outside,
+            Coverage::Some => return BlockPlacement::OneByOne,
             Coverage::All => {}
         }
         let delays_ns = block.delays_f64_ns();
@@ -158,9 +160,9 @@ impl<'a> FiringBlockPlacer<'a> {
             .trajectory
             .follow(simd, &tangent, last, delays_ns, &mut self.ahead_rad);
         match motion {
-            BlockAngle::Unknown => Placement::Outside,
-            BlockAngle::OneByOne => Placement::OneByOne,
-            BlockAngle::Known(angle, tilt) => Placement::Together(Pose {
+            BlockAngle::Unknown => BlockPlacement::Outside,
+            BlockAngle::OneByOne => BlockPlacement::OneByOne,
+            BlockAngle::Known(angle, tilt) => BlockPlacement::Together(Pose {
                 tangent,
                 angle,
                 tilt,

@@ -51,7 +51,7 @@ impl Anchor {
     #[cold]
     fn new(next: usize, piece: &CubicPiece, end: Stamp<Host>, host: Stamp<Host>) -> Self {
         let whole_ns = end.saturating_since(piece.from).as_nanos().max(1);
-        let fastest = piece.fastest(whole_ns as f64).to_radians();
+        let fastest = fastest(&piece.deg, whole_ns as f64).to_radians();
         // The cast saturates, also at a rate of 0.
         let length_ns = ((MOST_AHEAD_RAD / 2.0 / fastest) as i64).clamp(1, whole_ns);
         let part = host.saturating_since(piece.from).as_nanos() / length_ns;

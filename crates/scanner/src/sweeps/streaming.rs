@@ -57,10 +57,8 @@ impl SweepWatch {
         if let Some((count, target)) = moves.newest().filter(|(count, _)| *count > self.seen) {
             self.seen = count;
             self.end(sample.host);
-            let back = plan.is_some_and(|plan| plan.both_ways) && self.spans.len() % 2 == 1;
             let is_sweep = plan.is_none_or(|plan| {
-                (self.spans.len() as u64) < u64::from(plan.sweeps)
-                    && plan.is_sweep(last.angle, target, back, END_TOLERANCE_DEG)
+                plan.is_next_sweep(self.spans.len(), last.angle, target, END_TOLERANCE_DEG)
             });
             if is_sweep {
                 self.state = Watched::Rest(last.angle);

@@ -10,7 +10,7 @@ use units::{Degrees, Host, Span, Stamp};
 use super::noise::{Noise, rates};
 use super::pieces::{CubicPiece, PiecewiseCubic};
 use super::profile::Profile;
-use super::profile_fit::{self, Observed, ProfileFit, Servo};
+use super::profile_fit::{self, Observed, ProfileFit, ServoModel};
 use super::{AngleSample, Method, Remark, spline};
 use crate::clock::Moment;
 use crate::sweeps::Sweep;
@@ -114,9 +114,9 @@ impl<'a> Candidates<'a> {
     /// The candidate with the smallest error, or that of `method`. `None` without one.
     pub(super) fn best(&self, method: Option<Method>) -> Option<(SweepFit, PiecewiseCubic)> {
         let servo = |method: Method| match method {
-            Method::Profile => Some(Servo::None),
-            Method::ProfileServo => Some(Servo::Lag),
-            Method::ProfileSwing => Some(Servo::Swing),
+            Method::Profile => Some(ServoModel::None),
+            Method::ProfileServo => Some(ServoModel::Lag),
+            Method::ProfileSwing => Some(ServoModel::Swing),
             _ => None,
         };
         let mut candidates: Vec<Candidate> = match method {
@@ -176,7 +176,7 @@ impl<'a> Candidates<'a> {
     }
 
     /// A preliminary fit to few observations; a full one if there are few.
-    fn preliminary_fit(&self, servo: Servo, method: Method) -> Option<Candidate> {
+    fn preliminary_fit(&self, servo: ServoModel, method: Method) -> Option<Candidate> {
         let guess = self.guess()?;
         let observed = condensed(&self.observed, &guess);
         let Some(fit) = profile_fit::preliminary(&observed, guess, servo) else {
@@ -188,7 +188,7 @@ impl<'a> Candidates<'a> {
     }
 
     /// Replaces a preliminary fit by a full one, if that exists.
-    fn refit(&self, preliminary: &mut Candidate, servo: Option<Servo>) {
+    fn refit(&self, preliminary: &mut Candidate, servo: Option<ServoModel>) {
         if let (true, Some(servo)) = (preliminary.is_preliminary, servo)
             && let Some(fit) = self.profile(
                 servo,
@@ -200,7 +200,12 @@ impl<'a> Candidates<'a> {
         }
     }
 
-    fn profile(&self, servo: Servo, method: Method, begin: Option<&Profile>) -> Option<Candidate> {
+    fn profile(
+        &self,
+        servo: ServoModel,
+        method: Method,
+        begin: Option<&Profile>,
+    ) -> Option<Candidate> {
         let guess = self.guess()?;
         let observed = condensed(&self.observed, &guess);
         let fit = profile_fit::fit(&observed, guess, servo, begin)?;

@@ -94,12 +94,6 @@ impl CubicPiece {
         [self.at(ns), self.rate(ns), c2 + 3.0 * c3 * ns, c3]
     }
 
-    /// An upper bound of the speed in its first `length_ns`, degrees per nanosecond.
-    pub(crate) fn fastest(&self, length_ns: f64) -> f64 {
-        let [_, c1, c2, c3] = self.deg;
-        c1.abs() + length_ns * (2.0 * c2.abs() + length_ns * 3.0 * c3.abs())
-    }
-
     pub(crate) fn since(&self, at: Moment) -> f64 {
         at.host.saturating_since(self.from).as_nanos() as f64 + at.rest_ns
     }

@@ -84,29 +84,19 @@ impl RegularisedParameters {
         for prior in priors {
             let remaining = remaining(prior);
             if remaining > DECISIVE_SHARE || remaining >= most {
-                regularised.set(prior.part);
+                *regularised.flag(prior.part) = true;
             }
         }
         regularised
     }
 
-    const fn set(&mut self, part: MotionParameter) {
+    const fn flag(&mut self, part: MotionParameter) -> &mut bool {
         match part {
-            MotionParameter::Start => self.start = true,
-            MotionParameter::RampUp => self.ramp_up = true,
-            MotionParameter::RampDown => self.ramp_down = true,
-            MotionParameter::Way => self.way = true,
-            MotionParameter::Servo => self.servo = true,
-        }
-    }
-
-    const fn has(self, part: MotionParameter) -> bool {
-        match part {
-            MotionParameter::Start => self.start,
-            MotionParameter::RampUp => self.ramp_up,
-            MotionParameter::RampDown => self.ramp_down,
-            MotionParameter::Way => self.way,
-            MotionParameter::Servo => self.servo,
+            MotionParameter::Start => &mut self.start,
+            MotionParameter::RampUp => &mut self.ramp_up,
+            MotionParameter::RampDown => &mut self.ramp_down,
+            MotionParameter::Way => &mut self.way,
+            MotionParameter::Servo => &mut self.servo,
         }
     }
 }
@@ -116,7 +106,7 @@ impl RegularisedParameters {
 pub(super) fn priors(
     now: &Profile,
     command: &Profile,
-    regularised: RegularisedParameters,
+    mut regularised: RegularisedParameters,
     servo: Range<usize>,
 ) -> Vec<Prior> {
     let ramp_sd = |s: f64| (RELATIVE_SD * s).max(MIN_RAMP_S);
@@ -156,7 +146,7 @@ pub(super) fn priors(
         .chain(
             times.map(|(deviation, index)| (MotionParameter::Servo, index, deviation, SERVO_SD_S)),
         )
-        .filter(|(part, ..)| regularised.has(*part))
+        .filter(|(part, ..)| *regularised.flag(*part))
         .map(|(part, index, deviation, sd)| Prior {
             part,
             index,

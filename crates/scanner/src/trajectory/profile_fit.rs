@@ -35,14 +35,14 @@ pub struct ProfileFit {
     pub regularised: RegularisedParameters,
     /// Reduced chi-squared: 1 if the samples' errors are as assumed.
     pub reduced_chi2: f64,
-    servo: Servo,
+    servo: ServoModel,
     covariance: DMatrix<f64>,
     priors: Vec<Prior>,
 }
 
 /// Response of the shaft to the demand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Servo {
+pub(super) enum ServoModel {
     /// None: the shaft follows at once.
     None,
     /// First order: a lag.
@@ -51,7 +51,7 @@ pub(super) enum Servo {
     Swing,
 }
 
-impl Servo {
+impl ServoModel {
     const fn parameters(self) -> usize {
         self as usize
     }
@@ -96,13 +96,13 @@ impl ProfileFit {
 pub(super) fn fit(
     observed: &[Observed],
     guess: Profile,
-    servo: Servo,
+    servo: ServoModel,
     begin: Option<&Profile>,
 ) -> Option<ProfileFit> {
     let [lag_s, inertia_s2] = match servo {
-        Servo::None => [0.0; 2],
-        Servo::Lag => [INITIAL_LAG_S, 0.0],
-        Servo::Swing => [2.0 * INITIAL_LAG_S, INITIAL_LAG_S * INITIAL_LAG_S],
+        ServoModel::None => [0.0; 2],
+        ServoModel::Lag => [INITIAL_LAG_S, 0.0],
+        ServoModel::Swing => [2.0 * INITIAL_LAG_S, INITIAL_LAG_S * INITIAL_LAG_S],
     };
     let guess = Profile {
         lag_s,
@@ -166,7 +166,7 @@ fn solve(
 pub(super) fn preliminary(
     observed: &[Observed],
     guess: Profile,
-    servo: Servo,
+    servo: ServoModel,
 ) -> Option<ProfileFit> {
     let part = observed.len() / PRELIMINARY_OBSERVATIONS;
     if part < 2 {
@@ -181,7 +181,7 @@ pub(super) fn preliminary(
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct ProfileShape {
     is_triangle: bool,
-    servo: Servo,
+    servo: ServoModel,
 }
 
 impl ProfileShape {

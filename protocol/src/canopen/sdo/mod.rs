@@ -11,6 +11,36 @@
 //! [`SdoTransfer`] is generic over the capacity of a segment: the EPOS2 carries the same transfers
 //! over its serial links, in segments of up to 63 bytes.
 
+/// Conversion of an SDO message to and from a CAN frame.
+macro_rules! sdo_frame {
+    ($message:ident, $channel:ident, $ids:literal) => {
+        impl<const L: usize> $message<L> {
+            /// The message as a frame; `node` is the server.
+            #[must_use]
+            pub fn to_frame(&self, node: NodeId) -> CanFrame {
+                CanFrame::of(
+                    CommunicationObject::$channel(node).cob_id(),
+                    self.to_bytes(),
+                )
+            }
+
+            /// The server's node and the message in `frame`.
+            ///
+            /// # Errors
+            /// [`MessageError`]; an SDO message always has eight bytes.
+            pub fn parse(frame: &CanFrame) -> Result<(NodeId, Self), MessageError> {
+                let layer = CanopenLayer::$channel;
+                let Some(CommunicationObject::$channel(node)) =
+                    frame.cob_id().map(CommunicationObject::of)
+                else {
+                    return Err(wrong_id(layer, $ids, frame));
+                };
+                Ok((node, Self::from_bytes(*bytes(layer, frame)?)))
+            }
+        }
+    };
+}
+
 mod client;
 mod data;
 mod outcome;
@@ -26,6 +56,13 @@ pub use response::{GenericSdoResponse, SdoResponse};
 pub use transfer::{SdoTransfer, TransferDirection, TransferStep};
 
 use crate::canopen::Address;
+use crate::canopen::cob_id::{CommunicationObject, NodeId};
+use crate::canopen::error::{CanopenLayer, MessageError};
+use crate::canopen::frame::CanFrame;
+use crate::canopen::message::{bytes, wrong_id};
+
+sdo_frame!(GenericSdoRequest, SdoRequest, "601 to 67F");
+sdo_frame!(GenericSdoResponse, SdoResponse, "581 to 5FF");
 
 /// Data bytes of every SDO message.
 const LEN: usize = 8;

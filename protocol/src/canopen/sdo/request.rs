@@ -4,10 +4,6 @@ use super::data::{GenericSdoSegment, Initiate, SEGMENT_LEN, TOGGLE, toggle_bit};
 use super::{ABORT, LEN, address, command, message};
 use crate::canopen::AbortCode;
 use crate::canopen::Address;
-use crate::canopen::cob_id::{CommunicationObject, NodeId};
-use crate::canopen::error::{MessageError, MessageKind};
-use crate::canopen::frame::CanFrame;
-use crate::canopen::message::{bytes, wrong_id};
 
 /// Client command specifiers.
 const DOWNLOAD_SEGMENT: u8 = 0;
@@ -106,28 +102,5 @@ impl<const L: usize> GenericSdoRequest<L> {
             },
             _ => Self::Unknown(bytes),
         }
-    }
-
-    /// The request to `node` as a frame.
-    #[must_use]
-    pub fn to_frame(&self, node: NodeId) -> CanFrame {
-        CanFrame::of(
-            CommunicationObject::SdoRequest(node).cob_id(),
-            self.to_bytes(),
-        )
-    }
-
-    /// The addressed node and the request in `frame`.
-    ///
-    /// # Errors
-    /// [`MessageError`]; an SDO message always has eight bytes.
-    pub fn parse(frame: &CanFrame) -> Result<(NodeId, Self), MessageError> {
-        let layer = MessageKind::SdoRequest;
-        let Some(CommunicationObject::SdoRequest(node)) =
-            frame.cob_id().map(CommunicationObject::of)
-        else {
-            return Err(wrong_id(layer, "601 to 67F", frame));
-        };
-        Ok((node, Self::from_bytes(*bytes(layer, frame)?)))
     }
 }

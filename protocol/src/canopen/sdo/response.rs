@@ -4,10 +4,6 @@ use super::data::{GenericSdoSegment, Initiate, SEGMENT_LEN, TOGGLE, toggle_bit};
 use super::{ABORT, GenericSdoRequest, LEN, address, command, message};
 use crate::canopen::AbortCode;
 use crate::canopen::Address;
-use crate::canopen::cob_id::{CommunicationObject, NodeId};
-use crate::canopen::error::{MessageError, MessageKind};
-use crate::canopen::frame::CanFrame;
-use crate::canopen::message::{bytes, wrong_id};
 
 /// Server command specifiers.
 const UPLOAD_SEGMENT: u8 = 0;
@@ -97,29 +93,6 @@ impl<const L: usize> GenericSdoResponse<L> {
             },
             _ => Self::Unknown(bytes),
         }
-    }
-
-    /// The response of `node` as a frame.
-    #[must_use]
-    pub fn to_frame(&self, node: NodeId) -> CanFrame {
-        CanFrame::of(
-            CommunicationObject::SdoResponse(node).cob_id(),
-            self.to_bytes(),
-        )
-    }
-
-    /// The responding node and the response in `frame`.
-    ///
-    /// # Errors
-    /// [`MessageError`]; an SDO message always has eight bytes.
-    pub fn parse(frame: &CanFrame) -> Result<(NodeId, Self), MessageError> {
-        let layer = MessageKind::SdoResponse;
-        let Some(CommunicationObject::SdoResponse(node)) =
-            frame.cob_id().map(CommunicationObject::of)
-        else {
-            return Err(wrong_id(layer, "581 to 5FF", frame));
-        };
-        Ok((node, Self::from_bytes(*bytes(layer, frame)?)))
     }
 
     /// The object named by the response; segments name none.

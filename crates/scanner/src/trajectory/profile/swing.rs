@@ -6,7 +6,7 @@ use super::Ramp;
 /// where g solves b2 g" + b1 g' + g = 0 with g(0) = b1 and g'(0) = -1. With C and S the cosine and
 /// the sine over w, a = b1 / (2 b2) and w2 = 1/b2 - a^2, which may be negative, g = exp(-a t) (b1 C
 /// + (a b1 - 1) S).
-struct Servo {
+struct SecondOrderServo {
     lag: f64,
     inertia: f64,
     a: f64,
@@ -19,7 +19,7 @@ struct Waves {
     s: f64,
 }
 
-impl Servo {
+impl SecondOrderServo {
     fn new(lag: f64, inertia: f64) -> Self {
         let a = lag / (2.0 * inertia);
         Self {
@@ -143,7 +143,7 @@ const SMALL_PHASE: f64 = 1e-2;
 
 /// Position and speed behind a ramp of `length` seconds.
 pub(super) fn answer(demand: &Ramp, since: f64, length: f64, lag: f64, inertia: f64) -> (f64, f64) {
-    let servo = Servo::new(lag, inertia);
+    let servo = SecondOrderServo::new(lag, inertia);
     let (g, sum) = servo.behind(since);
     let (g_after, sum_after) = servo.behind(since - length);
     let acceleration = if since < length { 1.0 / length } else { 0.0 };
@@ -154,7 +154,7 @@ pub(super) fn answer(demand: &Ramp, since: f64, length: f64, lag: f64, inertia: 
 }
 
 pub(super) fn behind(demand: Ramp, since: f64, length: f64, lag: f64, inertia: f64) -> Ramp {
-    let servo = Servo::new(lag, inertia);
+    let servo = SecondOrderServo::new(lag, inertia);
     let now = servo.behind_with_gradient(since);
     let after = servo.behind_with_gradient(since - length);
     let mean = (now.sum - after.sum) / length;

@@ -13,7 +13,7 @@ use protocol::epos2::message::{ReadObject, WriteObject};
 use protocol::epos2::objects::{self, Address};
 use protocol::epos2::{SerialFrame, usb};
 use protocol::record::{Direction, DriveLink, Record, Wire};
-use scanner::config::{AxisConfig, MountConfig};
+use scanner::config::{MountConfig, TiltAxisConfig};
 use scanner::{LidarConfig, ScanConfig, SweepPlan};
 use sim::TruePoint;
 use sim::scene_file::SceneFile;
@@ -285,7 +285,7 @@ const AT_ONCE: u16 = 0x0020;
 pub(super) fn scan_config(scene: &SceneFile, gearing: Option<Gearing>) -> ScanConfig {
     let simulation = &scene.simulation;
     let step_m = f64::from(simulation.sensor.model().distance_unit_mm()) * 1e-3;
-    let axis = gearing.map_or_else(AxisConfig::default, |gearing| AxisConfig {
+    let axis = gearing.map_or_else(TiltAxisConfig::default, |gearing| TiltAxisConfig {
         node: NODE,
         encoder_lines: gearing.qc_per_motor_turn() / 4,
         gear: gearing.turns(),
