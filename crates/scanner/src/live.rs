@@ -10,8 +10,8 @@ use std::collections::VecDeque;
 
 use cloud::mount::Mount;
 use cloud::{Points, Sink, SinkError};
-use drive::ShaftSample;
 use drive::record::{Record, Wire};
+use drive::{Observation, ShaftSample};
 use lidar::{Decoder, Options, Stats};
 use units::{Gearing, Host, Lidar, Span, Stamp};
 
@@ -21,7 +21,7 @@ use crate::clock::{DeviceClock, Moment, OnlineClock};
 use crate::config::{ScanConfig, SweepPlan};
 use crate::error::ScanError;
 use crate::fast::{FiringBlockPlacer, MAX_PACKET_POINTS};
-use crate::survey::{RecordReader, ShaftEvent};
+use crate::survey::RecordReader;
 use crate::sweeps::{MoveWatch, SweepWatch};
 use crate::trajectory::{Method, StreamingFit, Trajectory};
 
@@ -105,11 +105,15 @@ impl<'a> Live<'a> {
             Wire::Drive { .. } => {
                 let (reader, moves) = (&mut self.reader, &mut self.moves);
                 let mut samples = Vec::new();
-                reader.frame(record.host, &record.wire, &mut |event| match event {
-                    ShaftEvent::Sample(sample) => samples.push(sample),
-                    ShaftEvent::Write(write) => {
-                        moves.wrote(write.address, write.value, write.request)
-                    }
+                reader.frame(record.host, &record.wire, &mut |seen| match seen {
+                    Observation::Sample(sample) => samples.push(sample),
+                    Observation::Wrote {
+                        address,
+                        value,
+                        request,
+                        ..
+                    } => moves.wrote(address, value, request),
+                    _ => {}
                 });
                 for sample in samples {
                     self.sample(&sample);

@@ -142,15 +142,10 @@ fn attribute(
     if clock_steps.shows(jump.at, jump.by) {
         return Some(SetClock::Host);
     }
-    let device_jumped = found.device_jumped(arrivals, jump.at);
-    if clock_steps.is_dense(jump.at) {
-        return device_jumped.then_some(SetClock::Lidar);
+    if found.device_jumped(arrivals, jump.at) {
+        return Some(SetClock::Lidar);
     }
-    if device_jumped {
-        Some(SetClock::Lidar)
-    } else {
-        Some(SetClock::Host)
-    }
+    (!clock_steps.is_dense(jump.at)).then_some(SetClock::Host)
 }
 
 /// The packets between the steps, without uncertain ones, in order of device time.

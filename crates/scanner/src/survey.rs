@@ -19,7 +19,8 @@ pub struct Survey {
     reader: RecordReader,
     arrivals: Vec<Arrival>,
     samples: Vec<ShaftSample>,
-    writes: Vec<AcknowledgedWrite>,
+    /// Objects written to the drive: address, value, time of the request.
+    writes: Vec<(Address, u32, Stamp<Host>)>,
     clock_steps: ClockSteps,
     link: Option<DriveLink>,
 }
@@ -62,12 +63,18 @@ impl Survey {
                 self.link = Some(link);
                 let host = self.clock_steps.monotonic(record.host);
                 self.reader
-                    .frame(host, &record.wire, &mut |event| match event {
-                        ShaftEvent::Sample(sample) => {
+                    .frame(host, &record.wire, &mut |seen| match seen {
+                        Observation::Sample(sample) => {
                             self.samples.push(sample);
                             self.clock_steps.sample();
                         }
-                        ShaftEvent::Write(write) => self.writes.push(write),
+                        Observation::Wrote {
+                            address,
+                            value,
+                            request,
+                            ..
+                        } => self.writes.push((address, value, request)),
+                        _ => {}
                     });
             }
         }
@@ -97,8 +104,8 @@ impl Survey {
             sample.answer = timeline.host(sample.answer);
         }
         let mut moves = MoveWatch::new(self.gearing);
-        for write in self.writes {
-            moves.wrote(write.address, write.value, timeline.host(write.request));
+        for (address, value, request) in self.writes {
+            moves.wrote(address, value, timeline.host(request));
         }
         ShaftRecords {
             gearing: self.gearing,
@@ -113,19 +120,6 @@ pub(crate) struct RecordReader {
     timekeeper: Timekeeper,
     listener: DriveListener,
     request_transmission_time: Span,
-}
-
-/// What a frame of the drive completes.
-pub(crate) enum ShaftEvent {
-    Sample(ShaftSample),
-    Write(AcknowledgedWrite),
-}
-
-/// An object written to the drive, with the time of the request.
-pub(crate) struct AcknowledgedWrite {
-    pub address: Address,
-    pub value: u32,
-    pub request: Stamp<Host>,
 }
 
 impl RecordReader {
@@ -151,7 +145,7 @@ impl RecordReader {
         &mut self,
         host: Stamp<Host>,
         wire: &Wire<'_>,
-        emit: &mut impl FnMut(ShaftEvent),
+        emit: &mut impl FnMut(Observation),
     ) {
         let Wire::Drive {
             link,
@@ -164,24 +158,11 @@ impl RecordReader {
         // The drive takes the position after it has the whole request.
         let transmission = self.request_transmission_time;
         self.listener
-            .observe(link, direction, frame, host, &mut |seen| match seen {
-                Observation::Sample(sample) => emit(ShaftEvent::Sample(ShaftSample {
-                    request: sample.answer.min(sample.request + transmission),
-                    ..sample
-                })),
-                Observation::Wrote {
-                    address,
-                    value,
-                    request,
-                    ..
-                } => {
-                    emit(ShaftEvent::Write(AcknowledgedWrite {
-                        address,
-                        value,
-                        request,
-                    }));
+            .observe(link, direction, frame, host, &mut |mut seen| {
+                if let Observation::Sample(sample) = &mut seen {
+                    sample.request = sample.answer.min(sample.request + transmission);
                 }
-                _ => {}
+                emit(seen);
             });
     }
 }

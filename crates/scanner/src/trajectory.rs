@@ -155,9 +155,13 @@ impl Trajectory {
     /// A platform that stands still.
     #[must_use]
     pub const fn fixed(angle: Degrees) -> Self {
+        Self::of_curve(Curve::Fixed(angle), Method::None)
+    }
+
+    const fn of_curve(curve: Curve, method: Method) -> Self {
         Self {
-            curve: Curve::Fixed(angle),
-            method: Method::None,
+            curve,
+            method,
             fits: Vec::new(),
             samples: Vec::new(),
             step_deg: 0.0,
@@ -248,13 +252,8 @@ impl Trajectory {
 
     /// A trajectory of one piece, to be continued by [`Trajectory::append`].
     pub(crate) fn of_piece(piece: CubicPiece, end: Stamp<Host>, method: Method) -> Option<Self> {
-        Some(Self {
-            curve: Curve::Piecewise(PiecewiseCubic::new(vec![piece], end)?),
-            method,
-            fits: Vec::new(),
-            samples: Vec::new(),
-            step_deg: 0.0,
-        })
+        let curve = Curve::Piecewise(PiecewiseCubic::new(vec![piece], end)?);
+        Some(Self::of_curve(curve, method))
     }
 
     /// Continues with `piece` until `end`.

@@ -146,9 +146,7 @@ impl DriveListener {
                 None => {}
                 Some(SerialEvent::Noise) => emit(noise),
                 Some(SerialEvent::Request(frame)) => {
-                    if !self.handle_request(&frame, host) {
-                        emit(noise);
-                    }
+                    self.handle_request(&frame, host, noise, emit);
                 }
                 Some(SerialEvent::Announced) => self.announced = host,
                 Some(SerialEvent::Answer(frame)) => {
@@ -188,20 +186,21 @@ impl DriveListener {
         }
     }
 
-    /// Records a request of a serial link; returns whether it is valid.
+    /// Records a request of a serial link; an invalid one is noise.
     fn handle_request(
         &mut self,
         frame: &Result<SerialFrame, SerialFrameError>,
         host: Stamp<Host>,
-    ) -> bool {
+        noise: Observation,
+        emit: &mut impl FnMut(Observation),
+    ) {
         let request = frame.as_ref().ok();
         let Some((node, address, access)) =
             request.and_then(|frame| parse_serial_request(frame, self.node))
         else {
-            return false;
+            return emit(noise);
         };
         self.handle_sent(node, address, access, host);
-        true
     }
 
     /// Records a request; one to another node has the id 0.

@@ -42,28 +42,6 @@ impl Bitrate {
         Self::Kbit1000,
     ];
 
-    /// Bits per second.
-    #[must_use]
-    pub const fn bit_s(self) -> u32 {
-        match self {
-            Self::Kbit10 => 10_000,
-            Self::Kbit20 => 20_000,
-            Self::Kbit50 => 50_000,
-            Self::Kbit100 => 100_000,
-            Self::Kbit125 => 125_000,
-            Self::Kbit250 => 250_000,
-            Self::Kbit500 => 500_000,
-            Self::Kbit800 => 800_000,
-            Self::Kbit1000 => 1_000_000,
-        }
-    }
-
-    /// The standard bit rate of this many bits per second.
-    #[must_use]
-    pub fn from_bit_s(bit_s: u32) -> Option<Self> {
-        Self::ALL.into_iter().find(|rate| rate.bit_s() == bit_s)
-    }
-
     /// The digit after `S`.
     const fn digit(self) -> u8 {
         b'0' + self as u8
