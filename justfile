@@ -2,13 +2,13 @@
 ci:
     bash .ci/run
 
-# Format, lints and the tests that do not wait for real time: before every commit.
+# Format, lints and the tests in virtual time: before every commit.
 check:
     cargo fmt --all --check
     cargo clippy --workspace --all-targets -- -D warnings
     cargo test --workspace --lib --bins --test virtual --test hard_cases --test recordings
 
-# Every test that needs nothing but the checkout.
+# Every test that needs only the checkout.
 test:
     cargo test --workspace
 
@@ -20,7 +20,7 @@ counts:
 book:
     mdbook build docs
 
-# A scan with software devices.
+# A scan with simulated devices.
 scan *ARGS:
     cargo run --release -- capture --speed 56.25 {{ARGS}}
 

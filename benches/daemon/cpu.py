@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""What the daemon costs: shares of one core, idle and while it sweeps with eight clients of its live events.
+"""CPU use of the daemon: shares of one core, idle and during a sweep with eight clients of its live events.
 
 usage: cpu.py VELOMOTION LOG.pcapng
 
-The drive is `velomotion firmware-sim` in a process of its own, the lidar a sender of the data and position packets of LOG (any capture's) at
-the rate at which they were recorded, so that nothing but the daemon is in the process that is measured. Needs Linux and python3 alone.
+The drive is `velomotion firmware-sim` in a separate process. The lidar is a sender of the data and position packets of LOG (of any capture)
+at the recorded rate, so that the measured process contains only the daemon. Needs only Linux and python3.
 """
 import base64
 import json
@@ -37,12 +37,12 @@ def packets(path):
 
 
 def whole_turns(recorded):
-    """The packets of whole turns of the lidar, which can follow themselves, and how long they take by its clock, microseconds."""
+    """The packets of complete revolutions, which can be repeated, and their duration by the lidar's clock, microseconds."""
     data = [i for i, (_, port, _) in enumerate(recorded) if port == 2368]
     stamp = lambda i: struct.unpack_from("<I", recorded[i][2], 1200)[0]
     azimuth = lambda i: struct.unpack_from("<H", recorded[i][2], 2)[0]
     begin = data[0]
-    # The packet that looks where the first does is the first of the next round.
+    # The packet with the azimuth of the first one starts the next round.
     end = min(data[len(data) // 2 :], key=lambda i: (abs((azimuth(i) - azimuth(begin) + 18_000) % 36_000 - 18_000), i))
     return recorded[begin:end], (stamp(end) - stamp(begin)) % 3_600_000_000
 
@@ -56,7 +56,7 @@ def lidar(recorded, ports, stop):
             due = start + turn * round_us * 1e-6 + at - first
             if due > time.monotonic() + 0.005:
                 time.sleep(due - time.monotonic())
-            # The lidar's clock goes on from one round to the next, in either kind of packet.
+            # The lidar's clock continues from round to round, in both kinds of packets.
             place = 1200 if port == 2368 else 198
             stamp = (struct.unpack_from("<I", payload, place)[0] + turn * round_us) % 3_600_000_000
             payload = payload[:place] + struct.pack("<I", stamp) + payload[place + 4 :]

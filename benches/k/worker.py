@@ -1,4 +1,4 @@
-"""One of the peers: NAME FRAMES SLOP. Prints its CPU seconds, how far its D is off at most, and pairs that it lost, as JSON."""
+"""Runs a peer: NAME FRAMES SLOP. Prints its CPU seconds, the largest error of its D, and lost pairs, as JSON."""
 
 import json
 import sys
@@ -10,7 +10,7 @@ BINS = 151
 
 
 def rmbl(frames):
-    """A VLP-16 at 901 azimuths, turned on step by step from 0 to 180 degrees (Eq. 1-6 of the paper, d = 0)."""
+    """A VLP-16 at 901 azimuths, rotated in steps from 0 to 180 degrees (Eq. 1-6 of the paper, d = 0)."""
     azimuth = np.radians(np.arange(901) * 0.4)[:, None]
     elevation = np.radians(np.arange(16) * 2.0 - 15.0)[None, :]
     x, y = np.cos(elevation) * np.sin(azimuth), np.cos(elevation) * np.cos(azimuth)
@@ -42,7 +42,7 @@ def by_treecorr(points, slop):
         min_sep=0.0, max_sep=np.pi, nbins=BINS, bin_type="Linear", metric="Arc", sep_units="rad", bin_slop=slop, num_threads=1
     )
     pairs.process(catalogue)
-    # Of one catalogue every pair is counted once.
+    # Within one catalogue every pair is counted once.
     return np.asarray(pairs.npairs)
 
 
