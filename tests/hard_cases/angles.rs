@@ -273,7 +273,7 @@ fn a_motion_of_which_nothing_is_known() {
         deceleration: DegPerS2(down),
     };
     for commanded in [
-        Commanded::NOTHING,
+        Commanded::default(),
         reported(56.25, f64::INFINITY, f64::INFINITY),
         reported(56.25, 0.0, 500.0),
         reported(1e-9, 500.0, 500.0),

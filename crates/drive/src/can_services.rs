@@ -42,15 +42,15 @@ const HEARTBEAT_GRACE: Span = Span::from_millis(10);
 /// The CANopen services of one node.
 #[derive(Debug)]
 pub(crate) struct CanServices {
-    node: NodeId,
+    pub node: NodeId,
     config: CanHeartbeats,
     out: VecDeque<CanFrame>,
     heartbeat: HeartbeatConsumer,
     /// When the host noticed a missing heartbeat.
     missing_since: Option<Stamp<Host>>,
     operational: bool,
-    /// When the host's next heartbeat is due.
-    next_heartbeat: Option<Stamp<Host>>,
+    /// When the host's next heartbeat is due; `None` while it sends none.
+    pub next_heartbeat: Option<Stamp<Host>>,
     syncs: SyncMatcher,
     next_sync: Option<Stamp<Host>>,
     /// The node is configured to send the stream.
@@ -58,11 +58,11 @@ pub(crate) struct CanServices {
     /// The node has the object (1016) that monitors the host's heartbeat.
     pub monitors_host: bool,
     /// The latest sample that has not been taken.
-    latest: Option<ShaftSample>,
+    pub latest: Option<ShaftSample>,
     /// The stream has stalled: a wait for it timed out.
-    stalled: bool,
-    alarm: Option<Alarm>,
-    restarted: bool,
+    pub stalled: bool,
+    pub alarm: Option<Alarm>,
+    pub restarted: bool,
 }
 
 impl CanServices {
@@ -84,10 +84,6 @@ impl CanServices {
             alarm: None,
             restarted: false,
         }
-    }
-
-    pub fn node(&self) -> NodeId {
-        self.node
     }
 
     /// Starts a command. Events between commands are dropped, except for a restart of the node.
@@ -133,14 +129,6 @@ impl CanServices {
         self.next_heartbeat.get_or_insert(now);
     }
 
-    pub fn sends_heartbeat(&self) -> bool {
-        self.next_heartbeat.is_some()
-    }
-
-    pub fn stop_heartbeat(&mut self) {
-        self.next_heartbeat = None;
-    }
-
     /// Starts SYNC messages if none are sent. Returns whether a sample of the stream can be
     /// expected.
     pub fn request_samples(&mut self, now: Stamp<Host>) -> bool {
@@ -149,27 +137,6 @@ impl CanServices {
             self.latest = None;
         }
         self.streaming && (!self.stalled || self.latest.is_some())
-    }
-
-    pub fn take_sample(&mut self) -> Option<ShaftSample> {
-        self.latest.take()
-    }
-
-    /// Records that a wait for the stream timed out.
-    pub fn set_stalled(&mut self) {
-        self.stalled = true;
-    }
-
-    pub fn take_alarm(&mut self) -> Option<Alarm> {
-        self.alarm.take()
-    }
-
-    pub fn has_alarm(&self) -> bool {
-        self.alarm.is_some()
-    }
-
-    pub fn has_restarted(&self) -> bool {
-        self.restarted
     }
 
     /// Processes a frame other than an SDO response; returns the sample it carries, if any.

@@ -32,7 +32,7 @@ pub struct Sweep {
 }
 
 /// Command of a profile move; zero where it was not written.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Commanded {
     /// Speed of the cruise.
     pub speed: DegPerS,
@@ -40,15 +40,6 @@ pub struct Commanded {
     pub acceleration: DegPerS2,
     /// Deceleration.
     pub deceleration: DegPerS2,
-}
-
-impl Commanded {
-    /// No command.
-    pub const NOTHING: Self = Self {
-        speed: DegPerS(0.0),
-        acceleration: DegPerS2(0.0),
-        deceleration: DegPerS2(0.0),
-    };
 }
 
 /// A profile move as commanded.

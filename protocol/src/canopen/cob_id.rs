@@ -98,12 +98,7 @@ impl PdoNumber {
     /// 0 to 3: offset of its objects from those of PDO 1.
     #[must_use]
     pub const fn offset(self) -> u16 {
-        match self {
-            Self::One => 0,
-            Self::Two => 1,
-            Self::Three => 2,
-            Self::Four => 3,
-        }
+        self as u16
     }
 }
 

@@ -51,8 +51,9 @@ pub(crate) struct Ops {
     core: SharedCore,
     pub config: Arc<AxisConfig>,
     /// The axis may be moving: time limits are short.
-    is_moving: bool,
-    aborts_on_alarm: bool,
+    pub is_moving: bool,
+    /// An alarm of the CAN bus fails the operation in progress.
+    pub aborts_on_alarm: bool,
     next_sample: Option<Stamp<Host>>,
 }
 
@@ -70,16 +71,6 @@ impl Ops {
             aborts_on_alarm: false,
             next_sample: None,
         }
-    }
-
-    /// Selects the short time limits of a moving axis.
-    pub fn set_moving(&mut self, moving: bool) {
-        self.is_moving = moving;
-    }
-
-    /// Selects whether an alarm of the CAN bus fails the operation in progress.
-    pub fn set_abort_on_alarm(&mut self, aborts: bool) {
-        self.aborts_on_alarm = aborts;
     }
 
     /// Calls `act` with the CAN services; `None` on other links.
@@ -282,7 +273,7 @@ impl Ops {
     }
 
     fn is_interrupted(&self, core: &Core) -> bool {
-        self.aborts_on_alarm && core.can.as_ref().is_some_and(CanServices::has_alarm)
+        self.aborts_on_alarm && core.can.as_ref().is_some_and(|can| can.alarm.is_some())
     }
 
     fn write_request<T: Scalar>(&self, object: TypedObject<T>, value: T) -> LinkRequest {
@@ -336,7 +327,7 @@ impl Ops {
         let result = poll_fn(|_| {
             let mut core = lock(&self.core);
             if self.aborts_on_alarm
-                && let Some(alarm) = core.can.as_mut().and_then(CanServices::take_alarm)
+                && let Some(alarm) = core.can.as_mut().and_then(|can| can.alarm.take())
             {
                 core.link.abandon();
                 return Poll::Ready(Err(self.alarm_error(alarm)));

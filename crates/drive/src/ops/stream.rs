@@ -5,7 +5,6 @@ use std::task::Poll;
 
 use units::Span;
 
-use crate::can_services::CanServices;
 use crate::event::ShaftSample;
 
 use super::{Ops, lock};
@@ -23,10 +22,10 @@ impl Ops {
         poll_fn(|_| {
             let mut core = lock(&self.core);
             let has_ended = core.now >= until || self.is_interrupted(&core);
-            let sample = core.can.as_mut().and_then(CanServices::take_sample);
+            let sample = core.can.as_mut().and_then(|can| can.latest.take());
             core.wake = Some(until).filter(|_| sample.is_none() && !has_ended);
             if let (None, true, Some(can)) = (sample, has_ended, &mut core.can) {
-                can.set_stalled();
+                can.stalled = true;
             }
             if sample.is_some() || has_ended {
                 Poll::Ready(sample)

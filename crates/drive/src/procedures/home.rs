@@ -15,7 +15,7 @@ use super::stop::make_safe;
 
 /// Runs [`crate::DriveCommand::Home`].
 pub(crate) async fn home(mut ops: Ops) -> Result<CommandOutcome, DriveError> {
-    ops.set_abort_on_alarm(true);
+    ops.aborts_on_alarm = true;
     match run(&mut ops).await {
         Ok(outcome) => Ok(outcome),
         Err(cause) => Err(make_safe(&mut ops, cause).await),
@@ -30,13 +30,13 @@ async fn run(ops: &mut Ops) -> Result<CommandOutcome, DriveError> {
     configure(ops).await?;
     network::arm(ops).await?;
     enable(ops).await?;
-    ops.set_moving(true);
+    ops.is_moving = true;
     ops.set_referenced(false);
     ops.write(objects::CONTROLWORD, control::START_HOMING)
         .await?;
     ops.report(CommandProgress::Homing);
     wait_until_attained(ops).await?;
-    ops.set_moving(false);
+    ops.is_moving = false;
     ops.write(objects::CONTROLWORD, control::ENABLE_OPERATION)
         .await?;
     set_mode(ops, mode::PROFILE_POSITION).await?;

@@ -30,7 +30,7 @@ pub(crate) async fn sweep(ops: Ops, target: ValidatedMove) -> Result<CommandOutc
 
 /// Runs [`crate::DriveCommand::Hold`].
 pub(crate) async fn hold(mut ops: Ops, until: Stamp<Host>) -> Result<CommandOutcome, DriveError> {
-    ops.set_abort_on_alarm(true);
+    ops.aborts_on_alarm = true;
     match sample_until_fault(&mut ops, until).await {
         Ok(()) => Ok(CommandOutcome::Held),
         Err(cause) => Err(make_safe(&mut ops, cause).await),
@@ -54,7 +54,7 @@ async fn guarded_move(
     target: ValidatedMove,
     hold: Span,
 ) -> Result<CommandOutcome, DriveError> {
-    ops.set_abort_on_alarm(true);
+    ops.aborts_on_alarm = true;
     match run(&mut ops, target, hold).await {
         Ok(report) => Ok(CommandOutcome::Arrived(report)),
         Err(cause) => Err(make_safe(&mut ops, cause).await),
@@ -77,7 +77,7 @@ async fn run(ops: &mut Ops, target: ValidatedMove, hold: Span) -> Result<MoveRep
     let plan = ops.config.plan_move(from, target);
     let started = start(ops, plan).await?;
     let (position, arrived) = sample_until_arrival(ops, target.target, &plan, started).await?;
-    ops.set_moving(false);
+    ops.is_moving = false;
     sample_for(ops, hold).await?;
     network::disarm(ops).await?;
     Ok(MoveReport {
@@ -111,7 +111,7 @@ async fn configure(ops: &Ops, target: ValidatedMove) -> Result<(), DriveError> {
 
 /// Starts the move; returns when.
 async fn start(ops: &mut Ops, plan: MovePlan) -> Result<Stamp<Host>, DriveError> {
-    ops.set_moving(true);
+    ops.is_moving = true;
     ops.write(objects::CONTROLWORD, control::START_ABSOLUTE)
         .await?;
     let started = ops.now();

@@ -32,7 +32,7 @@ pub(super) fn reset(ops: &Ops) {
 
 /// Configures heartbeats and stream, then starts the node.
 pub(super) async fn configure(ops: &Ops) -> Result<(AngleSource, bool), DriveError> {
-    let Some(node) = ops.on_can(|can, _| can.node()) else {
+    let Some(node) = ops.on_can(|can, _| can.node) else {
         return Ok((AngleSource::Polls, false));
     };
     let period = whole_ms(ops.config.can.node_heartbeat);
@@ -55,7 +55,7 @@ pub(super) async fn configure(ops: &Ops) -> Result<(AngleSource, bool), DriveErr
         word & status::REMOTE != 0
     })
     .await?;
-    if ops.on_can(|can, _| can.has_restarted()) == Some(true) {
+    if ops.on_can(|can, _| can.restarted) == Some(true) {
         return Err(DriveError::Restarted { error: None });
     }
     let angle = if streaming {
@@ -99,7 +99,7 @@ async fn map_stream(ops: &Ops, node: NodeId) -> Result<(), DriveError> {
 /// Verifies the stream before a move: a log of the move then contains the mapping, and a change by
 /// another master is detected.
 pub(super) async fn verify_stream(ops: &Ops) -> Result<(), DriveError> {
-    match ops.on_can(|can, _| (can.streaming, can.node())) {
+    match ops.on_can(|can, _| (can.streaming, can.node)) {
         Some((true, node)) => verify_mapping(ops, node).await,
         _ => Ok(()),
     }
@@ -153,10 +153,10 @@ pub(super) async fn arm(ops: &Ops) -> Result<(), DriveError> {
 
 /// Ends the monitoring.
 pub(super) async fn disarm(ops: &Ops) -> Result<(), DriveError> {
-    if ops.on_can(|can, _| can.sends_heartbeat()) != Some(true) {
+    if ops.on_can(|can, _| can.next_heartbeat.is_some()) != Some(true) {
         return Ok(());
     }
     ops.write(objects::CONSUMER_HEARTBEAT, NO_CONSUMER).await?;
-    ops.on_can(|can, _| can.stop_heartbeat());
+    ops.on_can(|can, _| can.next_heartbeat = None);
     Ok(())
 }

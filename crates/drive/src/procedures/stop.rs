@@ -37,7 +37,7 @@ pub(crate) async fn brake(mut ops: Ops) -> Result<CommandOutcome, DriveError> {
 /// Stops the axis after a failure; returns the error to report. The quick stop precedes any
 /// diagnosis.
 pub(super) async fn make_safe(ops: &mut Ops, cause: DriveError) -> DriveError {
-    ops.set_abort_on_alarm(false);
+    ops.aborts_on_alarm = false;
     let stopped = match cause {
         DriveError::LinkLost { .. }
         | DriveError::NodeSilent { .. }
@@ -59,7 +59,7 @@ pub(super) async fn make_safe(ops: &mut Ops, cause: DriveError) -> DriveError {
 
 /// Quick stop, then power off. Harmless in every state: a drive that is off or in fault stays so.
 pub(super) async fn halt(ops: &mut Ops) -> Result<StopReport, DriveError> {
-    ops.set_moving(true);
+    ops.is_moving = true;
     ops.write_urgent(objects::CONTROLWORD, control::QUICK_STOP)
         .await?;
     disable_at_standstill(ops).await
@@ -67,7 +67,7 @@ pub(super) async fn halt(ops: &mut Ops) -> Result<StopReport, DriveError> {
 
 /// Like [`halt`] on a link without (undamaged) replies: fails soon, so that the caller soon knows.
 async fn halt_on_lost_link(ops: &mut Ops) -> Result<StopReport, DriveError> {
-    ops.set_moving(true);
+    ops.is_moving = true;
     ops.write_last_attempt(objects::CONTROLWORD, control::QUICK_STOP)
         .await?;
     disable_at_standstill(ops).await
@@ -96,12 +96,12 @@ async fn diagnose(ops: &Ops, cause: DriveError) -> DriveError {
 
 /// Waits for standstill, then disables the power stage and lets the brake close.
 async fn disable_at_standstill(ops: &mut Ops) -> Result<StopReport, DriveError> {
-    ops.set_moving(true);
+    ops.is_moving = true;
     wait_for_standstill(ops).await?;
     ops.write_idempotent(objects::CONTROLWORD, control::DISABLE_VOLTAGE)
         .await?;
     let statusword = wait_for(ops, "power off", is_off).await?;
-    ops.set_moving(false);
+    ops.is_moving = false;
     let brake = ops.config.brake;
     ops.sleep(brake.map_or(Span::ZERO, |brake| brake.fall))
         .await;
