@@ -191,7 +191,7 @@ impl Page {
             if begin.elapsed() > TIME_LIMIT {
                 let place = self.picture("failed").await;
                 eprintln!(
-                    "what happened: {}",
+                    "messages: {}",
                     self.run("return document.querySelector('#messages')?.innerText")
                         .await
                 );

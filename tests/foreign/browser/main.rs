@@ -320,7 +320,7 @@ fn the_page_asks_for_a_token_once() {
         page.fill("[name=token]", "not-the-token-of-this-test")
             .await;
         page.click("button").await;
-        page.until_has("p", "was not right").await;
+        page.until_has("p", "the token was wrong").await;
         page.fill("[name=token]", "a-token-of-this-test").await;
         page.click("button").await;
         page.until_has("#chip-link", "Connected").await;

@@ -96,43 +96,43 @@ setInterval(() => {
 
 function answer(request, response) {
   const { pathname, searchParams } = new URL(request.url, "http://localhost");
-  const say = (code, said) => response.writeHead(code, { "content-type": "application/json" }).end(JSON.stringify(said));
+  const reply = (code, body) => response.writeHead(code, { "content-type": "application/json" }).end(JSON.stringify(body));
   if (pathname.startsWith("/dev/")) {
     mode = pathname.slice(5);
     sent = 0;
     if (mode === "gone") sockets.forEach((socket) => socket.destroy());
     if (mode === "live") tell({ type: "scan", scan: scan(4, { id: "live", name: "yard", state: "recording", points: null }), deleted: false });
     tell({ type: "status", status: status() });
-    return say(200, mode);
+    return reply(200, mode);
   }
   if (mode === "gone") return request.socket.destroy();
   if (pathname === "/login") {
     mode = "idle";
-    return say(200, {});
+    return reply(200, {});
   }
-  if (pathname.startsWith("/api/") && mode === "token") return say(401, { error: "a token is needed", help: "sign in", kind: "denied" });
-  if (pathname === "/api/v1/status") return say(200, status());
-  if (pathname === "/api/v1/scans") return say(200, scans);
+  if (pathname.startsWith("/api/") && mode === "token") return reply(401, { error: "a token is needed", help: "sign in", kind: "denied" });
+  if (pathname === "/api/v1/status") return reply(200, status());
+  if (pathname === "/api/v1/scans") return reply(200, scans);
   if (pathname === "/api/v1/plan") {
     const speed = Number(searchParams.get("speed_deg_s"));
-    if (!(speed <= 98)) return say(400, { error: `speed ${speed} deg/s: expected 0.025 to 98`, help: "choose a slower one", kind: "usage" });
-    return say(200, { motor_rpm: Math.round(20 * speed), cruise_deg_s: Math.round(20 * speed) / 20, sweep_s: 45 / speed + 0.011, moves_s: 45 / speed + 0.6, step_deg: speed / 10, frames: 450 / speed, bytes: (45 / speed + 3) * 1.3e6 });
+    if (!(speed <= 98)) return reply(400, { error: `speed ${speed} deg/s: expected 0.025 to 98`, help: "choose a slower one", kind: "usage" });
+    return reply(200, { motor_rpm: Math.round(20 * speed), cruise_deg_s: Math.round(20 * speed) / 20, sweep_s: 45 / speed + 0.011, moves_s: 45 / speed + 0.6, step_deg: speed / 10, frames: 450 / speed, bytes: (45 / speed + 3) * 1.3e6 });
   }
   const one = /^\/api\/v1\/scans\/([^/]+)(?:\/(\w+))?$/.exec(pathname);
   if (one !== null) {
     const found = scans.find((each) => each.id === one[1]);
-    if (found === undefined) return say(404, { error: "no such scan", help: "GET /api/v1/scans lists them", kind: "not-found" });
+    if (found === undefined) return reply(404, { error: "no such scan", help: "GET /api/v1/scans lists them", kind: "not-found" });
     if (one[2] === "cloud" && ply !== null) return response.writeHead(200, { "content-type": "application/octet-stream" }).end(ply);
     if (request.method === "DELETE") scans = scans.filter((each) => each !== found);
-    return say(200, { ...found, report: { lost_packets: 0, sync, truth: { rms_m: 0.00071, worst_m: 0.0018 } }, messages: [] });
+    return reply(200, { ...found, report: { lost_packets: 0, sync, truth: { rms_m: 0.00071, worst_m: 0.0018 } }, messages: [] });
   }
-  if (request.method === "POST") return say(200, {});
+  if (request.method === "POST") return reply(200, {});
   const name = pathname === "/" ? "index.html" : pathname.slice(1);
   try {
     if (!/^[\w.]+$/.test(name) || !statSync(dist + name).isFile()) throw new Error(name);
     response.writeHead(200, { "content-type": TYPES[name.split(".").pop()], "cache-control": "no-store" }).end(readFileSync(dist + name));
   } catch {
-    say(404, { error: "no such path", kind: "not-found" });
+    reply(404, { error: "no such path", kind: "not-found" });
   }
 }
 

@@ -25,7 +25,7 @@ function frame(count) {
   return bytes;
 }
 
-test("a frame is read where the interface says it is", () => {
+test("a frame is parsed at the documented offsets", () => {
   const { start_s, number, left_out, tilt_deg, positions, times, sds, intensities, rings } = parseFrame(frame(3));
   assert.deepEqual([start_s, number, left_out, tilt_deg], [1.76e9 + 0.25, 7, 3, -12.5]);
   assert.deepEqual([...positions], [0, 0, 0, 1, 2, 3, 2, 4, 6]);
@@ -33,7 +33,7 @@ test("a frame is read where the interface says it is", () => {
   assert.deepEqual([[...intensities], [...rings]], [[100, 101, 102], [0, 1, 2]]);
 });
 
-test("what is no frame is none", () => {
+test("other bytes are no frame", () => {
   assert.equal(parseFrame(new ArrayBuffer(10)), null);
   assert.equal(parseFrame(new ArrayBuffer(32)), null);
   assert.equal(parseFrame(frame(3).slice(0, 90)), null);
@@ -42,7 +42,7 @@ test("what is no frame is none", () => {
   assert.equal(parseFrame(many), null);
 });
 
-test("ranges leave single outliers out and stay small", () => {
+test("ranges ignore single outliers and stay small", () => {
   const sample = new Sample();
   const count = 50_000;
   const columns = {

@@ -50,9 +50,9 @@ for (const piece of [1, 7, 64, 1000, 1e9]) {
   });
 }
 
-test("a column that is not there is empty", () => assert.equal(read(file(3, false), 50)[0].sds.length, 0));
-test("no points are no points", () => assert.deepEqual(read(file(0, false), 50), []));
-test("a file that is cut off is not whole", () => {
+test("a missing column is empty", () => assert.equal(read(file(3, false), 50)[0].sds.length, 0));
+test("an empty cloud has no points", () => assert.deepEqual(read(file(0, false), 50), []));
+test("a truncated file is an error", () => {
   const bytes = file(250, false);
   assert.throws(() => read(bytes.subarray(0, bytes.length - 1), 64), /249 of 250/);
 });
