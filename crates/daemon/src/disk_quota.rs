@@ -8,7 +8,6 @@ use cloud::formats::Format;
 
 use engine::failure::{Failure, Kind};
 
-use crate::health_monitor::disk_full;
 use crate::plan;
 use crate::state::DaemonState;
 
@@ -74,28 +73,15 @@ impl DiskQuota {
     /// Checks whether this many more bytes may be written.
     fn check(&self, bytes: u64) -> Result<(), Failure> {
         let state = &self.state;
-        let reserve = state.settings().reserve_bytes;
-        let Ok(free) = (state.free_bytes)(state.scans.folder()) else {
-            return Ok(());
-        };
-        if let Purpose::Scan = self.purpose {
-            return match free.saturating_sub(RECORDS) >= bytes {
-                true => Ok(()),
-                false => Err(full(free)),
-            };
+        if let Purpose::Download = self.purpose {
+            let megabytes = bytes.div_ceil(1_000_000);
+            let need = format!("this cloud may need {megabytes} MB more");
+            return plan::check_room(state, bytes, &need);
         }
-        let promised = plan::still_needed(state);
-        if free.saturating_sub(reserve).saturating_sub(promised) >= bytes {
-            return Ok(());
+        match (state.free_bytes)(state.scans.folder()) {
+            Ok(free) if free.saturating_sub(RECORDS) < bytes => Err(full(free)),
+            _ => Ok(()),
         }
-        let failure = disk_full(free, reserve);
-        let message = format!(
-            "{}{}, and this cloud may need {} MB more",
-            failure.message,
-            plan::promise(promised),
-            bytes.div_ceil(1_000_000)
-        );
-        Err(Failure { message, ..failure })
     }
 
     /// Why a write was refused.

@@ -135,8 +135,7 @@ pub fn most_cloud_bytes(log_bytes: u64) -> u64 {
 }
 
 /// Bytes that scans being recorded or made may still need.
-#[must_use]
-pub fn still_needed(state: &DaemonState) -> u64 {
+fn still_needed(state: &DaemonState) -> u64 {
     let under_way = state.scans.under_way();
     let needed = under_way.iter().map(|scan| {
         let asked = scan.head.asked.as_ref();
@@ -156,37 +155,28 @@ pub fn still_needed(state: &DaemonState) -> u64 {
     needed.fold(0, u64::saturating_add)
 }
 
-/// The words for bytes promised to scans under way.
-#[must_use]
-pub fn promise(bytes: u64) -> String {
-    match bytes {
-        0 => String::new(),
-        bytes => format!(
-            ", a scan that is under way may still need {} MB",
-            bytes.div_ceil(1_000_000)
-        ),
-    }
-}
-
-/// Refuses a capture without enough disk space.
+/// Refuses bytes for which the disk has no room beside its reserve and the scans under way; `need`
+/// names them.
 ///
 /// # Errors
 /// `disk_full`, with the bytes needed.
-pub fn fits(state: &DaemonState, plan: &CaptureEstimate) -> Result<(), Failure> {
+pub fn check_room(state: &DaemonState, bytes: u64, need: &str) -> Result<(), Failure> {
     let reserve = state.settings().reserve_bytes;
     let Ok(free) = (state.free_bytes)(state.scans.folder()) else {
         return Ok(());
     };
     let promised = still_needed(state);
-    if free.saturating_sub(reserve).saturating_sub(promised) >= plan.bytes {
+    if free.saturating_sub(reserve).saturating_sub(promised) >= bytes {
         return Ok(());
     }
     let failure = disk_full(free, reserve);
-    let message = format!(
-        "{}{}, and this scan may need {} MB",
-        failure.message,
-        promise(promised),
-        plan.bytes / 1_000_000
-    );
+    let under_way = match promised {
+        0 => String::new(),
+        bytes => format!(
+            ", a scan that is under way may still need {} MB",
+            bytes.div_ceil(1_000_000)
+        ),
+    };
+    let message = format!("{}{under_way}, and {need}", failure.message);
     Err(Failure { message, ..failure })
 }

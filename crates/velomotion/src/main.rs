@@ -14,14 +14,14 @@ fn main() -> ExitCode {
     let cli = Cli::parse();
     keep_words_whole();
     start_log(&cli.common);
-    let (said, failure) = match velomotion::run(&cli) {
-        Ok(mut said) => {
-            let failure = said.failure.take();
-            (Some(said), failure)
+    let (output, failure) = match velomotion::run(&cli) {
+        Ok(mut output) => {
+            let failure = output.failure.take();
+            (Some(output), failure)
         }
         Err(failure) => (None, Some(failure)),
     };
-    let printed = print(&cli.common, said, failure.as_ref());
+    let printed = print(&cli.common, output, failure.as_ref());
     let failure = failure.or_else(|| match printed {
         // A closed pipe is not a failure.
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Some(
@@ -61,20 +61,20 @@ fn keep_words_whole() {
 /// only. A cloud on stdout moves the text to stderr.
 fn print(
     common: &Common,
-    said: Option<CommandOutput>,
+    output: Option<CommandOutput>,
     failure: Option<&Failure>,
 ) -> std::io::Result<()> {
-    let stdout_taken = said.as_ref().is_some_and(|said| said.stdout_taken);
-    let line = match (common.json, said) {
-        (_, Some(said)) if said.json.is_null() => return Ok(()),
-        (true, said) => {
-            let mut object = said.map_or_else(|| serde_json::json!({}), |said| said.json);
+    let stdout_taken = output.as_ref().is_some_and(|output| output.stdout_taken);
+    let line = match (common.json, output) {
+        (_, Some(output)) if output.json.is_null() => return Ok(()),
+        (true, output) => {
+            let mut object = output.map_or_else(|| serde_json::json!({}), |output| output.json);
             if let (Some(failure), Some(object)) = (failure, object.as_object_mut()) {
                 object.insert("error".to_owned(), error_object(failure));
             }
             object.to_string()
         }
-        (false, Some(said)) if said.is_result || !common.quiet => said.text,
+        (false, Some(output)) if output.is_result || !common.quiet => output.text,
         (false, _) => return Ok(()),
     };
     if stdout_taken {

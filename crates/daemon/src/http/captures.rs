@@ -80,7 +80,9 @@ pub fn start(state: &Arc<DaemonState>, request: &CaptureRequest) -> Result<Strin
     service.require_drive()?;
     service.require_lidar()?;
     let plan = service.plan(request, "cloud".into(), "log".into())?;
-    plans::fits(state, &plans::estimate(state, request, &plan))?;
+    let bytes = plans::estimate(state, request, &plan).bytes;
+    let need = format!("this scan may need {} MB", bytes / 1_000_000);
+    plans::check_room(state, bytes, &need)?;
     let lease = service.lease(AxisTask::Capturing)?;
     let record = state.scans.begin(request, service.simulated())?;
     let id = record.id.clone();

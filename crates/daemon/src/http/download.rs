@@ -62,13 +62,12 @@ pub async fn cloud(
             .into());
     }
     let permit = downloading(&api)?;
-    let file_name = format!("velomotion-{id}.{}", format.extension());
     let plain = !wanted.uncertainty && !wanted.echo;
     if format == Format::Ply
         && plain
         && let Ok(stored) = open(api.state.cloud(&id)).await?
     {
-        return stream(stored, &file_name, content_type("ply"), permit);
+        return stream(stored, &id, "ply", permit);
     }
     let making = Arc::clone(&api.making).try_acquire_owned();
     let making = making.map_err(|_| Refusal::too_many("clouds being made"))?;
@@ -106,7 +105,7 @@ pub async fn cloud(
         .help("run velomotion replay on the log with -vv and report the messages")
     })??;
     drop(client);
-    stream(file, &file_name, content_type(format.extension()), permit)
+    stream(file, &id, format.extension(), permit)
 }
 
 /// Interrupts the making of a cloud when its client disconnects.
@@ -158,13 +157,7 @@ fn make(
 
 /// `GET /scans/ID/log`.
 pub async fn log(State(api): State<Arc<Api>>, Path(id): Path<String>) -> Result<Response, Refusal> {
-    let record = api.state.scans.record(&id);
-    record.ok_or_else(|| Refusal::no_scan(&id))?;
-    let permit = downloading(&api)?;
-    let file = open(api.state.log(&id)).await?;
-    let file = file.map_err(|_| Refusal::no_file(LOG))?;
-    let name = format!("velomotion-{id}.pcapng");
-    stream(file, &name, content_type("pcapng"), permit)
+    stored(&api, &id, LOG, "pcapng").await
 }
 
 /// `GET /scans/ID/thumbnail`.
@@ -172,13 +165,21 @@ pub async fn thumbnail(
     State(api): State<Arc<Api>>,
     Path(id): Path<String>,
 ) -> Result<Response, Refusal> {
-    let record = api.state.scans.record(&id);
-    record.ok_or_else(|| Refusal::no_scan(&id))?;
-    let permit = downloading(&api)?;
-    let file = open(api.state.scans.place(&id).join(THUMBNAIL)).await?;
-    let file = file.map_err(|_| Refusal::no_file(THUMBNAIL))?;
-    let name = format!("velomotion-{id}.png");
-    stream(file, &name, content_type("png"), permit)
+    stored(&api, &id, THUMBNAIL, "png").await
+}
+
+/// A file of a scan's folder.
+async fn stored(api: &Api, id: &str, name: &str, extension: &str) -> Result<Response, Refusal> {
+    let record = api.state.scans.record(id);
+    record.ok_or_else(|| Refusal::no_scan(id))?;
+    let permit = downloading(api)?;
+    let file = open(api.state.scans.place(id).join(name)).await?;
+    stream(
+        file.map_err(|_| Refusal::no_file(name))?,
+        id,
+        extension,
+        permit,
+    )
 }
 
 fn downloading(api: &Api) -> Result<OwnedSemaphorePermit, Refusal> {
@@ -209,8 +210,8 @@ async fn open(path: PathBuf) -> Result<std::io::Result<Opened>, Refusal> {
 /// Sends the rest of a file as it is now, a piece at a time: as fast as the client takes it.
 fn stream(
     (file, length): Opened,
-    name: &str,
-    content: &'static str,
+    id: &str,
+    extension: &str,
     permit: OwnedSemaphorePermit,
 ) -> Result<Response, Refusal> {
     // A log may grow while it is read: the announced length is sent.
@@ -224,22 +225,19 @@ fn stream(
             Ok::<_, std::io::Error>((read > 0).then_some((piece, (file, permit))))
         },
     ));
+    let content = match extension {
+        "png" => "image/png",
+        "csv" => "text/csv; charset=utf-8",
+        _ => "application/octet-stream",
+    };
     let headers = [
         (header::CONTENT_TYPE, content.to_owned()),
         (header::CONTENT_LENGTH, length.to_string()),
         (
             header::CONTENT_DISPOSITION,
-            format!("attachment; filename=\"{name}\""),
+            format!("attachment; filename=\"velomotion-{id}.{extension}\""),
         ),
         (header::CACHE_CONTROL, "no-store".to_owned()),
     ];
     Ok((StatusCode::OK, headers, body).into_response())
-}
-
-fn content_type(extension: &str) -> &'static str {
-    match extension {
-        "png" => "image/png",
-        "csv" => "text/csv; charset=utf-8",
-        _ => "application/octet-stream",
-    }
 }

@@ -101,11 +101,12 @@ pub fn run<P: Port>(
     steps: &[Step],
     on_progress: &mut dyn FnMut(MoveProgress<'_>),
 ) -> Result<(), SessionError> {
-    for command in [DriveCommand::Connect, DriveCommand::Home] {
-        session.run(command, &mut |event| {
-            on_progress(MoveProgress::Event(event))
-        })?;
-    }
+    let mut execute = |command, on_progress: &mut dyn FnMut(MoveProgress<'_>)| {
+        let on_event = &mut |event: &DriveEvent| on_progress(MoveProgress::Event(event));
+        session.run(command, on_event)
+    };
+    execute(DriveCommand::Connect, on_progress)?;
+    execute(DriveCommand::Home, on_progress)?;
     for step in steps {
         on_progress(MoveProgress::Step(step));
         let to = drive::MoveCommand {
@@ -118,13 +119,9 @@ pub fn run<P: Port>(
         } else {
             DriveCommand::Goto(to)
         };
-        session.run(command, &mut |event| {
-            on_progress(MoveProgress::Event(event))
-        })?;
+        execute(command, on_progress)?;
     }
-    session.run(DriveCommand::Brake, &mut |event| {
-        on_progress(MoveProgress::Event(event))
-    })?;
+    execute(DriveCommand::Brake, on_progress)?;
     Ok(())
 }
 

@@ -142,7 +142,7 @@ fn survey(request: &Reconstruction<'_>) -> Result<FirstPass, Failure> {
         pass,
         alignment,
         last_data,
-        utc: utc.map(UtcSurvey::solve),
+        utc: utc.map(|utc| utc.clock),
     })
 }
 

@@ -12,7 +12,8 @@ use units::Stamp;
 /// Tracks the satellite receiver of one lidar through a recording.
 pub struct UtcSurvey {
     timekeeper: Timekeeper,
-    clock: UtcClock,
+    /// The clock so far.
+    pub clock: UtcClock,
 }
 
 impl UtcSurvey {
@@ -35,12 +36,6 @@ impl UtcSurvey {
         } else if let Ok(packet) = PositionPacket::new(payload) {
             self.clock.position(record.host, &packet);
         }
-    }
-
-    /// The resulting clock.
-    #[must_use]
-    pub fn solve(self) -> UtcClock {
-        self.clock
     }
 }
 
