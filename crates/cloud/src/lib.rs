@@ -34,6 +34,8 @@ pub mod read;
 mod rows;
 mod sink;
 mod summary;
+#[cfg(test)]
+mod tests;
 mod tilt_track;
 
 pub use columns::{Column, Fields, MissingColumns};

@@ -17,7 +17,7 @@ pub use spare::Spare;
 
 /// A column's elements.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Values<'a> {
+pub(crate) enum ColumnValues<'a> {
     Bytes(&'a [u8]),
     Floats(&'a [f64]),
     HostTimes(&'a [Stamp<Host>]),
@@ -27,15 +27,15 @@ pub(crate) enum Values<'a> {
 /// An element of a column.
 trait Element: Copy {
     const ZERO: Self;
-    fn values(column: &[Self]) -> Values<'_>;
+    fn values(column: &[Self]) -> ColumnValues<'_>;
 }
 
 macro_rules! element {
     ($($element:ty, $zero:expr, $values:ident;)*) => {$(
         impl Element for $element {
             const ZERO: Self = $zero;
-            fn values(column: &[Self]) -> Values<'_> {
-                Values::$values(column)
+            fn values(column: &[Self]) -> ColumnValues<'_> {
+                ColumnValues::$values(column)
             }
         }
     )*};
@@ -136,7 +136,7 @@ macro_rules! define_points {
             )*
 
             /// The elements of a column.
-            pub(crate) fn values(&self, column: Column) -> Values<'_> {
+            pub(crate) fn values(&self, column: Column) -> ColumnValues<'_> {
                 match column {
                     $(Column::$variant => Element::values(self.$column()),)*
                 }

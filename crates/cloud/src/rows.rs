@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::points::Values;
+use crate::points::ColumnValues;
 
 /// Number type of a column in a row, little-endian.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,13 +86,13 @@ pub(crate) fn fill_values(
     rows: &mut [u8],
     row_bytes: usize,
     offset: usize,
-    (values, range): (Values<'_>, Range<usize>),
+    (values, range): (ColumnValues<'_>, Range<usize>),
     number: NumberType,
     seconds: impl Fn(i64) -> f64,
 ) {
     use NumberType::{F32, F64, U8, U16};
     match values {
-        Values::Bytes(column) => {
+        ColumnValues::Bytes(column) => {
             let column = part(column, range).iter();
             match number {
                 U8 => fill(rows, row_bytes, offset, column.map(|v| [*v])),
@@ -116,7 +116,7 @@ pub(crate) fn fill_values(
                 ),
             }
         }
-        Values::Floats(column) => {
+        ColumnValues::Floats(column) => {
             fill_floats(
                 rows,
                 row_bytes,
@@ -125,11 +125,11 @@ pub(crate) fn fill_values(
                 number,
             );
         }
-        Values::HostTimes(column) => {
+        ColumnValues::HostTimes(column) => {
             let seconds = part(column, range).iter().map(|t| seconds(t.as_nanos()));
             fill_floats(rows, row_bytes, offset, seconds, number);
         }
-        Values::LidarTimes(column) => {
+        ColumnValues::LidarTimes(column) => {
             let seconds = part(column, range).iter().map(|t| seconds(t.as_nanos()));
             fill_floats(rows, row_bytes, offset, seconds, number);
         }

@@ -10,8 +10,8 @@ use units::{Host, Lidar, Span, Stamp};
 
 use crate::continuity::{BlindSector, missing};
 use crate::fast::UnpackedPacket;
+use crate::fast::{AzimuthSines, PaceCache};
 use crate::fast::{BlockReturns, FiringBlock, ReturnLayer};
-use crate::fast::{PaceCache, SineTable};
 use crate::firing::{Echo, Firing};
 use crate::geometry::{Geometry, fits};
 use crate::options::Options;
@@ -64,7 +64,7 @@ struct PacketDecoder {
 #[derive(Clone, Debug)]
 struct ModelTables {
     geometry: Geometry,
-    sine_table: &'static SineTable,
+    sine_table: &'static AzimuthSines,
     pace_cache: PaceCache,
     unpacked: UnpackedPacket,
 }
@@ -289,7 +289,7 @@ impl PacketDecoder {
         let pace_cache = PaceCache::new(&geometry.channels);
         Box::new(ModelTables {
             geometry,
-            sine_table: SineTable::get(),
+            sine_table: AzimuthSines::get(),
             pace_cache,
             unpacked: UnpackedPacket::new(),
         })

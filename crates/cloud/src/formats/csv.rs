@@ -6,78 +6,29 @@
 
 use std::io::{self, Write};
 
-use super::stage::Stage;
-use crate::{Column, Fields, Metadata, Point, Points, Sink, SinkError, Summary};
+use super::file_sink::{EncodeFault, Encoder, FileSink};
+use crate::{Column, Fields, Metadata, Point, Points, Summary};
 
-const FORMAT: &str = "csv";
+/// Writes CSV. Each batch is one write: the output needs no buffer.
+pub(super) type CsvWriter<W> = FileSink<CsvEncoder<W>>;
 
-/// Writes CSV batch by batch.
+/// Encoder of [`CsvWriter`].
 #[derive(Debug)]
-pub struct CsvWriter<W> {
+pub(super) struct CsvEncoder<W> {
     output: W,
     fields: Fields,
-    stage: Stage,
+    /// Text of a batch, kept for its memory.
     text: Vec<u8>,
-    summary: Summary,
 }
 
 impl<W: Write> CsvWriter<W> {
     /// A writer into `output` with the columns of [`Fields::FILE`].
-    pub fn new(output: W) -> Self {
-        Self {
+    pub(super) fn new(output: W) -> Self {
+        Self::of(CsvEncoder {
             output,
             fields: Fields::FILE,
-            stage: Stage::default(),
             text: Vec::new(),
-            summary: Summary::default(),
-        }
-    }
-
-    /// Sets the columns; only before [`Sink::begin`].
-    #[must_use]
-    pub fn with_fields(mut self, fields: Fields) -> Self {
-        self.fields = fields;
-        self
-    }
-
-    /// Returns the output.
-    #[cfg(test)]
-    pub fn into_inner(self) -> W {
-        self.output
-    }
-
-    fn failed(&self, source: io::Error) -> SinkError {
-        SinkError::Write {
-            format: FORMAT,
-            points: self.summary.points,
-            source,
-        }
-    }
-
-    fn encode_header(&mut self, metadata: &Metadata) -> io::Result<()> {
-        self.text.clear();
-        for line in metadata.lines() {
-            writeln!(self.text, "# {line}")?;
-        }
-        write!(self.text, "x_m,y_m,z_m")?;
-        for column in self.fields.columns() {
-            write!(self.text, ",{}", heading(column))?;
-        }
-        writeln!(self.text)
-    }
-
-    fn encode(&mut self, batch: &Points) -> io::Result<()> {
-        self.text.clear();
-        for point in batch.iter() {
-            let [x, y, z] = point.position_m;
-            write!(self.text, "{x},{y},{z}")?;
-            for column in self.fields.columns() {
-                self.text.push(b',');
-                encode_field(&mut self.text, column, &point)?;
-            }
-            self.text.push(b'\n');
-        }
-        Ok(())
+        })
     }
 }
 
@@ -112,52 +63,55 @@ const fn heading(column: Column) -> &'static str {
     }
 }
 
-impl<W: Write> Sink for CsvWriter<W> {
-    fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
-        self.stage.points(FORMAT)?;
-        batch.fields().require(self.fields)?;
-        let result = self
-            .encode(batch)
-            .and_then(|()| self.output.write_all(&self.text));
-        if let Err(source) = result {
-            self.stage.cut();
-            return Err(self.failed(source));
+impl<W: Write> Encoder for CsvEncoder<W> {
+    fn format(&self) -> &'static str {
+        "csv"
+    }
+
+    fn begin(&mut self, fields: Fields, metadata: &Metadata) -> Result<(), EncodeFault> {
+        self.fields = fields;
+        for line in metadata.lines() {
+            writeln!(self.text, "# {line}")?;
         }
-        self.summary.add(batch.summary());
-        Ok(())
+        write!(self.text, "x_m,y_m,z_m")?;
+        for column in self.fields.columns() {
+            write!(self.text, ",{}", heading(column))?;
+        }
+        writeln!(self.text)?;
+        Ok(self.output.write_all(&self.text)?)
     }
 
-    fn fields(&self) -> Fields {
-        self.fields
+    fn points(&mut self, batch: &Points) -> Result<(), EncodeFault> {
+        self.text.clear();
+        for point in batch.iter() {
+            let [x, y, z] = point.position_m;
+            write!(self.text, "{x},{y},{z}")?;
+            for column in self.fields.columns() {
+                self.text.push(b',');
+                encode_field(&mut self.text, column, &point)?;
+            }
+            self.text.push(b'\n');
+        }
+        Ok(self.output.write_all(&self.text)?)
     }
 
-    fn begin(&mut self, metadata: &Metadata) -> Result<(), SinkError> {
-        self.stage.begin(FORMAT)?;
-        self.encode_header(metadata)
-            .and_then(|()| self.output.write_all(&self.text))
-            .map_err(|source| self.failed(source))?;
-        self.stage.opened();
-        Ok(())
-    }
-
-    fn finish(&mut self) -> Result<Summary, SinkError> {
-        self.stage.finish(FORMAT)?;
-        self.output.flush().map_err(|source| self.failed(source))?;
-        Ok(self.summary)
+    fn finish(&mut self, _: &Summary) -> Result<(), EncodeFault> {
+        Ok(self.output.flush()?)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::testing::{SmallDisk, cloud, metadata};
+    use crate::tests::samples::{SmallDisk, cloud, metadata};
+    use crate::{Sink, SinkError};
 
     fn written(fields: Fields, points: &Points) -> String {
         let mut writer = CsvWriter::new(vec![]).with_fields(fields);
         writer.begin(&metadata()).unwrap();
         writer.points(points).unwrap();
         assert_eq!(writer.finish().unwrap(), points.summary());
-        String::from_utf8(writer.into_inner()).unwrap()
+        String::from_utf8(writer.encoder.output).unwrap()
     }
 
     #[test]

@@ -14,6 +14,7 @@ mod attributes;
 mod identity;
 mod worker;
 
+use std::error::Error;
 use std::io::{Read, Seek, Write};
 use std::sync::mpsc::{SyncSender, sync_channel};
 use std::thread::{self, JoinHandle};
@@ -23,9 +24,9 @@ use units::{Host, Stamp};
 use self::attributes::PointAttributes;
 use self::worker::{FileEnding, WorkerCommand};
 use super::fallible::{FallibleOutput, WriteFault};
+use super::file_sink::{EncodeFault, Encoder, FileSink};
 use super::gps_time;
-use super::stage::Stage;
-use crate::{Fields, Metadata, Points, Sink, SinkError, Summary};
+use crate::{Fields, Metadata, Points, Summary};
 
 const FORMAT: &str = "e57";
 /// Batches in the queue: enough to decouple producer and encoder.
@@ -36,9 +37,10 @@ const QUEUE: usize = 4;
 ///
 /// If the output fails, or the writer is dropped before [`Sink::finish`], the file is lost, as the
 /// description of its points is at the end.
-pub struct E57Writer<W: Read + Write + Seek + Send + 'static> {
-    fields: Fields,
-    stage: Stage,
+pub(super) type E57Writer<W> = FileSink<E57Encoder<W>>;
+
+/// Encoder of [`E57Writer`].
+pub(super) struct E57Encoder<W: Read + Write + Seek + Send + 'static> {
     fault: WriteFault,
     output: Option<FallibleOutput<W>>,
     worker: Option<EncoderThread>,
@@ -46,7 +48,6 @@ pub struct E57Writer<W: Read + Write + Seek + Send + 'static> {
     /// The whole second of the first point.
     start: Option<Stamp<Host>>,
     end: Option<Stamp<Host>>,
-    summary: Summary,
 }
 
 struct EncoderThread {
@@ -56,73 +57,45 @@ struct EncoderThread {
 
 impl<W: Read + Write + Seek + Send + 'static> E57Writer<W> {
     /// A writer into `output`, which is empty, with the columns of [`Fields::FILE`].
-    pub fn new(output: W) -> Self {
+    pub(super) fn new(output: W) -> Self {
         let (output, fault) = FallibleOutput::new(output);
-        Self {
-            fields: Fields::FILE,
-            stage: Stage::default(),
+        Self::of(E57Encoder {
             fault,
             output: Some(output),
             worker: None,
             description: Vec::new(),
             start: None,
             end: None,
-            summary: Summary::default(),
-        }
+        })
     }
+}
 
-    /// Sets the columns; only before [`Sink::begin`].
-    #[must_use]
-    pub fn with_fields(mut self, fields: Fields) -> Self {
-        self.fields = fields;
-        self
-    }
-
-    fn encoding(&self, source: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> SinkError {
-        SinkError::Encode {
-            format: FORMAT,
-            points: self.summary.points,
-            source: source.into(),
-        }
-    }
-
-    /// The error of the output, which the library does not see.
-    fn written(&self) -> Result<(), SinkError> {
-        match self.fault.get() {
-            Some(source) => Err(SinkError::Write {
-                format: FORMAT,
-                points: self.summary.points,
-                source,
-            }),
-            None => Ok(()),
-        }
-    }
-
+impl<W: Read + Write + Seek + Send + 'static> E57Encoder<W> {
     /// Sends a command to the thread; if it has ended, returns its error.
-    fn order(&mut self, order: WorkerCommand) -> Result<(), SinkError> {
-        self.written()?;
+    fn order(&mut self, order: WorkerCommand) -> Result<(), EncodeFault> {
+        self.fault.outcome(Ok::<_, e57::Error>(()))?;
         let sent = self.worker.as_ref().map(|worker| worker.orders.send(order));
         match sent {
             Some(Ok(())) => Ok(()),
             Some(Err(_)) | None => {
                 self.wait()?;
-                Err(self.encoding("the encoder has ended"))
+                Err(EncodeFault::library("the encoder has ended"))
             }
         }
     }
 
     /// Waits for the end of the thread.
-    fn wait(&mut self) -> Result<(), SinkError> {
-        let ended = self.worker.take().map(|worker| {
+    fn wait(&mut self) -> Result<(), EncodeFault> {
+        let ended = self.worker.take().map_or(Ok(()), |worker| {
             drop(worker.orders);
-            worker.thread.join()
+            match worker.thread.join() {
+                Ok(result) => result.map_err(Into::into),
+                Err(_) => Err(Box::<dyn Error + Send + Sync>::from(
+                    "the encoder broke off",
+                )),
+            }
         });
-        self.written()?;
-        match ended {
-            Some(Ok(Err(error))) => Err(self.encoding(error)),
-            Some(Err(_)) => Err(self.encoding("the encoder broke off")),
-            Some(Ok(Ok(()))) | None => Ok(()),
-        }
+        self.fault.outcome(ended)
     }
 
     fn note_times(&mut self, batch: &Points) {
@@ -136,58 +109,48 @@ impl<W: Read + Write + Seek + Send + 'static> E57Writer<W> {
     }
 }
 
-impl<W: Read + Write + Seek + Send + 'static> Sink for E57Writer<W> {
-    fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
-        self.stage.points(FORMAT)?;
-        batch.fields().require(self.fields)?;
-        batch.check_coordinates(FORMAT, f64::from(f32::MAX), self.summary.points)?;
-        self.note_times(batch);
-        let start = self.start.unwrap_or(Stamp::from_nanos(0));
-        if let Err(error) = self.order(WorkerCommand::Points(Box::new(batch.clone()), start)) {
-            self.stage.cut();
-            return Err(error);
-        }
-        self.summary.add(batch.summary());
-        Ok(())
+impl<W: Read + Write + Seek + Send + 'static> Encoder for E57Encoder<W> {
+    fn format(&self) -> &'static str {
+        FORMAT
     }
 
-    fn fields(&self) -> Fields {
-        self.fields
+    fn limit_m(&self) -> Option<f64> {
+        Some(f32::MAX.into())
     }
 
-    fn begin(&mut self, metadata: &Metadata) -> Result<(), SinkError> {
-        self.stage.begin(FORMAT)?;
+    fn begin(&mut self, fields: Fields, metadata: &Metadata) -> Result<(), EncodeFault> {
         self.description = metadata.lines();
         let Some(output) = self.output.take() else {
             return Ok(());
         };
-        let attributes = PointAttributes::new(self.fields);
+        let attributes = PointAttributes::new(fields);
         let about = worker::CloudDescription::new(metadata);
         let (orders, receiver) = sync_channel(QUEUE);
         let thread = thread::Builder::new()
             .name(FORMAT.to_owned())
             .spawn(move || worker::run(output, &attributes, &about, &receiver))
-            .map_err(|error| self.encoding(error))?;
+            .map_err(EncodeFault::library)?;
         self.worker = Some(EncoderThread { orders, thread });
-        self.stage.opened();
         Ok(())
     }
 
-    fn finish(&mut self) -> Result<Summary, SinkError> {
-        self.stage.finish(FORMAT)?;
-        let ending = FileEnding {
-            identity: identity::of(&self.description, self.summary, [self.start, self.end]),
+    fn points(&mut self, batch: &Points) -> Result<(), EncodeFault> {
+        self.note_times(batch);
+        let start = self.start.unwrap_or(Stamp::from_nanos(0));
+        self.order(WorkerCommand::Points(Box::new(batch.clone()), start))
+    }
+
+    fn finish(&mut self, summary: &Summary) -> Result<(), EncodeFault> {
+        self.order(WorkerCommand::Finish(FileEnding {
+            identity: identity::of(&self.description, *summary, [self.start, self.end]),
             start_gps_s: self.start.map(gps_time::gps_s),
             end_gps_s: self.end.map(gps_time::gps_s),
-        };
-        self.order(WorkerCommand::Finish(ending))?;
-        self.wait()?;
-        Ok(self.summary)
+        }))?;
+        self.wait()
     }
 }
 
-/// Waits until the output is no longer used.
-impl<W: Read + Write + Seek + Send + 'static> Drop for E57Writer<W> {
+impl<W: Read + Write + Seek + Send + 'static> Drop for E57Encoder<W> {
     fn drop(&mut self) {
         // An error cannot be returned here.
         let _ = self.wait();

@@ -4,8 +4,11 @@
 //! full disk would abort the program. Others wrap the system's error, or lose it on a thread.
 //! [`FallibleOutput`] keeps the first error and from then on only pretends to write.
 
+use std::error::Error;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::sync::{Arc, Mutex, PoisonError};
+
+use super::file_sink::EncodeFault;
 
 /// The first error of a [`FallibleOutput`].
 #[derive(Clone, Default)]
@@ -19,6 +22,18 @@ impl WriteFault {
             Some(code) => io::Error::from_raw_os_error(code),
             None => io::Error::new(error.kind(), error.to_string()),
         })
+    }
+
+    /// The result of a library. An error of the output takes precedence, as the library does not see
+    /// it.
+    pub(in crate::formats) fn outcome<T>(
+        &self,
+        result: Result<T, impl Into<Box<dyn Error + Send + Sync>>>,
+    ) -> Result<T, EncodeFault> {
+        match self.get() {
+            Some(source) => Err(EncodeFault::Output(source)),
+            None => result.map_err(EncodeFault::library),
+        }
     }
 
     fn keep(&self, error: io::Error) {
@@ -120,7 +135,7 @@ impl<W: Write + Seek> Seek for FallibleOutput<W> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::testing::SmallDisk;
+    use crate::tests::samples::SmallDisk;
 
     #[test]
     fn after_the_first_error_writes_are_pretended() {

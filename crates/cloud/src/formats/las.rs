@@ -16,11 +16,11 @@ use las::{Builder, GpsTimeType, PointData, PointDataBuilder, Transform, Vector, 
 
 use self::extra_bytes::ExtraColumn;
 use super::fallible::{FallibleOutput, WriteFault};
+use super::file_sink::{EncodeFault, Encoder, FileSink};
 use super::gps_time;
 use super::seconds::seconds;
-use super::stage::Stage;
 use crate::rows::{fill, fill_values};
-use crate::{Fields, Metadata, Points, Sink, SinkError, Summary};
+use crate::{Fields, Metadata, Points, Summary};
 
 const SCALE_M: f64 = 1e-4;
 const STEPS_PER_M: f64 = 1e4;
@@ -46,79 +46,58 @@ const SYNTHETIC: u8 = 1;
 /// buffered output.
 ///
 /// Unlike with PLY, a file whose output failed is lost: its header cannot be completed.
-pub struct LasWriter<W: Write + Seek + Send + Sync + 'static> {
+pub(super) type LasWriter<W> = FileSink<LasEncoder<W>>;
+
+/// Encoder of [`LasWriter`].
+pub(super) struct LasEncoder<W: Write + Seek + Send + Sync + 'static> {
     format: &'static str,
-    fields: Fields,
     extras: Vec<ExtraColumn>,
     flags: u8,
-    stage: Stage,
     fault: WriteFault,
-    state: LasState<W>,
-    summary: Summary,
-}
-
-enum LasState<W: Write + Seek + Send + Sync + 'static> {
     /// Before begin, or after finish.
-    Idle(FallibleOutput<W>),
-    Open {
-        writer: las::Writer<FallibleOutput<W>>,
-        slab: PointData,
-    },
-    /// The output was lost with the library's writer.
-    Lost,
+    output: Option<FallibleOutput<W>>,
+    open: Option<(las::Writer<FallibleOutput<W>>, PointData)>,
 }
 
 impl<W: Write + Seek + Send + Sync + 'static> LasWriter<W> {
     /// A writer of uncompressed LAS into `output` with the columns of [`Fields::FILE`].
-    pub fn las(output: W) -> Self {
+    pub(super) fn las(output: W) -> Self {
         Self::new("las", output)
     }
 
     /// A writer of LAZ into `output` with the columns of [`Fields::FILE`].
-    pub fn laz(output: W) -> Self {
+    pub(super) fn laz(output: W) -> Self {
         Self::new("laz", output)
     }
 
     fn new(format: &'static str, output: W) -> Self {
         let (output, fault) = FallibleOutput::new(output);
-        Self {
+        Self::of(LasEncoder {
             format,
-            fields: Fields::FILE,
-            extras: extra_bytes::layout(Fields::FILE),
+            extras: Vec::new(),
             flags: 0,
-            stage: Stage::default(),
             fault,
-            state: LasState::Idle(output),
-            summary: Summary::default(),
-        }
-    }
-
-    /// Sets the columns; only before [`Sink::begin`].
-    #[must_use]
-    pub fn with_fields(mut self, fields: Fields) -> Self {
-        self.fields = fields;
-        self.extras = extra_bytes::layout(fields);
-        self
+            output: Some(output),
+            open: None,
+        })
     }
 
     /// Returns the output at its start; `None` if writing the header failed.
     #[cfg(test)]
-    pub fn into_inner(self) -> Option<W> {
-        match self.state {
-            LasState::Idle(output) => Some(output.into_inner()),
-            LasState::Open { writer, .. } => {
-                writer.into_inner().ok().map(FallibleOutput::into_inner)
-            }
-            LasState::Lost => None,
-        }
+    fn into_inner(self) -> Option<W> {
+        let open = self.encoder.open.map(|(writer, _)| writer.into_inner());
+        let output = self.encoder.output.or_else(|| open?.ok());
+        output.map(FallibleOutput::into_inner)
     }
+}
 
-    fn header(&self, metadata: &Metadata) -> Result<las::Header, SinkError> {
+impl<W: Write + Seek + Send + Sync + 'static> LasEncoder<W> {
+    fn header(&self, metadata: &Metadata) -> las::Result<las::Header> {
         let axis = Transform {
             scale: SCALE_M,
             offset: 0.0,
         };
-        let mut point_format = las::point::Format::new(6).map_err(|e| self.encoding(e))?;
+        let mut point_format = las::point::Format::new(6)?;
         point_format.extra_bytes = extra_bytes::length(&self.extras);
         point_format.is_compressed = self.format == "laz";
         let marker = if metadata.simulated { "SIMULATED " } else { "" };
@@ -137,27 +116,7 @@ impl<W: Write + Seek + Send + Sync + 'static> LasWriter<W> {
             extra_bytes::record(&self.extras),
             text_record(metadata, marker),
         ];
-        builder.into_header().map_err(|e| self.encoding(e))
-    }
-
-    fn encoding(&self, error: impl Into<las::Error>) -> SinkError {
-        SinkError::Encode {
-            format: self.format,
-            points: self.summary.points,
-            source: Box::new(error.into()),
-        }
-    }
-
-    /// The error of the output takes precedence, as the library does not see it.
-    fn outcome<T>(&self, result: las::Result<T>) -> Result<T, SinkError> {
-        match self.fault.get() {
-            Some(source) => Err(SinkError::Write {
-                format: self.format,
-                points: self.summary.points,
-                source,
-            }),
-            None => result.map_err(|error| self.encoding(error)),
-        }
+        builder.into_header()
     }
 }
 
@@ -213,59 +172,47 @@ fn text_record(metadata: &Metadata, marker: &str) -> Vlr {
     }
 }
 
-impl<W: Write + Seek + Send + Sync + 'static> Sink for LasWriter<W> {
-    fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
-        self.stage.points(self.format)?;
-        batch.fields().require(self.fields)?;
-        batch.check_coordinates(self.format, LIMIT_M, self.summary.points)?;
-        let LasState::Open { writer, slab } = &mut self.state else {
-            return Err(SinkError::Order {
-                format: self.format,
-                expected: "begin",
-                got: "points",
-            });
+impl<W: Write + Seek + Send + Sync + 'static> Encoder for LasEncoder<W> {
+    fn format(&self) -> &'static str {
+        self.format
+    }
+
+    fn limit_m(&self) -> Option<f64> {
+        Some(LIMIT_M)
+    }
+
+    fn begin(&mut self, fields: Fields, metadata: &Metadata) -> Result<(), EncodeFault> {
+        self.extras = extra_bytes::layout(fields);
+        self.flags = if metadata.simulated { SYNTHETIC } else { 0 };
+        let header = self.header(metadata).map_err(EncodeFault::library)?;
+        let slab = PointDataBuilder::new().for_header(&header).build();
+        if let Some(output) = self.output.take() {
+            let writer = self.fault.outcome(las::Writer::new(output, header))?;
+            self.open = Some((writer, slab));
+        }
+        Ok(())
+    }
+
+    fn points(&mut self, batch: &Points) -> Result<(), EncodeFault> {
+        let Some((writer, slab)) = &mut self.open else {
+            return Err(EncodeFault::library("the file is not open"));
         };
         let row_bytes = slab.record_len();
         let rows = slab.resize_for(batch.len());
         rows.fill(0);
         encode(batch, self.flags, &self.extras, rows, row_bytes);
-        let result = writer.write_points(slab);
-        if let Err(error) = self.outcome(result) {
-            self.stage.cut();
-            return Err(error);
-        }
-        self.summary.add(batch.summary());
-        Ok(())
+        self.fault.outcome(writer.write_points(slab))
     }
 
-    fn fields(&self) -> Fields {
-        self.fields
-    }
-
-    fn begin(&mut self, metadata: &Metadata) -> Result<(), SinkError> {
-        self.stage.begin(self.format)?;
-        self.flags = if metadata.simulated { SYNTHETIC } else { 0 };
-        let header = self.header(metadata)?;
-        let slab = PointDataBuilder::new().for_header(&header).build();
-        if let LasState::Idle(output) = std::mem::replace(&mut self.state, LasState::Lost) {
-            let writer = las::Writer::new(output, header);
-            let writer = self.outcome(writer)?;
-            self.state = LasState::Open { writer, slab };
-            self.stage.opened();
-        }
-        Ok(())
-    }
-
-    fn finish(&mut self) -> Result<Summary, SinkError> {
-        self.stage.finish(self.format)?;
-        if let LasState::Open { writer, .. } = std::mem::replace(&mut self.state, LasState::Lost) {
+    fn finish(&mut self, _: &Summary) -> Result<(), EncodeFault> {
+        if let Some((writer, _)) = self.open.take() {
             let output = writer.into_inner().and_then(|mut output| {
                 output.flush()?;
                 Ok(output)
             });
-            self.state = LasState::Idle(self.outcome(output)?);
+            self.output = Some(self.fault.outcome(output)?);
         }
-        Ok(self.summary)
+        Ok(())
     }
 }
 

@@ -1,12 +1,12 @@
 //! Rows of little-endian bytes in PLY and PCD: f32 positions, then the requested columns.
 
 use super::seconds::seconds;
-use crate::points::Values;
+use crate::points::ColumnValues;
 use crate::rows::{NumberType, RowBuffer, fill_values};
-use crate::{Column, Fields, Points, SinkError};
+use crate::{Column, Fields, Points};
 
 /// Number type of a column.
-const fn number_type(column: Column) -> NumberType {
+pub(super) const fn number_type(column: Column) -> NumberType {
     match column {
         Column::Intensity | Column::Tilt | Column::Sd => NumberType::F32,
         Column::Time | Column::DeviceTime => NumberType::F64,
@@ -34,10 +34,6 @@ impl RowLayout {
         }
     }
 
-    pub(super) const fn fields(&self) -> Fields {
-        self.fields
-    }
-
     /// Names and number types, in order.
     pub(super) fn properties(&self) -> impl Iterator<Item = (&'static str, NumberType)> {
         let columns = self.fields.columns();
@@ -47,17 +43,16 @@ impl RowLayout {
             .chain(columns.map(|column| (column.name(), number_type(column))))
     }
 
-    /// The rows of a batch.
-    pub(super) fn encode(&mut self, batch: &Points) -> Result<&[u8], SinkError> {
-        batch.fields().require(self.fields)?;
+    /// The rows of a batch that has the columns.
+    pub(super) fn encode(&mut self, batch: &Points) -> &[u8] {
         let rows = &mut self.rows;
         rows.reset(batch.len());
         if self.fields == Fields::FILE {
             default_rows(rows, batch);
-            return Ok(rows.bytes());
+        } else {
+            columns_into(rows, self.fields, batch);
         }
-        columns_into(rows, self.fields, batch);
-        Ok(rows.bytes())
+        rows.bytes()
     }
 }
 
@@ -90,7 +85,7 @@ fn default_rows(rows: &mut RowBuffer, batch: &Points) {
 fn columns_into(rows: &mut RowBuffer, fields: Fields, batch: &Points) {
     let (row_bytes, all) = (rows.row_bytes(), 0..batch.len());
     let axes = [batch.x_m(), batch.y_m(), batch.z_m()];
-    let axes = axes.map(|axis| (Values::Floats(axis), NumberType::F32));
+    let axes = axes.map(|axis| (ColumnValues::Floats(axis), NumberType::F32));
     let columns = fields
         .columns()
         .map(|column| (batch.values(column), number_type(column)));
@@ -105,13 +100,13 @@ fn columns_into(rows: &mut RowBuffer, fields: Fields, batch: &Points) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::testing;
+    use crate::tests::samples;
 
     #[test]
     fn default_columns_in_one_pass_equal_columns_one_by_one() {
-        let batch = testing::cloud(100);
+        let batch = samples::cloud(100);
         let mut layout = RowLayout::new(Fields::FILE);
-        let usual = layout.encode(&batch).unwrap().to_vec();
+        let usual = layout.encode(&batch).to_vec();
         assert_eq!(usual.len(), 100 * DEFAULT_ROW_BYTES);
         let mut rows = RowBuffer::new(DEFAULT_ROW_BYTES);
         rows.reset(100);

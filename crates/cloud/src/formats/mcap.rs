@@ -23,6 +23,7 @@ use units::{Degrees, Host, Span, Stamp};
 
 use self::channels::McapChannels;
 use super::fallible::{FallibleOutput, WriteFault};
+use super::file_sink::EncodeFault;
 use super::stage::Stage;
 use crate::messages::cdr::Cdr;
 use crate::messages::{
@@ -125,28 +126,13 @@ impl<W: Write + Seek> McapWriter<W> {
 }
 
 impl<W: Write + Seek> McapLog<W> {
-    fn encoding(&self, source: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> SinkError {
-        SinkError::Encode {
-            format: FORMAT,
-            points: self.points,
-            source: source.into(),
-        }
-    }
-
-    /// The error of the output takes precedence, as the library does not see it.
     fn outcome<T>(&self, result: mcap::McapResult<T>) -> Result<T, SinkError> {
-        match self.fault.get() {
-            Some(source) => Err(SinkError::Write {
-                format: FORMAT,
-                points: self.points,
-                source,
-            }),
-            None => result.map_err(|error| self.encoding(error)),
-        }
+        let outcome = self.fault.outcome(result);
+        outcome.map_err(|fault| fault.after(self.points, FORMAT))
     }
 
     fn time(&self, stamp: Stamp<Host>) -> Result<Time, SinkError> {
-        Time::of(stamp).map_err(|error| self.encoding(error))
+        Time::of(stamp).map_err(|error| EncodeFault::library(error).after(self.points, FORMAT))
     }
 
     /// Writes the message in `self.cdr`.

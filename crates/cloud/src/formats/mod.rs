@@ -14,6 +14,7 @@
 mod csv;
 mod e57;
 mod fallible;
+mod file_sink;
 mod gps_time;
 mod las;
 mod layout;
@@ -141,11 +142,9 @@ impl fmt::Display for Format {
 }
 
 #[cfg(test)]
-pub(crate) mod testing;
-
-#[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tests::samples;
 
     #[test]
     fn extensions_name_formats_in_any_case() {
@@ -172,10 +171,10 @@ mod tests {
     #[test]
     fn every_format_writes_what_its_writer_was_given() {
         for format in Format::ALL {
-            let file = testing::SharedOutput::default();
+            let file = samples::SharedOutput::default();
             let mut sink = format.writer(file.clone(), Fields::FILE);
-            let cloud = testing::cloud_from(100, testing::NOW_NS);
-            sink.begin(&testing::metadata()).unwrap();
+            let cloud = samples::cloud_from(100, samples::NOW_NS);
+            sink.begin(&samples::metadata()).unwrap();
             sink.points(&cloud).unwrap();
             let summary = sink.finish().unwrap();
             assert_eq!(summary, cloud.summary(), "{format}");

@@ -5,62 +5,68 @@
 
 use std::io::{self, Seek, SeekFrom, Write};
 
+use super::file_sink::{EncodeFault, Encoder, FileSink};
 use super::layout::RowLayout;
-use super::stage::Stage;
 use crate::rows::NumberType;
-use crate::{Fields, Metadata, Points, Sink, SinkError, Summary};
+use crate::{Fields, Metadata, Points, Summary};
 
-const FORMAT: &str = "pcd";
 /// Digits of u64::MAX: the counts are written again at the end, with the same length.
 const DIGITS: usize = 20;
 
 /// Writes PCD.
+pub type PcdWriter<W> = FileSink<PcdEncoder<W>>;
+
+/// Encoder of [`PcdWriter`].
 #[derive(Debug)]
-pub struct PcdWriter<W> {
+pub struct PcdEncoder<W> {
     output: W,
     layout: RowLayout,
-    stage: Stage,
     counts_at: u64,
-    points: u64,
-    summary: Summary,
     rows: u64,
 }
 
 impl<W: Write + Seek> PcdWriter<W> {
     /// A writer into `output` from its current position, with the columns of [`Fields::FILE`].
     pub fn new(output: W) -> Self {
-        Self {
-            output,
-            layout: RowLayout::new(Fields::FILE),
-            stage: Stage::default(),
-            counts_at: 0,
-            points: 0,
-            summary: Summary::default(),
-            rows: 1,
-        }
+        Self::organised(output, 1)
     }
 
     /// A writer of an organised cloud of `rows` rows (at least one), whose points come row by row.
     pub fn organised(output: W, rows: u64) -> Self {
-        Self {
+        Self::of(PcdEncoder {
+            output,
+            layout: RowLayout::new(Fields::FILE),
+            counts_at: 0,
             rows: rows.max(1),
-            ..Self::new(output)
-        }
+        })
+    }
+}
+
+const fn letter(kind: NumberType) -> &'static str {
+    match kind {
+        NumberType::F32 | NumberType::F64 => "F",
+        NumberType::U8 | NumberType::U16 => "U",
+    }
+}
+
+impl<W> PcdEncoder<W> {
+    /// The lines with the counts, of constant length.
+    fn counts(&self, points: u64) -> String {
+        let rows = self.rows;
+        format!(
+            "WIDTH {:<DIGITS$}\nHEIGHT {rows:<DIGITS$}\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {points:<DIGITS$}\n",
+            points / rows
+        )
+    }
+}
+
+impl<W: Write + Seek> Encoder for PcdEncoder<W> {
+    fn format(&self) -> &'static str {
+        "pcd"
     }
 
-    /// Sets the columns; only before [`Sink::begin`].
-    #[must_use]
-    pub fn with_fields(mut self, fields: Fields) -> Self {
+    fn begin(&mut self, fields: Fields, metadata: &Metadata) -> Result<(), EncodeFault> {
         self.layout = RowLayout::new(fields);
-        self
-    }
-
-    /// Returns the output.
-    pub fn into_inner(self) -> W {
-        self.output
-    }
-
-    fn write_header(&mut self, metadata: &Metadata) -> io::Result<()> {
         let mut head = String::from("# .PCD v0.7 - Point Cloud Data file format\n");
         for line in metadata.lines() {
             head += &format!("# {line}\n");
@@ -76,79 +82,27 @@ impl<W: Write + Seek> PcdWriter<W> {
         head += &format!("TYPE {}\n", list(&|(_, kind)| letter(*kind).to_owned()));
         head += &format!("COUNT {}\n", list(&|_| "1".to_owned()));
         self.counts_at = self.output.stream_position()? + head.len() as u64;
-        head += &self.counts();
+        head += &self.counts(0);
         head += "DATA binary\n";
-        self.output.write_all(head.as_bytes())
+        Ok(self.output.write_all(head.as_bytes())?)
     }
 
-    /// The lines with the counts, of constant length.
-    fn counts(&self) -> String {
-        let (points, rows) = (self.points, self.rows);
-        format!(
-            "WIDTH {:<DIGITS$}\nHEIGHT {rows:<DIGITS$}\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {points:<DIGITS$}\n",
-            points / rows
-        )
+    fn points(&mut self, batch: &Points) -> Result<(), EncodeFault> {
+        Ok(self.output.write_all(self.layout.encode(batch))?)
     }
 
-    fn write_counts(&mut self) -> io::Result<()> {
-        if !self.points.is_multiple_of(self.rows) {
-            return Err(io::Error::other(format!(
+    fn finish(&mut self, summary: &Summary) -> Result<(), EncodeFault> {
+        if !summary.points.is_multiple_of(self.rows) {
+            return Err(EncodeFault::Output(io::Error::other(format!(
                 "an organised cloud of {} rows: expected as many points in each, got {} in all",
-                self.rows, self.points
-            )));
+                self.rows, summary.points
+            ))));
         }
         self.output.seek(SeekFrom::Start(self.counts_at))?;
-        let counts = self.counts();
+        let counts = self.counts(summary.points);
         self.output.write_all(counts.as_bytes())?;
         self.output.seek(SeekFrom::End(0))?;
-        self.output.flush()
-    }
-}
-
-const fn letter(kind: NumberType) -> &'static str {
-    match kind {
-        NumberType::F32 | NumberType::F64 => "F",
-        NumberType::U8 | NumberType::U16 => "U",
-    }
-}
-
-fn failed(points: u64) -> impl Fn(io::Error) -> SinkError {
-    move |source| SinkError::Write {
-        format: FORMAT,
-        points,
-        source,
-    }
-}
-
-/// After a failed batch, [`Sink::finish`] still completes a file of the batches before it.
-impl<W: Write + Seek> Sink for PcdWriter<W> {
-    fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
-        self.stage.points(FORMAT)?;
-        let rows = self.layout.encode(batch)?;
-        if let Err(source) = self.output.write_all(rows) {
-            self.stage.cut();
-            return Err(failed(self.points)(source));
-        }
-        self.points += batch.len() as u64;
-        self.summary.add(batch.summary());
-        Ok(())
-    }
-
-    fn fields(&self) -> Fields {
-        self.layout.fields()
-    }
-
-    fn begin(&mut self, metadata: &Metadata) -> Result<(), SinkError> {
-        self.stage.begin(FORMAT)?;
-        self.write_header(metadata).map_err(failed(0))?;
-        self.stage.opened();
-        Ok(())
-    }
-
-    fn finish(&mut self) -> Result<Summary, SinkError> {
-        self.stage.finish(FORMAT)?;
-        self.write_counts().map_err(failed(self.points))?;
-        Ok(self.summary)
+        Ok(self.output.flush()?)
     }
 }
 
@@ -157,14 +111,15 @@ mod tests {
     use std::io::Cursor;
 
     use super::*;
-    use crate::formats::testing::{cloud, metadata};
+    use crate::Sink;
+    use crate::tests::samples::{cloud, metadata};
 
     fn written(rows: u64, points: &Points) -> Vec<u8> {
         let mut pcd = PcdWriter::organised(Cursor::new(Vec::new()), rows);
         pcd.begin(&metadata()).unwrap();
         pcd.points(points).unwrap();
         pcd.finish().unwrap();
-        pcd.into_inner().into_inner()
+        pcd.encoder.output.into_inner()
     }
 
     /// The header's lines as (name, rest), and the data.

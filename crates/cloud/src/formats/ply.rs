@@ -12,34 +12,34 @@
 
 use std::io::{self, Read, Seek, SeekFrom, Write};
 
+use super::file_sink::{EncodeFault, Encoder, FileSink};
 use super::layout::RowLayout;
-use super::stage::Stage;
 use crate::rows::NumberType;
-use crate::{Fields, Metadata, Points, Sink, SinkError, Summary};
-
-const FORMAT: &str = "ply";
+use crate::{Fields, Metadata, Points, Summary};
 
 /// Writes PLY to an output that seeks. Each batch is one write: the output needs no buffer.
-#[derive(Debug)]
-pub struct PlyWriter<W> {
-    output: W,
-    layout: RowLayout,
-    stage: Stage,
-    count_at: u64,
-    summary: Summary,
-}
+pub type PlyWriter<W> = FileSink<PlyEncoder<W>>;
 
 /// Writes PLY to an output that does not seek, such as a pipe. The header contains the count, so
 /// the rows (29 bytes per point) wait in a scratch file, or in memory (`Cursor<Vec<u8>>`), until
-/// [`Sink::finish`].
+/// [`finish`](crate::Sink::finish).
+pub type PlyPipe<W, S> = FileSink<PipeEncoder<W, S>>;
+
+/// Encoder of [`PlyWriter`].
 #[derive(Debug)]
-pub struct PlyPipe<W, S> {
+pub struct PlyEncoder<W> {
+    output: W,
+    layout: RowLayout,
+    count_at: u64,
+}
+
+/// Encoder of [`PlyPipe`].
+#[derive(Debug)]
+pub struct PipeEncoder<W, S> {
     output: W,
     scratch: S,
     layout: RowLayout,
-    stage: Stage,
     head: String,
-    summary: Summary,
 }
 
 /// The header up to the count.
@@ -74,151 +74,88 @@ fn count_lines(points: u64) -> String {
     format!("comment room for the count .{slack}\nelement vertex {count}\n")
 }
 
-fn failed(points: u64) -> impl Fn(io::Error) -> SinkError {
-    move |source| SinkError::Write {
-        format: FORMAT,
-        points,
-        source,
-    }
-}
-
 impl<W: Write + Seek> PlyWriter<W> {
     /// A writer into `output` from its current position, with the columns of [`Fields::FILE`].
     pub fn new(output: W) -> Self {
-        Self {
+        Self::of(PlyEncoder {
             output,
             layout: RowLayout::new(Fields::FILE),
-            stage: Stage::default(),
             count_at: 0,
-            summary: Summary::default(),
-        }
-    }
-
-    /// Sets the columns; only before [`Sink::begin`].
-    #[must_use]
-    pub fn with_fields(mut self, fields: Fields) -> Self {
-        self.layout = RowLayout::new(fields);
-        self
+        })
     }
 
     /// Returns the output.
     pub fn into_inner(self) -> W {
-        self.output
-    }
-
-    fn write_header(&mut self, metadata: &Metadata) -> io::Result<()> {
-        let head = head(metadata);
-        self.count_at = self.output.stream_position()? + head.len() as u64;
-        let header = head + &count_lines(0) + &tail(&self.layout);
-        self.output.write_all(header.as_bytes())
-    }
-
-    fn write_count(&mut self) -> io::Result<()> {
-        self.output.seek(SeekFrom::Start(self.count_at))?;
-        self.output
-            .write_all(count_lines(self.summary.points).as_bytes())?;
-        self.output.seek(SeekFrom::End(0))?;
-        self.output.flush()
+        self.encoder.output
     }
 }
 
-/// After a failed batch, [`Sink::finish`] still completes a file of the batches before it.
-impl<W: Write + Seek> Sink for PlyWriter<W> {
-    fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
-        self.stage.points(FORMAT)?;
-        let rows = self.layout.encode(batch)?;
-        if let Err(source) = self.output.write_all(rows) {
-            self.stage.cut();
-            return Err(failed(self.summary.points)(source));
-        }
-        self.summary.add(batch.summary());
-        Ok(())
+impl<W: Write + Seek> Encoder for PlyEncoder<W> {
+    fn format(&self) -> &'static str {
+        "ply"
     }
 
-    fn fields(&self) -> Fields {
-        self.layout.fields()
+    fn begin(&mut self, fields: Fields, metadata: &Metadata) -> Result<(), EncodeFault> {
+        self.layout = RowLayout::new(fields);
+        let head = head(metadata);
+        self.count_at = self.output.stream_position()? + head.len() as u64;
+        let header = head + &count_lines(0) + &tail(&self.layout);
+        Ok(self.output.write_all(header.as_bytes())?)
     }
 
-    fn begin(&mut self, metadata: &Metadata) -> Result<(), SinkError> {
-        self.stage.begin(FORMAT)?;
-        self.write_header(metadata).map_err(failed(0))?;
-        self.stage.opened();
-        Ok(())
+    fn points(&mut self, batch: &Points) -> Result<(), EncodeFault> {
+        Ok(self.output.write_all(self.layout.encode(batch))?)
     }
 
-    fn finish(&mut self) -> Result<Summary, SinkError> {
-        self.stage.finish(FORMAT)?;
-        self.write_count().map_err(failed(self.summary.points))?;
-        Ok(self.summary)
+    fn finish(&mut self, summary: &Summary) -> Result<(), EncodeFault> {
+        self.output.seek(SeekFrom::Start(self.count_at))?;
+        self.output
+            .write_all(count_lines(summary.points).as_bytes())?;
+        self.output.seek(SeekFrom::End(0))?;
+        Ok(self.output.flush()?)
     }
 }
 
 impl<W: Write, S: Read + Write + Seek> PlyPipe<W, S> {
     /// A writer into `output` with the columns of [`Fields::FILE`]; `scratch` is empty.
     pub fn new(output: W, scratch: S) -> Self {
-        Self {
+        Self::of(PipeEncoder {
             output,
             scratch,
             layout: RowLayout::new(Fields::FILE),
-            stage: Stage::default(),
             head: String::new(),
-            summary: Summary::default(),
-        }
+        })
     }
 
-    /// Sets the columns; only before [`Sink::begin`].
-    #[must_use]
-    pub fn with_fields(mut self, fields: Fields) -> Self {
-        self.layout = RowLayout::new(fields);
-        self
-    }
-
-    /// Returns the output.
-    pub fn into_inner(self) -> W {
-        self.output
-    }
-
-    fn write_all(&mut self) -> io::Result<()> {
-        let header = format!(
-            "{}element vertex {}\n{}",
-            self.head,
-            self.summary.points,
-            tail(&self.layout)
-        );
-        self.output.write_all(header.as_bytes())?;
-        self.scratch.rewind()?;
-        io::copy(&mut self.scratch, &mut self.output)?;
-        self.output.flush()
+    #[cfg(test)]
+    fn into_inner(self) -> W {
+        self.encoder.output
     }
 }
 
-impl<W: Write, S: Read + Write + Seek> Sink for PlyPipe<W, S> {
-    fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
-        self.stage.points(FORMAT)?;
-        let rows = self.layout.encode(batch)?;
-        if let Err(source) = self.scratch.write_all(rows) {
-            self.stage.cut();
-            return Err(failed(self.summary.points)(source));
-        }
-        self.summary.add(batch.summary());
-        Ok(())
+impl<W: Write, S: Read + Write + Seek> Encoder for PipeEncoder<W, S> {
+    fn format(&self) -> &'static str {
+        "ply"
     }
 
-    fn fields(&self) -> Fields {
-        self.layout.fields()
-    }
-
-    fn begin(&mut self, metadata: &Metadata) -> Result<(), SinkError> {
-        self.stage.begin(FORMAT)?;
+    fn begin(&mut self, fields: Fields, metadata: &Metadata) -> Result<(), EncodeFault> {
+        self.layout = RowLayout::new(fields);
         self.head = head(metadata);
-        self.stage.opened();
         Ok(())
     }
 
-    fn finish(&mut self) -> Result<Summary, SinkError> {
-        self.stage.finish(FORMAT)?;
-        self.write_all().map_err(failed(0))?;
-        Ok(self.summary)
+    fn points(&mut self, batch: &Points) -> Result<(), EncodeFault> {
+        Ok(self.scratch.write_all(self.layout.encode(batch))?)
+    }
+
+    fn finish(&mut self, summary: &Summary) -> Result<(), EncodeFault> {
+        let count = format!("element vertex {}\n", summary.points);
+        for part in [&self.head, &count, &tail(&self.layout)] {
+            self.output.write_all(part.as_bytes())?;
+        }
+        self.scratch.rewind()?;
+        io::copy(&mut self.scratch, &mut self.output)?;
+        Ok(self.output.flush()?)
     }
 }
 

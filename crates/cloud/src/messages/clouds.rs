@@ -198,7 +198,7 @@ mod tests {
 
     use super::*;
     use crate::formats::mcap::McapWriter;
-    use crate::formats::testing::{self, NOW_NS, metadata};
+    use crate::tests::samples::{self, NOW_NS, metadata};
 
     /// Two sweeps, and points before, in, between and after them.
     fn track() -> TiltTrack {
@@ -211,7 +211,7 @@ mod tests {
     }
 
     fn fed(sink: &mut dyn Sink, batch: usize) {
-        let cloud = testing::cloud_from(2000, NOW_NS);
+        let cloud = samples::cloud_from(2000, NOW_NS);
         sink.begin(&metadata()).unwrap();
         sink.tilt(&track()).unwrap();
         let mut part = Points::new(cloud.fields());
@@ -263,7 +263,7 @@ mod tests {
                 got: "none",
             })
         });
-        sink.points(&testing::cloud_from(10, NOW_NS)).unwrap();
+        sink.points(&samples::cloud_from(10, NOW_NS)).unwrap();
         assert!(sink.finish().is_err());
     }
 }

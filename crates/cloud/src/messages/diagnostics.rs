@@ -24,9 +24,9 @@ pub fn diagnostic_array(cdr: &mut Cdr, stamp: Time, hardware: &str, diagnostics:
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::Reader;
     use super::*;
     use crate::DiagnosticLevel;
+    use crate::tests::cdr_reader::Reader;
 
     #[test]
     fn diagnostics_are_read_back() {

@@ -18,8 +18,8 @@ pub fn joint_state(cdr: &mut Cdr, stamp: Time, tilt: Degrees) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::Reader;
     use super::*;
+    use crate::tests::cdr_reader::Reader;
 
     #[test]
     fn the_joint_is_in_radians() {

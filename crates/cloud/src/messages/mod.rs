@@ -179,11 +179,6 @@ fn header(cdr: &mut Cdr, stamp: Time, frame: &str) {
 }
 
 #[cfg(test)]
-mod hashes;
-#[cfg(test)]
-pub(crate) mod testing;
-
-#[cfg(test)]
 mod tests {
     use super::*;
 

@@ -10,7 +10,7 @@ use units::{Host, Lidar, Stamp};
 
 use super::cdr::Cdr;
 use super::{Time, UnsayableTime, header};
-use crate::points::Values;
+use crate::points::ColumnValues;
 use crate::rows::{NumberType, fill_values};
 use crate::{Column, Fields, MissingColumns, Points};
 
@@ -240,7 +240,7 @@ fn encode(
     let since_first = |ns: i64| Stamp::from_nanos(ns).saturating_since(first).as_secs_f64();
     let of_lidar = |ns: i64| Stamp::<Lidar>::from_nanos(ns).as_secs_f64();
     let axes = [batch.x_m(), batch.y_m(), batch.z_m()];
-    let axes = axes.map(|axis| (Values::Floats(axis), NumberType::F32));
+    let axes = axes.map(|axis| (ColumnValues::Floats(axis), NumberType::F32));
     let columns = columns
         .columns()
         .map(|column| (batch.values(column), number_type(column)));
@@ -248,7 +248,7 @@ fn encode(
     for (values, number) in axes.into_iter().chain(columns) {
         let part = (values, rows.clone());
         match values {
-            Values::LidarTimes(_) => {
+            ColumnValues::LidarTimes(_) => {
                 fill_values(space, point_bytes, offset, part, number, of_lidar)
             }
             _ => fill_values(space, point_bytes, offset, part, number, since_first),
@@ -259,11 +259,11 @@ fn encode(
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::Reader;
     use super::*;
-    use crate::formats::testing;
+    use crate::tests::cdr_reader::Reader;
+    use crate::tests::samples;
 
-    const START_NS: i64 = testing::NOW_NS;
+    const START_NS: i64 = samples::NOW_NS;
 
     /// Name, offset and data type.
     type Field = (String, u32, u8);
@@ -302,7 +302,7 @@ mod tests {
 
     #[test]
     fn the_default_fields_are_the_velodyne_drivers() {
-        let cloud = testing::cloud_from(100, START_NS);
+        let cloud = samples::cloud_from(100, START_NS);
         let mut message = CloudMessage::new(Fields::FILE);
         // In three batches, the middle one empty.
         for rows in [0..60, 60..60, 60..100] {
@@ -341,7 +341,7 @@ mod tests {
 
     #[test]
     fn every_column_has_a_place() {
-        let cloud = testing::cloud_from(3, START_NS);
+        let cloud = samples::cloud_from(3, START_NS);
         let mut message = CloudMessage::new(Fields::ALL);
         message.push(&cloud, 0..3, "lidar").unwrap();
         let whole = message.message();
@@ -361,7 +361,7 @@ mod tests {
 
     #[test]
     fn a_message_can_grow_and_be_reused() {
-        let cloud = testing::cloud_from(10, START_NS);
+        let cloud = samples::cloud_from(10, START_NS);
         let mut message = CloudMessage::new(Fields::FILE);
         message.push(&cloud, 0..4, "lidar").unwrap();
         drop(message.message());
@@ -378,7 +378,7 @@ mod tests {
     #[test]
     fn times_out_of_range_are_errors() {
         let mut message = CloudMessage::new(Fields::FILE);
-        let late = testing::cloud(1);
+        let late = samples::cloud(1);
         let error = message.push(&late, 0..1, "lidar").unwrap_err();
         assert!(error.to_string().contains("2038"), "{error}");
         let error = message

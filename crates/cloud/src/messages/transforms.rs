@@ -136,9 +136,9 @@ pub fn tf_message(cdr: &mut Cdr, stamp: Time, transforms: &[Transform<'_>]) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::Reader;
     use super::*;
     use crate::mount::{Mount, Tilt};
+    use crate::tests::cdr_reader::Reader;
     use glam::{DQuat, DVec3};
 
     fn turned(rotation: Rotation, v: [f64; 3]) -> [f64; 3] {

@@ -19,8 +19,8 @@ pub fn trigger_response(cdr: &mut Cdr, success: bool, message: &str) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::Reader;
     use super::*;
+    use crate::tests::cdr_reader::Reader;
 
     #[test]
     fn an_answer_is_read_back() {

@@ -1,7 +1,7 @@
 //! Text with a row per point. A header row may name the columns; x, y and z are found by name in
 //! any case, otherwise they are the first three.
 
-use super::{Positions, ReadError, SourceFile};
+use super::source::{Positions, ReadError, SourceFile};
 use crate::formats::Format;
 
 const NAMES: [[&str; 2]; 3] = [["x_m", "x"], ["y_m", "y"], ["z_m", "z"]];
@@ -32,7 +32,11 @@ pub(super) fn positions(bytes: &[u8]) -> Result<Positions, ReadError> {
             })
         };
         let [Some(x), Some(y), Some(z)] = NAMES.map(place) else {
-            return Err(text.wrong(offset, "columns x_m, y_m and z_m", super::shown(line)));
+            return Err(text.wrong(
+                offset,
+                "columns x_m, y_m and z_m",
+                super::source::shown(line),
+            ));
         };
         return text.rows(next, [x, y, z], separates, usize::MAX);
     }

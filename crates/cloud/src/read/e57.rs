@@ -4,7 +4,7 @@ use std::io::Cursor;
 
 use e57::{CartesianCoordinate, E57Reader, Error};
 
-use super::{Positions, ReadError};
+use super::source::{Positions, ReadError};
 use crate::formats::Format;
 
 pub(super) fn positions(bytes: &[u8]) -> Result<Positions, ReadError> {

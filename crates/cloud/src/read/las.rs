@@ -6,7 +6,7 @@ use std::io::Cursor;
 
 use las::Reader;
 
-use super::{Positions, ReadError};
+use super::source::{Positions, ReadError};
 use crate::formats::Format;
 
 /// Bytes read at a time: a header may declare more points than the file has.

@@ -8,7 +8,7 @@ use mcap::McapError;
 use mcap::records::{Record, op};
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
-use super::{Positions, ReadError, SourceNumber};
+use super::source::{Positions, ReadError, SourceNumber};
 use crate::formats::Format;
 use crate::messages::Topic;
 

@@ -1,6 +1,6 @@
 //! PCD 0.7 and before: text, binary, or binary compressed (LZF, columns one after the other).
 
-use super::{Positions, ReadError, SourceFile, SourceNumber, shown};
+use super::source::{Positions, ReadError, SourceFile, SourceNumber, shown};
 use crate::formats::Format;
 
 /// A column.

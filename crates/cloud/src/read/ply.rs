@@ -1,6 +1,6 @@
 //! PLY: text, little-endian or big-endian, any properties of the vertices.
 
-use super::{Positions, ReadError, SourceFile, SourceNumber, shown};
+use super::source::{Positions, ReadError, SourceFile, SourceNumber, shown};
 use crate::formats::Format;
 
 /// What the header says.

@@ -4,7 +4,7 @@ use super::*;
 fn places(format: Format, bytes: Vec<u8>) -> Result<Positions, ReadError> {
     positions(format, bytes).map(|read| read.positions)
 }
-use crate::formats::testing::{SharedOutput, cloud_from, metadata};
+use crate::tests::samples::{SharedOutput, cloud_from, metadata};
 use crate::{Fields, Sink};
 
 /// Points of a day that every format can say: ROS 2 ends in 2038.

@@ -55,7 +55,7 @@ pub(crate) struct PaceOffsets {
 
 /// Sine and cosine of every azimuth in packets.
 #[derive(Clone, Debug)]
-pub(crate) struct SineTable {
+pub(crate) struct AzimuthSines {
     degrees: [SinCos; DEGREES],
     hundredths: [SinCos; HUNDREDTHS],
 }
@@ -66,13 +66,13 @@ pub(crate) struct PaceCache {
     paces: Box<[PaceOffsets; PACES]>,
 }
 
-impl SineTable {
+impl AzimuthSines {
     /// The shared table. It is the same for all sensors, and building it takes long compared with a
     /// short recording.
     pub(crate) fn get() -> &'static Self {
-        static TABLE: LazyLock<SineTable> = LazyLock::new(|| {
+        static TABLE: LazyLock<AzimuthSines> = LazyLock::new(|| {
             let entry = |i: usize, step_deg: f64| SinCos::of_degrees(i as f64 * step_deg);
-            SineTable {
+            AzimuthSines {
                 degrees: array::from_fn(|i| entry(i, 1.0)),
                 hundredths: array::from_fn(|i| entry(i, 0.01)),
             }
@@ -145,7 +145,7 @@ mod tests {
 
     #[test]
     fn the_sine_table_agrees_with_f64() {
-        let table = SineTable::get();
+        let table = AzimuthSines::get();
         for cdeg in 0..36_000 {
             let (sin, cos) = (f64::from(cdeg) / 100.0).to_radians().sin_cos();
             let got = table.azimuth(cdeg);

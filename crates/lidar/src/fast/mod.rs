@@ -7,7 +7,7 @@ mod azimuth;
 mod firing_block;
 mod unpack;
 
-pub(crate) use azimuth::{PaceCache, SineTable};
+pub(crate) use azimuth::{AzimuthSines, PaceCache};
 pub(crate) use firing_block::BlockReturns;
 pub use firing_block::{FiringBlock, Heading, ReturnLayer};
 pub(crate) use unpack::UnpackedPacket;

@@ -4,7 +4,8 @@ use e57::{E57Reader, RecordName, RecordValue};
 
 use super::*;
 use crate::Point;
-use crate::formats::testing::{LATE_NS, NOW_NS, SharedOutput, SmallDisk, cloud_from, metadata};
+use crate::tests::samples::{LATE_NS, NOW_NS, SharedOutput, SmallDisk, cloud_from, metadata};
+use crate::{Sink, SinkError};
 
 fn written(fields: Fields, batches: &[Points]) -> Vec<u8> {
     let file = SharedOutput::default();

@@ -4,7 +4,8 @@ use las::{Reader, Version};
 
 use super::*;
 use crate::Point;
-use crate::formats::testing::{LATE_NS, SmallDisk, cloud, metadata};
+use crate::tests::samples::{LATE_NS, SmallDisk, cloud, metadata};
+use crate::{Sink, SinkError};
 
 fn written(writer: LasWriter<Cursor<Vec<u8>>>, metadata: &Metadata, batches: &[Points]) -> Vec<u8> {
     let mut writer = writer;
@@ -254,7 +255,7 @@ fn a_file_cut_off_by_a_full_disk_cannot_be_finished() {
 
 #[test]
 fn a_dropped_writer_leaves_a_file_of_its_batches() {
-    let file = crate::formats::testing::SharedOutput::default();
+    let file = crate::tests::samples::SharedOutput::default();
     let mut writer = LasWriter::laz(file.clone());
     writer.begin(&metadata()).unwrap();
     writer.points(&cloud(12)).unwrap();

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use units::Metres;
 
 use super::*;
-use crate::formats::testing::{self, NOW_NS, SharedOutput, SmallDisk, cloud_from, metadata};
+use crate::tests::samples::{self, NOW_NS, SharedOutput, SmallDisk, cloud_from, metadata};
 use crate::{DiagnosticLevel, Point};
 
 const MS: i64 = 1_000_000;
@@ -316,7 +316,7 @@ fn times_out_of_range_are_refused_and_complete_batches_kept() {
 
     let mut writer = new();
     writer.begin(&metadata()).unwrap();
-    let error = writer.points(&testing::cloud(1)).unwrap_err();
+    let error = writer.points(&samples::cloud(1)).unwrap_err();
     assert!(error.to_string().contains("2038"), "{error}");
 }
 

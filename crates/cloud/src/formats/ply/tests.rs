@@ -5,7 +5,8 @@ use units::Degrees;
 
 use super::*;
 use crate::Point;
-use crate::formats::testing::{SmallDisk, cloud, metadata};
+use crate::tests::samples::{SmallDisk, cloud, metadata};
+use crate::{Sink, SinkError};
 
 /// An independent, slow reader of the PLY that the format's description asks for.
 struct Read {

@@ -3,7 +3,23 @@
 //! The libraries reserve what a header, a table or a chunk declares before they read it; one byte
 //! of a file could otherwise take all memory.
 
-use crate::read::ReadLe;
+/// A little-endian number within bytes.
+trait ReadLe: Sized {
+    /// The number at an offset; `None` if the bytes end before it.
+    fn take(bytes: &[u8], at: usize) -> Option<Self>;
+}
+
+macro_rules! read_le {
+    ($($number:ty),*) => {$(
+        impl ReadLe for $number {
+            fn take(bytes: &[u8], at: usize) -> Option<Self> {
+                Some(Self::from_le_bytes(*bytes.get(at..)?.first_chunk()?))
+            }
+        }
+    )*};
+}
+
+read_le!(u16, u32, u64);
 
 /// Offset of an error, expected and actual content.
 pub(super) type Wrong = (usize, &'static str, String);

@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 use sha2::{Digest, Sha256};
 
-use super::{MessageType, TRIGGER, Topic};
+use crate::messages::{MessageType, TRIGGER, Topic};
 
 /// Type, name.
 type Field = (String, String);

@@ -1,0 +1,143 @@
+//! What the writers of all formats share: the order of calls, the number of points, and errors that
+//! name the format.
+
+use std::error::Error;
+use std::io;
+
+use super::stage::Stage;
+use crate::{Fields, Metadata, Points, Sink, SinkError, Summary};
+
+/// Encodes a file. [`FileSink`] calls it in the order begin, points (any number), finish.
+pub trait Encoder {
+    /// Name of the format in errors.
+    fn format(&self) -> &'static str;
+
+    /// Greatest magnitude of a coordinate in metres; `None` if the format holds any.
+    fn limit_m(&self) -> Option<f64> {
+        None
+    }
+
+    /// Writes the header of a file with these columns.
+    ///
+    /// # Errors
+    /// [`EncodeFault`] if the output or the library fails.
+    fn begin(&mut self, fields: Fields, metadata: &Metadata) -> Result<(), EncodeFault>;
+
+    /// Writes a batch that has the columns.
+    ///
+    /// # Errors
+    /// [`EncodeFault`] if the output or the library fails; no batch follows.
+    fn points(&mut self, batch: &Points) -> Result<(), EncodeFault>;
+
+    /// Completes the file.
+    ///
+    /// # Errors
+    /// [`EncodeFault`] if the output or the library fails.
+    fn finish(&mut self, summary: &Summary) -> Result<(), EncodeFault>;
+}
+
+/// Failure of an encoder.
+#[derive(Debug)]
+pub enum EncodeFault {
+    /// The output refused bytes.
+    Output(io::Error),
+    /// The library of the format failed.
+    Library(Box<dyn Error + Send + Sync>),
+}
+
+impl From<io::Error> for EncodeFault {
+    fn from(error: io::Error) -> Self {
+        Self::Output(error)
+    }
+}
+
+impl EncodeFault {
+    pub(super) fn library(error: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
+        Self::Library(error.into())
+    }
+
+    /// The error after `points` whole points.
+    pub(super) fn after(self, points: u64, format: &'static str) -> SinkError {
+        match self {
+            Self::Output(source) => SinkError::Write {
+                format,
+                points,
+                source,
+            },
+            Self::Library(source) => SinkError::Encode {
+                format,
+                points,
+                source,
+            },
+        }
+    }
+}
+
+/// Writes a file by an [`Encoder`].
+#[derive(Debug)]
+pub struct FileSink<E> {
+    pub(super) encoder: E,
+    fields: Fields,
+    stage: Stage,
+    summary: Summary,
+}
+
+impl<E: Encoder> FileSink<E> {
+    /// A file with the columns of [`Fields::FILE`].
+    pub(super) fn of(encoder: E) -> Self {
+        Self {
+            encoder,
+            fields: Fields::FILE,
+            stage: Stage::default(),
+            summary: Summary::default(),
+        }
+    }
+
+    /// Sets the columns; only before [`Sink::begin`].
+    #[must_use]
+    pub fn with_fields(self, fields: Fields) -> Self {
+        Self { fields, ..self }
+    }
+
+    fn error(&self, fault: EncodeFault) -> SinkError {
+        fault.after(self.summary.points, self.encoder.format())
+    }
+}
+
+/// After a failed batch, [`Sink::finish`] still completes a file of the batches before it, if the
+/// format can.
+impl<E: Encoder> Sink for FileSink<E> {
+    fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
+        let format = self.encoder.format();
+        self.stage.points(format)?;
+        batch.fields().require(self.fields)?;
+        if let Some(limit_m) = self.encoder.limit_m() {
+            batch.check_coordinates(format, limit_m, self.summary.points)?;
+        }
+        if let Err(fault) = self.encoder.points(batch) {
+            self.stage.cut();
+            return Err(self.error(fault));
+        }
+        self.summary.add(batch.summary());
+        Ok(())
+    }
+
+    fn fields(&self) -> Fields {
+        self.fields
+    }
+
+    fn begin(&mut self, metadata: &Metadata) -> Result<(), SinkError> {
+        self.stage.begin(self.encoder.format())?;
+        let begun = self.encoder.begin(self.fields, metadata);
+        begun.map_err(|fault| self.error(fault))?;
+        self.stage.opened();
+        Ok(())
+    }
+
+    fn finish(&mut self) -> Result<Summary, SinkError> {
+        self.stage.finish(self.encoder.format())?;
+        let finished = self.encoder.finish(&self.summary);
+        finished.map_err(|fault| self.error(fault))?;
+        Ok(self.summary)
+    }
+}
