@@ -29,7 +29,7 @@ use sim::GearRipple;
 use units::{DegPerS2, Degrees};
 use velomotion_tests::capture::{Captured, Setting};
 
-/// As many pairs where none are asked for.
+/// Default number of pairs.
 const RUNS: usize = 41;
 
 fn main() {

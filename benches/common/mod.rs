@@ -1,7 +1,7 @@
 //! Real recordings in memory, and the timing of code.
 //!
 //! Tests take the cuts of `tests/recordings`. Benchmarks take the whole recordings of
-//! `$VELOMOTION_RECORDINGS`, or of `shared/recordings` beside the checkout.
+//! `$VELOMOTION_RECORDINGS`, or of `shared/recordings` next to the repository.
 #![expect(
     clippy::disallowed_methods,
     clippy::panic,

@@ -1,4 +1,4 @@
-//! The columns of a cloud beside its positions, in one table.
+//! The columns of a cloud other than positions, in one table.
 //!
 //! [`for_each_column`] hands the table to a macro: [`Column`] and [`Fields`] are made here,
 //! `Point`, `Points` and `Spare` in `points`. A new column is a row here, its number types in the
@@ -40,7 +40,7 @@ pub(crate) use for_each_column;
 macro_rules! define_columns {
     ($($(#[$doc:meta])* $variant:ident $constant:ident $name:literal
         ($column:ident: $element:ty) ($field:ident: $value:ty) $to:expr, $from:expr;)*) => {
-        /// A column beside the position.
+        /// A column other than the position.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Column {
             $($(#[$doc])* $variant,)*

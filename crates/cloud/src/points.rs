@@ -192,7 +192,7 @@ macro_rules! define_points {
 for_each_column!(define_points);
 
 impl Points {
-    /// No points yet, with the columns `fields` beside the position.
+    /// No points yet, with the position and the columns `fields`.
     #[must_use]
     pub fn new(fields: Fields) -> Self {
         Self {
@@ -214,7 +214,7 @@ impl Points {
         self.len = 0;
     }
 
-    /// The columns beside the position.
+    /// The columns other than the position.
     #[must_use]
     pub const fn fields(&self) -> Fields {
         self.fields

@@ -1,4 +1,4 @@
-//! How the commands talk to a daemon that has the device: HTTP over its Unix socket, a connection a
+//! HTTP client of a daemon that has the device, over its Unix socket, with one connection per
 //! request.
 
 use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
@@ -13,28 +13,28 @@ use super::sockets;
 use engine::config::Device;
 use engine::failure::{Failure, Kind};
 
-/// The longest that an answer may take: a homing, or a stop of a capture.
+/// Longest wait for an answer: homing, or a stop of a capture.
 const ANSWER: Duration = Duration::from_secs(180);
-/// Longest line of an answer's head, and most of them.
+/// Longest header line, bytes.
 const LINE: u64 = 8 << 10;
 const LINES: usize = 64;
-/// Largest answer in JSON.
+/// Largest JSON body, bytes.
 const JSON: u64 = 64 << 20;
 
-/// A daemon.
+/// Client of one daemon.
 #[derive(Clone, Debug)]
 pub struct Client {
     socket: PathBuf,
 }
 
-/// An answer whose body has not been read.
+/// An answer whose body is unread.
 struct Answer {
     status: u16,
     length: u64,
     body: BufReader<UnixStream>,
 }
 
-/// What clients of this program read of the status.
+/// The part of the status that clients of this program read.
 #[derive(Debug, Deserialize)]
 pub struct RemoteStatus {
     /// The task of the axis.
@@ -74,7 +74,7 @@ impl Client {
         })
     }
 
-    /// The daemon at a socket, if one answers.
+    /// Client of the daemon at a socket, if one answers.
     fn reach(socket: PathBuf) -> Option<Self> {
         match UnixStream::connect(&socket) {
             Ok(_) => return Some(Self { socket }),
@@ -88,7 +88,7 @@ impl Client {
         None
     }
 
-    /// Whether the drive that it found is at this port.
+    /// Whether the daemon's drive is at this port.
     fn has_port(&self, port: Option<&Path>) -> bool {
         let real = |port: &Path| port.canonicalize().ok();
         let Ok(status) = self.status() else {
@@ -151,10 +151,10 @@ impl Client {
         }
     }
 
-    /// `GET` into a file or anything else; how many bytes.
+    /// `GET` into a writer. Returns the number of bytes.
     ///
     /// # Errors
-    /// As [`Client::get`], and where the file cannot be written.
+    /// Those of [`Client::get`], and an error of the writer.
     pub fn download(&self, path: &str, out: &mut dyn Write) -> Result<u64, Failure> {
         let mut answer = self.request("GET", path, None)?;
         if answer.status != 200 {
@@ -182,7 +182,7 @@ impl Client {
             .map_err(|error| self.gone(&format!("its answer is not what was expected: {error}")))
     }
 
-    /// What the daemon says when it says no.
+    /// The failure in a refusal.
     fn refused(&self, answer: Answer) -> Failure {
         #[derive(Deserialize)]
         struct Said {
@@ -262,7 +262,7 @@ impl Client {
     }
 }
 
-/// A line of the answer's head, without its end.
+/// A header line without its end.
 fn line(answer: &mut BufReader<UnixStream>) -> std::io::Result<String> {
     let mut line = String::new();
     answer.take(LINE).read_line(&mut line)?;

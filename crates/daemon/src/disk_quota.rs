@@ -49,7 +49,7 @@ impl DiskQuota {
     /// The quota of a download of at most this many bytes.
     ///
     /// # Errors
-    /// `disk_full` where it would not leave `reserve_bytes` and what captures may still need.
+    /// Returns `disk_full` if it would not leave `reserve_bytes` and what captures may still need.
     pub fn take(state: &Arc<DaemonState>, bytes: u64) -> Result<Arc<Self>, Failure> {
         let quota = Self::new(state, Purpose::Download);
         quota.check(bytes)?;
@@ -84,7 +84,7 @@ impl DiskQuota {
         }
     }
 
-    /// Why a write was refused.
+    /// Reason of a refused write.
     #[must_use]
     pub fn refused(&self) -> Option<&Failure> {
         self.refused.get()
@@ -98,7 +98,7 @@ fn full(free: u64) -> Failure {
         .help("free some space on the disk of the scans, or delete scans: the cloud is made then")
 }
 
-/// A file whose writes are held to a quota, which is checked again as the file grows.
+/// A file with a quota, which is checked again as the file grows.
 pub struct QuotaFile<F> {
     file: F,
     quota: Arc<DiskQuota>,

@@ -25,7 +25,7 @@ impl LocalService {
     /// Opens the devices, and the lidar if it is needed. `interrupt` stops the axis.
     ///
     /// # Errors
-    /// Where a device cannot be opened.
+    /// Returns the failure of a device that cannot be opened.
     pub fn start(
         config: Config,
         (name, device): (String, Device),
@@ -67,7 +67,7 @@ impl LocalService {
         &self.service
     }
 
-    /// What is doubtful about the drive's port.
+    /// Warning about the drive's port.
     #[must_use]
     pub fn port_warning(&self) -> Option<&str> {
         self.thread.port_warning.as_deref()

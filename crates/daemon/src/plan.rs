@@ -21,9 +21,9 @@ const DRIVE_BYTES_S: f64 = 2e5;
 /// Rows of a PLY, and channels of a packet.
 const ROW_BYTES: f64 = 29.0;
 const CHANNELS: f64 = 384.0;
-/// Packets a second in dual return.
+/// Packets per second in dual return.
 const PACKETS_S: f64 = 1_508.0;
-/// Homing and the rest before the first sweep, seconds.
+/// Homing and the pause before the first sweep, seconds.
 const BEFORE_S: f64 = 15.0;
 /// Revolutions per minute of an unknown lidar.
 const RPM: f64 = 600.0;
@@ -100,7 +100,7 @@ pub fn estimate(
 
 /// The paper's vertical resolution: the angle from the lowest laser at one end of a sweep to the
 /// highest at the other, divided by all lasers in all revolutions, without ramps. An unknown lidar
-/// is taken for a VLP-16.
+/// counts as a VLP-16.
 fn resolution_deg(model: Option<&str>, tilt_deg: f64, turns: f64) -> f64 {
     let known = models::ALL
         .into_iter()
@@ -122,13 +122,13 @@ fn homing_s(state: &DaemonState) -> Option<f64> {
     Some((angle_deg - homing.to_deg).abs() / homing.speed_deg_s)
 }
 
-/// Most points of a log: all of it packets with a return in every channel.
+/// Largest number of points of a log: packets with a return in every channel.
 #[must_use]
 pub fn most_points(log_bytes: u64) -> u64 {
     (log_bytes as f64 / PAYLOAD_BYTES * CHANNELS) as u64
 }
 
-/// Most bytes of the cloud of a log.
+/// Largest size of the cloud of a log, bytes.
 #[must_use]
 pub fn most_cloud_bytes(log_bytes: u64) -> u64 {
     (most_points(log_bytes) as f64 * ROW_BYTES) as u64
@@ -146,7 +146,7 @@ fn still_needed(state: &DaemonState) -> u64 {
                 .ok()?;
             Some(estimate(state, asked, &plan).bytes)
         });
-        // The request of a log that was found is unknown; its cloud is still to come.
+        // The request of a log found on disk is unknown; its cloud is still to be made.
         match planned {
             Some(whole) => whole.saturating_sub(scan.bytes),
             None => most_cloud_bytes(scan.log_bytes.unwrap_or(0)),
@@ -155,11 +155,10 @@ fn still_needed(state: &DaemonState) -> u64 {
     needed.fold(0, u64::saturating_add)
 }
 
-/// Refuses bytes for which the disk has no room beside its reserve and the scans under way; `need`
-/// names them.
+/// Refuses bytes that do not fit next to the reserve and the scans under way; `need` names them.
 ///
 /// # Errors
-/// `disk_full`, with the bytes needed.
+/// Returns `disk_full` with the bytes needed.
 pub fn check_room(state: &DaemonState, bytes: u64, need: &str) -> Result<(), Failure> {
     let reserve = state.settings().reserve_bytes;
     let Ok(free) = (state.free_bytes)(state.scans.folder()) else {

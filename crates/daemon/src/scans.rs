@@ -1,6 +1,4 @@
-//! The scans folder: a folder a scan, and nothing remembered that is not in there.
-//!
-//! Left out: how scans are made.
+//! The scans folder: one folder per scan. All state is on disk.
 
 mod found;
 mod summary;
@@ -27,7 +25,7 @@ use found::found;
 pub const LOG: &str = "log.pcapng";
 /// The cloud.
 pub const CLOUD: &str = "cloud.ply";
-/// The picture.
+/// The thumbnail.
 pub const THUMBNAIL: &str = "thumbnail.png";
 const RECORD: &str = "scan.json";
 
@@ -36,11 +34,11 @@ const RECORD: &str = "scan.json";
 pub struct Scans {
     folder: PathBuf,
     scans: Mutex<BTreeMap<String, ScanRecord>>,
-    /// Held while a record is written, so that no older one comes after a newer.
+    /// Held while a record is written, so that an older one never replaces a newer.
     writing: Mutex<()>,
-    /// Those whose last change the disk did not take.
+    /// Scans whose last change is not on disk.
     unwritten: Mutex<BTreeSet<String>>,
-    /// Bytes of those that do not change any more: the status is asked for every second.
+    /// Sizes of finished scans in bytes; the status needs them every second.
     sizes: Mutex<BTreeMap<String, u64>>,
 }
 
@@ -52,11 +50,11 @@ fn cannot(path: &Path, what: &str, error: &std::io::Error) -> Failure {
     .help("check the free space and the write permission of the folder; scans = \"...\" under [daemon] names another")
 }
 
-/// Takes the scans folder for this process, making it where it is missing, until what is returned
-/// is dropped.
+/// Locks the scans folder for this process until the returned file is dropped. Makes the folder if
+/// it is missing.
 ///
 /// # Errors
-/// [`Kind::BadInput`] where another daemon has it, or it cannot be written to.
+/// Returns [`Kind::BadInput`] if another daemon has it or it is not writable.
 pub fn lock(folder: &Path) -> Result<fs::File, Failure> {
     fs::create_dir_all(folder).map_err(|error| cannot(folder, "make the folder", &error))?;
     let path = folder.join(".lock");
@@ -77,11 +75,11 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Scans {
-    /// The scans in `folder`, which is made where it is missing. Those that were under way when
-    /// nobody could end them are [`ScanState::Making`]: [`Scans::unfinished`] lists them.
+    /// Opens the scans in `folder` and makes the folder if it is missing. Scans whose recording was
+    /// interrupted are [`ScanState::Making`]: [`Scans::unfinished`] lists them.
     ///
     /// # Errors
-    /// Where the folder cannot be made or read.
+    /// Returns the failure of making or reading the folder.
     pub fn open(folder: &Path) -> Result<Self, Failure> {
         fs::create_dir_all(folder).map_err(|error| cannot(folder, "make the folder", &error))?;
         let mut scans = BTreeMap::new();
@@ -89,7 +87,7 @@ impl Scans {
         for entry in entries.flatten() {
             let (path, name) = (entry.path(), entry.file_name());
             if let Some(name) = name.to_str()
-                // What a link leads to is somebody else's.
+                // Symbolic links are not followed.
                 && entry.file_type().is_ok_and(|kind| kind.is_dir())
                 && let Some(record) = found(&path, name)
             {
@@ -122,10 +120,11 @@ impl Scans {
         self.folder.join(id)
     }
 
-    /// A scan begins: its folder is made.
+    /// Begins a scan and makes its folder.
     ///
     /// # Errors
-    /// [`Kind::Usage`] for a name that cannot be one, and where the folder cannot be written to.
+    /// Returns [`Kind::Usage`] for an invalid name, and the failure of a folder that is not
+    /// writable.
     pub fn begin(&self, asked: &CaptureRequest, simulated: bool) -> Result<ScanRecord, Failure> {
         if let Some(name) = &asked.name {
             check_name(name)?;
@@ -137,7 +136,7 @@ impl Scans {
             head: ScanHead {
                 id: id.clone(),
                 name: asked.name.clone(),
-                // Whole milliseconds, which JSON gives back to the last bit.
+                // Whole milliseconds survive JSON exactly.
                 started_s: started.map_or(0.0, |since| since.as_millis() as f64 / 1e3),
                 simulated,
                 asked: Some(asked.clone()),
@@ -149,7 +148,7 @@ impl Scans {
         let stored = store(&place, &record);
         io::files::sync_folder(&place);
         if let Err(failure) = stored {
-            // What was made a moment ago; whatever stays of it is found at the next start.
+            // The folder was made a moment ago; the next start handles what remains.
             let _ = fs::remove_dir_all(&place);
             return Err(failure);
         }
@@ -157,10 +156,10 @@ impl Scans {
         Ok(record)
     }
 
-    /// Takes back a scan that was begun a moment ago, and of which nothing came.
+    /// Removes a scan that has just begun and has no data.
     pub fn forget(&self, id: &str) {
         self.scans().remove(id);
-        // What stays of it is a failed scan at the next start.
+        // What remains is a failed scan at the next start.
         let _ = fs::remove_dir_all(self.place(id));
     }
 
@@ -196,11 +195,11 @@ impl Scans {
         }
     }
 
-    /// Changes a scan, in the list and on the disk. `None` where there is no such scan.
+    /// Changes a scan in the list and on disk. Returns `None` for an unknown scan.
     ///
     /// # Errors
-    /// Where it cannot be written; the list has it then, and [`Scans::settle`] writes it once there
-    /// is room.
+    /// Returns the failure of writing. The list then has the change, and [`Scans::settle`] writes
+    /// it once there is space.
     pub fn change(
         &self,
         id: &str,
@@ -219,7 +218,7 @@ impl Scans {
         Ok(self.view(id))
     }
 
-    /// Writes what is known of a scan now.
+    /// Writes the present record of a scan.
     fn write(&self, id: &str) -> Result<(), Failure> {
         let _writing = locked(&self.writing);
         match self.record(id) {
@@ -228,7 +227,7 @@ impl Scans {
         }
     }
 
-    /// Writes what the disk did not take when it was told.
+    /// Writes records that could not be written before.
     pub fn settle(&self) {
         let waiting = std::mem::take(&mut *locked(&self.unwritten));
         for id in waiting {
@@ -238,8 +237,7 @@ impl Scans {
         }
     }
 
-    /// Adds a sentence to what was said of a scan, unless much was said already. It reaches the
-    /// disk with the next change.
+    /// Adds a message to a scan, up to a limit. It reaches the disk with the next change.
     pub fn say(&self, id: &str, message: &str) {
         if let Some(record) = self.scans().get_mut(id)
             && record.messages.len() < MESSAGES
@@ -248,7 +246,7 @@ impl Scans {
         }
     }
 
-    /// What is kept of a scan.
+    /// The record of a scan.
     #[must_use]
     pub fn record(&self, id: &str) -> Option<ScanRecord> {
         self.scans().get(id).cloned()
@@ -261,7 +259,7 @@ impl Scans {
         Some(self.view_of(&record))
     }
 
-    /// A scan with everything.
+    /// A scan with all details.
     #[must_use]
     pub fn whole(&self, id: &str) -> Option<ScanDetails> {
         let record = self.record(id)?;
@@ -283,7 +281,7 @@ impl Scans {
         records.iter().map(|record| self.view_of(record)).collect()
     }
 
-    /// Those that are being recorded or made.
+    /// Scans being recorded or made.
     #[must_use]
     pub fn under_way(&self) -> Vec<ScanView> {
         let records = self.select(|record| !record.state.is_final());
@@ -295,14 +293,14 @@ impl Scans {
         scans.values().filter(|r| wanted(r)).cloned().collect()
     }
 
-    /// Those whose log waits for a cloud.
+    /// Scans whose log waits for its cloud.
     #[must_use]
     pub fn unfinished(&self) -> Vec<String> {
         let making = self.select(|record| record.state == ScanState::Making);
         making.into_iter().map(|record| record.head.id).collect()
     }
 
-    /// Those whose cloud is made once there is room for it, the oldest first.
+    /// Scans whose cloud waits for disk space, oldest first.
     #[must_use]
     pub fn waiting(&self) -> Vec<String> {
         let mut waiting = self.select(|record| record.waits_for_room);
@@ -323,10 +321,10 @@ impl Scans {
         }
     }
 
-    /// Deletes a scan for good; what it was.
+    /// Deletes a scan and returns it.
     ///
     /// # Errors
-    /// [`Kind::Usage`] while it is being made, and where the disk refuses.
+    /// Returns [`Kind::Usage`] while the scan is being made, and the failure of the disk.
     pub fn delete(&self, id: &str) -> Result<Option<ScanView>, Failure> {
         let Some(view) = self.view(id) else {
             return Ok(None);
@@ -337,7 +335,7 @@ impl Scans {
                     .help("wait for it, or stop it first"),
             );
         }
-        // Under another name first, which no start takes for a scan: half a scan is none.
+        // Renamed first, to a name that no start takes for a scan: a half-deleted scan is none.
         let (place, gone) = (self.place(id), self.folder.join(format!(".{id}.deleted")));
         fs::rename(&place, &gone).map_err(|error| cannot(&place, "delete", &error))?;
         self.scans().remove(id);
@@ -346,7 +344,7 @@ impl Scans {
         Ok(Some(view))
     }
 
-    /// Scans and their bytes.
+    /// Number of scans and their bytes.
     #[must_use]
     pub fn size(&self) -> (u64, u64) {
         let heads = self.scans();
@@ -366,14 +364,14 @@ impl Scans {
         });
         let bytes = kept.sum();
         if known.len() > scans.len() {
-            // Of some that were deleted meanwhile.
+            // Drops sizes of deleted scans.
             known.retain(|id, _| scans.iter().any(|(own, _)| own == id));
         }
         (scans.len() as u64, bytes)
     }
 
-    /// Deletes the oldest scans until there are no more than `scans` of no more than `bytes`;
-    /// which. The newest stays, and those whose record could not be read.
+    /// Deletes the oldest scans until at most `scans` remain with at most `bytes`, and returns
+    /// them. It keeps the newest, and those with an unreadable record.
     pub fn retain(&self, scans: u64, bytes: u64) -> Vec<ScanView> {
         let (mut count, mut size) = self.size();
         let list = self.list();
@@ -393,7 +391,7 @@ impl Scans {
     }
 }
 
-/// Which of two scans was made first.
+/// Order of two scans by time of creation.
 fn order(a: &ScanRecord, b: &ScanRecord) -> Ordering {
     let by_number = a.number.cmp(&b.number);
     let by_time = || a.started_s.total_cmp(&b.started_s);
@@ -405,7 +403,7 @@ fn next_number(scans: &BTreeMap<String, ScanRecord>) -> u64 {
     newest.unwrap_or(0).saturating_add(1)
 }
 
-/// Logs that somebody put into the folder are the newest: they are not deleted first.
+/// Numbers logs without a record as the newest: they are not deleted first.
 fn number_those_without(scans: &mut BTreeMap<String, ScanRecord>) {
     let next = next_number(scans);
     for record in scans.values_mut() {
@@ -428,7 +426,7 @@ fn store(place: &Path, record: &ScanRecord) -> Result<(), Failure> {
     file.commit().map_err(|error| file_failure(&error))
 }
 
-/// All files right in a folder.
+/// Bytes of all files directly in a folder.
 fn bytes_in(place: &Path) -> u64 {
     let Ok(entries) = fs::read_dir(place) else {
         return 0;

@@ -1,4 +1,4 @@
-//! Where the commands find the daemon: a Unix socket named after the drive's port.
+//! Paths of the daemon's Unix socket, which is named after the drive's port.
 
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
@@ -9,10 +9,10 @@ use engine::config::{Device, DeviceKind};
 use engine::devices::drive_port::{self as ports, Looks};
 use engine::failure::Failure;
 
-/// Where a service's socket is.
+/// Folder of a service's socket.
 const SERVICE: &str = "/run/velomotion";
 
-/// In place of the port of a drive that is looked for on USB.
+/// Name for a drive that is searched on USB.
 const LOOKED_FOR: &str = "-usb-epos2";
 
 /// Folder in which a daemon makes its socket.
@@ -24,16 +24,16 @@ pub fn folder() -> PathBuf {
         .unwrap_or_else(std::env::temp_dir)
 }
 
-/// The socket's name for a device: its port as the configuration calls it. What a link to it leads
-/// to is another file when the cable comes back elsewhere, and none before it is there.
+/// The socket's name for a device: its port as in the configuration. The target of a symbolic link
+/// changes when the cable returns elsewhere and is absent before.
 ///
 /// # Errors
-/// Where the profile names no port.
+/// Returns a failure if the profile names no port.
 pub fn name(profile: &str, device: &Device) -> Result<String, Failure> {
     Ok(name_of(&place(profile, device)?))
 }
 
-/// What the socket is named after. A drive that is looked for has no port of its own.
+/// The path behind the socket's name. A drive that is searched on USB has no fixed port.
 fn place(profile: &str, device: &Device) -> Result<PathBuf, Failure> {
     match device.kind {
         DeviceKind::Sim => Ok(PathBuf::from(format!("-{profile}"))),
@@ -51,8 +51,8 @@ fn name_of(place: &Path) -> String {
     format!("velomotion{name}.daemon.sock")
 }
 
-/// The sockets where a daemon that has the device may listen, the likeliest first. A daemon may
-/// know the port by another name, of those that udev gives it.
+/// Possible sockets of a daemon that has the device, likeliest first. The daemon may use another of
+/// udev's names for the port.
 #[must_use]
 pub fn candidates(profile: &str, device: &Device) -> Vec<PathBuf> {
     let Ok(named) = place(profile, device) else {
@@ -67,8 +67,8 @@ pub fn candidates(profile: &str, device: &Device) -> Vec<PathBuf> {
     trusted(places.iter().map(|place| name_of(place)).collect())
 }
 
-/// The sockets where a daemon may listen that looks for its drive: it may have found the one at
-/// `device`'s port.
+/// Possible sockets of a daemon that searches its drive: it may have found the one at `device`'s
+/// port.
 #[must_use]
 pub fn looking(device: &Device) -> Vec<PathBuf> {
     match device.kind == DeviceKind::Usb && device.port.is_some() {
@@ -77,7 +77,7 @@ pub fn looking(device: &Device) -> Vec<PathBuf> {
     }
 }
 
-/// Those of these names that are there, in every place where sockets are.
+/// Existing trusted sockets with these names in all socket folders.
 fn trusted(names: Vec<String>) -> Vec<PathBuf> {
     let mut folders = vec![folder()];
     if folders.iter().all(|folder| folder != Path::new(SERVICE)) {
@@ -89,7 +89,7 @@ fn trusted(names: Vec<String>) -> Vec<PathBuf> {
     sockets.filter(|socket| is_trusted(socket)).collect()
 }
 
-/// Where a port is a link to, and the other links to the same in `/dev` and beside the port.
+/// The target of a port's symbolic link, and other links to it in `/dev` and in the port's folder.
 fn other_names(place: &Path) -> Vec<PathBuf> {
     let Ok(real) = place.canonicalize() else {
         return Vec::new();
@@ -112,8 +112,7 @@ fn other_names(place: &Path) -> Vec<PathBuf> {
     names
 }
 
-/// Whether whoever made it may be told what to do: this user, or the system. The temporary folder
-/// is everybody's.
+/// Whether the socket belongs to this user or to root. Any user can write to the temporary folder.
 fn is_trusted(socket: &Path) -> bool {
     let owner = std::fs::metadata(socket).map(|there| there.uid());
     let own = std::fs::metadata("/proc/self").map(|there| there.uid());
@@ -135,8 +134,7 @@ mod tests {
         std::fs::write(path("ttyUSB1"), "").unwrap();
         std::os::unix::fs::symlink("ttyUSB0", path("velomotion-epos2")).unwrap();
         std::os::unix::fs::symlink("ttyUSB1", path("other")).unwrap();
-        // CaptureRequest for by either name, both are tried; before the cable is there, the one
-        // that is known.
+        // Either name finds both; before the cable is plugged in only the configured one exists.
         assert_eq!(other_names(&path("ttyUSB0")), [path("velomotion-epos2")],);
         assert_eq!(other_names(&path("velomotion-epos2")), [path("ttyUSB0")]);
         std::fs::remove_file(path("ttyUSB0")).unwrap();

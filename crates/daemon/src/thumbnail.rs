@@ -1,29 +1,29 @@
-//! A picture of a cloud for lists: its points from above and one side, coloured by height, edges
-//! shaded by depth, on nothing.
+//! Thumbnail of a cloud: its points from above and one side, coloured by height, with edges shaded
+//! by depth, on a transparent ground.
 //!
-//! The view is the one that the page opens with.
+//! The view is the page's initial one.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
 use cloud::{Points, Sink, SinkError};
 
-/// Pixels of the picture.
+/// Width in pixels.
 pub const WIDTH: usize = 324;
-/// See [`WIDTH`].
+/// Height in pixels.
 pub const HEIGHT: usize = 216;
 
-/// Samples of a pixel along either side.
+/// Samples per pixel along either side.
 const FINE: usize = 2;
-/// Most points that are drawn; of more, every second, fourth and so on.
+/// Largest number of points drawn; of more, every second, fourth and so on.
 const MOST_POINTS: usize = 300_000;
-/// Where the eye is as seen from the scanner: from x towards y, and above the horizon, radians.
+/// Direction of the eye from the scanner: from x towards y, and above the horizon, radians.
 const AZIMUTH: f64 = -2.05;
 const ELEVATION: f64 = 0.62;
-/// Half of the angle that the picture is high: its tangent.
+/// Tangent of half the vertical field of view.
 const HALF_TAN: f64 = 0.466_307_658;
-/// How much of the points' own distance the eye is away.
+/// Distance of the eye relative to the points' own.
 const AWAY: f64 = 1.6;
-/// How dark edges are.
+/// Strength of the shading.
 const SHADE: f64 = 9.0;
 /// viridis of matplotlib (CC0), 17 samples.
 const VIRIDIS: [[u8; 3]; 17] = [
@@ -95,7 +95,7 @@ impl Thumbnail {
     }
 }
 
-/// The value below which `share` of them are.
+/// The value below which a share of the values lies.
 fn quantile(values: impl Iterator<Item = f64>, share: f64) -> f64 {
     let mut values: Vec<f64> = values.collect();
     // The list is short enough that its length is exact as f64.
@@ -106,7 +106,7 @@ fn quantile(values: impl Iterator<Item = f64>, share: f64) -> f64 {
     *values.select_nth_unstable_by(place, f64::total_cmp).1
 }
 
-/// Where a ceiling begins, metres: many points of nearly one height above all others.
+/// Height of a ceiling, metres: many points of nearly one height above all others.
 fn ceiling_m(points: &[Point]) -> f64 {
     let begin = quantile(points.iter().map(|p| p[2]), 0.97) - 0.5;
     let above = points.iter().filter(|p| p[2] > begin).count();
@@ -126,7 +126,7 @@ fn unit(a: Point) -> Point {
     a.map(|value| value / length)
 }
 
-/// A sample of a pixel: how far away what is seen there is, metres, and its colour.
+/// A sample of a pixel: distance in metres and colour.
 #[derive(Clone, Copy)]
 struct Sample {
     depth_m: f64,
@@ -138,7 +138,7 @@ const NOTHING: Sample = Sample {
     colour: [0.0; 3],
 };
 
-/// The samples of a picture, row by row from above.
+/// The samples of a picture, in rows from the top.
 struct Picture {
     samples: Vec<Sample>,
 }
@@ -164,8 +164,7 @@ fn picture(points: &[Point]) -> Picture {
     };
     for &point in points {
         let to_eye = [eye[0] - point[0], eye[1] - point[1], eye[2] - point[2]];
-        // Every surface was seen from the scanner: what shows its back to the eye stands in the
-        // way.
+        // The scanner saw the front of every surface: one that shows its back would hide others.
         let facing = -dot(unit(point), unit(to_eye));
         let depth_m = away_m - dot(point, back);
         let hides = (point[2] > -0.5 && facing < -0.1) || point[2] > ceiling_m;
@@ -174,7 +173,7 @@ fn picture(points: &[Point]) -> Picture {
         }
         let x = ACROSS as f64 / 2.0 + scale * dot(point, right) / depth_m;
         let y = DOWN as f64 / 2.0 - scale * dot(point, up) / depth_m;
-        // Not from the map's very end, which vanishes against a dark page.
+        // The colour map's dark end would vanish on a dark page.
         let colour = viridis(0.12 + 0.88 * (point[2] - low) / (high - low));
         picture.dot(x, y, Sample { depth_m, colour });
     }
@@ -204,7 +203,7 @@ impl Picture {
         self.samples.get((x < ACROSS).then(|| y * ACROSS + x)?)
     }
 
-    /// Puts a dot of three samples by three, where nothing nearer is.
+    /// Draws a dot of three by three samples where nothing nearer is.
     fn dot(&mut self, x: f64, y: f64, sample: Sample) {
         let (x, y) = (x.floor() as i64, y.floor() as i64);
         for row in y.saturating_sub(1)..=y.saturating_add(1) {
@@ -224,8 +223,8 @@ impl Picture {
         }
     }
 
-    /// How bright a sample is: the darker, the farther it lies behind its neighbours (eye-dome
-    /// lighting, Boucheny 2009).
+    /// Brightness of a sample: darker the farther it lies behind its neighbours (eye-dome lighting,
+    /// Boucheny 2009).
     fn light(&self, x: i64, y: i64, here: &Sample) -> f64 {
         const AROUND: [(i64, i64); 8] = [
             (-2, 0),
@@ -301,8 +300,8 @@ mod tests {
         thumbnail
     }
 
-    /// A floor of 10 m by 10 m, 1 m below the scanner, and a wall 4 m high behind it as seen from
-    /// the eye.
+    /// A floor of 10 m by 10 m, 1 m below the scanner, and a wall 4 m high behind it, seen from the
+    /// eye.
     fn corner() -> Vec<Point> {
         let line = || (-100..=100).map(|i| f64::from(i) * 0.05);
         let floor = line().flat_map(|x| line().map(move |y| [x, y, -1.0]));

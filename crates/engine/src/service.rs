@@ -2,7 +2,7 @@
 //! client.
 //!
 //! A client that moves the axis holds its [`AxisLease`]; dropping the lease makes the axis idle.
-//! [`DeviceService::stop`] stops the motion of whoever holds it. Status is a `watch`, events are a
+//! [`DeviceService::stop`] stops the motion of any holder. Status is a `watch`, events are a
 //! `broadcast`: neither makes the device thread wait.
 
 mod device_thread;
@@ -313,7 +313,7 @@ impl DeviceService {
         }
     }
 
-    /// Stops whatever moves the axis. Returns whether anything did.
+    /// Stops the motion under way. Returns whether anything did.
     pub fn stop(&self, reason: Option<Failure>) -> bool {
         let stop = self.state.borrow().stop.clone();
         if let Some(stop) = &stop {
@@ -322,7 +322,7 @@ impl DeviceService {
         stop.is_some()
     }
 
-    /// Stops whatever moves the axis, waits until it is at rest, and sets the brake.
+    /// Stops the motion under way, waits until it is at rest, and sets the brake.
     ///
     /// # Errors
     /// [`LeaseError`] where the axis could not be stopped.

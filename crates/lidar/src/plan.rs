@@ -213,7 +213,7 @@ impl AzimuthSteps {
         let contiguous_step = (!self.is_jump(step)).then_some(step);
         let excess_ns = next.after.as_nanos().saturating_sub(self.fill_ns());
         if (-CONTIGUOUS_NS..=CONTIGUOUS_NS).contains(&excess_ns) {
-            // There was no time for a gap, whatever the azimuths are.
+            // There was no time for a gap at any azimuths.
             return SuccessorLink {
                 step_cdeg: contiguous_step,
                 stretch: 0.0,

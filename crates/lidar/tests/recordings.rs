@@ -2,7 +2,7 @@
 //!
 //! Cuts of the recordings are in `tests/recordings`, whose README states origin, licence and
 //! counts. Tests of the whole files are ignored by default; they look in `$VELOMOTION_RECORDINGS`,
-//! or in `shared/recordings` beside the checkout.
+//! or in `shared/recordings` next to the repository.
 #![expect(
     clippy::disallowed_methods,
     clippy::panic,

@@ -99,7 +99,7 @@ impl RouterLink {
                 },
             },
             "scouting": { "multicast": { "enabled": false }, "gossip": { "enabled": false } },
-            // What is kept for later subscribers is told apart by its time.
+            // Messages kept for later subscribers differ by their time.
             "timestamping": { "enabled": true },
         });
         let config = zenoh::Config::from_json5(&config.to_string())?;
@@ -197,7 +197,7 @@ impl RouterLink {
     pub fn close(self) {
         let connected = &self.counts.connected;
         connected.store(false, Ordering::Relaxed);
-        // The router notices a lost session by itself, too.
+        // The router detects a lost session, too.
         let _ = self.session.close().wait();
     }
 }

@@ -139,7 +139,7 @@ impl<const N: usize> Expansion<N> {
         }
     }
 
-    /// The sum rounded: of the exact sign, and nought only where the sum is.
+    /// The sum rounded: of the exact sign, and zero only if the sum is zero.
     pub(super) fn rounded(&self) -> f64 {
         self.parts.iter().sum()
     }

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::{Edges, KError, PairCounts, UNIT_WITHIN};
 
-/// Counts every pair by itself.
+/// Counts pairs one by one.
 ///
 /// # Errors
 /// [`KError::NotUnit`] and [`KError::TooMany`] for invalid directions; [`KError::Undecided`].

@@ -92,7 +92,7 @@ impl CloudMessage {
         }
     }
 
-    /// Columns beside the position.
+    /// Columns other than the position.
     #[must_use]
     pub const fn fields(&self) -> Fields {
         self.columns

@@ -58,7 +58,7 @@ fn every_prefix_of_a_file_is_an_error_or_its_first_points() {
     }
 }
 
-/// Whatever byte of a file is another, there is an error or there are points: nothing panics, and
+/// If any byte of a file changes, there is an error or there are points: nothing panics, and
 /// nothing is reserved that a header merely promises.
 #[test]
 fn changed_bytes_never_panic() {

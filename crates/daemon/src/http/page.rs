@@ -1,4 +1,4 @@
-//! The page and what belongs to it, from the binary; signing in; the API's description.
+//! The page with its files from the binary, the sign-in form, and the API description.
 
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ type Asset = (&'static str, &'static str, &'static [u8]);
 const HTML: &str = "text/html; charset=utf-8";
 const SCRIPT: &str = "text/javascript; charset=utf-8";
 
-/// What the page is made of (`web/build` makes it). Everything is in the binary: there may be no
+/// Files of the page (`web/build` makes them). They are in the binary because there may be no
 /// network.
 const ASSETS: [Asset; 6] = [
     ("/", HTML, include_bytes!("../../web/dist/index.html")),
@@ -50,11 +50,11 @@ const ASSETS: [Asset; 6] = [
     ),
 ];
 
-/// What a page may load: nothing that does not come from here.
+/// Content security policy: a page loads only files of this server.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; worker-src 'self'; \
                       base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
 
-/// Whether a path is answered without the token: signing in, and how it looks.
+/// Whether a path needs no token: the sign-in page and its style.
 #[must_use]
 pub fn is_open(path: &str) -> bool {
     matches!(path, "/login" | "/page.css" | "/icon.svg")
@@ -65,7 +65,7 @@ pub async fn openapi() -> Response {
     ([(header::CONTENT_TYPE, "application/json")], OPENAPI).into_response()
 }
 
-/// Whatever has no route.
+/// Answers paths without a route.
 pub async fn asset(request: Request) -> Response {
     let path = match request.uri().path() {
         "/index.html" => "/",
@@ -100,7 +100,7 @@ fn html(status: StatusCode, content: &'static str, bytes: &'static [u8]) -> Resp
     (status, headers, bytes).into_response()
 }
 
-/// Where a person signs in.
+/// The sign-in page.
 pub fn sign_in(status: StatusCode) -> Response {
     let page = include_bytes!("../../web/dist/sign-in.html");
     html(status, HTML, page)
@@ -112,7 +112,7 @@ struct Login {
     token: String,
 }
 
-/// `POST /login`: the token in a form or in JSON, for a cookie.
+/// `POST /login`: takes the token as a form or JSON and sets a cookie.
 pub async fn login(
     State(api): State<Arc<Api>>,
     headers: HeaderMap,
@@ -122,7 +122,7 @@ pub async fn login(
         .get(header::CONTENT_TYPE)
         .and_then(|c| c.to_str().ok());
     let form = content.is_some_and(|c| c.starts_with("application/x-www-form-urlencoded"));
-    // A token has no character that a form would write otherwise.
+    // A token has no character that a form would escape.
     let given = match form {
         true => {
             let body = String::from_utf8_lossy(&bytes).into_owned();

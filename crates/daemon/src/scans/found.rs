@@ -1,4 +1,4 @@
-//! What the scans folder holds when a daemon starts: also of scans that nobody ended.
+//! Scans that a daemon finds at its start, interrupted ones included.
 
 use std::fs;
 use std::io::ErrorKind;
@@ -8,9 +8,9 @@ use super::{CLOUD, LOG, RECORD};
 use engine::failure::{Failure, Kind};
 use engine::service::scan_record::{ScanHead, ScanRecord, ScanState};
 
-/// What a folder says about its scan. One that says nothing, but has a log, is a scan all the same.
+/// The record of a scan's folder. A folder with a log and no record is a scan, too.
 pub(super) fn found(place: &Path, name: &str) -> Option<ScanRecord> {
-    // What was being deleted when the power went.
+    // A deletion that a power failure interrupted.
     if name.starts_with('.') {
         if name.ends_with(".deleted") {
             let _ = fs::remove_dir_all(place);
@@ -28,7 +28,7 @@ pub(super) fn found(place: &Path, name: &str) -> Option<ScanRecord> {
         }
         Err(error) => return Some(unreadable(place, name, &error)),
     };
-    // Folders may be renamed by hand.
+    // Folders may have been renamed by hand.
     record.id = name.to_owned();
     match record.state {
         ScanState::Recording => {
@@ -44,7 +44,7 @@ pub(super) fn found(place: &Path, name: &str) -> Option<ScanRecord> {
     Some(record)
 }
 
-/// A log that somebody put there. A cloud that lies beside it is theirs, too.
+/// Record of a log that a user put there. A cloud next to it is kept as well.
 fn without_record(place: &Path, name: &str) -> ScanRecord {
     let mut record = of_folder(place, name);
     match place.join(CLOUD).exists() {
@@ -64,7 +64,7 @@ fn without_record(place: &Path, name: &str) -> ScanRecord {
     record
 }
 
-/// A scan whose record is damaged, or of a later program.
+/// Record of a scan whose own is damaged or of a later version.
 fn unreadable(place: &Path, name: &str, error: &dyn std::fmt::Display) -> ScanRecord {
     let mut record = of_folder(place, name);
     record.unreadable = true;
@@ -82,7 +82,7 @@ fn unreadable(place: &Path, name: &str, error: &dyn std::fmt::Display) -> ScanRe
     record
 }
 
-/// What a folder says of itself.
+/// Record made from the folder alone.
 fn of_folder(place: &Path, name: &str) -> ScanRecord {
     let head = ScanHead {
         id: name.to_owned(),
@@ -97,7 +97,7 @@ fn of_folder(place: &Path, name: &str) -> ScanRecord {
     }
 }
 
-/// What is said of a scan that nobody ended.
+/// The failure of an interrupted scan.
 fn interrupted() -> Failure {
     Failure::new(
         Kind::Incomplete,

@@ -98,7 +98,7 @@ mod tests {
         of(&record, Path::new(PLACE), has_log).unwrap()
     }
 
-    /// As a capture ends of which no cloud can be made.
+    /// Failure of a capture without a cloud.
     fn without_cloud(recording: Option<Failure>, making: Failure) -> Failure {
         let files = [CLOUD, LOG].map(|name| Path::new(PLACE).join(name));
         let outcome = Outcome {

@@ -21,8 +21,7 @@ fn what_is_newest_does_not_hang_on_the_clock() {
     let folder = tempfile::tempdir().unwrap();
     let scans = Scans::open(folder.path()).unwrap();
     let ids: Vec<String> = (0..4).map(|_| finished(&scans, None)).collect();
-    // The clock was years ahead when the first was made, and the battery of the clock was empty at
-    // the last.
+    // The clock was years ahead at the first scan, and its battery was empty at the last.
     let set = |id: &str, at: f64| scans.change(id, |record| record.head.started_s = at);
     set(&ids[0], 4e9).unwrap();
     set(&ids[3], 1.0).unwrap();
@@ -40,7 +39,7 @@ fn what_is_newest_does_not_hang_on_the_clock() {
         .map(|s| s.id.clone())
         .collect();
     assert_eq!(gone, [ids[0].clone(), ids[1].clone()]);
-    // The next is newer than all, whatever was deleted.
+    // The next scan is the newest, after any deletion.
     let next = finished(&again, None);
     assert_eq!(again.list()[0].id, next);
 }
@@ -57,12 +56,11 @@ fn what_cannot_be_read_is_shown_and_left_as_it_is() {
         fs::write(&path, text.replace(from, to)).unwrap();
         fs::read(&path).unwrap()
     };
-    // An option of a later program: the scan is a scan, with what this one knows of it.
+    // An option of a later version: the scan is listed with what this version knows.
     edit(&later, "\"both_ways\": false", "\"zigzag\": 3");
-    // A state that this one does not know.
+    // A state that this version does not know.
     let bytes = edit(&strange, "\"whole\"", "\"superb\"");
-    // A folder of somebody's: a log and a cloud that nobody made here, and what else he keeps
-    // there.
+    // A user's folder: a log and a cloud from elsewhere, and other files.
     let theirs = scans.place("hall");
     fs::create_dir(&theirs).unwrap();
     for name in [LOG, CLOUD, "hall.e57", "photo.jpg"] {
@@ -85,7 +83,7 @@ fn what_cannot_be_read_is_shown_and_left_as_it_is() {
         again.unfinished().is_empty(),
         "nothing is made over what is there"
     );
-    // Not to be written over, nor deleted but by whoever wants it.
+    // Neither overwritten nor deleted without a request.
     again
         .change(&strange, |record| record.points = Some(7))
         .unwrap();
@@ -118,9 +116,9 @@ fn what_nobody_ended_waits_for_its_cloud() {
     let with_log = scans.begin(&asked(Some("a")), false).unwrap().head.id;
     fs::write(scans.place(&with_log).join(LOG), b"log").unwrap();
     let without = scans.begin(&asked(Some("b")), false).unwrap().head.id;
-    // Nobody can delete what is being made.
+    // A scan being made cannot be deleted.
     assert!(scans.delete(&without).is_err());
-    // A folder with nothing but a log, and one that is no scan.
+    // A folder with only a log, and one that is not a scan.
     fs::create_dir(folder.path().join("copied")).unwrap();
     fs::write(folder.path().join("copied").join(LOG), b"log").unwrap();
     fs::create_dir(folder.path().join("other")).unwrap();

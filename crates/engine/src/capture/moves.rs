@@ -48,7 +48,7 @@ pub fn steps(
         axis.plan(from, to, request.speed, request.acceleration)
             .map_err(refuse)
     };
-    // Both ends are checked first, whatever the order of the moves.
+    // Both ends are checked before the first move.
     plan(request.to, request.from)?;
     let first = plan(request.from, request.to)?;
     if first.from == first.to {

@@ -1,6 +1,6 @@
 //! A capture from the first packet to the report on it, with devices that the caller has opened.
 //!
-//! Whatever ends it early, the axis is stopped first, then the log is closed.
+//! If it ends early, the axis is stopped first, then the log is closed.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -38,7 +38,7 @@ const LIDAR_POLL: Duration = Duration::from_millis(5);
 pub struct CaptureJob<'a> {
     /// The plan.
     pub plan: &'a CapturePlan,
-    /// Set by whatever wants the axis to stop.
+    /// Set to stop the axis.
     pub interrupt: &'a Arc<AtomicBool>,
     /// The lidar.
     pub lidar: &'a Arc<LidarReceiver>,
@@ -89,7 +89,7 @@ pub struct RecordingEnd {
     stopped: Option<Failure>,
 }
 
-/// What a recording has to report, whatever becomes of its cloud.
+/// The recording's part of the report, independent of its cloud.
 #[derive(Clone, Debug, Default)]
 pub struct Outcome {
     /// What went wrong.

@@ -1,5 +1,4 @@
-//! The drive's port, whatever it is: opened by the device's profile, and what to do where it cannot
-//! be had.
+//! Opens the drive's port by the device's profile, with help if that fails.
 
 use std::path::{Path, PathBuf};
 
@@ -18,35 +17,35 @@ use crate::failure::{Failure, Kind};
 const USB_BAUD: u32 = 1_000_000;
 /// EPOS2 on RS232 from the factory; older firmware has 38,400.
 const RS232_BAUD: u32 = 115_200;
-/// The serial side of SLCAN adapters on USB does not care; those on a real line mostly have this.
+/// SLCAN adapters on USB ignore the rate; those on a real line mostly have this one.
 const SLCAN_BAUD: u32 = 115_200;
 
-/// A drive's port, open.
+/// An open port of the drive.
 pub struct Opened {
-    /// Bytes of a serial line, or 16 bytes a frame of a bus.
+    /// Bytes of a serial line, or 16 bytes per frame of a bus.
     pub port: Box<dyn Port>,
-    /// How the drive is attached.
+    /// Attachment of the drive.
     pub link: DriveLink,
     /// Speed of an RS232 line.
     pub rs232_baud: Option<u32>,
-    /// What may be wrong with it.
+    /// Warning about the port.
     pub warning: Option<String>,
 }
 
-/// Who looks for a drive.
+/// How long the caller searches for a drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Looks {
-    /// Somebody who gives up where there is none.
+    /// The caller searches once.
     Once,
-    /// Somebody who goes on looking.
+    /// The caller keeps searching.
     On,
 }
 
-/// What the drive of a profile is reached by: a serial port's path, or the name of a CAN interface.
-/// One that is looked for is among what is `plugged` in.
+/// The address of a profile's drive: the path of a serial port or the name of a CAN interface. A
+/// drive that is searched for is among the `plugged` devices.
 ///
 /// # Errors
-/// [`Kind::BadInput`] where the profile names none, [`Kind::NoDevice`] where none is found.
+/// Returns [`Kind::BadInput`] if the profile names no port, [`Kind::NoDevice`] if none is found.
 pub fn place(
     name: &str,
     device: &Device,
@@ -122,7 +121,7 @@ fn found(plugged: &ConnectedDevices, looks: Looks) -> Result<PathBuf, Failure> {
 /// pseudo-terminal.
 ///
 /// # Errors
-/// [`Kind::NoDevice`].
+/// Returns [`Kind::NoDevice`].
 pub fn open(device: &Device, place: &Path) -> Result<Opened, Failure> {
     let serial = |baud: u32| {
         SerialPort::open(place, device.baud.unwrap_or(baud)).map_err(|error| failure(&error))
@@ -168,7 +167,7 @@ fn slow_answers(timer: LatencyTimer) -> Option<String> {
     }
 }
 
-/// A port that cannot be had, with what to do about it.
+/// Failure of a port, with help.
 #[must_use]
 pub fn failure(error: &PortError) -> Failure {
     let help = match error {
@@ -199,7 +198,7 @@ fn can_failure(place: &Path, error: &CanError) -> Failure {
     }
 }
 
-/// A CAN bus as the drive client and the log know it: a `struct can_frame` of 16 bytes a frame.
+/// A CAN bus as the drive client and the log use it: a `struct can_frame` of 16 bytes per frame.
 /// Errors name the interface.
 pub struct BusLine<C: CanPort>(pub C);
 
@@ -208,7 +207,7 @@ impl<C: CanPort> Port for BusLine<C> {
         let frame = CanFrame::from_socketcan(frame)
             .map_err(|error| self.misused("write", &error.to_string()))?;
         match self.0.write_frame(&frame) {
-            // Lost on its way, as frames can be: the client asks again.
+            // Frames may be lost: the client repeats its request.
             Err(CanError::NotSent) => Ok(io::clock::now()),
             sent => Ok(sent?),
         }
@@ -238,7 +237,7 @@ impl<C: CanPort> Port for BusLine<C> {
 }
 
 impl<C: CanPort> BusLine<C> {
-    /// What a caller gets who speaks of no whole frame.
+    /// Error of a caller that passes no whole frame.
     fn misused(&self, action: &'static str, what: &str) -> PortError {
         PortError::Io {
             port: self.0.name().to_owned(),
@@ -249,7 +248,7 @@ impl<C: CanPort> BusLine<C> {
 }
 
 impl<C: CanPort> Drop for BusLine<C> {
-    /// What was lost is said, once.
+    /// Logs the number of lost frames once.
     fn drop(&mut self) {
         let dropped = self.0.dropped();
         if dropped > 0 {

@@ -1,9 +1,9 @@
-//! Runs the drive client over a port: bytes and the time go in, frames come out.
+//! Runs the drive client over a port: bytes and time go in, frames come out.
 //!
-//! The client is a machine without I/O; this loop is all that stands between it and a wire. Time
-//! comes from the port, so that the same loop runs against the clock and, in tests, in virtual
-//! time. Whatever ends a procedure early (Ctrl-C, a fault, a panic in whoever watches), the axis is
-//! stopped before this returns, or the error says that it could not be.
+//! The client does no I/O; this loop alone connects it to a wire. Time comes from the port, so that
+//! the same loop runs in real time and, in tests, in virtual time. If a procedure ends early
+//! (Ctrl-C, a fault, a panic in an observer), the axis is stopped before this returns, or the error
+//! reports that it may still move.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -13,26 +13,27 @@ use io::port::{Port, PortError};
 use thiserror::Error;
 use units::{Host, Span, Stamp};
 
-/// Why a procedure did not come to its end.
+/// Why a procedure ended early.
 #[derive(Debug, Error)]
 pub enum SessionError {
     /// The user asked to stop; the axis has stopped.
     #[error("stopped by the user")]
     Interrupted,
-    /// A stop was asked for, and the drive did not do it.
+    /// The drive did not follow a requested stop.
     #[error("stopped by the user, but the axis may still move: {0}")]
     NotStopped(DriveError),
     /// The drive refused, reported a fault or did not answer. The axis has stopped unless the error
     /// says otherwise.
     #[error("{0}")]
     Drive(DriveError),
-    /// The port failed. A stop was sent if the port still took it; no answer can be waited for.
+    /// The port failed. A stop was sent if the port still accepted it; its answer cannot be
+    /// received.
     #[error("{0}; the axis may still move")]
     Port(#[from] PortError),
 }
 
 impl SessionError {
-    /// Whether the axis may move still: nobody has seen it come to rest.
+    /// Whether the axis may still move: no standstill was observed.
     #[must_use]
     pub const fn may_move(&self) -> bool {
         match self {
@@ -42,7 +43,7 @@ impl SessionError {
         }
     }
 
-    /// What to do about it.
+    /// The remedy.
     #[must_use]
     pub fn help(&self) -> Option<String> {
         match self {
@@ -56,26 +57,26 @@ impl SessionError {
     }
 }
 
-/// A drive client on a port. Dropped while the axis may move, it tells it to stop.
+/// A drive client on a port. Dropped while the axis may move, it sends a stop.
 pub struct Session<P: Port> {
     client: DriveClient,
     port: P,
     interrupt: Arc<AtomicBool>,
-    /// Whether a command was begun that can move or power the axis, and none has ended since that
-    /// leaves it disabled.
+    /// Whether a command that can move or power the axis has begun and no later command has
+    /// disabled the axis.
     unsafe_to_leave: bool,
 }
 
-/// How long a silent port may keep the loop from looking at the interrupt flag.
+/// Longest time between two checks of the interrupt flag.
 const LOOK_UP: Span = Span::from_millis(20);
-/// How often a stop is tried before it counts as failed; each try takes some tenths of a second.
+/// Attempts of a stop before it counts as failed; each takes some tenths of a second.
 const STOP_TRIES: u32 = 5;
-/// How long a session that is dropped in motion waits for the axis to stop.
+/// Time that a session dropped in motion waits for the axis to stop.
 const LAST_RESORT: Span = Span::from_secs(1);
 
 impl<P: Port> Session<P> {
-    /// A session over `port`, whose time it keeps, that stops the axis when `interrupt` becomes
-    /// true.
+    /// Makes a session over `port`, with the port's time. It stops the axis when `interrupt`
+    /// becomes true.
     pub fn new(client: DriveClient, port: P, interrupt: Arc<AtomicBool>) -> Self {
         Self {
             client,
@@ -110,7 +111,7 @@ impl<P: Port> Session<P> {
                 }
                 Ok(outcome)
             }
-            // The client has brought the axis to rest, or has said that it could not.
+            // The client has stopped the axis, or has reported that it could not.
             Ended::Failed(error) => {
                 let error = match kind {
                     CommandKind::Stop => SessionError::NotStopped(error),
@@ -131,7 +132,7 @@ impl<P: Port> Session<P> {
         &self.port
     }
 
-    /// Stops the axis and sets the brake; the last error, where every try failed.
+    /// Stops the axis and sets the brake. Returns the last error if every attempt failed.
     fn stop(
         &mut self,
         on_event: &mut dyn FnMut(&DriveEvent),
@@ -184,7 +185,7 @@ impl<P: Port> Session<P> {
                 .map_or(LOOK_UP, |at| at.saturating_since(now))
                 .clamp(Span::ZERO, LOOK_UP);
             match self.port.read(&mut buffer, wait)? {
-                // The stamp that came with them is of a clock that may step; the log has it.
+                // The stamp of these bytes comes from a clock that may step; the log has it.
                 Some((count, _)) => {
                     let bytes = buffer.get(..count).unwrap_or_default();
                     self.client.handle_input(bytes, self.port.now());
@@ -204,8 +205,8 @@ fn powers(kind: CommandKind) -> bool {
 }
 
 impl<P: Port> Drop for Session<P> {
-    /// After a panic, or an error of the port: the stop is sent all the same, and its end waited
-    /// for where one can come.
+    /// After a panic or an error of the port: sends the stop and waits for its end if the port
+    /// still works.
     fn drop(&mut self) {
         if self.unsafe_to_leave && self.client.start(DriveCommand::Stop).is_ok() {
             let until = self.port.now().saturating_add(LAST_RESORT);

@@ -1,8 +1,7 @@
-//! The lidar, heard on a thread of its own from when it is listened to until nobody wants it any
-//! more, whether or not a log is being written.
+//! Receives the lidar's packets on a thread, with or without a log.
 //!
-//! What a log gets begins and ends at turns of that thread, so that the counts belong to the log
-//! exactly. Left out: what the packets mean.
+//! A log's recording begins and ends between two turns of that thread, so that counts belong
+//! exactly to the log.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Sender, channel};
@@ -18,18 +17,16 @@ use crate::devices::lidar_sockets::{DATA_PORT, LidarSockets, POSITION_PORT};
 use crate::devices::simulated::LidarPorts;
 use crate::failure::{Failure, Kind};
 
-/// How long packets gather while nobody records them: their times are the kernel's, and rates are
-/// looked at every second.
+/// Time for which packets are collected without a log: their times are the kernel's, and rates are
+/// read every second.
 const UNRECORDED: Duration = Duration::from_millis(50);
-/// A thread that has not come round after this long will not: it looks up every 50 ms, and when it
-/// is asked.
+/// A thread that does not answer within this time is lost: it checks requests every 50 ms.
 const TURN_LIMIT: Duration = Duration::from_secs(10);
 
-/// Whoever else looks at every record of the lidar. It is on the way of the packets: it may not
-/// wait.
+/// Callback for every record of the lidar. It must not block: it runs on the receiving thread.
 pub type PacketTap = Box<dyn FnMut(&Record<'_>) + Send>;
 
-/// A lidar that is listened to. Dropped, the listening ends.
+/// A lidar whose packets are received until this is dropped.
 pub struct LidarReceiver {
     shared: Arc<ReceiverState>,
     thread: Option<JoinHandle<()>>,
@@ -37,7 +34,7 @@ pub struct LidarReceiver {
 
 #[derive(Default)]
 struct ReceiverState {
-    /// Set where the thread is to come round.
+    /// Set to make the thread check its requests.
     turn: AtomicBool,
     stop: AtomicBool,
     packets: AtomicU64,
@@ -50,8 +47,7 @@ struct Requests {
     failed: Option<Failure>,
 }
 
-/// Where records go from the turn on, if that is to change, and who wants to know the counts at the
-/// turn.
+/// New destination of records, and the receiver of the counts at that moment.
 struct CountsRequest {
     log: Option<Option<RecorderHandle>>,
     answer: Sender<Result<ListenCounts, Failure>>,
@@ -64,10 +60,10 @@ impl ReceiverState {
 }
 
 impl LidarReceiver {
-    /// Listens from now on.
+    /// Starts to receive.
     ///
     /// # Errors
-    /// [`Kind::NoDevice`] where the system gives no thread.
+    /// Returns [`Kind::NoDevice`] if the system provides no thread.
     pub fn start(sockets: LidarSockets, onlooker: PacketTap) -> Result<Self, Failure> {
         let shared = Arc::new(ReceiverState::default());
         let theirs = Arc::clone(&shared);
@@ -84,13 +80,13 @@ impl LidarReceiver {
         })
     }
 
-    /// Packets heard so far.
+    /// Number of packets received so far.
     #[must_use]
     pub fn packets(&self) -> u64 {
         self.shared.packets.load(Ordering::Relaxed)
     }
 
-    /// Whether it goes on: no socket has failed, and the thread lives.
+    /// Whether the thread runs and no socket has failed.
     #[must_use]
     pub fn is_sound(&self) -> bool {
         self.shared.requests().failed.is_none()
@@ -100,19 +96,19 @@ impl LidarReceiver {
                 .is_some_and(|thread| !thread.is_finished())
     }
 
-    /// What was heard so far.
+    /// Counts so far.
     ///
     /// # Errors
-    /// Where the sockets have failed.
+    /// Returns the failure of the sockets.
     pub fn counts(&self) -> Result<ListenCounts, Failure> {
         self.ask(None)
     }
 
-    /// Gives records to `log` from now on, or to none; what was heard before, all of which went
-    /// where records went until now.
+    /// Sends records to `log` from now on, or to none. Returns the counts of what went to the
+    /// previous destination.
     ///
     /// # Errors
-    /// Where the sockets have failed.
+    /// Returns the failure of the sockets.
     pub fn record_to(&self, log: Option<RecorderHandle>) -> Result<ListenCounts, Failure> {
         self.ask(Some(log))
     }
@@ -165,7 +161,7 @@ fn listen(sockets: LidarSockets, mut onlooker: PacketTap, shared: &ReceiverState
             None => UNRECORDED,
         });
         let heard = turn(&mut listener, ports, log.as_ref(), &mut onlooker, shared);
-        // Before the requests are looked at: one that comes later sets it again.
+        // Reset before the requests are read: a later request sets it again.
         shared.turn.store(false, Ordering::Release);
         let mut requests = shared.requests();
         let heard = heard.map_err(|error| Failure {
@@ -186,7 +182,7 @@ fn listen(sockets: LidarSockets, mut onlooker: PacketTap, shared: &ReceiverState
     }
 }
 
-/// Listens until it is to come round.
+/// Receives until a request arrives.
 fn turn(
     listener: &mut LidarListener,
     ports: LidarPorts,
@@ -204,8 +200,8 @@ fn turn(
     })
 }
 
-/// In a log the lidar's packets stand under the ports that they have by the manual, whatever the
-/// socket's was.
+/// Gives a record the port that the lidar has by its manual, so that logs do not depend on the
+/// local port.
 fn with_port_of_the_lidar<'a>(record: &Record<'a>, local: LidarPorts) -> Record<'a> {
     let mut record = *record;
     if let Wire::Lidar { port, .. } = &mut record.wire {
@@ -218,7 +214,7 @@ fn with_port_of_the_lidar<'a>(record: &Record<'a>, local: LidarPorts) -> Record<
     record
 }
 
-/// A lidar that cannot be listened to, with what to do about it.
+/// Failure of the lidar's sockets, with help.
 #[must_use]
 pub fn lidar_failure(error: &UdpError) -> Failure {
     let help = match error {

@@ -12,13 +12,13 @@ pub const DATA_PORT: u16 = 2368;
 /// UDP port of position packets.
 pub const POSITION_PORT: u16 = 8308;
 
-/// The lidar's sockets, bound; nothing is recorded yet.
+/// The lidar's bound sockets.
 pub struct LidarSockets {
     listener: LidarListener,
     ports: LidarPorts,
 }
 
-/// Where a device's lidar is to be heard.
+/// Network settings of a device's lidar.
 #[must_use]
 pub fn listen_config(device: &Device) -> ListenConfig {
     ListenConfig {
@@ -35,8 +35,8 @@ impl LidarSockets {
     /// Binds the sockets.
     ///
     /// # Errors
-    /// [`Kind::NoDevice`](crate::failure::Kind::NoDevice) where another program has the ports, or
-    /// the address is not this machine's.
+    /// Returns [`Kind::NoDevice`](crate::failure::Kind::NoDevice) if another program has the ports,
+    /// or the address is not this machine's.
     pub fn bind(config: &ListenConfig) -> Result<Self, Failure> {
         let listener = LidarListener::bind(config).map_err(|error| lidar_failure(&error))?;
         let mut local = listener.sockets().iter().map(|s| s.address().port());
@@ -53,7 +53,7 @@ impl LidarSockets {
         self.ports
     }
 
-    /// The sockets, and which local ports they have.
+    /// The sockets and their local ports.
     pub(crate) fn into_parts(self) -> (LidarListener, LidarPorts) {
         (self.listener, self.ports)
     }

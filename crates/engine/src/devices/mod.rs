@@ -1,5 +1,4 @@
-//! The drive and the lidar: which ones, how they are opened, and the software devices that stand in
-//! for them.
+//! Drive and lidar: selection, opening, and software devices in their place.
 
 pub mod drive_port;
 pub mod drive_session;

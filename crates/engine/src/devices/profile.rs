@@ -1,4 +1,4 @@
-//! From a device profile to an open drive port and a lidar address.
+//! Selection of the device profile, and the drive's axis configuration.
 
 use drive::config::{AxisLimits, AxisTiming, BrakeConfig, HomingConfig, LimitSwitchConfig};
 use units::{DegPerS, DegPerS2, Degrees, RpmPerS, Span};
@@ -6,14 +6,14 @@ use units::{DegPerS, DegPerS2, Degrees, RpmPerS, Span};
 use crate::config::{AxisSettings, Config, Device, DeviceKind};
 use crate::failure::{Failure, Kind};
 
-/// Acceleration while homing, of an axis that may take so much.
+/// Acceleration of homing, if the axis allows it.
 const HOMING_ACCELERATION: RpmPerS = RpmPerS(5_000);
 
-/// The device to use and its name: `--device`, else the configuration's, else `auto`, whatever is
-/// plugged in when its port is wanted ([`ports::place`](crate::devices::drive_port::place)).
+/// The device to use and its name: `--device`, else the configuration's, else `auto`, which is the
+/// drive plugged in when its port is needed ([`ports::place`](crate::devices::drive_port::place)).
 ///
 /// # Errors
-/// [`Kind::Usage`] for a name that is not there.
+/// Returns [`Kind::Usage`] for an unknown name.
 pub fn choose(config: &Config, asked: Option<&str>) -> Result<(String, Device), Failure> {
     let name = asked
         .or(config.device.default.as_deref())
@@ -39,10 +39,10 @@ pub fn choose(config: &Config, asked: Option<&str>) -> Result<(String, Device), 
     }
 }
 
-/// The axis as its client knows it.
+/// The axis configuration of the drive client.
 ///
 /// # Errors
-/// [`Kind::BadInput`] where the configuration describes no axis that can be.
+/// Returns [`Kind::BadInput`] for an invalid axis configuration.
 pub fn axis(axis: &AxisSettings) -> Result<drive::AxisConfig, Failure> {
     let wrong = |error: &dyn std::fmt::Display| {
         Failure::new(

@@ -1,5 +1,5 @@
-//! The software scanner in real time: one thread that moves a [`sim::Rig`] along with the host's
-//! clock, answers on a pseudo-terminal and sends lidar packets over loopback.
+//! The software scanner in real time: a thread that advances a [`sim::Rig`] with the host's clock,
+//! answers on a pseudo-terminal and sends lidar packets over loopback.
 
 use std::net::{Ipv4Addr, UdpSocket};
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ use crate::devices::lidar_sockets::DATA_PORT;
 pub use crate::devices::simulated_axis::node;
 use crate::failure::{Failure, Kind};
 
-/// Where the software lidar sends its packets.
+/// Local ports of the software lidar's packets.
 #[derive(Clone, Copy, Debug)]
 pub struct LidarPorts {
     /// Local port that receives data packets.
@@ -28,7 +28,7 @@ pub struct LidarPorts {
     pub position: u16,
 }
 
-/// A software scanner that runs.
+/// A running software scanner.
 pub struct Simulated {
     port: PathBuf,
     stop: Arc<AtomicBool>,
@@ -36,11 +36,11 @@ pub struct Simulated {
     thread: JoinHandle<Result<Truth, SimulatorError>>,
 }
 
-/// What whoever has the devices may want of them.
+/// Requests to the thread.
 enum SimulatorRequest {
-    /// What truly happened so far.
+    /// Requests the truth so far.
     Truth(Sender<Truth>),
-    /// What happened before that is of no interest.
+    /// Drops the truth before this time.
     Forget(Stamp<Host>),
 }
 
@@ -53,17 +53,17 @@ enum SimulatorError {
     Socket(#[from] std::io::Error),
 }
 
-/// Longest nap: the drive's control cycle.
+/// Longest sleep: the drive's control cycle.
 const CYCLE: Span = Span::from_millis(1);
-/// Where the machine is too busy for the devices, their time runs slower: else they would catch up
-/// for ever longer, answer nothing meanwhile, and not see that they are to stop.
+/// On a busy machine device time runs slower. Otherwise the devices would catch up in ever longer
+/// steps and meanwhile answer nothing, not even a stop.
 const LONGEST_STEP: Span = Span::from_millis(500);
 
 impl Simulated {
-    /// Starts the devices. They live until [`Simulated::stop`].
+    /// Starts the devices. They run until [`Simulated::stop`].
     ///
     /// # Errors
-    /// Where the machine gives no pseudo-terminal or no socket.
+    /// Returns a failure if the machine provides no pseudo-terminal or socket.
     pub fn start(config: RigConfig, to: LidarPorts) -> Result<Self, Failure> {
         let cannot = |what: &str, error: &dyn std::fmt::Display| {
             Failure::new(Kind::NoDevice, format!("the simulator cannot open {what}: {error}"))
@@ -94,7 +94,7 @@ impl Simulated {
         &self.port
     }
 
-    /// What truly happened so far; `None` where the devices have failed.
+    /// The truth so far; `None` if the devices have failed.
     #[must_use]
     pub fn truth(&self) -> Option<Truth> {
         let (answer, truth) = channel();
@@ -102,9 +102,9 @@ impl Simulated {
         truth.recv().ok()
     }
 
-    /// Lets the devices forget what happened before `host`: they may run for days.
+    /// Drops the truth before `host`: the devices may run for days.
     pub fn forget_before(&self, host: Stamp<Host>) {
-        // Devices that have failed have nothing to forget.
+        // Devices that have failed hold no truth.
         let _ = self.requests.send(SimulatorRequest::Forget(host));
     }
 
@@ -114,10 +114,10 @@ impl Simulated {
         self.thread.is_finished()
     }
 
-    /// Switches the devices off and gives what truly happened.
+    /// Stops the devices and returns the truth.
     ///
     /// # Errors
-    /// Where the devices had failed.
+    /// Returns the failure of the devices.
     pub fn stop(self) -> Result<Truth, Failure> {
         self.stop.store(true, Ordering::Relaxed);
         let failed = |why: String| {
@@ -171,8 +171,8 @@ fn run(
     Ok(rig.truth())
 }
 
-/// The software scanner that fits an axis: its drive, and the lidar at 10 Hz in the hall, switched
-/// on at `start`.
+/// The software scanner of an axis: its drive, and the lidar at 10 Hz in the hall, started at
+/// `start`.
 #[must_use]
 pub fn rig(axis: &drive::AxisConfig, scan: &ScanConfig, start: Stamp<Host>) -> RigConfig {
     RigConfig {
@@ -183,7 +183,7 @@ pub fn rig(axis: &drive::AxisConfig, scan: &ScanConfig, start: Stamp<Host>) -> R
     }
 }
 
-/// How well the software lidar measures: ranges come in steps and have no other error.
+/// Accuracy of the software lidar: ranges are quantised and have no other error.
 #[must_use]
 pub fn lidar() -> LidarConfig {
     let step_m = f64::from(DISTANCE_UNIT_MM) * 1e-3;

@@ -12,7 +12,7 @@ use units::Degrees;
 
 /// Digital input of the home switch (2070:4 from the factory).
 const HOME_INPUT: u8 = 4;
-/// From the ends of the axis to its limit switches; the width of the home switch.
+/// Distance from the ends of the axis to its limit switches, and width of the home switch.
 const DEGREE: Degrees = Degrees(1.0);
 /// From a limit switch to the mechanical stop behind it.
 const TO_STOP: Degrees = Degrees(15.0);
@@ -33,8 +33,8 @@ struct Places {
     start: i32,
 }
 
-/// The software drive that fits an axis: its encoder, switches and stops where homing expects them,
-/// the shaft some way below the upper limit.
+/// The software drive of an axis: encoder, switches and stops where homing expects them, and the
+/// shaft some way below the upper limit.
 #[must_use]
 pub fn node(axis: &AxisConfig) -> NodeConfig {
     let places = Places::of(axis);
@@ -82,13 +82,13 @@ impl Places {
         let degree = qc(DEGREE);
         let (min, max) = (qc(axis.limits.min), qc(axis.limits.max));
         let middle = qc(Degrees(0.5 * (axis.limits.min.0 + axis.limits.max.0)));
-        // HomingSettings finds its reference at its home position less the way it goes on from
+        // Homing finds its reference at the home position less the distance that it moves on from
         // there.
         let home_position = axis.homing.home_position;
         let reference = qc(Degrees(home_position.0 - axis.homing.offset.0));
         let method = axis.homing.method;
-        // Where an index pulse is the reference, what is looked for before it is half a turn of the
-        // motor farther on.
+        // If an index pulse is the reference, the switch or stop before it is half a revolution of
+        // the motor farther on.
         let by_index = matches!(method, 1 | 2 | 7 | 11 | 33 | 34 | -1 | -2);
         let half_turn = i32::try_from(axis.gearing.qc_per_motor_turn() / 2).unwrap_or(0);
         let before = if by_index { half_turn } else { 0 };
@@ -149,7 +149,7 @@ mod tests {
         object.decode(node.read(object.address).unwrap().raw().unwrap())
     }
 
-    /// Homes as the client does, and gives the unit.
+    /// Homes as the client does, and returns the node.
     fn homed(axis: &AxisConfig) -> Node {
         let qc = |angle| axis.gearing.position(angle).unwrap().0;
         let homing = axis.homing;
@@ -195,7 +195,7 @@ mod tests {
 
     #[test]
     fn every_homing_method_finds_the_angle_that_the_configuration_gives() {
-        // The method, where its reference is, where the axis goes from there.
+        // Method, position of its reference, and where the axis moves from there.
         let cases = [
             (1, -46.0, -45.0),
             (2, 1.0, 0.0),
@@ -225,10 +225,10 @@ mod tests {
             })
             .unwrap();
             let node = homed(&axis);
-            // World position and angle have one zero: what the unit says is where the shaft is.
+            // World position and angle have one zero: the reported position is that of the shaft.
             let world = node.segment().end >> 32;
             let said = i64::from(get(&node, objects::POSITION_ACTUAL));
-            // A switch is seen once a millisecond, a stop by the current that grows against it.
+            // A switch is sampled once per millisecond; a stop is detected by the rising current.
             assert!((world - said).abs() <= 2, "{method}: {world} {said}");
             let wanted = axis.gearing.position(axis.homing.home_position).unwrap();
             assert_eq!(said, i64::from(wanted.0), "{method}");

@@ -1,5 +1,5 @@
-//! The software EPOS2 alone, in real time: its control cycle follows the host's clock, its frames
-//! come and go on a port.
+//! The software EPOS2 alone in real time: its control cycle follows the host's clock, and its
+//! frames pass over a port.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -11,7 +11,7 @@ use protocol::epos2::DeviceError;
 use thiserror::Error;
 use units::{Host, Span, Stamp};
 
-/// What the drive speaks, and over what.
+/// Protocol and port of the drive.
 pub enum Interface {
     /// EPOS2 USB frames on a pseudo-terminal.
     Usb(UsbServer, Pty),
@@ -35,16 +35,15 @@ pub enum SoftwareDriveError {
 }
 
 const CYCLE: Span = Span::from_millis(1);
-/// After a pause longer than this (a suspended machine) the drive goes on from now instead of
-/// living through it.
+/// After a longer pause, such as a suspension, the drive continues from now.
 const LONGEST_PAUSE: Span = Span::from_secs(1);
-/// Frames from the bus that are taken in one cycle: more than 1 Mbit/s carries in a millisecond.
+/// Bus frames per cycle: more than 1 Mbit/s carries in a millisecond.
 const FRAMES_A_CYCLE: usize = 32;
 
 /// Runs the drive until `stop`.
 ///
 /// # Errors
-/// Where its port fails.
+/// Returns the failure of its port.
 pub fn run(
     config: NodeConfig,
     mut interface: Interface,
@@ -74,7 +73,7 @@ pub fn run(
     Ok(())
 }
 
-/// What came in: bytes of a serial line, or frames of a bus.
+/// Input: bytes of a serial line, or frames of a bus.
 #[derive(Default)]
 struct Received {
     bytes: Vec<u8>,
@@ -82,7 +81,7 @@ struct Received {
 }
 
 impl Interface {
-    /// A unit that nobody wired to a CAN bus complains of that at power-on.
+    /// The error at power-on of a unit without a CAN bus.
     fn fault_at_power_on(&self) -> DeviceError {
         match self {
             Self::Usb(..) | Self::Rs232(..) => DeviceError::CAN_PASSIVE,
@@ -141,7 +140,7 @@ impl Interface {
         Ok(())
     }
 
-    /// What the drive sends by itself after a control cycle.
+    /// Sends unsolicited frames of the drive after a control cycle.
     fn poll(&mut self, node: &mut Node) -> Result<(), SoftwareDriveError> {
         match self {
             Self::Usb(..) | Self::Rs232(..) => {}

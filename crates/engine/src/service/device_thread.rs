@@ -322,7 +322,7 @@ impl Worker {
         Ok(())
     }
 
-    /// Runs one order, whatever happens in it.
+    /// Runs one order and survives its panics.
     fn execute(
         &mut self,
         connection: &mut DriveConnection,

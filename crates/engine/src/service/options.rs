@@ -39,7 +39,7 @@ pub enum Lifetime {
     Command {
         /// Whether the lidar is needed.
         lidar: bool,
-        /// Flag that stops whatever moves the axis, such as that of Ctrl-C.
+        /// Flag that stops the axis, such as that of Ctrl-C.
         interrupt: Arc<AtomicBool>,
     },
 }

@@ -53,7 +53,7 @@ impl Noise {
                 .sum::<f64>();
         }
         if count > 0.0 && possible == 0.0 && samples.iter().all(|s| s.bound.as_nanos() == 0) {
-            // Nothing is said of their instants: what is seen is all there is.
+            // Their instants are unknown: the samples are all there is.
             let sd = f64::sqrt(unbounded / count);
             return Self {
                 share: 0.0,

@@ -55,7 +55,7 @@ fn text(text: &str) -> String {
     text.replace("]]>", "]] >")
 }
 
-/// Stands for the file's identifier until that is known.
+/// Placeholder of the file's identifier.
 const PLACEHOLDER: &str = "{00000000-0000-8000-8000-000000000000}";
 
 /// Executes commands until the file is complete. If the sender is dropped, the file stays

@@ -104,7 +104,7 @@ fn the_axis_stops_when_the_masters_heartbeat_does() {
         (0x0108, 0)
     );
     assert_eq!(bus.read(0x1003, 1), 0x8130);
-    // Told once; a heartbeat begins it anew.
+    // Reported once; a heartbeat restarts the monitoring.
     bus.ticks(500);
     assert_eq!(bus.take(), []);
     bus.send(0x77F, &[5]);

@@ -32,7 +32,7 @@ fn note(heard: &mut Heard, frame: &CanFrame) {
 }
 
 impl Bus {
-    /// Just switched on: the boot-up message has been heard.
+    /// Just switched on: the boot-up message has been received.
     fn new() -> Self {
         Self::of(NodeConfig {
             fault_at_power_on: DeviceError::NONE,
@@ -88,7 +88,7 @@ impl Bus {
         core::mem::take(&mut self.heard)
     }
 
-    /// What was heard with an identifier.
+    /// Frames received with an identifier.
     fn with(&mut self, id: u16) -> Vec<Vec<u8>> {
         let heard = self.take().into_iter();
         heard
