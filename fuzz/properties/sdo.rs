@@ -247,7 +247,7 @@ impl ClientUnderTest {
                     error: got,
                 }) = self.taken.last()
                 else {
-                    panic!("nobody aborted");
+                    panic!("no side aborted");
                 };
                 assert_eq!((*address, *got), (self.address, error));
             }

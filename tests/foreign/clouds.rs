@@ -60,7 +60,7 @@ fn mcap_and_rosbags_read_our_recording_whole() {
 
     assert_eq!(
         got["same_bytes"], true,
-        "encoded anew, messages are what they were"
+        "messages encoded again are the same"
     );
     assert_eq!(
         got["same_types"], true,

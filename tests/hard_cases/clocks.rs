@@ -233,7 +233,7 @@ fn packets_out_of_order() {
 /// Online, a clock that was set is detected: at once if time runs back, within five seconds if it
 /// jumps forward.
 #[test]
-fn the_online_clock_begins_anew() {
+fn the_online_clock_starts_again() {
     for (device_by, host_by, within) in [
         (0, -1_000_000_000, 1),
         (0, -50_000_000, 1),

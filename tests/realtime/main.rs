@@ -1,4 +1,5 @@
-//! The program in real time: commands, the daemon on loopback, software devices in processes of their own.
+//! The program in real time: commands, the daemon on loopback, software devices in processes of
+//! their own.
 #![allow(clippy::unwrap_used, clippy::panic)] // helpers outside #[test] functions
 
 mod command_line;

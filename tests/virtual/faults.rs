@@ -271,7 +271,7 @@ fn try_out(attached: Attachment, name: &str, fault: Fault, expected: Must, at: S
             if is_received(fault) {
                 assert!(stands(&captured), "{name}: the axis still moves");
             }
-            let stop = stop.unwrap_or_else(|| panic!("{name}: nobody reported the axis to stop"));
+            let stop = stop.unwrap_or_else(|| panic!("{name}: no report that the axis stopped"));
             assert!(
                 stop <= limit,
                 "{name}: stop after {} ms",
@@ -329,7 +329,7 @@ fn no_fault_hangs_panics_or_loses_the_scan() {
     let written = std::fs::read_to_string(path).unwrap_or_default();
     assert!(
         written == page,
-        "docs/src/faults.md is not what happens now; VELOMOTION_BLESS=1 writes it anew:\n{page}"
+        "docs/src/faults.md is not what happens now; VELOMOTION_BLESS=1 rewrites it:\n{page}"
     );
 }
 

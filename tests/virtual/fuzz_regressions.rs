@@ -61,7 +61,7 @@ fn what_was_found_once_holds_now() {
 }
 
 #[test]
-fn a_client_that_nobody_disturbs_samples_on_each_link() {
+fn an_undisturbed_client_samples_on_each_link() {
     // Connect, home at the current position, sweep: steps of `properties::drive_link`.
     let script = [3, 0, 0, 2, 60, 3, 0, 1, 2, 40, 3, 8, 3, 2, 60];
     // With the shaft's own positions, and with one position per poll.

@@ -31,7 +31,7 @@ pub struct TruthReport {
 }
 
 /// Compares every point with `truth`, which returns the place (metres) that a laser hit when it
-/// fired at a time of the lidar's clock.
+/// fired at a given time of the lidar's clock.
 ///
 /// # Errors
 /// [`MissingColumns`] if the points lack device time or laser.

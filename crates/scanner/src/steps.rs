@@ -62,7 +62,7 @@ impl fmt::Display for ClockStep {
             ),
             SetClock::Lidar => write!(
                 f,
-                "the lidar's clock was set {way} by {by:.5} s or began anew, {after:.3} s into the recording; times of the host are not affected"
+                "the lidar's clock was set {way} by {by:.5} s or started again, {after:.3} s into the recording; times of the host are not affected"
             ),
         }
     }

@@ -58,7 +58,7 @@ impl Shots {
             link: (),
         };
         simulation
-            .run(&mut effects, NonZeroUsize::MIN, &mut Nobody)
+            .run(&mut effects, NonZeroUsize::MIN, &mut NoSink)
             .map_err(StudyError::workload)?;
         let mut taken = taken.lock().unwrap_or_else(PoisonError::into_inner);
         let surroundings = taken.surroundings.take();
@@ -115,9 +115,9 @@ impl BeamEffect for FiringCollector {
 }
 
 /// An output that ignores packets.
-struct Nobody;
+struct NoSink;
 
-impl SimulationSink for Nobody {
+impl SimulationSink for NoSink {
     fn event(&mut self, _: &SimulationEvent<'_>) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }

@@ -81,7 +81,7 @@ fn a_host_opens_reads_and_closes() {
     assert_eq!(
         port.say(b"T000006018FFFFFFFFFFFFFFFF\r"),
         "Z\r",
-        "nobody answers to 29 bits"
+        "no node answers to 29 bits"
     );
     assert_eq!(port.say(b"X\r"), "\x07");
     assert_eq!(port.say(b"C\rC\r"), "\r\x07");

@@ -68,13 +68,13 @@ codes! {
     POSITION_SENSOR = 0x7320, Disable, "Sensor Position Error", "the position sensor's signal is wrong: the position is lost", "check the encoder cable, clear the fault, then home";
     CAN_OVERRUN = 0x8110, QuickStop, "CAN Overrun Error", "the drive lost CAN messages", "lower the bus load; then clear the fault";
     CAN_OBJECT_LOST = 0x8111, QuickStop, "CAN Overrun Error (object lost)", "the drive lost a CAN message", "lower the bus load; then clear the fault";
-    CAN_PASSIVE = 0x8120, QuickStop, "CAN Passive Mode Error", "nobody acknowledges on the CAN bus; usual on a drive used over USB alone", "clear the fault; on a CAN bus check wiring, termination and bit rate";
+    CAN_PASSIVE = 0x8120, QuickStop, "CAN Passive Mode Error", "no node acknowledges on the CAN bus; usual on a drive used over USB alone", "clear the fault; on a CAN bus check wiring, termination and bit rate";
     CAN_LIFE_GUARD = 0x8130, QuickStop, "CAN Life Guard Error", "the master's heartbeat or guarding stopped", "check that the master runs; then clear the fault";
     CAN_COB_ID = 0x8150, Disable, "CAN Transmit COB-ID Collision Error", "another node sends with this node's id", "give each node its own id; then clear the fault";
     CAN_BUS_OFF = 0x81FD, QuickStop, "CAN Bus Off Error", "the drive left the CAN bus after too many errors", CAN_WIRING;
     CAN_RX_QUEUE = 0x81FE, Disable, "CAN Rx Queue Overrun Error", "too many CAN messages for the drive", "lower the bus load; then clear the fault";
     CAN_TX_QUEUE = 0x81FF, Disable, "CAN Tx Queue Overrun Error", "the drive cannot get rid of its CAN messages", "lower the bus load; then clear the fault";
-    PDO_LENGTH = 0x8210, QuickStop, "CAN PDO Length Error", "a PDO of another length than mapped arrived", "map the PDOs anew; then clear the fault";
+    PDO_LENGTH = 0x8210, QuickStop, "CAN PDO Length Error", "a PDO of another length than mapped arrived", "map the PDOs again; then clear the fault";
     FOLLOWING = 0x8611, QuickStop, "Following Error", "the motor did not keep up with its demand: blocked, overloaded or badly tuned", "see that the axis moves freely, use a lower speed or acceleration; then clear the fault";
     HALL_SENSOR = 0xFF01, Disable, "Hall Sensor Error", "impossible Hall sensor pattern", MOTOR_WIRING;
     INDEX = 0xFF02, Disable, "Index Processing Error", "the encoder's index pulse came at the wrong place: the position is lost", "check the encoder cable and resolution, clear the fault, then home";
@@ -171,7 +171,7 @@ mod tests {
         );
         assert_eq!(
             DeviceError::CAN_PASSIVE.to_string(),
-            "8120 CAN Passive Mode Error: nobody acknowledges on the CAN bus; usual on a drive used over USB alone"
+            "8120 CAN Passive Mode Error: no node acknowledges on the CAN bus; usual on a drive used over USB alone"
         );
     }
 }

@@ -121,7 +121,7 @@ pub fn sound(scan: &ScanView, folder: &Path, wanted: Wanted) -> Result<(), Strin
                 return wrong(format!("{points} points are listed, {there} in the file"));
             }
         }
-        (_, None) => return wrong("nobody knows how many points it has".to_owned()),
+        (_, None) => return wrong("its number of points is unknown".to_owned()),
     }
     let log = place.join(LOG);
     if log.exists() {

@@ -147,7 +147,7 @@ fn the_way_home_before_a_scan_is_planned_and_seen() {
     assert_eq!(
         plan()["homing_s"],
         json!(null),
-        "nobody knows where the axis is"
+        "the angle of the axis is unknown"
     );
     let mut seen: Vec<f64> = Vec::new();
     // Software devices go silent while a busy machine does not schedule them.

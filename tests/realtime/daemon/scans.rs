@@ -258,7 +258,9 @@ fn after_a_suspension_devices_reconnect_and_the_scan_is_partial() {
             .contains("suspended for 3600 s"),
         "{scan}"
     );
-    wait("the drive anew", || (connects() > before).then_some(()));
+    wait("the drive to connect again", || {
+        (connects() > before).then_some(())
+    });
     rig.ready();
 }
 

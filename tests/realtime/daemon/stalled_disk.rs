@@ -51,7 +51,7 @@ fn a_stalled_disk_does_not_delay_a_stop() {
             std::thread::spawn(move || post(address, "/api/v1/captures", &asked))
         })
         .collect();
-    wait("somebody at the disk", || {
+    wait("a request at the disk", || {
         waiting.load(Ordering::Acquire).then_some(())
     });
     for path in ["/api/v1/status", "/metrics"] {

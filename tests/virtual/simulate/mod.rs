@@ -102,7 +102,7 @@ impl Simulated {
         self.folder.path().join("scene.pcapng")
     }
 
-    /// The firing of a laser at a time of the lidar's hour: its delay is less than a period.
+    /// The firing of a laser at a given time of the lidar's hour: its delay is less than a period.
     fn key(&self, device_ns: i64, laser: u8) -> (i64, u8) {
         let since = (device_ns - self.clock_ns).rem_euclid(3_600_000_000_000);
         // Stamps are truncated to microseconds.

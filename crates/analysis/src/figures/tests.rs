@@ -267,10 +267,10 @@ fn page_is_whole(page: &str, scans: &AnalyzedScans) {
     assert_eq!((frames, page.matches("class=\"hint\"").count()), (9, 9));
 }
 
-/// What is known of a view is told, and what is not is not made up; what may mislead stands beside
-/// it.
+/// The page reports the known values of a view, leaves out unknown ones, and warns beside values
+/// that may mislead.
 #[test]
-fn the_page_says_what_comes_of_it() {
+fn the_page_reports_values_and_warnings_of_a_view() {
     let mut scans = scans(3);
     let [still, turned] = scans.scans.as_mut_slice() else {
         panic!("two scans");

@@ -2,11 +2,11 @@
 //! the pairs of two of them can be in.
 //!
 //! Every point is `c m + u e + v f`, with `m` a unit vector and `e` and `f` at right angles to it
-//! and to each other. An outline has bounds of `|u|`, `|v|`, `|u + v| / sqrt 2` and `|u - v| / sqrt 2`,
-//! of `sqrt(u2 + v2)` and of `1 - c`. The dot product of two points is then the middles' plus what
-//! the first adds along the other's middle, what the other adds along the first's, the product of
-//! both tangents, and `1 - c` of either: each within its bound, whatever the outline's size. Left
-//! out: counting.
+//! and to each other. An outline has bounds of `|u|`, `|v|`, `|u + v| / sqrt 2`,
+//! `|u - v| / sqrt 2`, `sqrt(u2 + v2)` and `1 - c`. The dot product of two points is the middles'
+//! plus what the first adds along the other's middle, what the other adds along the first's, the
+//! product of both tangents, and `1 - c` of either. Each is within its bound at any size of the
+//! outline. This module does not count pairs.
 
 use fearless_simd::{Simd, f32x16, prelude::*};
 use glam::DVec3;

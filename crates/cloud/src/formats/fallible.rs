@@ -24,8 +24,8 @@ impl WriteFault {
         })
     }
 
-    /// The result of a library. An error of the output takes precedence, as the library does not see
-    /// it.
+    /// The result of a library. An error of the output takes precedence, as the library does not
+    /// see it.
     pub(in crate::formats) fn outcome<T>(
         &self,
         result: Result<T, impl Into<Box<dyn Error + Send + Sync>>>,

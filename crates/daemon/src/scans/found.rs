@@ -56,7 +56,7 @@ fn without_record(place: &Path, name: &str) -> ScanRecord {
             record.state = ScanState::Partial;
             let failure = Failure::new(
                 Kind::Incomplete,
-                format!("nobody knows how this cloud was made: its folder has no {RECORD}"),
+                format!("it is unknown how this cloud was made: its folder has no {RECORD}"),
             );
             record.why = Some(failure.help("replay its log to see what it holds"));
         }

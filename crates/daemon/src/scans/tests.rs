@@ -110,7 +110,7 @@ fn the_folder_is_the_truth() {
 }
 
 #[test]
-fn what_nobody_ended_waits_for_its_cloud() {
+fn an_unfinished_scan_waits_for_its_cloud() {
     let folder = tempfile::tempdir().unwrap();
     let scans = Scans::open(folder.path()).unwrap();
     let with_log = scans.begin(&asked(Some("a")), false).unwrap().head.id;

@@ -66,7 +66,11 @@ fn a_late_reply_does_not_answer_the_next_request() {
     assert_eq!(link.deadline(), Some(at(51)), "but not for long");
     assert_eq!(link.transmit(at(51)), Some(probe(0)));
     link.handle_input(&answer(1), at(52));
-    assert_eq!(link.take_result(), None, "the late answer is nobody's");
+    assert_eq!(
+        link.take_result(),
+        None,
+        "the late answer belongs to no request"
+    );
     link.handle_input(&absent(0), at(53));
     let second = link.transmit(at(53)).unwrap();
     assert_ne!(first, second);

@@ -189,8 +189,9 @@ impl Device {
                 self.lidar
             ));
         }
-        let nobody = |ip: &Ipv4Addr| ip.is_unspecified() || ip.is_multicast() || ip.is_broadcast();
-        if let Some(source) = self.lidar_source.filter(nobody) {
+        let no_sender =
+            |ip: &Ipv4Addr| ip.is_unspecified() || ip.is_multicast() || ip.is_broadcast();
+        if let Some(source) = self.lidar_source.filter(no_sender) {
             return Err(format!(
                 "lidar_source: expected the lidar's own address, got {source}, which no device has"
             ));

@@ -243,7 +243,7 @@ impl CaptureBackend for DaemonCapture<'_> {
                 end: None,
             });
         }
-        // The log is complete. The daemon's own cloud is not waited for.
+        // The log is complete. The daemon makes its own cloud later.
         if details.scan.log_bytes.is_none() {
             return Err(details.scan.head.why.unwrap_or_else(|| {
                 Failure::new(Kind::Incomplete, "the daemon made no log").help("see its messages")

@@ -380,7 +380,7 @@ fn go_on(interrupt: &AtomicBool) -> Result<(), Failure> {
     match interrupt.load(Ordering::Relaxed) {
         true => Err(
             Failure::new(Kind::Interrupted, "stopped by the user while analysing")
-                .help("nothing was written; the same command begins anew"),
+                .help("nothing was written; run the same command again"),
         ),
         false => Ok(()),
     }
