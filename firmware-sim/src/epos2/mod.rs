@@ -4,8 +4,7 @@
 //! [`Node`] is the unit: an object dictionary, the CiA 402 state machine and a profile generator at
 //! 1 kHz in integer arithmetic, one [`Node::tick`] per millisecond. [`UsbServer`] and
 //! [`Rs232Server`] answer the frames of its serial interfaces, [`CanServer`] those of a CAN bus,
-//! [`SlcanServer`] the same through a serial CAN adapter. A [`CanBus`] connects the gateway to
-//! other nodes. Sources are the EPOS2 Firmware Specification and Communication Guide; comments mark
+//! [`SlcanServer`] the same through a serial CAN adapter. Sources are the EPOS2 Firmware Specification and Communication Guide; comments mark
 //! behaviour that they leave open.
 //!
 //! Not simulated: modes that a tilt axis does not use, and the electrical side. The shaft follows
@@ -13,7 +12,6 @@
 //! blocks it; an unpowered shaft stays in place.
 
 mod brake;
-mod bus;
 mod can;
 mod conditions;
 mod config;
@@ -48,7 +46,6 @@ mod value;
 mod velocity_mode;
 
 pub use brake::BrakeState;
-pub use bus::{CanBus, Neighbour};
 pub use can::CanServer;
 pub use config::{MAX_SWITCHES, NodeConfig, Region, Servo, Switch, UnitIdentity};
 pub use node::{Node, ShaftSegment};

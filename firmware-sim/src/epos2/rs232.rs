@@ -5,7 +5,6 @@ use protocol::epos2::message::{GatewayNmt, SendCanFrame, SerialRequest};
 use protocol::epos2::rs232::{BodyDecoder, Bytes, FAILED, OKAY, encode_body};
 use protocol::epos2::{SerialFrame, objects};
 
-use super::bus::CanBus;
 use super::node::Node;
 use super::service::CommandService;
 
@@ -45,20 +44,8 @@ impl Rs232Server {
     /// Takes bytes from the master at the present instant of the node; the bytes of the unit go to
     /// `out`.
     ///
-    /// A silence above the frame timeout (2005) resets the handshake. The CAN bus of the unit has
-    /// no other nodes.
+    /// A silence above the frame timeout (2005) resets the handshake.
     pub fn input(&mut self, node: &mut Node, bytes: &[u8], out: &mut impl FnMut(&[u8])) {
-        self.input_with_bus(node, &mut (), bytes, out);
-    }
-
-    /// As [`Rs232Server::input`], with other nodes on the CAN bus for the gateway.
-    pub fn input_with_bus(
-        &mut self,
-        node: &mut Node,
-        bus: &mut impl CanBus,
-        bytes: &[u8],
-        out: &mut impl FnMut(&[u8]),
-    ) {
         let now_us = node.time_us();
         let timeout_us = 1000 * u64::from(node.dictionary.get(objects::RS232_FRAME_TIMEOUT));
         if now_us.saturating_sub(self.last_byte_us) > timeout_us {
@@ -67,7 +54,7 @@ impl Rs232Server {
         self.last_byte_us = now_us;
         for &byte in bytes {
             let state = core::mem::replace(&mut self.state, HandshakeState::Opcode);
-            self.state = self.take(state, byte, node, bus, out);
+            self.state = self.take(state, byte, node, out);
         }
     }
 
@@ -76,7 +63,6 @@ impl Rs232Server {
         state: HandshakeState,
         byte: u8,
         node: &mut Node,
-        bus: &mut impl CanBus,
         out: &mut impl FnMut(&[u8]),
     ) -> HandshakeState {
         match state {
@@ -92,7 +78,7 @@ impl Rs232Server {
                 None => HandshakeState::Body(decoder),
                 Some(Ok(request)) => {
                     out(&[OKAY]);
-                    self.answer(&request, node, bus, out)
+                    self.answer(&request, node, out)
                 }
                 Some(Err(_)) => {
                     out(&[FAILED]);
@@ -118,10 +104,9 @@ impl Rs232Server {
         &mut self,
         request: &SerialFrame,
         node: &mut Node,
-        bus: &mut impl CanBus,
         out: &mut impl FnMut(&[u8]),
     ) -> HandshakeState {
-        let answer = self.service.execute(node, bus, request);
+        let answer = self.service.execute(node, request);
         if [GatewayNmt::OPCODE, SendCanFrame::OPCODE].contains(&request.opcode) {
             return HandshakeState::Opcode;
         }

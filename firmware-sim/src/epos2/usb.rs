@@ -4,7 +4,6 @@
 use protocol::epos2::usb::{UsbDecoder, to_bytes};
 use protocol::epos2::{CommError, SerialFrameError, objects};
 
-use super::bus::CanBus;
 use super::node::Node;
 use super::service::CommandService;
 
@@ -32,19 +31,8 @@ impl UsbServer {
     /// one frame.
     ///
     /// A frame with a wrong checksum is answered with communication error 05040004; an incomplete
-    /// frame is dropped after the frame timeout (2006). The CAN bus of the unit has no other nodes.
+    /// frame is dropped after the frame timeout (2006).
     pub fn input(&mut self, node: &mut Node, bytes: &[u8], out: &mut impl FnMut(&[u8])) {
-        self.input_with_bus(node, &mut (), bytes, out);
-    }
-
-    /// As [`UsbServer::input`], with other nodes on the CAN bus for the gateway.
-    pub fn input_with_bus(
-        &mut self,
-        node: &mut Node,
-        bus: &mut impl CanBus,
-        bytes: &[u8],
-        out: &mut impl FnMut(&[u8]),
-    ) {
         let now_us = node.time_us();
         let timeout_us = 1000 * u64::from(node.dictionary.get(objects::USB_FRAME_TIMEOUT));
         if now_us.saturating_sub(self.last_byte_us) > timeout_us {
@@ -53,7 +41,7 @@ impl UsbServer {
         self.last_byte_us = now_us;
         for &byte in bytes {
             let answer = match self.decoder.push(byte) {
-                Some(Ok(request)) => self.service.execute(node, bus, &request),
+                Some(Ok(request)) => self.service.execute(node, &request),
                 Some(Err(SerialFrameError::Crc { .. })) => self.service.refuse(CommError::CRC),
                 Some(Err(_)) | None => continue,
             };

@@ -23,17 +23,12 @@ impl ObjectValue {
 
     /// A string, cut to 8 characters.
     pub(super) fn text(text: &str) -> Self {
-        Self::of_bytes(text.as_bytes())
-    }
-
-    /// A value of another node, cut to 8 bytes.
-    pub(super) fn of_bytes(bytes: &[u8]) -> Self {
         let mut value = Self {
             bytes: [0; LONGEST],
             len: 0,
         };
-        for (to, from) in value.bytes.iter_mut().zip(bytes) {
-            *to = *from;
+        for (to, from) in value.bytes.iter_mut().zip(text.bytes()) {
+            *to = from;
             value.len += 1;
         }
         value
