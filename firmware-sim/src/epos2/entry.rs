@@ -46,8 +46,6 @@ impl Type {
 /// Access rights of an entry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum EntryAccess {
-    /// Read, constant.
-    Const,
     /// Read.
     Ro,
     /// Read and write.
@@ -98,6 +96,11 @@ pub(super) const fn entry(
 }
 
 impl DictionaryEntry {
+    /// Subindex 0 of an object: its last subindex.
+    pub const fn count(index: u16, last_sub: u8) -> Self {
+        entry(index, 0, Type::U8, EntryAccess::Ro, last_sub as i64)
+    }
+
     /// The same entry at all subindices up to `last_sub`.
     pub const fn to_sub(self, last_sub: u8) -> Self {
         Self { last_sub, ..self }
@@ -129,13 +132,13 @@ impl DictionaryEntry {
     pub fn check_read(&self) -> Result<(), Abort> {
         match self.access {
             EntryAccess::Wo => Err(Abort::WRITE_ONLY),
-            EntryAccess::Const | EntryAccess::Ro | EntryAccess::Rw | EntryAccess::Rww => Ok(()),
+            EntryAccess::Ro | EntryAccess::Rw | EntryAccess::Rww => Ok(()),
         }
     }
 
     pub fn check_access(&self) -> Result<(), Abort> {
         match self.access {
-            EntryAccess::Const | EntryAccess::Ro => Err(Abort::READ_ONLY),
+            EntryAccess::Ro => Err(Abort::READ_ONLY),
             EntryAccess::Rw | EntryAccess::Rww | EntryAccess::Wo => Ok(()),
         }
     }
