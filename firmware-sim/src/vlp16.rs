@@ -31,16 +31,8 @@ pub const SEQUENCES: usize = 2 * BLOCKS;
 /// Firing sequences of a data packet in dual-return mode: two blocks share their firings.
 pub const DUAL_SEQUENCES: usize = SEQUENCES / 2;
 
-/// Nanoseconds from one laser of a sequence to the next.
-pub const LASER_PERIOD_NS: i64 = 2_304;
-/// Nanoseconds without firing at the end of a sequence, after the sixteenth laser's slot.
-pub const RECHARGE_NS: i64 = 18_432;
 /// Nanoseconds from one firing sequence to the next.
 pub const SEQUENCE_PERIOD_NS: i64 = 55_296;
-/// Nanoseconds from one data packet to the next in a single-return mode.
-pub const PACKET_PERIOD_NS: i64 = SEQUENCES as i64 * SEQUENCE_PERIOD_NS;
-/// Nanoseconds from one data packet to the next in dual-return mode.
-pub const DUAL_PACKET_PERIOD_NS: i64 = DUAL_SEQUENCES as i64 * SEQUENCE_PERIOD_NS;
 
 /// Millimetres in one unit of distance.
 pub const DISTANCE_UNIT_MM: u32 = 2;
@@ -62,12 +54,7 @@ const CHANNEL_LEN: usize = 3;
 /// First bytes of each block.
 const FLAG: [u8; 2] = [0xFF, 0xEE];
 
-const _: () = {
-    assert!(DATA_LEN == 1_206);
-    assert!(LASERS as i64 * LASER_PERIOD_NS + RECHARGE_NS == SEQUENCE_PERIOD_NS);
-    assert!(PACKET_PERIOD_NS == 1_327_104);
-    assert!(DUAL_PACKET_PERIOD_NS == 663_552);
-};
+const _: () = assert!(DATA_LEN == 1_206);
 
 /// Copies `bytes` to offset `at`, up to the end of `to`.
 fn put(to: &mut [u8], at: usize, bytes: &[u8]) {
@@ -84,12 +71,10 @@ mod tests {
     fn the_manuals_arithmetic() {
         // 63-9243, "Firing sequence timing": 24 sequences of 55.296 us fill a packet in 1327.104
         // us, 754 packets a second.
-        assert_eq!(24 * 55_296, PACKET_PERIOD_NS);
-        assert_eq!(16 * 2_304 + 18_432, 55_296);
-        assert_eq!(
-            (1_000_000_000 + PACKET_PERIOD_NS / 2) / PACKET_PERIOD_NS,
-            754
-        );
+        let packet_ns = PacketModel::Vlp16.packet_period_ns(ReturnMode::Strongest);
+        assert_eq!(24 * 55_296, packet_ns);
+        assert_eq!(16 * 2_304 + 18_432, SEQUENCE_PERIOD_NS);
+        assert_eq!((1_000_000_000 + packet_ns / 2) / packet_ns, 754);
         // "approximately 300,000 points per second".
         assert_eq!(LASERS as i64 * 1_000_000_000 / SEQUENCE_PERIOD_NS, 289_351);
     }

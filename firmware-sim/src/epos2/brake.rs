@@ -6,9 +6,9 @@
 //! or after the standstill timeout (2101). The factory setting has no brake: nothing waits for a
 //! standstill then. The brake timeout (2100:3) is plain storage, as its effect is not documented.
 
-use protocol::epos2::objects::{self, Address};
+use protocol::epos2::objects::{self, Address, TypedObject};
 
-use super::node::Node;
+use super::node::{Node, bit};
 
 /// State of the holding brake.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,21 +58,11 @@ impl Node {
         wired && self.dictionary.get(objects::OUTPUT_MASK) & BRAKE_BIT != 0
     }
 
-    /// Opening time of the brake in milliseconds; 0 without a brake.
-    pub(super) fn brake_rise_ms(&self) -> u16 {
-        if self.has_brake() {
-            self.dictionary.get(objects::BRAKE_RISE)
-        } else {
-            0
-        }
-    }
-
-    /// Closing time of the brake in milliseconds; 0 without a brake.
-    pub(super) fn brake_fall_ms(&self) -> u16 {
-        if self.has_brake() {
-            self.dictionary.get(objects::BRAKE_FALL)
-        } else {
-            0
+    /// Opening or closing time of the brake in milliseconds; 0 without a brake.
+    pub(super) fn brake_ms(&self, time: TypedObject<u16>) -> u16 {
+        match self.has_brake() {
+            true => self.dictionary.get(time),
+            false => 0,
         }
     }
 
@@ -97,10 +87,6 @@ impl Node {
     /// is a closed brake: the specification only calls the output active then.
     pub(super) fn output_state(&self) -> u16 {
         let written = self.dictionary.get(objects::OUTPUT_STATE) & !BRAKE_BIT;
-        if self.brake() == BrakeState::Closed {
-            written | BRAKE_BIT
-        } else {
-            written
-        }
+        written | bit(self.brake() == BrakeState::Closed, BRAKE_BIT)
     }
 }

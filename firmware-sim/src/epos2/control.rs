@@ -138,7 +138,7 @@ impl Node {
         self.brake_released = true;
         self.position_mode = PositionMode::default();
         self.velocity_mode.abandon();
-        let left_ms = MEASURE_MS.saturating_add(self.brake_rise_ms());
+        let left_ms = MEASURE_MS.saturating_add(self.brake_ms(objects::BRAKE_RISE));
         self.sequence = Sequence::Enabling { left_ms };
     }
 
@@ -170,7 +170,7 @@ impl Node {
     fn power_off(&mut self, to: DeviceState) {
         self.abandon_motion();
         self.shaft.rest();
-        self.generator.rest_at(self.shaft.position());
+        self.generator.rest_at(self.shaft.position);
         self.brake_released = false;
         self.sequence = Sequence::Idle;
         self.state = to;
@@ -263,7 +263,7 @@ impl Node {
             } => {
                 let step = if self.is_at_standstill(&mut standstill) {
                     self.brake_released = false;
-                    match self.brake_fall_ms() {
+                    match self.brake_ms(objects::BRAKE_FALL) {
                         0 => return self.power_off(to),
                         fall => LeavingStep::Brake { left_ms: fall - 1 },
                     }

@@ -23,9 +23,9 @@ impl Node {
 
     /// A velocity controller has no target position: a blocked shaft keeps its demand with it.
     pub(super) fn follow_shaft(&mut self) {
-        if self.mode == mode::PROFILE_VELOCITY && self.shaft.is_held() {
-            let behind = self.shaft.give_way(self.generator.position());
-            self.velocity_mode.held = self.generator.speed().0.signum() as i16;
+        if self.mode == mode::PROFILE_VELOCITY && self.shaft.held {
+            let behind = self.shaft.give_way(self.generator.position);
+            self.velocity_mode.held = self.generator.speed.0.signum() as i16;
             self.generator.shift(behind);
         } else {
             self.velocity_mode.held = 0;
@@ -34,7 +34,7 @@ impl Node {
 
     /// Demand minus shaft, qc.
     fn following_error(&self) -> i64 {
-        self.shaft.following_error(self.generator.position())
+        self.shaft.following_error(self.generator.position)
     }
 
     /// 20F4.
@@ -46,10 +46,10 @@ impl Node {
     /// 606C: the speed of the demand at the end of the control cycle while the shaft follows
     /// exactly.
     pub(super) fn velocity_actual_rpm(&self) -> i32 {
-        if self.shaft.is_behind() || self.velocity_mode.held != 0 {
-            self.shaft.speed(self.generator.qc_per_turn()).to_rpm()
+        if self.shaft.behind || self.velocity_mode.held != 0 {
+            self.shaft.speed(self.generator.qc_per_turn).to_rpm()
         } else {
-            self.generator.speed().to_rpm()
+            self.generator.speed.to_rpm()
         }
     }
 
@@ -58,7 +58,7 @@ impl Node {
         let most = self.dictionary.get(objects::OUTPUT_CURRENT);
         match (self.is_powered(), self.velocity_mode.held) {
             (false, _) => 0,
-            (true, 0) => self.shaft.current_ma(self.generator.position(), most),
+            (true, 0) => self.shaft.current_ma(self.generator.position, most),
             (true, direction) => direction * i16::try_from(most).unwrap_or(i16::MAX),
         }
     }

@@ -7,9 +7,11 @@ use super::profile::{MotionLimits, TrapezoidalProfile, UnusableParameters};
 /// The demand and its motion.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Generator {
-    qc_per_turn: u32,
-    position: Fine,
-    speed: Speed,
+    /// Resolution of the encoder; changes only at rest.
+    pub qc_per_turn: u32,
+    /// The demand at the end of the present millisecond.
+    pub position: Fine,
+    pub speed: Speed,
     motion: DemandMotion,
     /// Since the motion began: ms with 32 fractional bits.
     time: i128,
@@ -32,15 +34,6 @@ impl Generator {
             motion: DemandMotion::Rest,
             time: 0,
         }
-    }
-
-    /// The demand at the end of the present millisecond.
-    pub const fn position(&self) -> Fine {
-        self.position
-    }
-
-    pub const fn speed(&self) -> Speed {
-        self.speed
     }
 
     pub const fn is_moving(&self) -> bool {
@@ -73,15 +66,6 @@ impl Generator {
             }
         }
         self.position = self.position.saturating_add(by);
-    }
-
-    pub const fn qc_per_turn(&self) -> u32 {
-        self.qc_per_turn
-    }
-
-    /// Changes the resolution of the encoder; only at rest.
-    pub fn set_qc_per_turn(&mut self, qc_per_turn: u32) {
-        self.qc_per_turn = qc_per_turn;
     }
 
     /// Moves to `target` from the present motion.
@@ -178,20 +162,20 @@ mod tests {
         for _ in 0..200 {
             generator.step();
         }
-        assert_eq!(generator.speed(), Speed::from_rpm(60));
-        assert_eq!(floor_qc(generator.position()), 100 + 200);
+        assert_eq!(generator.speed, Speed::from_rpm(60));
+        assert_eq!(floor_qc(generator.position), 100 + 200);
         generator.run_at(Speed::from_rpm(-60), 600, 600);
         for _ in 0..300 {
             generator.step();
         }
-        assert_eq!(generator.position(), fine(300 - 200));
-        assert_eq!(generator.speed(), Speed::from_rpm(-60));
+        assert_eq!(generator.position, fine(300 - 200));
+        assert_eq!(generator.speed, Speed::from_rpm(-60));
         generator.stop(600);
         for _ in 0..100 {
             generator.step();
         }
         assert!(!generator.is_moving());
-        assert_eq!(generator.position(), fine(0));
+        assert_eq!(generator.position, fine(0));
     }
 
     #[test]
@@ -202,7 +186,7 @@ mod tests {
         for _ in 0..900_001 {
             generator.step();
         }
-        assert_eq!(generator.position(), fine(30_000) + FINE_PER_QC / 60);
+        assert_eq!(generator.position, fine(30_000) + FINE_PER_QC / 60);
     }
 
     #[test]
@@ -212,7 +196,7 @@ mod tests {
         for _ in 0..3 {
             generator.step();
         }
-        assert_eq!(generator.position(), WORLD_END);
+        assert_eq!(generator.position, WORLD_END);
         assert!(!generator.is_moving());
     }
 }

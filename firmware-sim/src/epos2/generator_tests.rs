@@ -118,12 +118,12 @@ impl Textbook {
 }
 
 fn qc(generator: &Generator) -> f64 {
-    generator.position() as f64 / FINE_PER_QC as f64
+    generator.position as f64 / FINE_PER_QC as f64
 }
 
 /// qc/s.
 fn speed(generator: &Generator) -> f64 {
-    generator.speed().0 as f64 / MS as f64 / 1000.0 * PER_RPM
+    generator.speed.0 as f64 / MS as f64 / 1000.0 * PER_RPM
 }
 
 /// Rates in the order of what is met: from slow to brutal, so that a case takes some thousand
@@ -217,7 +217,7 @@ proptest! {
         }
         follow(&mut generator, &textbook);
         if textbook.duration() < 2.0 {
-            prop_assert_eq!(generator.position(), fine(second));
+            prop_assert_eq!(generator.position, fine(second));
             prop_assert!(!generator.is_moving());
         }
     }

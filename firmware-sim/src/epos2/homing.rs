@@ -10,7 +10,7 @@ use protocol::epos2::objects::{self, input};
 
 use super::fixed::{Speed, fine, floor_qc};
 use super::homing_method::{HomingMethod, ReferenceSearch, method};
-use super::node::Node;
+use super::node::{Node, bit};
 use super::profile::MotionLimits;
 
 /// State of the present homing and result of the last one.
@@ -54,18 +54,9 @@ impl HomingState {
     }
 
     pub fn status_bits(&self) -> u16 {
-        let reached = if self.reached {
-            status::TARGET_REACHED
-        } else {
-            0
-        };
-        let attained = if self.attained {
-            status::HOMING_ATTAINED
-        } else {
-            0
-        };
-        let failed = if self.failed { status::HOMING_ERROR } else { 0 };
-        reached | attained | failed
+        bit(self.reached, status::TARGET_REACHED)
+            | bit(self.attained, status::HOMING_ATTAINED)
+            | bit(self.failed, status::HOMING_ERROR)
     }
 
     /// Ends homing.
@@ -93,7 +84,7 @@ impl Node {
         let chosen = method(number).unwrap_or_default();
         self.homing = HomingState {
             method: chosen,
-            last: floor_qc(self.shaft.position()),
+            last: floor_qc(self.shaft.position),
             ..HomingState::default()
         };
         // 2210:2: only type 1 has an index channel.
@@ -129,7 +120,7 @@ impl Node {
     /// Methods without motion: 35 takes the present position as home, 0 does nothing.
     fn home_here(&mut self, reference: bool) {
         if reference {
-            self.set_home(floor_qc(self.shaft.position()));
+            self.set_home(floor_qc(self.shaft.position));
         } else {
             self.homing.attained = true;
             self.homing.reached = true;
@@ -138,7 +129,7 @@ impl Node {
 
     /// Advances the mode by one millisecond.
     pub(super) fn advance_homing(&mut self) {
-        let now = floor_qc(self.shaft.position());
+        let now = floor_qc(self.shaft.position);
         let last = core::mem::replace(&mut self.homing.last, now);
         let moving = self.generator.is_moving();
         match self.homing.phase {
@@ -221,7 +212,7 @@ impl Node {
             return;
         }
         self.shaft.rest();
-        self.generator.rest_at(self.shaft.position());
+        self.generator.rest_at(self.shaft.position);
         match self.homing.method.index {
             Some(direction) => {
                 self.run(direction, false);
@@ -291,7 +282,7 @@ impl Node {
     }
 
     fn is_going(&self, direction: i32) -> bool {
-        self.generator.speed().0.signum() == i64::from(direction)
+        self.generator.speed.0.signum() == i64::from(direction)
     }
 
     fn homing_speed(&self, fast: bool) -> Speed {

@@ -15,7 +15,7 @@ impl Node {
     /// 2071:1 at the present position. A purpose without an input stays inactive, at either
     /// polarity.
     pub(super) fn sense(&self) -> u16 {
-        let position = floor_qc(self.shaft.position());
+        let position = floor_qc(self.shaft.position);
         let (mut high, mut assigned) = (0, 0);
         for number in 1..=INPUTS {
             // Only 0..=15 can be written.
@@ -55,7 +55,7 @@ impl Node {
         if quick_stop && self.state == DeviceState::OperationEnabled {
             self.quick_stop();
         }
-        let direction = self.generator.speed().0.signum();
+        let direction = self.generator.speed.0.signum();
         let reacting = self.state == DeviceState::FaultReactionEnabled;
         for (bit, into, error) in [
             (input::NEGATIVE_LIMIT, -1, DeviceError::NEGATIVE_LIMIT),

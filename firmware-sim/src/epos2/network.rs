@@ -8,30 +8,18 @@ use super::node::Node;
 /// NMT state and restarts of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct NetworkState {
-    state: NmtState,
+    pub state: NmtState,
     /// Number of starts of the communication, power-on included.
-    starts: u32,
+    pub starts: u32,
 }
 
 impl NetworkState {
-    /// State after power-on.
-    pub const fn at_power_on() -> Self {
+    /// The state after this number of starts.
+    pub const fn started(starts: u32) -> Self {
         Self {
             state: NmtState::PreOperational,
-            starts: 1,
+            starts,
         }
-    }
-
-    /// State after one more start.
-    pub const fn restarted(self) -> Self {
-        Self {
-            state: NmtState::PreOperational,
-            starts: self.starts.wrapping_add(1),
-        }
-    }
-
-    pub const fn starts(&self) -> u32 {
-        self.starts
     }
 }
 
@@ -53,7 +41,7 @@ impl Node {
             NmtCommand::ResetNode => self.power_cycle(),
             NmtCommand::ResetCommunication => {
                 self.dictionary.copy_range(&self.saved, 0x1000, 0x1FFF);
-                self.network = self.network.restarted();
+                self.network = NetworkState::started(self.network.starts.wrapping_add(1));
             }
             NmtCommand::Unknown(_) => {}
         }

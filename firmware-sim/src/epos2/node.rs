@@ -78,7 +78,7 @@ impl Node {
             config.hard_stops,
             config.servo,
         );
-        Self::boot(config, saved, shaft, NetworkState::at_power_on())
+        Self::boot(config, saved, shaft, NetworkState::started(1))
     }
 
     fn boot(
@@ -88,16 +88,16 @@ impl Node {
         network: NetworkState,
     ) -> Self {
         let qc_per_turn = saved.get(objects::ENCODER_LINES).saturating_mul(4);
-        let at = q32(shaft.position());
+        let at = q32(shaft.position);
         let mut node = Self {
-            generator: Generator::new(shaft.position(), qc_per_turn),
+            generator: Generator::new(shaft.position, qc_per_turn),
             errors: Errors::default(),
             state: DeviceState::SwitchOnDisabled,
             controlword: 0,
             sequence: Sequence::Idle,
             brake_released: false,
             mode: saved.get(objects::MODE),
-            origin: floor_qc(shaft.position()),
+            origin: floor_qc(shaft.position),
             referenced: false,
             lost_demand: false,
             position_mode: PositionMode::default(),
@@ -124,7 +124,7 @@ impl Node {
     /// Power off and on: the saved parameters apply, and the present position becomes 0.
     pub fn power_cycle(&mut self) {
         let (config, saved) = (self.config.clone(), self.saved.clone());
-        let network = self.network.restarted();
+        let network = NetworkState::started(self.network.starts.wrapping_add(1));
         *self = Self::boot(config, saved, self.shaft.at_power_on(), network);
     }
 
@@ -144,12 +144,12 @@ impl Node {
                 _ => self.advance_position_mode(),
             }
         }
-        let start = q32(self.shaft.position());
+        let start = q32(self.shaft.position);
         self.generator.step();
         self.shaft
-            .follow(self.generator.position(), self.generator.qc_per_turn());
+            .follow(self.generator.position, self.generator.qc_per_turn);
         self.follow_shaft();
-        let end = q32(self.shaft.position());
+        let end = q32(self.shaft.position);
         self.segment = ShaftSegment { start, end };
     }
 
@@ -191,17 +191,16 @@ impl Node {
 
     /// Blocks the shaft in place until [`Node::unblock`], through power-off too.
     pub fn block(&mut self) {
-        self.shaft.jam(true);
+        self.shaft.jammed = true;
     }
 
     /// Releases a blocked shaft.
     pub fn unblock(&mut self) {
-        self.shaft.jam(false);
+        self.shaft.jammed = false;
     }
 
     /// 6041.
     pub(super) fn statusword(&self) -> u16 {
-        let bit = |on, bit| if on { bit } else { 0 };
         let of_mode = match self.mode {
             mode::HOMING => self.homing.status_bits(),
             mode::PROFILE_VELOCITY => self.velocity_mode.status_bits(self.velocity_actual_rpm()),
@@ -233,7 +232,7 @@ impl Node {
 
     /// 6062: the demand at the end of this control cycle, and the base of relative moves.
     pub(super) fn position_demand(&self) -> i32 {
-        (floor_qc(self.generator.position()) - self.origin) as i32
+        (floor_qc(self.generator.position) - self.origin) as i32
     }
 
     /// 1013.
@@ -248,4 +247,9 @@ impl Node {
     pub(super) fn is_powered(&self) -> bool {
         is_powered(self.state)
     }
+}
+
+/// These bits of a word if they are on.
+pub(super) const fn bit(on: bool, bits: u16) -> u16 {
+    if on { bits } else { 0 }
 }

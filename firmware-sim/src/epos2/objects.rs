@@ -79,7 +79,7 @@ impl Node {
             ENCODER_COUNTER => self.encoder_counter(),
             a if a == objects::POSITION_ACTUAL.address => self.position_actual() as u32,
             a if a == objects::POSITION_DEMAND.address => self.position_demand() as u32,
-            a if a == objects::VELOCITY_DEMAND.address => self.generator.speed().to_rpm() as u32,
+            a if a == objects::VELOCITY_DEMAND.address => self.generator.speed.to_rpm() as u32,
             a if a == objects::VELOCITY_AVERAGED.address
                 || a == objects::VELOCITY_ACTUAL.address
                 || a == VELOCITY_SENSOR =>
@@ -138,7 +138,7 @@ impl Node {
             a if a == objects::ERROR_COUNT.address => self.errors.clear_history(),
             a if a == objects::TIMESTAMP.address => self.set_timestamp_us(raw),
             a if a == objects::ENCODER_LINES.address => {
-                self.generator.set_qc_per_turn(raw.saturating_mul(4));
+                self.generator.qc_per_turn = raw.saturating_mul(4);
             }
             a if a == objects::STORE_ALL.address => {
                 self.dictionary.set(a, 0);

@@ -6,7 +6,7 @@ use protocol::epos2::cia402::{DeviceState, control, mode, status};
 use protocol::epos2::objects;
 
 use super::fixed::{Speed, fine, floor_qc};
-use super::node::Node;
+use super::node::{Node, bit};
 use super::profile::MotionLimits;
 
 /// State of the mode.
@@ -32,17 +32,8 @@ struct Setpoint {
 
 impl PositionMode {
     pub fn status_bits(&self) -> u16 {
-        let reached = if self.reached {
-            status::TARGET_REACHED
-        } else {
-            0
-        };
-        let acknowledged = if self.acknowledged {
-            status::SETPOINT_ACKNOWLEDGE
-        } else {
-            0
-        };
-        reached | acknowledged
+        bit(self.reached, status::TARGET_REACHED)
+            | bit(self.acknowledged, status::SETPOINT_ACKNOWLEDGE)
     }
 
     /// Drops all targets.
@@ -133,10 +124,10 @@ impl Node {
         if self.mode == mode::HOMING || self.state != DeviceState::OperationEnabled {
             return;
         }
-        let position = floor_qc(self.generator.position()) - self.origin;
+        let position = floor_qc(self.generator.position) - self.origin;
         let lowest = self.dictionary.get(objects::MIN_POSITION).into();
         let highest: i64 = self.dictionary.get(objects::MAX_POSITION).into();
-        let speed = self.generator.speed();
+        let speed = self.generator.speed;
         if position < lowest && speed < Speed::ZERO || position > highest && speed > Speed::ZERO {
             self.fail(DeviceError::SOFTWARE_LIMIT);
         }
@@ -169,7 +160,7 @@ impl Node {
         if window == u32::MAX {
             return true;
         }
-        let position = floor_qc(self.shaft.position()) - self.origin;
+        let position = floor_qc(self.shaft.position) - self.origin;
         let off = (position - target).unsigned_abs();
         let waited = &mut self.position_mode.in_window_ms;
         *waited = if off <= u64::from(window) {

@@ -89,28 +89,28 @@ fn run(
     let mut steps = 0;
     // Largest change of position in a ms, and of that change from one ms to the next; 1 unit each
     // for rounding down, and 2^-32 ms at the joints.
-    let top = i128::from(l.speed.0.max(generator.speed().0.abs()));
+    let top = i128::from(l.speed.0.max(generator.speed.0.abs()));
     let most = ((top * 2 * i128::from(QC_PER_TURN)) >> 32) + 64;
     let steepest = i128::from(l.acceleration.max(l.deceleration));
     let change = (steepest * 2 * i128::from(QC_PER_TURN)) + 128;
     let mut last = None;
     while generator.is_moving() {
-        let before = generator.position();
+        let before = generator.position;
         generator.step();
         steps += 1;
-        let moved = i128::from(generator.position() - before);
+        let moved = i128::from(generator.position - before);
         assert!(moved.abs() <= most, "{moved} > {most} at {steps}");
         if let Some(last) = last {
             let differs: i128 = moved - last;
             assert!(differs.abs() <= change, "{differs} > {change} at {steps}");
         }
-        assert!(generator.speed().0.abs() <= top as i64);
+        assert!(generator.speed.0.abs() <= top as i64);
         last = Some(moved);
-        each(steps, qc(generator.position()));
+        each(steps, qc(generator.position));
         assert!(steps <= most_ms, "not there after {most_ms} ms");
     }
-    assert_eq!(generator.position(), target);
-    assert_eq!(generator.speed(), Speed::ZERO);
+    assert_eq!(generator.position, target);
+    assert_eq!(generator.speed, Speed::ZERO);
     steps
 }
 
@@ -284,7 +284,7 @@ proptest! {
         for _ in 0..after {
             generator.step();
         }
-        let (from, speed) = (qc(generator.position()), generator.speed());
+        let (from, speed) = (qc(generator.position), generator.speed);
         generator.stop(l.deceleration);
         let mut steps = 0u32;
         while generator.is_moving() {
@@ -295,7 +295,7 @@ proptest! {
         let v = speed.0 as f64 / MS as f64 / 1000.0 * f64::from(QC_PER_TURN) / 60.0;
         let d = f64::from(l.deceleration) * f64::from(QC_PER_TURN) / 60.0;
         let expected = from + v * v.abs() / (2.0 * d);
-        prop_assert!((qc(generator.position()) - expected).abs() < 1e-3);
+        prop_assert!((qc(generator.position) - expected).abs() < 1e-3);
     }
 }
 
@@ -338,8 +338,8 @@ proptest! {
                 Order::Steps(n) => {
                     for _ in 0..n {
                         generator.step();
-                        prop_assert!(generator.position().abs() <= WORLD_END);
-                        prop_assert!(generator.speed().0.abs() <= Speed::from_rpm(25_000).0);
+                        prop_assert!(generator.position.abs() <= WORLD_END);
+                        prop_assert!(generator.speed.0.abs() <= Speed::from_rpm(25_000).0);
                     }
                 }
             }

@@ -17,18 +17,19 @@ const FASTEST_RPM: i64 = 26_000;
 /// Shaft, motor and encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct MotorShaft {
-    position: Fine,
+    pub position: Fine,
     /// The servo without obstacles; `None`: it equals the demand.
     servo: Option<Follower>,
-    jammed: bool,
+    /// Something blocks it in place.
+    pub jammed: bool,
     /// Hard stops, world qc: below, above.
     stops: [Option<i32>; 2],
     /// In the last millisecond.
     moved: Fine,
-    /// The shaft is not at its demand.
-    behind: bool,
+    /// The shaft is not at its demand, also by the lag of the servo.
+    pub behind: bool,
     /// The shaft could not follow its servo in the last millisecond, or has not caught up.
-    held: bool,
+    pub held: bool,
 }
 
 impl MotorShaft {
@@ -79,24 +80,6 @@ impl MotorShaft {
             servo.shift(behind);
         }
         behind
-    }
-
-    pub const fn position(&self) -> Fine {
-        self.position
-    }
-
-    /// Whether the shaft deviates from its demand, also by the lag of the servo.
-    pub const fn is_behind(&self) -> bool {
-        self.behind
-    }
-
-    /// Whether something blocks the shaft, or it has not caught up.
-    pub const fn is_held(&self) -> bool {
-        self.held
-    }
-
-    pub fn jam(&mut self, jammed: bool) {
-        self.jammed = jammed;
     }
 
     /// Advances by one millisecond towards `demand`.
@@ -151,27 +134,27 @@ mod tests {
     fn it_follows_until_a_stop_and_comes_back_from_it() {
         let mut shaft = MotorShaft::new(0, [Some(-10), Some(10)], None);
         shaft.follow(fine(7), 2000);
-        assert_eq!((shaft.position(), shaft.is_behind()), (fine(7), false));
+        assert_eq!((shaft.position, shaft.behind), (fine(7), false));
         shaft.follow(fine(15), 2000);
-        assert_eq!((shaft.position(), shaft.is_behind()), (fine(10), true));
+        assert_eq!((shaft.position, shaft.behind), (fine(10), true));
         assert_eq!(shaft.following_error(fine(15)), 5);
         assert_eq!(shaft.current_ma(fine(15), 1000), 25);
         assert_eq!(shaft.current_ma(fine(1500), 1000), 1000);
         shaft.follow(fine(-15), 2000);
-        assert_eq!(shaft.position(), fine(-10));
+        assert_eq!(shaft.position, fine(-10));
         assert_eq!(shaft.current_ma(fine(-15), 1000), -25);
     }
 
     #[test]
     fn a_jam_lets_go_no_faster_than_a_motor_turns() {
         let mut shaft = MotorShaft::new(0, [None; 2], None);
-        shaft.jam(true);
+        shaft.jammed = true;
         shaft.follow(fine(100_000), 2000);
-        assert_eq!(shaft.position(), 0);
-        shaft.jam(false);
+        assert_eq!(shaft.position, 0);
+        shaft.jammed = false;
         shaft.follow(fine(100_000), 2000);
         // 26,000 rpm are 866 qc a ms.
-        assert_eq!(shaft.position() / FINE_PER_QC, 866);
+        assert_eq!(shaft.position / FINE_PER_QC, 866);
         assert_eq!(shaft.speed(2000), Speed::from_rpm(26_000));
     }
 
@@ -185,7 +168,7 @@ mod tests {
         for ms in 1..=200 {
             shaft.follow(fine(37 * ms), 2000);
         }
-        assert!(shaft.is_behind() && !shaft.is_held());
+        assert!(shaft.behind && !shaft.held);
         let demand = fine(7_400);
         // 2 x 0.8 / (2 pi 15 Hz) at 37 qc a ms.
         assert!((620..636).contains(&shaft.following_error(demand)));
@@ -194,13 +177,13 @@ mod tests {
         for _ in 0..300 {
             shaft.follow(demand, 2000);
         }
-        assert!(shaft.is_held() && shaft.position() == fine(7_000));
+        assert!(shaft.held && shaft.position == fine(7_000));
         assert_eq!(shaft.current_ma(demand, 9_000), 2_000);
         assert_eq!(shaft.speed(2000), Speed::ZERO);
         assert_eq!(shaft.give_way(demand), fine(-400));
         assert_eq!(shaft.current_ma(demand, 9_000), 0);
         shaft.rest();
-        shaft.follow(shaft.position(), 2000);
-        assert!(!shaft.is_behind() && !shaft.is_held());
+        shaft.follow(shaft.position, 2000);
+        assert!(!shaft.behind && !shaft.held);
     }
 }

@@ -1,6 +1,6 @@
 //! Parameters that survive power-off: save (1010) and the three restore commands (1011).
 
-use protocol::epos2::objects::{self, Address, TypedObject};
+use protocol::epos2::objects::{self, Address};
 
 use super::Abort;
 use super::config::NodeConfig;
@@ -16,19 +16,15 @@ pub(super) const RESTORE_COB_IDS: Address = Address::new(0x1011, 5);
 /// Process values, which are not saved.
 const VOLATILE: [Address; 8] = [
     objects::TIMESTAMP.address,
-    CURRENT_SETTING.address,
-    POSITION_SETTING.address,
-    VELOCITY_SETTING.address,
+    // Setting values of the current, position and velocity modes.
+    Address::new(0x2030, 0),
+    Address::new(0x2062, 0),
+    Address::new(0x206B, 0),
     objects::OUTPUT_STATE.address,
     objects::CONTROLWORD.address,
     objects::TARGET_POSITION.address,
     objects::TARGET_VELOCITY.address,
 ];
-const CURRENT_SETTING: TypedObject<i16> = TypedObject::new(0x2030, 0, "Current Mode Setting Value");
-const POSITION_SETTING: TypedObject<i32> =
-    TypedObject::new(0x2062, 0, "Position Mode Setting Value");
-const VELOCITY_SETTING: TypedObject<i32> =
-    TypedObject::new(0x206B, 0, "Velocity Mode Setting Value");
 
 /// Factory values, with the configured encoder.
 pub(super) fn factory(config: &NodeConfig) -> Dictionary {
@@ -74,7 +70,7 @@ impl Node {
         self.saved = self.dictionary.clone();
         self.mode = self.dictionary.get(objects::MODE);
         let lines = self.dictionary.get(objects::ENCODER_LINES);
-        self.generator.set_qc_per_turn(lines.saturating_mul(4));
+        self.generator.qc_per_turn = lines.saturating_mul(4);
     }
 
     /// 1011:5: restores the identifiers of all PDOs from the predefined connection set for the

@@ -10,7 +10,7 @@ use protocol::epos2::cia402::{control, status};
 use protocol::epos2::objects::{self, TypedObject};
 
 use super::fixed::Speed;
-use super::node::Node;
+use super::node::{Node, bit};
 
 /// Tolerance of the target speed, rpm; FFFFFFFF: reached at the end of the ramp.
 const VELOCITY_WINDOW: TypedObject<u32> = TypedObject::new(0x606D, 0, "Velocity Window");
@@ -33,13 +33,7 @@ pub(super) struct VelocityMode {
 
 impl VelocityMode {
     pub const fn status_bits(&self, actual_rpm: i32) -> u16 {
-        let reached = if self.reached {
-            status::TARGET_REACHED
-        } else {
-            0
-        };
-        let zero = if actual_rpm == 0 { SPEED_IS_ZERO } else { 0 };
-        reached | zero
+        bit(self.reached, status::TARGET_REACHED) | bit(actual_rpm == 0, SPEED_IS_ZERO)
     }
 
     /// Drops the target.
@@ -82,7 +76,7 @@ impl Node {
         let actual = self.velocity_actual_rpm();
         let window = self.dictionary.get(VELOCITY_WINDOW);
         if window == u32::MAX {
-            return self.generator.speed() == target && !self.shaft.is_held();
+            return self.generator.speed == target && !self.shaft.held;
         }
         let off = actual.abs_diff(target.to_rpm());
         let waited = &mut self.velocity_mode.in_window_ms;

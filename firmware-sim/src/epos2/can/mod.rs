@@ -100,7 +100,7 @@ impl CanServer {
     /// Resets the interface after a start of the node. `None` for a node without an id.
     fn follow_restart(&mut self, node: &Node, out: &mut impl FnMut(&CanFrame)) -> Option<NodeId> {
         let id = NodeId::new(node.node_id())?;
-        let starts = node.network.starts();
+        let starts = node.network.starts;
         if self.started != Some(starts) {
             *self = Self {
                 started: Some(starts),
