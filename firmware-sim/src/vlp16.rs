@@ -68,7 +68,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_manuals_arithmetic() {
+    fn azimuths_and_timestamps_match_the_manual() {
         // 63-9243, "Firing sequence timing": 24 sequences of 55.296 us fill a packet in 1327.104
         // us, 754 packets a second.
         let packet_ns = PacketModel::Vlp16.packet_period_ns(ReturnMode::Strongest);

@@ -120,7 +120,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_holds_n_and_refuses_more() {
+    fn lists_hold_n_elements_and_refuse_more() {
         let mut list = Bounded::<u8, 2>::new();
         assert_eq!(list.push(1), Ok(()));
         assert_eq!(list.push(2), Ok(()));

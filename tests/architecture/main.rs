@@ -162,7 +162,7 @@ fn comments_are_wrapped_at_100_columns() {
 }
 
 #[test]
-fn a_type_name_stands_for_one_type() {
+fn type_names_are_unique() {
     let counts = counts_of_sources();
     assert!(
         counts.repeated_types.len() <= MAX_REPEATED_TYPES,

@@ -20,7 +20,7 @@ fn same(summary: &Summary, got: &Value, least: &str, greatest: &str) {
 
 #[test]
 #[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
-fn mcap_and_rosbags_read_our_recording_whole() {
+fn mcap_and_rosbags_read_our_recording_completely() {
     let scan = Captured::new(Setting::default());
     let recording = scan.cloud_file("cloud.mcap");
     let (report, cloud) = scan.scan();

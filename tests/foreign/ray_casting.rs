@@ -60,7 +60,7 @@ fn write(path: &Path, rows: impl Iterator<Item = f64>) -> PathBuf {
 
 #[test]
 #[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
-fn open3d_meets_a_mesh_of_100_000_triangles_at_the_same_ranges() {
+fn open3d_hits_a_mesh_of_100_000_triangles_at_the_same_ranges() {
     let (vertices, triangles) = hills();
     let corners: Vec<_> = vertices.iter().map(|&corner| corner.into()).collect();
     let mesh = Mesh::new(&corners, &triangles).unwrap();

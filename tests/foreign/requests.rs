@@ -75,7 +75,7 @@ fn fuzz(daemon: &Daemon, folder: &Path, more: &[&str]) {
 
 #[test]
 #[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
-fn bad_requests_are_refused_as_described_and_nothing_moves() {
+fn invalid_requests_are_refused_as_described_and_nothing_moves() {
     let (bench, folder) = (Bench::start(), tempfile::tempdir().unwrap());
     let daemon = daemon(&bench, folder.path());
     let bad = [
@@ -94,7 +94,7 @@ fn bad_requests_are_refused_as_described_and_nothing_moves() {
 
 #[test]
 #[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
-fn any_requests_in_any_order_are_answered_as_described_and_the_axis_ends_at_rest() {
+fn arbitrary_requests_are_answered_as_described_and_the_axis_ends_at_rest() {
     let (bench, folder) = (Bench::start(), tempfile::tempdir().unwrap());
     let daemon = daemon(&bench, folder.path());
     fuzz(&daemon, folder.path(), &["-n", "4"]);

@@ -139,7 +139,7 @@ fn says_why(trajectory: &Trajectory) -> bool {
 /// Nanoseconds since 1970 exceed a double. Conversion to one costs a quarter of a microsecond;
 /// conversion to f32 seconds of the hour costs 244 us, 0.014 deg here.
 #[test]
-fn angles_of_2100_are_those_of_today() {
+fn angles_in_2100_equal_those_of_today() {
     for method in methods() {
         let [today, then] = [TODAY, IN_2100].map(|epoch| {
             let samples = CARD.polls(epoch, 400.0, 0.5e-3);
@@ -162,7 +162,7 @@ fn angles_of_2100_are_those_of_today() {
 
 /// Degenerate motions: divisions by a ramp, a speed or a distance would be divisions by zero.
 #[test]
-fn motions_at_the_edge() {
+fn degenerate_motions_are_followed() {
     for (name, motion, most_deg) in [
         ("the usual one", CARD, 0.003),
         (
@@ -266,7 +266,7 @@ fn motions_at_the_edge() {
 
 /// The commanded motion may be missing or wrong: the samples alone then give the motion.
 #[test]
-fn a_motion_of_which_nothing_is_known() {
+fn motions_without_a_known_command_follow_the_samples() {
     let reported = |speed, up, down| Commanded {
         speed: DegPerS(speed),
         acceleration: DegPerS2(up),
@@ -293,7 +293,7 @@ fn a_motion_of_which_nothing_is_known() {
 /// A recording may end anywhere in a sweep (cable, power, Ctrl-C). Nothing after the last sample is
 /// known, so distance and last ramp cannot be fitted.
 #[test]
-fn samples_end_in_mid_sweep() {
+fn samples_that_end_in_mid_sweep_give_no_angle_after() {
     for part in [0.02, 0.06, 0.125, 0.2, 0.5, 0.88, 0.95, 0.99] {
         let whole = CARD.sweep(TODAY);
         let end = whole.start + Span::from_secs_f64((whole.end - whole.start).as_secs_f64() * part);
@@ -325,7 +325,7 @@ fn samples_end_in_mid_sweep() {
 /// Without ramps start time, start angle, ramps and distance are one straight line, and an
 /// unregularised fit's condition number exceeds 1e7. With both ramps it is some tens.
 #[test]
-fn the_cruise_alone_is_a_fit_that_says_so() {
+fn a_fit_of_the_cruise_alone_reports_its_condition() {
     let whole = CARD.sweep(TODAY);
     let samples = CARD.polls(TODAY, 400.0, 0.2e-3);
     let conditions: Vec<f64> = [Method::Profile, Method::ProfileServo, Method::ProfileSwing]
@@ -363,7 +363,7 @@ fn the_cruise_alone_is_a_fit_that_says_so() {
 
 /// Three samples within a sweep: fewer than a motion has parameters.
 #[test]
-fn a_sweep_of_three_samples() {
+fn a_sweep_of_three_samples_is_interpolated() {
     let sweep = CARD.sweep(TODAY);
     let samples = CARD.polls(TODAY, 3.0, 0.5e-3);
     let inside = samples
@@ -384,7 +384,7 @@ fn a_sweep_of_three_samples() {
 /// Samples with equal stamps, from a coarse clock or one read buffer. Differences of time are
 /// divisors.
 #[test]
-fn samples_of_identical_times() {
+fn samples_of_identical_times_are_handled() {
     let sweep = CARD.sweep(TODAY);
     let samples = CARD.polls(TODAY, 400.0, 0.2e-3);
     // In pairs whose second sample is late by a poll and disagrees.

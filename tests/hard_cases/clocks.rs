@@ -15,7 +15,7 @@ fn mid_sweep(setting: Setting) -> Span {
 /// another clock, and the pairing of requests and answers sees time run back. The cloud must be as
 /// accurate as usual.
 #[test]
-fn the_hosts_clock_is_set_in_mid_sweep() {
+fn a_step_of_the_host_clock_in_mid_sweep_is_corrected() {
     for attached in [Attachment::Usb, Attachment::Rs232, Attachment::Can] {
         let usual = Setting::over(attached);
         let (undisturbed, points) = {
@@ -68,7 +68,7 @@ fn the_hosts_clock_is_set_in_mid_sweep() {
 /// A leap second sets the clock back at midnight UTC: 2016-12-31 23:59:60, the latest so far,
 /// during the sweep.
 #[test]
-fn a_scan_across_a_leap_second() {
+fn a_leap_second_in_mid_scan_is_corrected() {
     let midnight = Stamp::<Host>::from_nanos(1_483_228_800_000_000_000);
     let middle = mid_sweep(Setting::default());
     let setting = Setting {
@@ -94,7 +94,7 @@ fn a_scan_across_a_leap_second() {
 /// The first pulse per second sets the lidar's clock back, so that its times repeat within the
 /// sweep; or the clock restarts. Host times and angles stay the same.
 #[test]
-fn the_lidars_clock_is_set_in_mid_sweep() {
+fn a_step_of_the_lidar_clock_in_mid_sweep_is_corrected() {
     let middle = mid_sweep(Setting::default());
     for by_us in [300_700_123, 137_001, -137_001, -412_345_000] {
         let by = Span::from_micros(by_us);
@@ -132,7 +132,7 @@ fn the_lidars_clock_is_set_in_mid_sweep() {
 
 /// Both clocks are set in one recording.
 #[test]
-fn both_clocks_are_set() {
+fn steps_of_both_clocks_are_corrected() {
     let middle = mid_sweep(Setting::default());
     let setting = Setting {
         host_set: Some((middle - Span::from_millis(300), Span::from_secs(-1))),
@@ -155,7 +155,7 @@ fn arrival(device: i64, host: i64) -> Arrival {
 /// 2100-01-01 in nanoseconds needs 62 bits, a double has 53: conversion to one costs half a
 /// microsecond.
 #[test]
-fn the_year_2100() {
+fn clocks_are_exact_in_the_year_2100() {
     const EPOCH: i64 = 4_102_444_800_000_000_001;
     let arrivals: Vec<Arrival> = (0..40_000)
         .map(|i| i * 1_327_104)
@@ -174,7 +174,7 @@ fn the_year_2100() {
 
 /// Identical stamps have no slope: the earliest arrival counts.
 #[test]
-fn packets_of_one_instant() {
+fn packets_of_one_instant_give_a_clock() {
     let arrivals = [30, 10, 20].map(|late| arrival(0, late));
     let clock = LidarClock::fit(&arrivals).unwrap();
     assert_eq!(clock.host(Stamp::from_nanos(0)).as_nanos(), 10);
@@ -188,7 +188,7 @@ fn packets_of_one_instant() {
 /// One packet gives an offset. Two must not give a drift of 1000 ppm out of jitter, and the bound
 /// shows how little is known.
 #[test]
-fn one_packet_and_two() {
+fn one_packet_and_two_packets_give_a_clock() {
     let one = LidarClock::fit(&[arrival(5, 1_000)]).unwrap();
     assert_eq!(one.host(Stamp::from_nanos(1_005)).as_nanos(), 2_000);
     let two = LidarClock::fit(&[arrival(0, 0), arrival(1_327_104, 2_327_104)]).unwrap();
@@ -205,7 +205,7 @@ fn one_packet_and_two() {
 
 /// Packets that overtake each other are the same packets.
 #[test]
-fn packets_out_of_order() {
+fn packets_out_of_order_do_not_affect_the_clock() {
     let in_order: Vec<Arrival> = (0..20_000)
         .map(|i| arrival(i * 1_327_104, i * 1_327_104 + i * i % 40_000))
         .collect();

@@ -176,7 +176,7 @@ fn nothing_amiss(stats: &Stats) {
 
 /// 36000 is invalid by the manual, and sensors send it; it means 0, not 360.
 #[test]
-fn azimuth_36000_is_0() {
+fn azimuth_36000_equals_0() {
     // 0.36 deg per block: every thousandth azimuth is exactly 0.
     let head = steady(0.36 / 6.0 / (BLOCK_NS as f64 * 1e-9), BEGIN_NS);
     let (mut packets, truth) = head.packets(170);
@@ -201,7 +201,7 @@ fn azimuth_36000_is_0() {
 
 /// The step from 359.9 to 0.1 deg is 0.2 deg, anywhere in a packet or between two.
 #[test]
-fn azimuth_wraps_anywhere_in_a_packet() {
+fn azimuths_may_wrap_anywhere_in_a_packet() {
     for blocks_before in 0..14 {
         let angle_deg = move |s: f64| {
             359.9 - 0.4 * f64::from(blocks_before) + 0.4 * s / (BLOCK_NS as f64 * 1e-9)
@@ -227,7 +227,7 @@ fn azimuth_wraps_anywhere_in_a_packet() {
 /// A limited field of view: a packet continues behind the gap, 155 ms later than its place says.
 /// Interpolation over the jump would put azimuths into the unseen part of the revolution.
 #[test]
-fn blocks_behind_the_gap_of_a_limited_view_fired_a_gap_later() {
+fn blocks_after_the_gap_of_a_limited_field_of_view_are_timed_later() {
     for (dual, rpm) in [(false, 300.0), (true, 300.0), (false, 1_200.0)] {
         let head = Head {
             angle_deg: |s: f64| 320.0 + 6.0 * rpm * s,
@@ -320,7 +320,7 @@ fn dual_returns_may_be_missing_on_either_side() {
 /// would make azimuths between blocks and all elevations wrong. Block spacing identifies the model,
 /// even with lost packets at the start.
 #[test]
-fn a_vlp16_of_2014_calls_itself_an_hdl32e() {
+fn a_vlp16_of_2014_that_claims_to_be_an_hdl32e_is_identified() {
     for lost in [0, 1, 2] {
         let head = steady(1_200.0, BEGIN_NS);
         let (mut packets, mut truth) = head.packets(20);
@@ -342,7 +342,7 @@ fn a_vlp16_of_2014_calls_itself_an_hdl32e() {
 /// During spin-up a mean rate, or that of the last packet, moves azimuths by more than a step of
 /// the wire.
 #[test]
-fn the_rotor_changes_its_speed() {
+fn azimuths_follow_a_rotor_that_changes_its_speed() {
     for spin_up in [-600.0, -100.0, 100.0, 600.0] {
         let head = Head {
             angle_deg: move |s: f64| 6.0 * (700.0 * s + spin_up * s * s / 2.0),
@@ -361,7 +361,7 @@ fn the_rotor_changes_its_speed() {
 /// next packet's azimuth gives that step. Here the rotor halves its speed within a packet, so that
 /// the packet's mean is wrong.
 #[test]
-fn the_last_block_turns_at_the_rate_of_the_next_packet() {
+fn the_last_block_uses_the_rotation_rate_of_the_next_packet() {
     let knee_s = 23.0 * SEQUENCE_PERIOD_NS as f64 * 1e-9 - 55.296e-6;
     let head = Head {
         angle_deg: move |s: f64| 7_200.0 * s.min(knee_s) + 3_600.0 * (s - knee_s).max(0.0),

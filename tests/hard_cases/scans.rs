@@ -16,7 +16,7 @@ use velomotion_tests::capture::{Captured, Setting};
 /// 2100-01-01 00:00:00 UTC during the sweep: nanoseconds over 2^61, where a double steps by half a
 /// microsecond. The same scan some whole hours earlier gives the same points.
 #[test]
-fn a_scan_into_the_year_2100() {
+fn a_scan_into_the_year_2100_equals_one_of_today() {
     let now = Setting::default();
     let midnight = 4_102_444_800_000_000_000;
     let hour = 3_600_000_000_000;
@@ -42,7 +42,7 @@ fn a_scan_into_the_year_2100() {
 /// targets at its limits, samples outside them are not faults, and the points at both ends are
 /// correct.
 #[test]
-fn gamma_at_both_limits() {
+fn scans_between_both_tilt_limits_are_true() {
     for attached in [Attachment::Usb, Attachment::Can] {
         let mut setting = Setting::over(attached);
         setting.wish.acceleration = DegPerS2(500.0);
@@ -73,7 +73,7 @@ fn gamma_at_both_limits() {
 /// A log that ends within a sweep, as after a power failure: its points are as accurate as in the
 /// whole log, their uncertainty is no smaller, and the report says that the sweep was cut short.
 #[test]
-fn a_log_that_ends_in_mid_sweep() {
+fn logs_that_end_in_mid_sweep_give_a_cloud() {
     for attached in [Attachment::Usb, Attachment::Can] {
         let captured = Captured::new(Setting::over(attached));
         let (from, to) = captured.sweep_span();

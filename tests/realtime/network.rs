@@ -102,7 +102,7 @@ fn free_port() -> u16 {
 }
 
 #[test]
-fn group_sender_and_ports_are_the_configurations_and_the_log_replays() {
+fn group_sender_and_ports_follow_the_configuration_and_the_log_replays() {
     let folder = tempfile::tempdir().unwrap();
     let place = folder.path();
     let group = has_multicast().then_some(GROUP);

@@ -77,7 +77,7 @@ fn velomotion() -> Command {
 }
 
 #[test]
-fn the_axis_is_looked_at_homed_moved_and_its_faults_explained() {
+fn tilt_commands_show_home_and_move_the_axis_and_explain_faults() {
     let bench = Bench::new("--usb");
     let new = bench.json("tilt status");
     assert_eq!(
@@ -167,7 +167,7 @@ fn tilt_stop_stops_a_move_of_another_process() {
 }
 
 #[test]
-fn the_software_drive_goes_with_its_link_when_stdin_closes() {
+fn the_software_drive_exits_and_removes_its_link_when_stdin_closes() {
     let bench = Bench::new("--rs232");
     let link = bench.folder.path().join("epos");
     assert!(link.is_symlink());

@@ -1,7 +1,7 @@
 //! The lidar's clock against simulated truth: three links, two durations, every method, online and
 //! offline, with their reported bounds.
 //!
-//! `cargo test -p velomotion-tests --test virtual -- --nocapture clocks::table` prints the table of
+//! `cargo test -p velomotion-tests --test virtual -- --nocapture clock_errors` prints the table of
 //! the documentation.
 
 use scanner::clock::{Arrival, LidarClock, OnlineClock};
@@ -253,7 +253,7 @@ impl Row {
 /// The limits hold for the clock in every single run; the other columns show that the links are as
 /// hard as stated.
 #[test]
-fn table() {
+fn clock_errors_are_within_their_limits() {
     println!(
         "| | arrival | least squares | Olson | one hull | hulls of 30 s | clock | its worst run | its bound |"
     );
@@ -282,7 +282,7 @@ fn table() {
 /// The bound holds in 99 of 100 recordings of any length. It is tight: on average within five times
 /// the greatest error, or a microsecond of it.
 #[test]
-fn the_bound_holds_and_says_something() {
+fn the_bound_holds_and_is_tight() {
     for link in ArrivalLink::ALL {
         for (seconds, seeds) in [
             (1, 100),

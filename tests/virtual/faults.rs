@@ -335,7 +335,7 @@ fn no_fault_hangs_panics_or_loses_the_scan() {
 
 /// Other phases of the motion: ramps, homing, the move to the start.
 #[test]
-fn no_fault_at_any_moment_hangs_or_leaves_the_axis_on_its_own() {
+fn no_fault_at_any_moment_hangs_or_leaves_the_axis_uncontrolled() {
     std::thread::scope(|scope| {
         for first in 0..WAYS.len() {
             scope.spawn(move || {

@@ -51,7 +51,7 @@ const PRINTED: [Printed; 3] = [
 ];
 
 #[test]
-fn densities_are_the_papers() {
+fn densities_match_the_paper() {
     for row in PRINTED {
         let text = row.pattern;
         let ours = statistics(&pattern(text).directions());
@@ -72,7 +72,7 @@ fn densities_are_the_papers() {
 
 /// Settings whose figures come closest to the paper's; they differ in the last place.
 #[test]
-fn densities_are_what_they_were_found_to_be() {
+fn densities_match_the_recorded_values() {
     for (text, mean, sd, least, most) in [
         ("rmbl:120", "84.469", 56.23, 25, 366),
         ("rmbl:50", "202.725", 133.95, 95, 878),
@@ -90,7 +90,7 @@ fn densities_are_what_they_were_found_to_be() {
 
 /// The book's figures equal the computed ones, rounded as the report rounds them.
 #[test]
-fn the_book_prints_what_the_report_prints() {
+fn the_documentation_prints_the_output_of_the_report() {
     let book = include_str!("../../docs/src/paper.md");
     let table = book
         .split("## ")
@@ -169,7 +169,7 @@ fn poles_on_the_tilt_axis_are_densest() {
 }
 
 #[test]
-fn blind_rows_stay_at_any_speed() {
+fn blind_rows_remain_at_any_speed() {
     // A point's angle from the tilt axis does not depend on the tilt: gaps of a level scan remain.
     let least = 0.1_f64.to_radians();
     let level = bands(&pattern("vlp16").directions(), AXIS, least).unwrap();
@@ -193,7 +193,7 @@ fn blind_rows_stay_at_any_speed() {
 }
 
 #[test]
-fn the_poles_themselves_are_holes_at_any_speed() {
+fn the_poles_are_holes_at_any_speed() {
     // No laser is level: the nearest are 1 deg off, and so is everything they see from the axis.
     for text in ["rmbl:300", "rmbl:120", "rmbl:50"] {
         let pattern = pattern(text);
@@ -214,7 +214,7 @@ fn the_poles_themselves_are_holes_at_any_speed() {
 }
 
 #[test]
-fn the_largest_holes_are_those_that_the_fan_leaves() {
+fn the_largest_holes_are_outside_the_laser_fan() {
     // Level, the fan of 15 deg leaves caps of 75 deg. Swept to one side, 53 deg remain below the
     // limits of the sweep.
     for (text, radius_deg, at_least) in [
@@ -261,7 +261,7 @@ fn containing(icosahedron: &Icosahedron, direction: DVec3) -> usize {
 
 /// Settings that the paper does not give, and their figures.
 #[test]
-fn other_choices_come_less_close() {
+fn other_settings_deviate_more_from_the_paper() {
     let icosahedron = Icosahedron::new(4).unwrap();
     let mut counts = vec![0_u64; 5_120];
     for direction in pattern("rmbl:120").directions() {

@@ -112,7 +112,7 @@ fn normalised(seen: &[Seen], pick: impl Fn(&Seen) -> bool) -> (f64, usize) {
     ((sum / count as f64).sqrt(), count)
 }
 
-fn points_are_off_by_what_sd_says(attached: Attachment, servo: Option<Servo>) {
+fn point_errors_match_sd(attached: Attachment, servo: Option<Servo>) {
     let mut seen = Vec::new();
     for (case, sweep) in SWEEPS.into_iter().enumerate() {
         for seed in 0..SEEDS {
@@ -146,31 +146,31 @@ fn points_are_off_by_what_sd_says(attached: Attachment, servo: Option<Servo>) {
 }
 
 #[test]
-fn points_are_off_by_what_sd_says_over_usb() {
-    points_are_off_by_what_sd_says(Attachment::Usb, None);
+fn point_errors_match_sd_over_usb() {
+    point_errors_match_sd(Attachment::Usb, None);
 }
 
 #[test]
-fn points_are_off_by_what_sd_says_over_can() {
-    points_are_off_by_what_sd_says(Attachment::Can, None);
+fn point_errors_match_sd_over_can() {
+    point_errors_match_sd(Attachment::Can, None);
 }
 
 /// A servo of 15 Hz that overshoots, on both links. The gear is exact: no encoder sees its ripple,
 /// and sd cannot contain it.
 #[test]
-fn points_are_off_by_what_sd_says_behind_a_servo_that_lags() {
+fn point_errors_match_sd_with_a_lagging_servo() {
     let servo = Servo::SecondOrder {
         natural_millihertz: 15_000,
         damping_permille: 700,
     };
     for attached in [Attachment::Usb, Attachment::Can] {
-        points_are_off_by_what_sd_says(attached, Some(servo));
+        point_errors_match_sd(attached, Some(servo));
     }
 }
 
 /// Without the noise of ranges and azimuths: the angle itself, between polls over USB.
 #[test]
-fn angles_are_off_by_what_their_pieces_say() {
+fn angle_errors_match_their_estimate() {
     for method in [Method::Nearest, Method::Linear] {
         let mut seen = Vec::new();
         for (case, sweep) in SWEEPS.into_iter().enumerate() {

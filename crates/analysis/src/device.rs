@@ -108,14 +108,14 @@ mod tests {
     };
 
     #[test]
-    fn the_papers_fields_of_view() {
+    fn fields_of_view_match_the_paper() {
         let view = VELOMOTION.view();
         assert_eq!(view.forwards_deg, [-60.0, 15.0]);
         assert_eq!(view.backwards_deg, [-15.0, 60.0]);
     }
 
     #[test]
-    fn ranges_by_the_equation() {
+    fn ranges_follow_the_equation() {
         let [near, far] = VELOMOTION.view().range_m;
         let sin15 = (6.0_f64.sqrt() - 2.0_f64.sqrt()) / 4.0;
         assert!((near - (1.0 + 0.0036 - 0.12 * sin15).sqrt()).abs() < 1e-15);
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn sampling_finds_the_same() {
+    fn sampling_agrees_with_the_equations() {
         let devices = [
             VELOMOTION,
             TiltedSensor {
@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn the_papers_resolution_and_the_one_that_is_not() {
+    fn vertical_resolutions_match_the_paper_where_it_is_right() {
         // 45 deg at 56.25 deg/s are 8 frames of 10 Hz.
         let at = |deg_per_s: f64| vertical_resolution_deg(75.0, 16, 45.0 / deg_per_s * 10.0);
         assert!((at(56.25) - 0.586).abs() < 1e-3);

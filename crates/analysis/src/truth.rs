@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn the_truth_itself_has_no_error() {
+    fn the_truth_compared_with_itself_has_no_error() {
         let positions = [[1.0, 2.0, 3.0], [-4.0, 5.0, 6.0], [100.0, 0.0, -7.0]];
         let report = compare(&cloud(&positions), |time, laser| {
             assert_eq!(index(time) % 16, usize::from(laser));
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn a_known_error_is_found_where_it_is() {
+    fn a_known_error_is_located() {
         // 3-4-5 triangles: distances 0, 5 and 13 m.
         let positions = [[0.0; 3], [3.0, 0.0, 4.0], [0.0, 5.0, -12.0]];
         let report = compare(&cloud(&positions), |_, _| Some([0.0; 3])).unwrap();
@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn points_without_truth_and_without_numbers_are_counted_apart() {
+    fn points_without_truth_or_finite_values_are_counted_separately() {
         let positions = [
             [1.0, 0.0, 0.0],
             [f64::NAN, 0.0, 0.0],
@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_compared_passes_no_limit() {
+    fn an_empty_comparison_passes_no_limit() {
         for cloud in [cloud(&[]), cloud(&[[0.0; 3]; 4])] {
             let report = compare(&cloud, |_, _| None).unwrap();
             assert!(report.rms_m.is_nan() && report.worst_m.is_nan());
@@ -227,7 +227,7 @@ mod tests {
 
         /// Batches through the sink against a plain two-pass computation over the whole.
         #[test]
-        fn batches_give_what_the_whole_gives(
+        fn comparing_in_batches_agrees_with_comparing_at_once(
             pairs in prop::collection::vec(
                 (prop::array::uniform3(-100.0..100.0f64), prop::array::uniform3(-0.1..0.1f64)),
                 1..60,

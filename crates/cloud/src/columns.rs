@@ -185,7 +185,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_column_has_its_own_bit_and_name() {
+    fn every_column_has_a_distinct_bit_and_name() {
         let mut seen = Fields::NONE;
         let mut names = std::collections::BTreeSet::new();
         for column in Column::ALL {

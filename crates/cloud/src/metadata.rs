@@ -78,7 +78,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn simulated_comes_first_and_only_if_it_is() {
+    fn simulated_clouds_are_marked_first_and_others_are_not() {
         let mut metadata = Metadata {
             simulated: true,
             software: "velomotion 0.1.0".into(),

@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn agrees_with_eq_4_to_6_as_printed_and_with_matrices_at_every_angle() {
+    fn placement_agrees_with_eq_4_to_6_and_with_matrices_at_every_angle() {
         let mut worst: f64 = 0.0;
         for gamma in (-720..=720).map(|i| Degrees(f64::from(i) * 0.25)) {
             for elevation in (-15..=15).step_by(2).map(|w| Degrees(f64::from(w))) {
@@ -160,7 +160,7 @@ mod tests {
 
     /// The reason for f64: the same equations in f32 throughout, degrees included.
     #[test]
-    fn in_f32_the_equations_would_be_wrong_by_tens_of_micrometres() {
+    fn f32_equations_are_wrong_by_tens_of_micrometres() {
         let mut worst: f64 = 0.0;
         for gamma in (0..=90).map(|i| -0.5 * f64::from(i) - 0.0015) {
             for azimuth in (0..360).map(|a| f64::from(a) + 0.2) {
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn level_lifts_by_d_and_upside_down_mirrors() {
+    fn level_mounts_add_d_and_inverted_mounts_mirror() {
         let level = PAPER.place([1.0, 2.0, 3.0], Tilt::new(Degrees(0.0)));
         assert_eq!(level, [1.0, 2.0, 3.0 + 0.06]);
         let over = PAPER.place([1.0, 2.0, 3.0], Tilt::new(Degrees(180.0)));
@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn at_minus_45_the_lidar_sits_left_of_the_axis_and_sees_up_to_the_right() {
+    fn at_minus_45_the_lidar_is_left_of_the_axis_and_looks_up_right() {
         let gamma = Tilt::new(Degrees(-45.0));
         let half = std::f64::consts::FRAC_1_SQRT_2;
         let origin = PAPER.place([0.0; 3], gamma);
@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn a_full_turn_comes_back() {
+    fn a_full_rotation_is_the_identity() {
         let point = [70.0, -70.0, 12.0];
         let once = PAPER.place(point, Tilt::new(Degrees(-45.0)));
         let again = PAPER.place(point, Tilt::new(Degrees(-45.0 + 3600.0)));
@@ -220,7 +220,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(256))]
 
         #[test]
-        fn tilts_ahead_of_an_angle_are_those_of_the_sum(
+        fn advancing_a_tilt_equals_adding_the_angles(
             point in prop::array::uniform3(-130.0..130.0),
             gamma in -360.0..360.0,
             ahead_rad in prop::array::uniform4(-MOST_AHEAD_RAD..=MOST_AHEAD_RAD),
@@ -235,7 +235,7 @@ mod tests {
         }
 
         #[test]
-        fn a_rigid_motion_keeps_distances(
+        fn placement_preserves_distances(
             a in prop::array::uniform3(-100.0..100.0),
             b in prop::array::uniform3(-100.0..100.0),
             gamma in -360.0..360.0,

@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn one_method_makes_a_sink() {
+    fn a_sink_needs_only_one_method() {
         let mut sink = Count(0);
         let mut batch = Points::new(sink.fields());
         assert_eq!(batch.fields(), Fields::NONE);
@@ -224,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pair_requests_the_columns_of_both_and_passes_to_both() {
+    fn a_pair_of_sinks_requests_the_columns_of_both_and_feeds_both() {
         let mut whole = Points::new(Fields::RING);
         let mut pair: Box<dyn Sink + '_> =
             Box::new((&mut whole, (Count(0), Points::new(Fields::TIME))));
@@ -239,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn calls_without_points_reach_both_of_a_pair() {
+    fn calls_without_points_reach_both_sinks_of_a_pair() {
         #[derive(Default)]
         struct Heard(usize);
         impl Sink for Heard {
@@ -284,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn the_second_is_finished_though_the_first_fails() {
+    fn the_second_sink_is_finished_if_the_first_fails() {
         struct Broken;
         impl Sink for Broken {
             fn points(&mut self, _: &Points) -> Result<(), SinkError> {

@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn batches_add_up_to_the_whole() {
+    fn summaries_of_batches_add_up_to_the_summary_of_the_cloud() {
         let all = [
             [1.0, -2.0, 3.0],
             [-4.0, 5.0, 0.5],
@@ -125,7 +125,7 @@ mod tests {
 
     /// Equal to a plain search, for every length around the lanes and NaN in every place.
     #[test]
-    fn lanes_find_what_a_plain_search_finds() {
+    fn simd_lanes_agree_with_a_scalar_search() {
         for len in 0..=3 * LANES {
             let column: Vec<f64> = (0..len)
                 .map(|i| f64::from((i * 37 % 101) as u32) - 50.0)

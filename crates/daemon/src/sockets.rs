@@ -127,7 +127,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_port_has_every_name_that_leads_to_it() {
+    fn all_names_of_a_port_are_found() {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().canonicalize().unwrap().join(name);
         std::fs::write(path("ttyUSB0"), "").unwrap();

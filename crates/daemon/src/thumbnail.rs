@@ -322,7 +322,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_high_is_bright_and_above_and_where_nothing_is_the_ground_shows() {
+    fn high_points_are_bright_and_empty_pixels_are_transparent() {
         let pixels = picture_of(&corner());
         let seen = pixels.iter().filter(|pixel| pixel[3] > 0).count();
         assert!(
@@ -348,7 +348,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ceiling_and_the_near_wall_do_not_hide_the_inside() {
+    fn ceiling_and_near_wall_do_not_hide_the_interior() {
         let line = || (-100..=100).map(|i| f64::from(i) * 0.05);
         let ceiling = line().flat_map(|x| line().map(move |y| [x, y, 4.0]));
         let near = line().flat_map(|x| (30..80).map(move |z| [x, -5.0, f64::from(z) * 0.05 - 1.0]));
@@ -363,7 +363,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cloud_of_nothing_is_a_picture_of_nothing() {
+    fn an_empty_cloud_gives_an_empty_picture() {
         let pixels = picture_of(&[]);
         assert!(pixels.iter().all(|&pixel| pixel == [0; 4]));
     }

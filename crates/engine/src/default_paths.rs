@@ -43,7 +43,7 @@ mod tests {
     use std::time::Duration;
 
     #[test]
-    fn a_simulated_scan_says_so_in_its_name() {
+    fn simulated_scans_are_named_so() {
         let start = SystemTime::UNIX_EPOCH + Duration::from_secs(1_795_226_733);
         assert_eq!(
             cloud(start, true),
@@ -60,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn a_recordings_cloud_goes_where_the_user_is() {
+    fn the_cloud_of_a_recording_goes_to_the_current_directory() {
         assert_eq!(
             cloud_of(Path::new("/data/hall.pcap")),
             Path::new("hall.ply")

@@ -319,7 +319,7 @@ mod tests {
     }
 
     #[test]
-    fn a_commit_leaves_the_named_file_alone() {
+    fn the_named_file_does_not_exist_before_the_commit() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("cloud.ply");
         let mut file = NewFile::create(&path, Overwrite::Refuse).unwrap();

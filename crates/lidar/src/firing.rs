@@ -336,7 +336,7 @@ mod tests {
     }
 
     #[test]
-    fn vertical_offsets_can_be_left_out() {
+    fn vertical_offsets_can_be_omitted() {
         let raw = raw(&[(5_000, 7); 16]);
         let (with, without) = (
             Geometry::new(&VLP_16, true, None),

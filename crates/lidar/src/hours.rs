@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn a_late_wrap_does_not_step() {
+    fn a_late_wrap_causes_no_step() {
         // A recorded counter reached 3600.06 s and then returned to 0.061 s.
         let mut hours = HourUnwrapper::new();
         let mut last = None;

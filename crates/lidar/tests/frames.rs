@@ -150,7 +150,7 @@ proptest! {
 
     /// After packets lost at the cut, the first firing begins the frame, once.
     #[test]
-    fn loss_at_the_cut_cuts_once(cut_deg in 0.0..360.0f64, lost in 1usize..60, before in 0usize..60) {
+    fn packet_loss_at_the_cut_begins_one_frame(cut_deg in 0.0..360.0f64, lost in 1usize..60, before in 0usize..60) {
         let angle = |t: i64| 100.0 + 3_600.0 * t as f64 * 1e-9;
         let mut packets = packets(3_600, angle, anywhere, false);
         let at_cut = packets.iter().position(|&(t, _)| angle(t) > 360.0 + cut_deg).unwrap();
@@ -163,7 +163,7 @@ proptest! {
 
     /// Frames begin at the cut, or at the edge of a field of view that excludes it.
     #[test]
-    fn limited_views_are_cut_at_their_gap(
+    fn limited_fields_of_view_are_cut_at_their_gap(
         rpm in 300.0..1_200.0f64,
         first_deg in 0.0..360.0f64,
         width_deg in 40.0..320.0f64,
@@ -196,7 +196,7 @@ proptest! {
 
     /// The rotor jitters at the cut by more than a step.
     #[test]
-    fn jitter_at_the_cut_cuts_once(
+    fn jitter_at_the_cut_begins_one_frame(
         amplitude_deg in 0.05..0.4f64,
         hz in 200.0..1_000.0f64,
         cut_deg in 0.0..360.0f64,
@@ -221,7 +221,7 @@ proptest! {
 }
 
 #[test]
-fn outages_of_revolutions_cut_once() {
+fn outages_of_revolutions_begin_one_frame() {
     let angle = |t: i64| 10.0 + 3_600.0 * t as f64 * 1e-9;
     let mut packets = packets(9_000, angle, anywhere, false);
     // 250 ms: two and a half revolutions at 10 Hz.
@@ -233,7 +233,7 @@ fn outages_of_revolutions_cut_once() {
 }
 
 #[test]
-fn reversals_of_the_rotor_are_cut() {
+fn reversals_of_the_rotor_begin_a_frame() {
     let angle = |t: i64| {
         let s = t as f64 * 1e-9;
         if s < 0.15 {

@@ -385,7 +385,7 @@ fn missing_packets_are_counted_once() {
 }
 
 #[test]
-fn both_passes_agree_on_the_fill() {
+fn both_passes_agree_on_the_firing_period() {
     let datagrams = recording("vlp16-dual.pcap");
     let mut timekeeper = Timekeeper::new(Options::default());
     for d in &datagrams {
@@ -472,7 +472,7 @@ fn frames_of_whole_recordings_have_the_rotors_size() {
 }
 
 #[test]
-fn frames_of_a_limited_view_begin_at_its_edge() {
+fn frames_of_a_limited_field_of_view_begin_at_its_edge() {
     let datagrams = recording("vlp16-fov-limited-malformed.pcap");
     // 320 to 41 deg at 5 Hz: 81 of 360 deg of 3617 firings.
     let Cut { frames, .. } = cut(&datagrams, 180.0);

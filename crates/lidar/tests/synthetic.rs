@@ -157,7 +157,7 @@ proptest! {
 
     /// Interpolation between azimuths within 0.005 deg is within 0.005 deg.
     #[test]
-    fn azimuths_are_those_of_the_rotor(
+    fn azimuths_match_the_rotor(
         rpm in 300.0..1_200.0f64,
         start_deg in 0.0..360.0f64,
         dual: bool,
@@ -191,7 +191,7 @@ proptest! {
 
     /// The hour may change between packets or within one.
     #[test]
-    fn the_hour_changes_anywhere(before_us in 0i64..30_000, dual: bool, host_off_s in -1_700i64..1_700) {
+    fn the_hour_may_wrap_anywhere(before_us in 0i64..30_000, dual: bool, host_off_s in -1_700i64..1_700) {
         let begin_ns = 470_001 * HOUR_NS - before_us * 1_000;
         let sensor = Sensor { dual, begin_ns, ..Sensor::default() };
         let (mut packets, blocks) = sensor.packets(20);
@@ -265,7 +265,7 @@ proptest! {
 
     /// Swapped packets are reordered, and repeated packets are emitted once.
     #[test]
-    fn order_is_restored(
+    fn packets_out_of_order_are_reordered(
         swaps in prop::collection::btree_set(0usize..60, 0..20),
         twice in prop::collection::btree_set(1usize..120, 0..10),
         dual: bool,

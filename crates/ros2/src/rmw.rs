@@ -158,7 +158,7 @@ mod tests {
     };
 
     #[test]
-    fn keys_are_those_of_rmw_zenoh() {
+    fn keys_match_rmw_zenoh() {
         let kind = Topic::Transforms.message_type();
         assert_eq!(
             key(&settings("domain = 7"), "/left/tf", &kind),
@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn tokens_have_every_part_and_none_is_empty() {
+    fn liveliness_tokens_have_no_empty_part() {
         let (plain, named) = (settings(""), settings("namespace = '/a/b'\ndomain = 3"));
         assert_eq!(
             node_token(&plain, "q1"),
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn qualities_leave_the_usual_out() {
+    fn default_quality_settings_are_omitted() {
         let text = |reliable, latched, depth| {
             QualityOfService {
                 reliable,
@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn attachments_are_33_bytes_and_read_back() {
+    fn attachments_are_33_bytes_and_round_trip() {
         let gid = gid("token");
         let bytes = attachment(1, 2, &gid);
         assert_eq!(bytes.len(), 33);

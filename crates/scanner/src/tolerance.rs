@@ -246,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn lengths_at_distances_are_tolerances() {
+    fn lengths_at_distances_convert_to_tolerances() {
         let two: Tolerance = "2mm@20m".parse().unwrap();
         assert_eq!(two.to_string(), "2 mm at 20 m");
         assert!((two.angle().0 - 0.0057296).abs() < 1e-6);

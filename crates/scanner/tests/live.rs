@@ -136,7 +136,7 @@ fn record((ns, traffic): &(i64, Traffic)) -> Record<'_> {
 }
 
 #[test]
-fn live_points_are_those_of_a_replay() {
+fn live_points_equal_those_of_a_replay() {
     let log = log();
     let config = ScanConfig::default();
     let mut live = Points::new(Fields::ALL);

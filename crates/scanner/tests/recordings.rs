@@ -80,13 +80,13 @@ fn assert_same(name: &str, recording: &Recording, alignment: &Alignment, options
 }
 
 #[test]
-fn every_recording_becomes_the_points_of_the_definition() {
+fn every_recording_is_placed_as_the_definition_does() {
     assert_placed_as_defined(Recording::read_cut);
 }
 
 #[test]
 #[ignore = "needs the whole recordings"]
-fn every_whole_recording_becomes_the_points_of_the_definition() {
+fn every_whole_recording_is_placed_as_the_definition_does() {
     assert_placed_as_defined(Recording::read_whole);
 }
 
@@ -106,13 +106,13 @@ fn assert_placed_as_defined(read: impl Fn(&'static str) -> Recording) {
 }
 
 #[test]
-fn every_model_and_its_corrections_place_as_the_definition_does() {
+fn every_model_is_placed_as_the_definition_does() {
     assert_models_placed_as_defined(Recording::read_cut);
 }
 
 #[test]
 #[ignore = "needs the whole recordings"]
-fn every_model_and_its_corrections_place_whole_recordings_as_the_definition_does() {
+fn every_model_is_placed_in_whole_recordings_as_the_definition_does() {
     assert_models_placed_as_defined(Recording::read_whole);
 }
 

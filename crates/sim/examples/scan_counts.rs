@@ -122,7 +122,7 @@ mod tests {
 
     /// Within 5 points of the paper's shares, level and fast; and its ratios within a twentieth.
     #[test]
-    fn shares_of_returns_are_near_the_papers() {
+    fn return_ratios_are_close_to_the_paper() {
         for (name, _, level, fast) in PLACES {
             let (ours, papers) = (counts(name).unwrap(), papers(level, fast));
             for (ours, paper) in ours.iter().zip(papers) {
@@ -138,7 +138,7 @@ mod tests {
     /// The paper's scan times: 45 degrees at 1.07 and 56.25 deg/s, cut to hundredths of a second as
     /// in the paper, and a revolution of the VLP-16.
     #[test]
-    fn scans_take_as_long_as_the_papers() {
+    fn scan_durations_match_the_paper() {
         for (speed_deg_s, hundredths) in [(1.07, 4_205.0), (FAST_DEG_S, 80.0)] {
             let end_s = scan_down(speed_deg_s).unwrap().end_s();
             assert!((end_s - 45.0 / speed_deg_s).abs() < 1e-12);

@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fast_clock_shows_an_hour_early() {
+    fn a_fast_clock_wraps_early() {
         let clock = clock(0, 50.0);
         let early = clock.host(HOUR_NS) - Stamp::from_nanos(START + HOUR_NS);
         // 50 ppm of an hour is 180 ms, less 50 ppm of that.
@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn stamps_wrap_at_the_hour_and_cut_off_nanoseconds() {
+    fn stamps_wrap_at_the_hour_and_truncate_nanoseconds() {
         let clock = clock(3_599_999_999, 0.0);
         assert_eq!(clock.stamp_us(0), 3_599_999_999);
         assert_eq!(clock.stamp_us(999), 3_599_999_999);
@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_drifts_leave_a_clock_that_runs() {
+    fn invalid_drifts_leave_a_running_clock() {
         for drift in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1e6] {
             let clock = clock(0, drift);
             let second = clock.host(1_000_000_000).as_nanos() - START;
@@ -149,7 +149,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(256))]
 
         #[test]
-        fn host_time_and_back_is_within_a_nanosecond(elapsed in 0..100 * HOUR_NS, drift in -1000.0..1000.0) {
+        fn host_time_round_trips_within_a_nanosecond(elapsed in 0..100 * HOUR_NS, drift in -1000.0..1000.0) {
             let clock = clock(17, drift);
             prop_assert!((clock.elapsed(clock.host(elapsed)) - elapsed).abs() <= 1);
         }

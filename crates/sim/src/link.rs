@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn spikes_come_as_often_as_asked() {
+    fn spikes_occur_at_the_requested_rate() {
         let mut link = Link::new(LinkModel::USB, 7);
         let late = (0..100_000)
             .map(|i| 10_000_000 * i)
@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn order_is_kept_and_the_seed_decides() {
+    fn order_is_kept_and_delays_depend_on_the_seed() {
         let run = |seed| {
             let mut link = Link::new(LinkModel::USB, seed);
             (0..5_000)
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn no_delay_is_no_delay_and_nonsense_never_arrives_early() {
+    fn zero_delay_is_exact_and_invalid_delays_never_arrive_early() {
         assert_eq!(Link::new(LinkModel::NONE, 3).deliver(at(55)), at(55));
         let nonsense = LinkModel {
             min: Span::from_millis(-5),

@@ -269,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn the_cards_sweep_takes_0_811_s() {
+    fn the_default_sweep_takes_0_811_s() {
         let motion = AxisMotion::sweeps(&sweeps()).unwrap();
         let [next_move] = motion.moves() else {
             panic!()
@@ -302,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn one_way_goes_back_unscanned_and_both_ways_scans_it() {
+    fn one_way_does_not_scan_the_return_and_both_ways_does() {
         let of = |both_ways| {
             let sweeps = Sweeps {
                 count: 3,

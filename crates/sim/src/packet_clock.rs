@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn delays_are_the_links() {
+    fn delays_match_the_link() {
         // Mean and largest delay, including packets held up by a spike.
         for (link, mean_us, worst_us) in [
             (ArrivalLink::QuietNic, 66.0, 17_000.0),
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn few_packets_of_a_busy_link_are_prompt() {
+    fn few_packets_of_a_busy_link_arrive_promptly() {
         let late = late_us(ArrivalLink::BusyUsb);
         let within = |us: f64| late.iter().filter(|late| **late < us).count() as f64;
         // Two stages: ten times the delay, a hundred times the packets.

@@ -30,7 +30,7 @@ mod tests {
     use crate::sensor::{LidarMount, LidarSensor};
 
     #[test]
-    fn every_firing_in_the_hall_returns_from_within_20_m_whatever_the_tilt() {
+    fn every_firing_in_the_hall_returns_within_20_m_at_every_tilt() {
         let (scene, sensor, mount) = (hall(), LidarSensor::vlp16(), LidarMount::above(0.06));
         let mut seen = BTreeSet::new();
         for tilt in (-90..=0).map(|half| f64::from(half) / 2.0) {
@@ -52,7 +52,7 @@ mod tests {
     }
 
     #[test]
-    fn the_floor_is_a_tripod_below_the_axis() {
+    fn the_floor_is_one_tripod_height_below_the_axis() {
         let down = hall().cast(DVec3::ZERO, -DVec3::Z, 0.0, 100.0).unwrap();
         assert_eq!((down.range_m, down.reflectivity), (TRIPOD_M, 28));
     }

@@ -282,7 +282,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rays_meet_the_same_in_every_tree() {
+    fn rays_hit_the_same_in_every_tree() {
         let mut now = Stamp::from_nanos(0);
         // The clock advances by 3 ms per reading, so everything takes as long.
         let mut clock = || {
@@ -310,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn another_hit_would_be_counted() {
+    fn differing_hits_are_counted() {
         let shots = Shots::of("quarry", 8).unwrap();
         let rays = rays(&shots).unwrap();
         let moved = cave(BOULDER).unwrap();

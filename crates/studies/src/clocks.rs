@@ -217,7 +217,7 @@ mod tests {
     /// The table of docs/src/accuracy.md, made by another program for the same links, averaged over
     /// other seeds.
     #[test]
-    fn errors_are_those_of_the_accuracy_page() {
+    fn errors_match_the_accuracy_page() {
         for (link, table) in ArrivalLink::ALL.into_iter().zip([
             [(65.8, 16_446.0), (65.8, 74.9), (2.2, 7.6), (0.4, 1.8)],
             [(123.6, 15_547.0), (123.6, 131.7), (11.5, 26.8), (0.2, 1.7)],
@@ -242,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn no_packets_make_no_clock() {
+    fn no_packets_give_no_clock() {
         assert!(straight(&[]).is_none() && whole(&[]).is_none());
         assert_eq!(online(&[]), Some(Vec::new()));
     }

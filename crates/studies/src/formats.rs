@@ -229,7 +229,7 @@ mod tests {
     /// The figures of `cloud::formats`: 4 um at 100 m for f32, half of 0.1 mm per coordinate for
     /// LAS, exact for CSV.
     #[test]
-    fn what_is_read_back_errs_as_the_formats_say() {
+    fn round_trip_errors_match_the_formats_documentation() {
         let cloud = hall(0.02).unwrap();
         assert!(cloud.len() > 5_000);
         let batches = batches(&cloud);

@@ -382,7 +382,7 @@ mod tests {
     }
 
     #[test]
-    fn angles_a_return_agree_with_matrices() {
+    fn angles_per_return_agree_with_matrices() {
         within(worst_mm::<f64, _, RETURN, RETURN>(&Exact), 0.0, 1e-9);
         within(worst_mm::<f64, _, RETURN, RETURN>(&Addition), 0.0, 2e-6);
     }
@@ -390,7 +390,7 @@ mod tests {
     /// An angle that is late by t causes an error of speed x t x range. A packet lasts 23 firings
     /// and 15 lasers, 1.3064 ms.
     #[test]
-    fn coarser_angles_are_wrong_by_speed_times_delay_times_range() {
+    fn coarser_angles_err_by_speed_times_delay_times_range() {
         let expected = |firings: f64, deg_ns: f64| {
             let late_ns = firings * FIRING_NS + 15.0 * 2_304.0;
             (late_ns * deg_ns.abs()).to_radians() * RANGE_M * 1e3
@@ -419,7 +419,7 @@ mod tests {
     /// f32: tens of micrometres at 100 m. The table: half a hundredth of a degree of each angle,
     /// 8.7 mm, and up to root 2 of that together.
     #[test]
-    fn numbers_and_tables_err_as_their_steps_say() {
+    fn number_formats_and_tables_err_by_their_resolution() {
         within(worst_mm::<f32, _, RETURN, RETURN>(&Exact), 0.005, 0.1);
         within(worst_mm::<f32, _, RETURN, RETURN>(&Addition), 0.005, 0.1);
         within(
@@ -430,7 +430,7 @@ mod tests {
     }
 
     #[test]
-    fn shots_without_a_return_make_no_place() {
+    fn shots_without_a_return_are_not_placed() {
         let mut shots = shots(2);
         shots[0].counts[3] = 0;
         assert_eq!(returns(&shots), 31);
@@ -440,7 +440,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_of_different_length_or_without_numbers_are_infinitely_wrong() {
+    fn columns_of_different_length_or_with_nan_have_infinite_error() {
         let two = [[1.0_f64, 2.0].as_slice(); 3];
         let three = [[1.0_f64, 2.0, 3.0].as_slice(); 3];
         assert_eq!(worst_m(two, three), f64::INFINITY);

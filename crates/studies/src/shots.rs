@@ -128,7 +128,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn shots_are_spread_over_the_sweep_and_met_as_they_are_aimed() {
+    fn shots_are_spread_over_the_sweep_and_hit_their_targets() {
         let shots = Shots::of("hall", 100).unwrap();
         let numbers: Vec<u64> = shots.firings.iter().map(|(f, _)| f.number).collect();
         assert!((90..130).contains(&numbers.len()), "{}", numbers.len());

@@ -182,7 +182,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_tilt_comes_back_out_of_its_packets() {
+    fn the_tilt_is_recovered_from_the_packets() {
         let workload = Workload::new(cruise_deg, 0.3, all_at(100.0));
         let alignment = workload.alignment().unwrap();
         let shots = workload.shots(&alignment);

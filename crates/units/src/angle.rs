@@ -41,7 +41,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn half_a_turn_is_pi() {
+    fn half_a_revolution_is_pi() {
         assert_eq!(Degrees(180.0).to_radians(), Radians(core::f64::consts::PI));
         assert_eq!(Radians(core::f64::consts::PI).to_degrees(), Degrees(180.0));
     }

@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn angles_that_do_not_fit_are_refused() {
+    fn angles_out_of_range_are_refused() {
         for angle in [f64::NAN, f64::INFINITY, 1e9, -1e9] {
             assert!(paper().position(Degrees(angle)).is_err(), "{angle}");
         }

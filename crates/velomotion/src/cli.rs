@@ -540,7 +540,7 @@ mod tests {
     }
 
     #[test]
-    fn the_cards_command_is_understood() {
+    fn the_readme_command_is_accepted() {
         let cli = Cli::try_parse_from(["velomotion", "capture", "--speed", "56.25"]).unwrap();
         assert!(matches!(
             cli.command,

@@ -181,7 +181,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_dropped_is_in_the_summary() {
+    fn dropped_packets_are_in_the_summary() {
         let heard = Reception {
             packets: 700,
             dropped_by_kernel: 3,

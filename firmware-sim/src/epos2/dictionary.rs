@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn missing_index_and_missing_sub_differ() {
+    fn missing_index_and_missing_sub_have_different_codes() {
         assert_eq!(
             Dictionary::entry(Address::new(0x6041, 1)).unwrap_err(),
             Abort::NO_SUB
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn the_defaults_a_scan_relies_on() {
+    fn defaults_are_those_a_scan_relies_on() {
         let dictionary = Dictionary::factory(5);
         assert_eq!(dictionary.get(objects::NODE_ID), 5);
         assert_eq!(dictionary.get(objects::INPUT_EXECUTION_MASK), 0x0008);

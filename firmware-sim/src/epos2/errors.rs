@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn news_come_once_in_order_and_the_latest_eight() {
+    fn new_errors_are_reported_once_in_order_and_limited_to_eight() {
         let mut errors = Errors::default();
         for code in 1..=9 {
             errors.push(DeviceError(code));
@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn the_register_names_the_kind() {
+    fn the_error_register_has_the_bit_of_the_error() {
         let mut errors = Errors::default();
         errors.push(DeviceError::CAN_PASSIVE);
         assert_eq!(errors.register(), 0x11);

@@ -78,7 +78,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_minute_at_one_rpm_is_one_turn() {
+    fn a_minute_at_one_rpm_is_one_revolution() {
         let work = i128::from(Speed::from_rpm(1).0) * 2 * 60_000 * MS;
         assert_eq!(distance(work, 2000), fine(2000));
         assert_eq!(distance(work, 1999), fine(1999));
@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn counts_are_floors() {
+    fn counts_round_down() {
         assert_eq!(floor_qc(-1), -1);
         assert_eq!(floor_qc(fine(7)), 7);
         assert_eq!(q32(fine(-3)), -3 << 32);
@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_is_held() {
+    fn distances_out_of_range_are_clamped() {
         assert_eq!(distance(i128::MAX, MAX_QC_PER_TURN), 4 * WORLD_END);
         assert_eq!(distance(i128::MIN, MAX_QC_PER_TURN), -4 * WORLD_END);
     }

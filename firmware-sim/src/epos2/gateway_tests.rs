@@ -81,7 +81,7 @@ fn a_long_write_to_another_node_ends_in_a_timeout() {
 }
 
 #[test]
-fn network_management_reaches_whom_it_names() {
+fn network_management_reaches_the_addressed_node() {
     let mut bench = Bench::new();
     let mut tell = |node, command: NmtCommand| {
         let specifier = u16::from(command.to_u8());
@@ -97,7 +97,7 @@ fn network_management_reaches_whom_it_names() {
 }
 
 #[test]
-fn can_frames_are_sent_and_asked_for() {
+fn can_frames_are_sent_and_requested() {
     let mut bench = Bench::new();
     let send = |cob_id, len| {
         let data = [0; 8];

@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn the_end_of_the_world_stops_it() {
+    fn the_generator_stops_at_the_end_of_the_position_range() {
         let mut generator = Generator::new(WORLD_END - 5, 10_000_000);
         generator.run_at(Speed::from_rpm(25_000), u32::MAX, 1);
         for _ in 0..3 {

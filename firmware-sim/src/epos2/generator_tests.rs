@@ -199,7 +199,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(10_000))]
 
     #[test]
-    fn a_new_target_in_motion_is_the_textbooks(
+    fn a_new_target_in_motion_matches_the_textbook_profile(
         first in -50_000i64..50_000,
         second in -50_000i64..50_000,
         m in motion(),
@@ -223,7 +223,7 @@ proptest! {
     }
 
     #[test]
-    fn a_halt_in_motion_is_the_textbooks(
+    fn a_halt_in_motion_matches_the_textbook_profile(
         first in -50_000i64..50_000,
         m in motion(),
         d in rate(),
@@ -238,7 +238,7 @@ proptest! {
     }
 
     #[test]
-    fn a_new_speed_in_motion_is_the_textbooks(
+    fn a_new_speed_in_motion_matches_the_textbook_profile(
         first in -50_000i64..50_000,
         m in motion(),
         n in motion(),

@@ -115,7 +115,7 @@ fn run(
 }
 
 #[test]
-fn the_papers_sweep() {
+fn the_papers_sweep_takes_912_5_ms_on_the_drive() {
     // 45 deg at 56.25 deg/s (1125 rpm) behind 120:1, 10000 rpm/s: 0.8 s and the ramp's 0.1125 s.
     let mut generator = Generator::new(fine(-15_000), QC_PER_TURN);
     let l = limits(1125, 10_000, 10_000);
@@ -140,7 +140,7 @@ fn no_distance_takes_no_time() {
 }
 
 #[test]
-fn what_never_ends_is_refused() {
+fn motions_that_never_end_are_refused() {
     for l in [
         limits(0, 1, 1),
         limits(1, 0, 1),
@@ -166,7 +166,7 @@ fn what_never_ends_is_refused() {
 }
 
 #[test]
-fn degenerate_profiles() {
+fn degenerate_profiles_are_valid() {
     let most = u32::MAX;
     for (length, l) in [
         (1, limits(1, 1, 1)),            // the least of everything
@@ -228,7 +228,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(10_000))]
 
     #[test]
-    fn lands_exactly_within_its_limits_and_on_the_textbook(
+    fn profiles_end_exactly_keep_their_limits_and_match_the_textbook(
         from in -1_000_000i64..1_000_000,
         length in -1_000_000i64..=1_000_000,
         l in any_limits(),
@@ -254,7 +254,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(2_000))]
 
     #[test]
-    fn a_new_target_in_motion_keeps_the_limits_too(
+    fn a_new_target_in_motion_keeps_the_limits(
         first in -100_000i64..100_000,
         second in -100_000i64..100_000,
         l in any_limits(),
@@ -274,7 +274,7 @@ proptest! {
     }
 
     #[test]
-    fn a_stop_in_motion_is_the_textbook_braking_distance(
+    fn a_stop_in_motion_has_the_textbook_braking_distance(
         length in -100_000i64..100_000,
         l in any_limits(),
         after in 0usize..400,
@@ -323,7 +323,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(1_000))]
 
     #[test]
-    fn no_numbers_are_too_large(
+    fn large_numbers_do_not_overflow(
         from in any::<i32>(),
         qc_per_turn in prop_oneof![Just(MAX_QC_PER_TURN), 4..=MAX_QC_PER_TURN],
         orders in prop::collection::vec(order(), 1..30),

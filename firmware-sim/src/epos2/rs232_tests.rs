@@ -44,7 +44,7 @@ fn ask(server: &mut Rs232Server, node: &mut Node, request: &SerialFrame) -> Seri
 }
 
 #[test]
-fn golden_bytes_of_an_exchange() {
+fn an_exchange_matches_golden_bytes() {
     // Read of 6041 of node 1.
     let (mut server, mut node) = (Rs232Server::new(1), node());
     assert_eq!(send(&mut server, &mut node, &[0x10]), b"O");
@@ -131,7 +131,7 @@ fn network_management_has_no_answer() {
 }
 
 #[test]
-fn a_silence_ends_what_was_under_way() {
+fn silence_ends_a_pending_exchange() {
     let (mut server, mut node) = (Rs232Server::new(5), node());
     assert_eq!(send(&mut server, &mut node, &[0x10, 0x01, 0x41]), b"O");
     for _ in 0..501 {
@@ -149,7 +149,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
 
     #[test]
-    fn any_bytes_are_survived_and_after_a_silence_all_is_well(
+    fn the_server_recovers_from_arbitrary_bytes_after_silence(
         junk in prop::collection::vec(prop_oneof![2 => any::<u8>(), 1 => 0x0Eu8..0x22, 1 => Just(b'O')], 0..300),
     ) {
         let (mut server, mut node) = (Rs232Server::new(6), node());

@@ -128,7 +128,7 @@ mod tests {
 
     /// The closed forms behind a demand that runs at 37.5 qc a ms: lag 2 z / w and 1 / w, swung in.
     #[test]
-    fn behind_a_ramp_it_lags_as_the_closed_form_says() {
+    fn the_lag_behind_a_ramp_matches_the_closed_form() {
         let (w, z, rate) = (15.0 * core::f64::consts::TAU, 0.8_f64, 37_500.0);
         let first = Servo::FirstOrder {
             corner_millihertz: 15_000,
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn it_comes_to_rest_on_the_count_it_was_sent_to() {
+    fn the_servo_comes_to_rest_on_its_target_count() {
         for damping_permille in [0, 300, 800, 1_000, u32::MAX] {
             for natural_millihertz in [3_000, 15_000, 150_000, u32::MAX] {
                 for target in [-3_000, -1, 1, 30_000] {
@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn the_ends_of_the_world_are_no_overflow() {
+    fn the_ends_of_the_position_range_do_not_overflow() {
         for servo in [
             CARD,
             Servo::SecondOrder {

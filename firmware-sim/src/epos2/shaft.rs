@@ -131,7 +131,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_follows_until_a_stop_and_comes_back_from_it() {
+    fn the_shaft_follows_until_a_hard_stop_and_leaves_it_again() {
         let mut shaft = MotorShaft::new(0, [Some(-10), Some(10)], None);
         shaft.follow(fine(7), 2000);
         assert_eq!((shaft.position, shaft.behind), (fine(7), false));
@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn a_jam_lets_go_no_faster_than_a_motor_turns() {
+    fn a_released_jam_is_caught_up_no_faster_than_the_motor_can() {
         let mut shaft = MotorShaft::new(0, [None; 2], None);
         shaft.jammed = true;
         shaft.follow(fine(100_000), 2000);
@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn a_servo_lags_without_being_held() {
+    fn a_lagging_servo_does_not_count_as_blocked() {
         let servo = Servo::SecondOrder {
             natural_millihertz: 15_000,
             damping_permille: 800,

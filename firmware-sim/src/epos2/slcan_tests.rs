@@ -89,7 +89,7 @@ fn a_host_opens_reads_and_closes() {
 }
 
 #[test]
-fn a_listener_hears_and_does_not_speak() {
+fn listen_only_mode_receives_and_does_not_send() {
     let mut port = Port::new();
     assert_eq!(port.say(b"L\r"), "\r");
     assert_eq!(port.say(b"t00028101\r"), "\x07");
@@ -98,7 +98,7 @@ fn a_listener_hears_and_does_not_speak() {
 }
 
 #[test]
-fn frames_carry_the_time_where_asked() {
+fn frames_carry_time_stamps_when_enabled() {
     let mut port = Port::new();
     assert_eq!(port.say(b"Z1\rO\r"), "\r\r");
     port.ticks(60_998);
@@ -110,7 +110,7 @@ fn frames_carry_the_time_where_asked() {
 }
 
 #[test]
-fn a_stream_of_samples_on_sync_loses_none() {
+fn a_sync_stream_loses_no_samples() {
     let mut port = Port::new();
     port.say(b"S8\rO\r");
     for line in [
@@ -142,7 +142,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn any_bytes_are_survived_and_after_a_cr_all_is_well(
+    fn the_adapter_recovers_from_arbitrary_bytes_after_a_cr(
         junk in prop::collection::vec(prop_oneof![3 => any::<u8>(), 1 => Just(b'\r'), 2 => prop::sample::select(b"tTrRSOCLZ0123456789ABCDEF".as_slice())], 0..300),
     ) {
         let mut port = Port::new();

@@ -60,7 +60,7 @@ fn refusal(frame: &SerialFrame) -> CommError {
 }
 
 #[test]
-fn short_values_come_with_garbage_above_them() {
+fn short_values_are_padded_with_garbage() {
     let (mut server, mut node) = (UsbServer::new(1), node());
     let mut above = Vec::new();
     for _ in 0..20 {
@@ -84,7 +84,7 @@ fn short_values_come_with_garbage_above_them() {
 }
 
 #[test]
-fn the_same_seed_gives_the_same_bytes_and_another_others() {
+fn equal_seeds_give_equal_bytes_and_different_seeds_different_ones() {
     let run = |seed| {
         let (mut server, mut node) = (UsbServer::new(seed), node());
         (0..10)
@@ -102,7 +102,7 @@ fn the_same_seed_gives_the_same_bytes_and_another_others() {
 }
 
 #[test]
-fn errors_carry_their_codes_in_two_words_or_four() {
+fn error_codes_are_sent_in_two_words_or_four() {
     let (mut server, mut node) = (UsbServer::new(2), node());
     let missing = read(1, Address::new(0x5000, 0));
     let lengths: Vec<_> = (0..20)
@@ -158,7 +158,7 @@ fn errors_carry_their_codes_in_two_words_or_four() {
 }
 
 #[test]
-fn a_damaged_request_is_answered_with_the_crc_error_and_not_carried_out() {
+fn a_damaged_request_gets_a_crc_error_and_is_not_executed() {
     let (mut server, mut node) = (UsbServer::new(3), node());
     let request = WriteObject {
         node: 1,
@@ -176,7 +176,7 @@ fn a_damaged_request_is_answered_with_the_crc_error_and_not_carried_out() {
 }
 
 #[test]
-fn node_0_and_the_units_own_id_are_the_unit() {
+fn node_0_and_the_units_own_id_address_the_unit() {
     let (mut server, mut node) = (UsbServer::new(4), node());
     for id in [0, 1] {
         let request = WriteObject {
@@ -306,7 +306,7 @@ fn network_management_and_can_frames_are_answered_on_usb() {
 }
 
 #[test]
-fn frames_may_come_byte_by_byte_but_not_too_slowly() {
+fn frames_may_arrive_byte_by_byte_within_the_timeout() {
     let (mut server, mut node) = (UsbServer::new(8), node());
     let bytes = to_bytes(&read(1, objects::POSITION_ACTUAL.address));
     let mut answers = Vec::new();
@@ -331,7 +331,7 @@ fn frames_may_come_byte_by_byte_but_not_too_slowly() {
 
 proptest! {
     #[test]
-    fn any_bytes_are_survived_and_a_request_after_them_is_answered(
+    fn requests_are_answered_after_arbitrary_bytes(
         seed: u64,
         junk in prop::collection::vec(prop_oneof![2 => any::<u8>(), 1 => Just(0x90), 1 => Just(0x02), 1 => Just(0x11)], 0..300),
         words in prop::collection::vec(any::<u16>(), 0..8),

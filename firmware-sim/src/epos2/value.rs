@@ -66,7 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_have_their_types_width() {
+    fn numbers_have_the_width_of_their_type() {
         let value = ObjectValue::number(Type::I16, 0xFFFF_FFFF_FFFF_FFFE);
         assert_eq!(value.bytes(), [0xFE, 0xFF]);
         assert_eq!(value.raw(), Some(0xFFFE));
@@ -74,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn text_is_its_letters() {
+    fn text_is_encoded_as_its_letters() {
         assert_eq!(ObjectValue::text("EPOS2").bytes(), b"EPOS2");
         assert_eq!(ObjectValue::text("EPOS2").raw(), None);
     }

@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn golden_bytes() {
+    fn data_packets_match_golden_bytes() {
         let packet = golden();
         // Block 0: flag, azimuth 359.80 deg = 0x8C8C, laser 0 and 1 of sequence 0.
         assert_eq!(
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn the_next_packet_starts_empty_and_surplus_firings_are_dropped() {
+    fn packets_start_empty_and_drop_surplus_firings() {
         let mut builder = strongest();
         for sequence in 0..SEQUENCES {
             builder.firing(35_980 + 20 * sequence as u16, &distinct(sequence), &[]);
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn golden_bytes_of_dual_return() {
+    fn dual_return_packets_match_golden_bytes() {
         let mut builder = DataPacketBuilder::new(PacketModel::Vlp16, ReturnMode::Dual);
         for sequence in 0..DUAL_SEQUENCES as u16 {
             assert!(!builder.is_full());
@@ -228,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn too_many_or_too_few_lasers_stay_in_their_firing() {
+    fn surplus_and_missing_lasers_do_not_affect_other_firings() {
         let mut packet = DataPacketBuilder::new(PacketModel::PuckHiRes, ReturnMode::Strongest);
         packet.firing(0, &[(0xFFFF, 0xFF); 40], &[]);
         packet.firing(0, &[(0x0102, 3); 2], &[]);
@@ -243,7 +243,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(64))]
 
         #[test]
-        fn every_return_is_where_the_manual_puts_it(
+        fn every_return_is_at_the_offset_of_the_manual(
             sequence in 0..SEQUENCES, laser in 0..LASERS, distance: u16, reflectivity: u8, azimuth in 0_u16..36_000,
         ) {
             let mut builder = strongest();

@@ -41,7 +41,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn golden_bytes() {
+    fn position_packets_match_golden_bytes() {
         let packet = position_packet(0x4083_3A71, Pps::Locked, b"$GPRMC,081802.00\r\n");
         assert_eq!(packet[198..206], [0x71, 0x3A, 0x83, 0x40, 2, 0, 0, 0]);
         assert_eq!(&packet[206..224], b"$GPRMC,081802.00\r\n");
@@ -57,7 +57,7 @@ mod tests {
     }
 
     #[test]
-    fn an_overlong_sentence_is_cut() {
+    fn an_overlong_sentence_is_truncated() {
         let packet = position_packet(0, Pps::Error, &[b'x'; 400]);
         assert_eq!(packet[202], 3);
         assert_eq!(

@@ -103,13 +103,13 @@ mod tests {
     }
 
     #[test]
-    fn words_are_low_first() {
+    fn words_are_sent_low_word_first() {
         assert_eq!(AbortCode::NO_OBJECT.to_words(), [0x0000, 0x0602]);
         assert_eq!(AbortCode::from_words(0xFFC0, 0x0F00), AbortCode::NMT_STATE);
     }
 
     #[test]
-    fn known_and_unknown_codes_print() {
+    fn known_and_unknown_codes_are_printable() {
         extern crate std;
         use std::string::ToString as _;
         assert_eq!(

@@ -181,7 +181,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_identifier_has_one_channel_and_back() {
+    fn identifiers_and_channels_round_trip() {
         for id in 0..=0x7FF {
             let id = CobId::new(id).unwrap();
             assert_eq!(CommunicationObject::of(id).cob_id(), id);
@@ -190,13 +190,13 @@ mod tests {
     }
 
     #[test]
-    fn only_1_to_127_are_nodes() {
+    fn only_1_to_127_are_valid_nodes() {
         let nodes = (0..=255).filter_map(NodeId::new).map(NodeId::get);
         assert!(nodes.eq(1..=127));
     }
 
     #[test]
-    fn the_predefined_set_of_node_1() {
+    fn the_predefined_connection_set_of_node_1_matches_cia_301() {
         let node = NodeId::new(1).unwrap();
         let expected = [
             (0x000, CommunicationObject::Nmt),

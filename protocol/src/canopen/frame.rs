@@ -284,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn a_log_has_the_identifier_big_endian() {
+    fn logged_frames_have_a_big_endian_identifier() {
         let frame = CanFrame::of(id(0x601), [0x40, 0x41, 0x60, 0, 0, 0, 0, 0]);
         let bytes = [0, 0, 6, 1, 8, 0, 0, 0, 0x40, 0x41, 0x60, 0, 0, 0, 0, 0];
         assert_eq!(frame.to_socketcan(), bytes);
@@ -318,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_classic_frame_is_refused() {
+    fn frames_other_than_classic_can_are_refused() {
         let mut bytes = CanFrame::of(id(1), [1, 2, 3]).to_socketcan();
         bytes[4] = 9;
         let too_long = CanFrameError::TooLong {
@@ -354,13 +354,13 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_frame_survives_the_log(frame in crate::canopen::tests::any_frame()) {
+        fn logged_frames_round_trip(frame in crate::canopen::tests::any_frame()) {
             prop_assert_eq!(CanFrame::from_socketcan(&frame.to_socketcan()), Ok(frame));
             prop_assert!(frame.is_remote() || frame.data().len() == usize::from(frame.dlc()));
         }
 
         #[test]
-        fn any_bytes_are_a_frame_or_an_error(bytes in prop::collection::vec(any::<u8>(), 0..24)) {
+        fn arbitrary_bytes_are_a_frame_or_an_error(bytes in prop::collection::vec(any::<u8>(), 0..24)) {
             if let Ok(frame) = CanFrame::from_socketcan(&bytes) {
                 prop_assert_eq!(CanFrame::from_socketcan(&frame.to_socketcan()), Ok(frame));
             }

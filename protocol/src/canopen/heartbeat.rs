@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn a_node_lives_changes_is_lost_and_comes_back() {
+    fn node_state_changes_loss_and_return_are_reported() {
         use NmtState::{Operational, PreOperational};
         let mut consumer = HeartbeatConsumer::new(node(1), Span::from_millis(100));
         assert_eq!(consumer.poll_timeout(), None);
@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn a_second_boot_up_is_a_restart_even_without_a_beat_between() {
+    fn a_second_boot_up_without_a_heartbeat_is_a_restart() {
         let mut consumer = HeartbeatConsumer::new(node(1), Span::from_millis(100));
         for ms in [0, 5] {
             assert_eq!(
@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn entries_of_1016_read_back() {
+    fn entries_of_1016_round_trip() {
         let entry = ConsumerEntry {
             node: node(127),
             time_ms: 500,

@@ -105,7 +105,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn specifiers_and_states_read_back() {
+    fn specifiers_and_states_round_trip() {
         for byte in 0..=255 {
             assert_eq!(NmtCommand::from_u8(byte).to_u8(), byte);
             assert_eq!(NmtState::from_u8(byte).to_u8(), byte);

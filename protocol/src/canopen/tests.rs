@@ -275,7 +275,7 @@ fn other_messages() -> Vec<(&'static str, BusMessage)> {
 }
 
 #[test]
-fn golden_messages_both_ways() {
+fn messages_match_golden_bytes_in_both_directions() {
     for (text, message) in sdo_messages().into_iter().chain(other_messages()) {
         assert_eq!(message.to_frame().to_string(), text);
         assert_eq!(BusMessage::parse(&frame(text)), Ok(message), "{text}");
@@ -283,7 +283,7 @@ fn golden_messages_both_ways() {
 }
 
 #[test]
-fn golden_pdo_parameters() {
+fn pdo_parameters_match_golden_bytes() {
     let tpdo1 = CommunicationId::from_u32(0x4000_0180 + 1);
     assert!(tpdo1.valid && !tpdo1.remote);
     assert_eq!(tpdo1.id.raw(), 0x181);
@@ -296,7 +296,7 @@ fn golden_pdo_parameters() {
 }
 
 #[test]
-fn the_end_of_errors_is_told_apart() {
+fn the_error_reset_is_distinguished() {
     let parse = |text| Emergency::parse(&frame(text)).unwrap();
     assert!(parse("081#0000000000000000").is_reset());
     let error = parse("0FF#06FF800102030405");
@@ -307,7 +307,7 @@ fn the_end_of_errors_is_told_apart() {
 }
 
 #[test]
-fn another_length_and_another_service_are_refused() {
+fn wrong_lengths_and_services_are_refused() {
     let length = |layer, expected, got| {
         Err(MessageError::Length {
             layer,
@@ -365,7 +365,7 @@ fn another_length_and_another_service_are_refused() {
 }
 
 #[test]
-fn a_remote_frame_is_no_message() {
+fn remote_frames_are_not_messages() {
     let id = CobId::new(0x701).unwrap();
     let guard = CanFrame::remote(id, 1).unwrap();
     let layer = CanopenLayer::Heartbeat;
@@ -378,14 +378,14 @@ fn a_remote_frame_is_no_message() {
 
 proptest! {
     #[test]
-    fn any_frame_is_a_message_or_an_error(frame in any_frame()) {
+    fn arbitrary_frames_are_a_message_or_an_error(frame in any_frame()) {
         if let Ok(message) = BusMessage::parse(&frame) {
             prop_assert_eq!(BusMessage::parse(&message.to_frame()), Ok(message));
         }
     }
 
     #[test]
-    fn any_data_on_a_service_is_a_message_or_an_error(
+    fn arbitrary_data_on_a_service_is_a_message_or_an_error(
         base in prop::sample::select(&[0_u16, 0x080, 0x100, 0x180, 0x200, 0x480, 0x500, 0x580, 0x600, 0x700][..]),
         id in 0_u16..0x80,
         data in prop::collection::vec(any::<u8>(), 0..=8),

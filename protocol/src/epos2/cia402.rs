@@ -159,7 +159,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn patterns_differ_and_read_back() {
+    fn patterns_are_distinct_and_round_trip() {
         for (state, _) in STATES {
             let pattern = state.pattern();
             assert_eq!(pattern & !MASK, 0);
@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn only_the_bits_of_the_pattern_count() {
+    fn bits_outside_the_pattern_are_ignored() {
         assert_eq!(DeviceState::from_statusword(0x0237), None); // bit 8 missing
         assert_eq!(
             DeviceState::from_statusword(0x0337),

@@ -31,7 +31,7 @@ mod tests {
     }
 
     #[test]
-    fn the_catalogues_check_value() {
+    fn the_crc_has_the_catalogue_check_value() {
         // CRC-16/XMODEM of "123456789" is 31C3; eight digits fill four words.
         let words = [0x3132, 0x3334, 0x3536, 0x3738];
         assert_eq!(crc16(words), by_the_guide(b"12345678"));
@@ -40,7 +40,7 @@ mod tests {
 
     proptest::proptest! {
         #[test]
-        fn both_ways_agree(words: [u16; 9]) {
+        fn both_implementations_agree(words: [u16; 9]) {
             let mut bytes = [0; 18];
             for (pair, word) in bytes.chunks_exact_mut(2).zip(words) {
                 pair.copy_from_slice(&word.to_be_bytes());

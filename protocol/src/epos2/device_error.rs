@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn unknown_codes_print_too() {
+    fn unknown_codes_are_printable() {
         extern crate std;
         use std::string::ToString as _;
         assert_eq!(

@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn signatures_are_the_letters_low_byte_first() {
+    fn signatures_are_letters_low_byte_first() {
         assert_eq!(SAVE, 0x6576_6173);
         assert_eq!(LOAD, 0x6461_6F6C);
     }

@@ -83,7 +83,7 @@ fn usb_frames() -> Vec<(&'static str, SerialFrame)> {
 }
 
 #[test]
-fn golden_usb_frames_both_ways() {
+fn usb_frames_match_golden_bytes_in_both_directions() {
     for (bytes, frame) in usb_frames() {
         assert_eq!(usb::to_bytes(&frame).as_slice(), hex(bytes), "{bytes}");
         assert_eq!(decode_all(&hex(bytes)), [Ok(frame)], "{bytes}");
@@ -91,7 +91,7 @@ fn golden_usb_frames_both_ways() {
 }
 
 #[test]
-fn golden_rs232_frames_both_ways() {
+fn rs232_frames_match_golden_bytes_in_both_directions() {
     let frames = [
         ("01 41 60 00 01 AB F0", read(objects::STATUSWORD.address)),
         ("03 00 00 00 00 37 02 00 00 19 80", answer(0x0237)),
@@ -119,7 +119,7 @@ fn golden_rs232_frames_both_ways() {
 }
 
 #[test]
-fn golden_answers_mean_what_they_say() {
+fn golden_answers_are_interpreted_correctly() {
     let frames = usb_frames();
     let (refused, in_four, stuffed) = (frames[5], frames[6], frames[8]);
     for (_, frame) in [refused, in_four] {
@@ -136,7 +136,7 @@ fn golden_answers_mean_what_they_say() {
 }
 
 #[test]
-fn an_escape_byte_may_stand_anywhere() {
+fn escape_bytes_are_handled_at_every_position() {
     // Opcode, length (0x90 words are too many, so not there), each data byte and both CRC bytes in
     // turn.
     let mut seen_in_crc = [false; 2];
@@ -215,7 +215,7 @@ fn decoder_after(bytes: &[u8]) -> Option<UsbDecoder> {
 }
 
 #[test]
-fn errors_say_where_and_what() {
+fn errors_name_layer_offset_and_values() {
     assert_eq!(
         decode_all(&hex("90 02 10 02 41 60 00 01 64 CE")),
         [Err(SerialFrameError::Crc {
@@ -316,13 +316,13 @@ fn request() -> impl Strategy<Value = SerialRequest> {
 
 proptest! {
     #[test]
-    fn usb_decodes_what_it_encodes(opcode: u8, words in prop::collection::vec(any::<u16>(), 0..=MAX_WORDS)) {
+    fn usb_frames_round_trip(opcode: u8, words in prop::collection::vec(any::<u16>(), 0..=MAX_WORDS)) {
         let frame = SerialFrame::new(opcode, &words).unwrap();
         prop_assert_eq!(decode_all(&usb::to_bytes(&frame)), [Ok(frame)]);
     }
 
     #[test]
-    fn stuffing_heavy_frames_too(
+    fn frames_with_heavy_stuffing_round_trip(
         opcode in prop::sample::select(&[0x00u8, 0x02, 0x90][..]),
         bytes in prop::collection::vec(prop::sample::select(&[0x90u8, 0x02, 0x00][..]), 0..=2 * MAX_WORDS),
     ) {
@@ -332,7 +332,7 @@ proptest! {
     }
 
     #[test]
-    fn rs232_decodes_what_it_encodes(opcode: u8, words in prop::collection::vec(any::<u16>(), 1..=MAX_WORDS)) {
+    fn rs232_frames_round_trip(opcode: u8, words in prop::collection::vec(any::<u16>(), 1..=MAX_WORDS)) {
         let frame = SerialFrame::new(opcode, &words).unwrap();
         let mut bytes = Vec::new();
         rs232::encode_body(&frame, &mut bytes).unwrap();
@@ -342,7 +342,7 @@ proptest! {
     }
 
     #[test]
-    fn after_any_bytes_the_second_frame_at_the_latest_is_found(
+    fn the_second_frame_after_arbitrary_bytes_is_found(
         junk in prop::collection::vec(prop_oneof![3 => any::<u8>(), 1 => Just(0x90), 1 => Just(0x02)], 0..600),
         words in prop::collection::vec(any::<u16>(), 0..8),
     ) {
@@ -355,7 +355,7 @@ proptest! {
     }
 
     #[test]
-    fn a_flipped_bit_is_an_error_and_never_another_frame(
+    fn flipped_bits_are_detected(
         words in prop::collection::vec(any::<u16>(), 1..8),
         bit in any::<prop::sample::Index>(),
     ) {
@@ -368,12 +368,12 @@ proptest! {
     }
 
     #[test]
-    fn requests_read_back(request in request()) {
+    fn requests_round_trip(request in request()) {
         prop_assert_eq!(SerialRequest::parse(&request.to_frame()), Ok(Some(request)));
     }
 
     #[test]
-    fn any_frame_parses_or_says_why(opcode: u8, words in prop::collection::vec(any::<u16>(), 0..=MAX_WORDS)) {
+    fn arbitrary_frames_parse_or_give_an_error(opcode: u8, words in prop::collection::vec(any::<u16>(), 0..=MAX_WORDS)) {
         let frame = SerialFrame::new(opcode, &words).unwrap();
         if let Ok(Some(request)) = SerialRequest::parse(&frame) {
             prop_assert_eq!(request.to_frame().opcode, opcode);
@@ -385,7 +385,7 @@ proptest! {
     }
 
     #[test]
-    fn answers_read_back(value: u32, toggle: bool, more: bool, bytes in segment_bytes(), data: [u8; 8], code in 1u32..) {
+    fn answers_round_trip(value: u32, toggle: bool, more: bool, bytes in segment_bytes(), data: [u8; 8], code in 1u32..) {
         let error = CommError(code);
         prop_assert_eq!(ReadObject::parse_answer(&ReadObject::answer(Ok(value))), Ok(Ok(value)));
         prop_assert_eq!(ReadObject::parse_answer(&ReadObject::answer(Err(error))), Ok(Err(error)));

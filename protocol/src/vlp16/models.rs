@@ -278,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn delays_are_the_manuals() {
+    fn delays_match_the_manual() {
         assert_eq!(VLP_16.lasers[15].delay_ns, 34_560); // figure 9-9
         assert_eq!(HDL_32E.lasers[31].delay_ns, 35_712);
         assert_eq!(VLP_32C.lasers[0].delay_ns, VLP_32C.lasers[1].delay_ns);

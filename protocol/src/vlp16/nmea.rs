@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn published_sentences_give_their_times() {
+    fn published_sentences_give_the_known_times() {
         // Two sentences of the NMEA 0183 literature, checksums included; seconds from `date -u -d`.
         let at = |wire: &[u8]| {
             let rmc = Rmc::parse(wire).unwrap();

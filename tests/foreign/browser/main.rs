@@ -90,7 +90,7 @@ const WATCH: &str = "
 
 #[test]
 #[ignore = "needs chromium and chromedriver"]
-fn a_scan_is_started_seen_and_counted() {
+fn a_scan_is_started_displayed_and_counted() {
     let driver = Driver::start();
     let folder = tempfile::tempdir().unwrap();
     let daemon = simulator(folder.path());
@@ -162,7 +162,7 @@ fn a_scan_is_started_seen_and_counted() {
 
 #[test]
 #[ignore = "needs chromium and chromedriver"]
-fn a_sweep_is_watched_and_stopped_by_key_and_by_finger() {
+fn a_sweep_is_displayed_and_stopped_by_key_and_by_touch() {
     let driver = Driver::start();
     let folder = tempfile::tempdir().unwrap();
     let daemon = simulator(folder.path());
@@ -212,7 +212,7 @@ const ESCAPE: &str = "\u{e00c}";
 
 #[test]
 #[ignore = "needs chromium and chromedriver"]
-fn a_fault_is_read_with_what_to_do_and_cleared() {
+fn a_fault_is_shown_with_advice_and_cleared() {
     let driver = Driver::start();
     let folder = tempfile::tempdir().unwrap();
     let bench = Bench::start();
@@ -336,7 +336,7 @@ fn the_page_asks_for_a_token_once() {
 
 #[test]
 #[ignore = "needs chromium and chromedriver"]
-fn a_scan_is_deleted_only_when_that_is_meant() {
+fn a_scan_is_deleted_only_after_confirmation() {
     let driver = Driver::start();
     let folder = tempfile::tempdir().unwrap();
     let daemon = simulator(folder.path());

@@ -49,23 +49,23 @@ const OUT: &str = "VELOMOTION_VCAN_OUT";
 
 #[test]
 #[ignore = "needs QEMU or the CAN interface vcan0, candump, tshark"]
-fn the_software_drive_and_a_master_meet_on_a_bus_of_the_kernel() {
+fn the_software_drive_and_a_master_communicate_on_vcan() {
     if std::env::var_os(INSIDE).is_some() {
         meet();
     } else {
-        run_inside("the_software_drive_and_a_master_meet_on_a_bus_of_the_kernel");
+        run_inside("the_software_drive_and_a_master_communicate_on_vcan");
     }
 }
 
 #[test]
 #[ignore = "needs QEMU or the CAN interface vcan0, candump, tshark"]
-fn the_client_homes_and_sweeps_on_a_bus_of_the_kernel() {
+fn the_client_homes_and_sweeps_on_vcan() {
     if std::env::var_os(INSIDE).is_some() {
         let drive = SoftwareDrive::start();
         client::sweep(Path::new(&std::env::var_os(OUT).unwrap()));
         drive.stop();
     } else {
-        let logs = run_inside("the_client_homes_and_sweeps_on_a_bus_of_the_kernel");
+        let logs = run_inside("the_client_homes_and_sweeps_on_vcan");
         logs::check(logs.path());
     }
 }

@@ -5,7 +5,7 @@ use super::*;
 /// The stamp counts microseconds of the hour and drops to nearly zero. Adding an hour whenever it
 /// decreases passes this case and fails the next ones.
 #[test]
-fn the_hour_turns_between_two_packets() {
+fn the_hour_wraps_between_two_packets() {
     // Ten packets end exactly on the hour.
     let head = steady(600.0, BEGIN_NS - 120 * BLOCK_NS);
     let (packets, truth) = head.packets(20);
@@ -17,7 +17,7 @@ fn the_hour_turns_between_two_packets() {
 /// The packet's stamp belongs to the old hour, most of its firings to the new one. Their times
 /// exceed an hour and must not wrap one by one.
 #[test]
-fn the_hour_turns_inside_a_packet() {
+fn the_hour_wraps_inside_a_packet() {
     for blocks_before in 1..12 {
         let head = steady(600.0, BEGIN_NS - (60 + blocks_before) * BLOCK_NS - 300);
         let (packets, truth) = head.packets(12);
@@ -30,7 +30,7 @@ fn the_hour_turns_inside_a_packet() {
 /// The packet around the gap has a stamp before the hour; its last blocks and the next packet
 /// follow the hour. The length of the gap is the difference of the stamps, which is negative.
 #[test]
-fn the_hour_turns_in_the_gap_of_a_limited_view() {
+fn the_hour_wraps_in_the_gap_of_a_limited_field_of_view() {
     let view = |azimuth: f64| !(41.0..320.0).contains(&azimuth);
     // 5 Hz from 320 deg: the first gap is 45 to 200 ms later.
     for before_ms in [46, 60, 100, 199] {
@@ -51,7 +51,7 @@ fn the_hour_turns_in_the_gap_of_a_limited_view() {
 /// The packets around the hour are missing. Only the difference of two stamps, half a packet or
 /// many packets apart, shows the turn; it counts as loss, not as a step of the clock.
 #[test]
-fn the_hour_turns_while_packets_are_lost() {
+fn the_hour_wraps_while_packets_are_lost() {
     for lost in [1, 2, 7, 40, 700] {
         let head = steady(600.0, BEGIN_NS - 127 * BLOCK_NS);
         let (mut packets, mut truth) = head.packets(720);
@@ -82,7 +82,7 @@ fn the_counter_runs_past_the_hour_before_it_wraps() {
 /// The host starts within a second of the hour with a clock that is minutes off, on the other side
 /// of it.
 #[test]
-fn the_first_packet_is_just_beside_the_hour() {
+fn the_first_packet_is_next_to_the_hour() {
     for (device_ms, host_off_s) in [(-3, 20), (-3, -20), (3, -1_700), (3, 1_700), (-3, 1_700)] {
         let head = steady(600.0, BEGIN_NS + device_ms * 1_000_000);
         let (mut packets, truth) = head.packets(20);
@@ -153,7 +153,7 @@ fn nmea_sets_the_device_clock() {
 /// NTP sets the host's clock during a scan, by seconds or by more than an hour; the sensor's clock
 /// stays.
 #[test]
-fn the_hosts_clock_is_set() {
+fn a_step_of_the_host_clock_is_found() {
     for step_s in [-7_200, -40, 2, 1_800, 90_000] {
         let head = steady(600.0, BEGIN_NS - 60 * BLOCK_NS);
         let (mut packets, truth) = head.packets(40);
@@ -181,7 +181,7 @@ fn rmc(second_of_day: i64) -> Vec<u8> {
 /// The receiver's sentence is one second late. Around the hour it names the old hour while the
 /// sensor counts the new one, and the host's clock is days off. UTC must not jump by an hour.
 #[test]
-fn utc_across_the_hour_with_a_late_sentence() {
+fn utc_is_correct_across_the_hour_with_a_late_sentence() {
     // 2024-02-29 00:00:00 UTC, a leap day (`date -u -d`).
     let midnight_ns = 1_709_164_800 * 1_000_000_000;
     let hour = 14;

@@ -4,7 +4,7 @@ use super::*;
 
 /// A port mirror, or a recording of two interfaces, has every packet twice.
 #[test]
-fn every_packet_twice_is_every_packet_once() {
+fn duplicate_packets_are_ignored() {
     let head = steady(600.0, BEGIN_NS - 40 * BLOCK_NS);
     let (packets, truth) = head.packets(20);
     let twice = packets.iter().flat_map(|packet| [packet, packet]);
@@ -18,7 +18,7 @@ fn every_packet_twice_is_every_packet_once() {
 
 /// Neighbouring packets swap, also over the hour, where the later one has the smaller stamp.
 #[test]
-fn packets_out_of_order_are_put_back() {
+fn packets_out_of_order_are_reordered_before_decoding() {
     let head = steady(600.0, BEGIN_NS - 121 * BLOCK_NS);
     let (mut packets, truth) = head.packets(20);
     for i in [3, 7, 9, 15] {
@@ -31,7 +31,7 @@ fn packets_out_of_order_are_put_back() {
 
 /// A packet too late to be sorted in is dropped and counted, so that device time never runs back.
 #[test]
-fn a_packet_that_arrives_too_late_is_dropped() {
+fn packets_that_arrive_too_late_are_dropped() {
     let head = steady(600.0, BEGIN_NS - 121 * BLOCK_NS);
     let (mut packets, mut truth) = head.packets(20);
     let late = packets.remove(6);
@@ -45,7 +45,7 @@ fn a_packet_that_arrives_too_late_is_dropped() {
 /// Foreign datagrams, truncated ones, an HDL-64E's, and position packets between the data change
 /// only counts.
 #[test]
-fn foreign_packets_change_nothing() {
+fn foreign_packets_are_ignored() {
     let head = steady(600.0, BEGIN_NS);
     let (packets, truth) = head.packets(20);
     let mut mixed = Vec::new();
@@ -88,7 +88,7 @@ fn foreign_packets_change_nothing() {
 /// The host's network stack delivers packets in batches of 15 ms and more: arrival says nothing
 /// about firing.
 #[test]
-fn packets_arrive_in_batches() {
+fn packets_in_batches_keep_their_times() {
     let head = steady(600.0, BEGIN_NS - 60 * BLOCK_NS);
     let (mut packets, truth) = head.packets(60);
     for batch in packets.chunks_mut(12) {
@@ -109,7 +109,7 @@ fn packets_arrive_in_batches() {
 /// Packets are missing while the rotor turns: firings behind the gap are neither moved nor joined
 /// to those before.
 #[test]
-fn nothing_is_guessed_across_lost_packets() {
+fn firings_after_lost_packets_are_unaffected() {
     for lost in [1, 3, 75, 150] {
         let head = steady(600.0, BEGIN_NS);
         let (mut packets, mut truth) = head.packets(200);

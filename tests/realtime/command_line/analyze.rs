@@ -16,7 +16,7 @@ fn density(place: &Place, line: &str) -> serde_json::Value {
 }
 
 #[test]
-fn analyze_says_what_the_contract_says() {
+fn analyze_output_matches_the_documented_contract() {
     let place = Place::new();
     let output = place.run("analyze vlp16 rmbl:1200,step=2 --json");
     let report = json(&output);
@@ -94,7 +94,7 @@ fn k_is_what_the_contract_says(k: &serde_json::Value) {
 /// A grid of 0.4 deg has pairs on the edges of 150 bins and none on those of 151. Only the first
 /// gets a warning, in JSON and on stderr.
 #[test]
-fn bins_whose_edges_pairs_lie_on_are_warned_of() {
+fn pairs_on_bin_edges_give_a_warning() {
     let place = Place::new();
     for (bins, pairs) in [(150, 63_175), (180, 216_600), (151, 0)] {
         let output = place.run(&format!("analyze vlp16 --level 2 --bins {bins} --json"));
@@ -124,7 +124,7 @@ fn bins_whose_edges_pairs_lie_on_are_warned_of() {
 }
 
 #[test]
-fn a_pattern_its_clouds_and_its_log_are_analysed_alike() {
+fn a_pattern_its_clouds_and_its_log_give_the_same_analysis() {
     let place = Place::new();
     let pattern = sim::patterns::PatternRequest::parse("velomotion16:500,step=0.8")
         .unwrap()
@@ -169,7 +169,7 @@ fn a_pattern_its_clouds_and_its_log_are_analysed_alike() {
 
 /// The rim that a sensor off the axis cannot see is outside the view.
 #[test]
-fn a_view_is_that_of_the_sensor_where_it_is() {
+fn field_of_view_figures_follow_the_position_of_the_sensor() {
     let place = Place::new();
     let line = "analyze vlp16 vlp16,d=0.5 vlp16,d=5 velomotion16:50 velomotion16:50,d=0.06 velomotion16:50,d=-0.06 --level 4 --harmonics 1 --json";
     let report = json(&place.run(line));
@@ -196,7 +196,7 @@ fn a_view_is_that_of_the_sensor_where_it_is() {
 /// The view of a log follows from its lidar, sweep and mount and equals that of its pattern. A
 /// cloud has no view, and none is assumed.
 #[test]
-fn logs_have_a_view_and_clouds_have_none() {
+fn logs_have_a_field_of_view_and_clouds_have_none() {
     let place = Place::new();
     let scene = "[sensor]\nideal = true\nrpm = 600\n[mount]\nd_m = 0.06\n[motion]\nkind = \"sweeps\"\nfrom_deg = 0\nto_deg = -45\nspeed_deg_s = 50\n[[objects]]\nsphere = { radius_m = 10 }\n";
     std::fs::write(place.path("swept.toml"), scene).unwrap();
@@ -271,7 +271,7 @@ fn logs_have_a_view_and_clouds_have_none() {
 
 /// The evenness of a setting is the same number in every output.
 #[test]
-fn a_sweep_and_a_report_tell_the_same_of_a_pattern() {
+fn sweep_and_report_agree_on_a_pattern() {
     let place = Place::new();
     let sweep = json(&place.run("analyze velomotion16:400 --sweep speed=400..400 --json"));
     let alone = json(&place.run("analyze velomotion16:400 --harmonics 1 --json"));
@@ -296,7 +296,7 @@ fn a_sweep_and_a_report_tell_the_same_of_a_pattern() {
 
 /// An origin far from the cloud, as with national coordinates, gets a warning with a remedy.
 #[test]
-fn a_cloud_far_from_its_origin_is_warned_of_and_can_be_moved() {
+fn a_cloud_far_from_its_origin_gives_a_warning_and_can_be_moved() {
     let place = Place::new();
     let pattern = sim::patterns::PatternRequest::parse("velomotion16:500,step=0.8").unwrap();
     let pattern = pattern.build().unwrap();
@@ -333,7 +333,7 @@ fn a_cloud_far_from_its_origin_is_warned_of_and_can_be_moved() {
 
 /// `-q` keeps the result.
 #[test]
-fn a_result_is_printed_however_quiet() {
+fn results_are_printed_even_when_quiet() {
     let place = Place::new();
     for line in [
         "analyze vlp16 --level 2 --harmonics 1",
@@ -347,7 +347,7 @@ fn a_result_is_printed_however_quiet() {
 
 /// Rows without coordinates are left out and counted in every format.
 #[test]
-fn points_that_are_no_numbers_are_left_out_and_told() {
+fn non_finite_points_are_skipped_and_reported() {
     let place = Place::new();
     let rows = "1 2 3\nnan nan nan\n3 2 -1\n";
     let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
@@ -375,7 +375,7 @@ fn points_that_are_no_numbers_are_left_out_and_told() {
 
 /// A report of two scans has page, figures, tables and JSON, and overwrites nothing.
 #[test]
-fn analyze_writes_a_report_that_stands_alone() {
+fn analyze_writes_a_self_contained_report() {
     let place = Place::new();
     let line =
         "analyze vlp16,step=2 rmbl:1200,step=2 --level 2 --bins 30 --report out/report --json";
@@ -547,7 +547,7 @@ fn inputs_that_cannot_be_analysed_are_errors() {
 }
 
 #[test]
-fn a_sweep_says_which_settings_nothing_beats() {
+fn a_sweep_marks_the_undominated_settings() {
     let place = Place::new();
     let output = place.run("analyze velomotion16,step=2 --sweep speed=100..400/3,tilt=1..2 --json");
     assert_eq!(output.status.code(), Some(2), "tilt is no number");
@@ -603,7 +603,7 @@ fn a_sweep_says_which_settings_nothing_beats() {
 
 /// The signal arrives in the middle of 5e11 pairs.
 #[test]
-fn ctrl_c_ends_an_analysis_with_130_and_no_half_report() {
+fn ctrl_c_ends_an_analysis_with_130_and_no_partial_report() {
     for signal in ["-INT", "-TERM"] {
         let place = Place::new();
         let mut analysis = Command::new(env!("CARGO_BIN_EXE_velomotion"))

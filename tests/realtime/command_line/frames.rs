@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn names_are_not_broken_at_the_end_of_a_line() {
+fn long_file_names_are_not_wrapped() {
     let place = Place::new();
     let name = format!("{}.pcap", "a-b".repeat(30));
     let printed = place.run(&format!("info {name}")).stderr;
@@ -11,7 +11,7 @@ fn names_are_not_broken_at_the_end_of_a_line() {
 }
 
 #[test]
-fn frames_go_to_files_only() {
+fn frames_are_written_only_to_files() {
     let path = recording("vlp16-strongest-gps.pcap");
     let line = format!("replay {} --tilt none --frames 180 -o -", path.display());
     Place::new().fails(&line, 2, &["stdout takes one", "frame.ply"]);
@@ -27,14 +27,14 @@ fn frames_are_cut_at_an_azimuth() {
 }
 
 #[test]
-fn frames_in_utc_are_the_cloud_in_utc() {
+fn frames_in_utc_equal_the_cloud_in_utc() {
     // The cut covers azimuths of 119 to 243 deg.
     assert_frames_in_utc(&recording("vlp16-strongest-gps.pcap"), 2);
 }
 
 #[test]
 #[ignore = "needs the whole recordings"]
-fn frames_of_a_whole_recording_in_utc_are_the_cloud_in_utc() {
+fn frames_of_a_whole_recording_in_utc_equal_the_cloud_in_utc() {
     assert_frames_in_utc(&whole_recording("vlp16-strongest-gps.pcap"), 4);
 }
 
@@ -61,7 +61,7 @@ fn assert_frames_in_utc(path: &Path, least: usize) {
 }
 
 #[test]
-fn turns_go_into_one_recording() {
+fn revolutions_are_written_to_one_recording() {
     let path = recording("vlp16-2014-no-factory-bytes.pcap");
     let place = Place::new();
     let input = path.display();

@@ -67,7 +67,7 @@ fn json(output: &Output) -> serde_json::Value {
 }
 
 #[test]
-fn the_version_says_which_commit_it_is() {
+fn the_version_names_the_commit() {
     let place = Place::new();
     let output = place.run("--version");
     let printed = String::from_utf8(output.stdout).unwrap();
@@ -89,7 +89,7 @@ fn the_version_says_which_commit_it_is() {
 }
 
 #[test]
-fn a_simulated_capture_gives_a_cloud_a_log_and_the_same_cloud_again() {
+fn a_simulated_capture_gives_a_log_that_reproduces_its_cloud() {
     let place = Place::new();
     let mut output = place.run("capture --speed 56.25 -o scan.ply --json");
     // Software devices go silent while a busy machine does not schedule them, and the capture
@@ -181,7 +181,7 @@ fn cut_off(place: &Place) {
 }
 
 #[test]
-fn ctrl_c_in_mid_sweep_saves_what_there_is_and_exits_130() {
+fn ctrl_c_in_mid_sweep_saves_the_partial_cloud_and_exits_130() {
     let place = Place::new();
     let mut capture = Command::new(env!("CARGO_BIN_EXE_velomotion"))
         .args("capture --speed 5 -o scan.ply -vv".split(' '))
@@ -214,7 +214,7 @@ fn ctrl_c_in_mid_sweep_saves_what_there_is_and_exits_130() {
 }
 
 #[test]
-fn speeds_and_angles_that_cannot_be_are_refused_before_anything_moves() {
+fn invalid_speeds_and_angles_are_refused_before_anything_moves() {
     let place = Place::new();
     place.fails("capture --speed 0", 2, &["speed 0 deg/s", "1 rpm"]);
     place.fails("capture --speed -5", 2, &["speed"]);
@@ -240,7 +240,7 @@ fn speeds_and_angles_that_cannot_be_are_refused_before_anything_moves() {
 }
 
 #[test]
-fn devices_that_are_not_there_are_named() {
+fn missing_devices_are_named() {
     let place = Place::new();
     place.fails(
         "capture --speed 10 --device nowhere",
@@ -265,7 +265,7 @@ fn devices_that_are_not_there_are_named() {
 }
 
 #[test]
-fn files_that_are_no_recordings_are_refused() {
+fn files_other_than_recordings_are_refused() {
     let place = Place::new();
     std::fs::write(place.path("empty.pcap"), b"").unwrap();
     std::fs::write(
@@ -317,7 +317,7 @@ fn whole_recording(name: &str) -> PathBuf {
 }
 
 #[test]
-fn a_recording_for_ros_is_a_bag_and_leaves_the_metadata_of_another_alone() {
+fn ros_recordings_are_bags_and_keep_the_metadata_of_others() {
     let path = recording("vlp16-strongest-gps.pcap");
     let place = Place::new();
     let line = |options: &str| format!("replay {} --tilt none {options}", path.display());
@@ -366,7 +366,7 @@ fn a_real_recording_becomes_a_cloud() {
 }
 
 #[test]
-fn another_rigs_angles_can_be_attached() {
+fn angles_of_another_device_can_be_attached() {
     let path = recording("vlp16-strongest-gps.pcap");
     let place = Place::new();
     std::fs::write(
@@ -409,7 +409,7 @@ fn another_rigs_angles_can_be_attached() {
 }
 
 #[test]
-fn simulate_makes_a_log_that_replay_reads_and_locates_errors() {
+fn simulate_writes_a_log_that_replay_reads_and_locates_errors() {
     let place = Place::new();
     place.fails("simulate castle", 3, &["scene castle", "hall"]);
     let scene = "scene = \"hall\"\n[motion]\nkind = \"fixed\"\nduration_s = 0.05\n";

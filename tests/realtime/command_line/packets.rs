@@ -28,7 +28,7 @@ fn changed(place: &Place, recording: &Path, change: impl FnOnce(&mut Vec<Vec<u8>
 const PAYLOAD: usize = 16 + 42;
 
 #[test]
-fn a_stray_datagram_in_front_is_not_taken_for_the_lidar() {
+fn a_stray_first_datagram_is_not_mistaken_for_the_lidar() {
     let path = recording("vlp16-strongest-gps.pcap");
     let place = Place::new();
     let input = changed(&place, &path, |records| {
@@ -52,7 +52,7 @@ fn a_stray_datagram_in_front_is_not_taken_for_the_lidar() {
 }
 
 #[test]
-fn position_packets_in_front_of_the_data_count() {
+fn position_packets_before_the_data_are_used() {
     let path = recording("vlp16-strongest-gps.pcap");
     let place = Place::new();
     let is_position = |record: &Vec<u8>| record.len() == PAYLOAD + 512;
@@ -70,7 +70,7 @@ fn position_packets_in_front_of_the_data_count() {
 }
 
 #[test]
-fn packets_out_of_order_cost_no_utc() {
+fn packets_out_of_order_keep_utc() {
     let path = recording("vlp16-strongest-gps.pcap");
     let place = Place::new();
     let points = |input: &Path| {
@@ -88,7 +88,7 @@ fn packets_out_of_order_cost_no_utc() {
 }
 
 #[test]
-fn dual_returns_say_which_they_are() {
+fn dual_returns_are_labelled() {
     let path = recording("vlp16-dual.pcap");
     let place = Place::new();
     for (more, counts) in [
@@ -115,7 +115,7 @@ fn dual_returns_say_which_they_are() {
 }
 
 #[test]
-fn rays_may_start_in_one_point() {
+fn one_origin_omits_the_laser_offsets() {
     let path = recording("vlp16-strongest-gps.pcap");
     let place = Place::new();
     let line = format!(

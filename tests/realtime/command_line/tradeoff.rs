@@ -5,7 +5,7 @@ use super::*;
 /// A quick run of every study gives one JSON object, the same on stdout and in the report, and
 /// overwrites nothing.
 #[test]
-fn what_accuracy_costs_is_measured_and_shown() {
+fn the_cost_of_accuracy_is_measured_and_reported() {
     let place = Place::new();
     let output = place.run("tradeoff --quick --json --report out --markdown book");
     let printed = String::from_utf8_lossy(&output.stderr);

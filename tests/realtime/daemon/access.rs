@@ -16,7 +16,7 @@ fn status(address: SocketAddr, headers: &str) -> Answer {
 }
 
 #[test]
-fn pages_of_other_sites_get_nothing() {
+fn requests_from_other_sites_are_refused() {
     let rig = Rig::new();
     let own = format!("origin: http://{}\r\n", rig.address);
     // Refused for its body, not for its origin.
@@ -48,7 +48,7 @@ fn pages_of_other_sites_get_nothing() {
 }
 
 #[test]
-fn a_proxy_with_tls_is_let_in_where_it_is_named() {
+fn configured_tls_proxies_are_allowed() {
     let more = format!("token = '{TOKEN}'\norigins = ['https://scanner.example']");
     let rig = Rig::with(&more, |_| {});
     let from = |origin: &str| {

@@ -32,7 +32,7 @@ fn impossible() -> Vec<Value> {
 }
 
 #[test]
-fn what_cannot_be_is_refused_and_nothing_moves() {
+fn invalid_requests_are_refused_and_nothing_moves() {
     let rig = Rig::new();
     rig.ready();
     for body in impossible() {
@@ -119,7 +119,7 @@ fn what_cannot_be_is_refused_and_nothing_moves() {
 }
 
 #[test]
-fn a_plan_says_what_a_capture_would_be() {
+fn a_plan_describes_the_capture() {
     let rig = Rig::new();
     rig.ready();
     let plan = rig.get("/api/v1/plan?speed_deg_s=56.25&accel_deg_s2=500&sweeps=2&both_ways=true");
@@ -140,7 +140,7 @@ fn a_plan_says_what_a_capture_would_be() {
 }
 
 #[test]
-fn the_way_home_before_a_scan_is_planned_and_seen() {
+fn homing_before_a_scan_is_planned_and_reported() {
     let rig = Rig::new();
     rig.ready();
     let plan = || rig.get("/api/v1/plan?speed_deg_s=56.25").json();
@@ -191,7 +191,7 @@ fn the_way_home_before_a_scan_is_planned_and_seen() {
 }
 
 #[test]
-fn the_axis_is_moved_by_hand() {
+fn the_axis_is_moved_by_single_commands() {
     let rig = Rig::new();
     rig.ready();
     let home = rig.post("/api/v1/tilt/home", &json!({}));
@@ -213,7 +213,7 @@ fn the_axis_is_moved_by_hand() {
 }
 
 #[test]
-fn one_motion_at_a_time_and_a_stop_takes_over() {
+fn only_one_motion_runs_at_a_time_and_a_stop_takes_over() {
     let rig = Rig::new();
     rig.ready();
     let address = rig.address;
@@ -232,7 +232,7 @@ fn one_motion_at_a_time_and_a_stop_takes_over() {
 }
 
 #[test]
-fn figures_for_prometheus_and_the_page_are_there() {
+fn prometheus_metrics_and_the_page_are_served() {
     let rig = Rig::new();
     rig.ready();
     let metrics = rig.get("/metrics");

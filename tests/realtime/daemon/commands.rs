@@ -25,7 +25,7 @@ fn run_with_retries(folder: &std::path::Path, line: &str, again: &str) -> Output
 }
 
 #[test]
-fn a_capture_through_the_daemon_is_as_one_without() {
+fn a_capture_through_the_daemon_equals_a_direct_one() {
     let folder = place();
     let line = "capture --speed 56.25 -o own.ply --json";
     let own = run_with_retries(folder.path(), line, &format!("{line} --force"));
@@ -109,7 +109,7 @@ fn a_capture_through_the_daemon_is_as_one_without() {
 }
 
 #[test]
-fn ctrl_c_stops_the_daemons_axis_and_the_log_is_the_users() {
+fn ctrl_c_stops_the_daemons_axis_and_keeps_the_log() {
     let folder = place();
     let daemon = Process::start(folder.path());
     ready(daemon.address);

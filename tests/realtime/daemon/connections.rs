@@ -63,7 +63,7 @@ fn status(rig: &Rig) -> u16 {
 }
 
 #[test]
-fn clients_that_never_read_lock_no_others_out() {
+fn clients_that_never_read_do_not_block_others() {
     let rig = guarded(Duration::from_secs(600));
     let client = Client::at(rig.folder.path().join(SOCKET));
     wait("the drive", || {
@@ -85,7 +85,7 @@ fn clients_that_never_read_lock_no_others_out() {
 }
 
 #[test]
-fn who_never_reads_is_closed() {
+fn clients_that_never_read_are_disconnected() {
     let rig = guarded(Duration::from_millis(200));
     let mut deaf = Deaf::new(rig.address, "/page.css");
     wait("its end", || deaf.say("/page.css").is_none().then_some(()));
@@ -100,7 +100,7 @@ fn who_never_reads_is_closed() {
 }
 
 #[test]
-fn the_oldest_stranger_leaves_for_one_more_and_who_has_the_token_stays() {
+fn the_oldest_client_without_token_is_disconnected_first() {
     let rig = guarded(Duration::from_secs(600));
     let ask = |stream: &mut TcpStream, headers: &str| {
         let head = format!("GET /login HTTP/1.1\r\nhost: localhost\r\n{headers}\r\n");
@@ -147,7 +147,7 @@ fn the_oldest_stranger_leaves_for_one_more_and_who_has_the_token_stays() {
 }
 
 #[test]
-fn the_unix_socket_has_places_of_its_own_and_the_oldest_leaves() {
+fn the_unix_socket_has_its_own_slots_and_drops_the_oldest() {
     let rig = guarded(Duration::from_secs(600));
     let path = rig.folder.path().join(SOCKET);
     let mut idle: Vec<UnixStream> = (0..2 * LOCAL_CONNECTIONS)
@@ -161,7 +161,7 @@ fn the_unix_socket_has_places_of_its_own_and_the_oldest_leaves() {
 }
 
 #[test]
-fn a_command_that_waits_for_an_answer_ends_at_a_signal() {
+fn a_waiting_command_ends_at_a_signal() {
     let folder = super::rig::place();
     // A daemon that accepts connections and sends nothing.
     let socket = UnixListener::bind(folder.path().join(SOCKET)).unwrap();

@@ -32,7 +32,7 @@ pub fn drive(rig: &Rig, wanted: &str) -> serde_json::Value {
 }
 
 #[test]
-fn a_drive_that_is_unplugged_is_missed_and_found_again() {
+fn an_unplugged_drive_is_reported_and_found_again() {
     let table = tempfile::tempdir().unwrap();
     let link = table.path().join("epos");
     let rig = Rig::with("", |options| {
@@ -81,7 +81,7 @@ fn a_drive_that_is_unplugged_is_missed_and_found_again() {
 }
 
 #[test]
-fn a_drive_that_is_looked_for_is_found_wherever_its_cable_comes_back() {
+fn a_drive_is_found_on_any_port_after_reconnecting() {
     let table = tempfile::tempdir().unwrap();
     let units: Arc<Mutex<Vec<Epos2Found>>> = Arc::default();
     let on_the_bus = Arc::clone(&units);
@@ -185,7 +185,7 @@ fn a_drive_that_is_looked_for_is_found_wherever_its_cable_comes_back() {
 }
 
 #[test]
-fn after_a_sleep_nothing_is_taken_for_granted() {
+fn the_drive_is_reconnected_after_a_suspension() {
     let table = tempfile::tempdir().unwrap();
     let link = table.path().join("epos");
     let _unit = Drive::plug(&link);

@@ -71,7 +71,7 @@ fn listen(mut socket: WebSocket<TcpStream>) -> ReceivedFrame {
 }
 
 #[test]
-fn eight_clients_during_a_sweep_hear_the_same_and_the_capture_loses_nothing() {
+fn eight_clients_receive_the_same_and_the_capture_loses_nothing() {
     let rig = Rig::new();
     for attempt in 1.. {
         rig.ready();
@@ -121,7 +121,7 @@ fn eight_clients_during_a_sweep_hear_the_same_and_the_capture_loses_nothing() {
 }
 
 #[test]
-fn who_stops_reading_is_dropped() {
+fn clients_that_stop_reading_are_disconnected() {
     let rig = Rig::new();
     let mut idle = connect(rig.address, "").unwrap();
     let events = rig.daemon().state().events();

@@ -16,7 +16,7 @@ use super::events::connect;
 use super::rig::{Rig, raw, request, wait};
 
 #[test]
-fn the_book_states_the_limits() {
+fn the_documentation_states_the_limits() {
     let page = include_str!("../../../docs/src/daemon.md");
     let kib = |bytes: usize| format!("{} KiB", bytes >> 10);
     let seconds = |wait: Duration| format!("{} s", wait.as_secs());
@@ -124,7 +124,7 @@ const CLOUD: &str = "/api/v1/scans/made/cloud";
 const LARGE: u64 = 64 << 20;
 
 #[test]
-fn there_are_no_more_downloads_at_once_than_allowed() {
+fn concurrent_downloads_are_limited() {
     let rig = with_a_scan(LARGE, Waits::default(), |_| {});
     let mut all: Vec<_> = (0..DOWNLOADS).map(|_| ask(&rig, CLOUD)).collect();
     assert!(all.iter().all(|(_, status)| status == "200"));
@@ -139,7 +139,7 @@ fn there_are_no_more_downloads_at_once_than_allowed() {
 }
 
 #[test]
-fn an_unread_download_ends() {
+fn an_unread_download_is_closed() {
     let waits = Waits {
         download: Duration::from_secs(1),
         ..Waits::default()
@@ -169,7 +169,7 @@ fn an_unread_download_ends() {
 }
 
 #[test]
-fn there_are_no_more_clouds_being_made_at_once_than_allowed() {
+fn concurrent_cloud_builds_are_limited() {
     // A log that never ends: a pipe without a writer.
     let pipe = |log: &Path| {
         let made = Command::new("mkfifo").arg(log).status().unwrap();
@@ -245,7 +245,7 @@ fn requests_that_are_too_large_are_refused() {
 }
 
 #[test]
-fn who_is_too_slow_is_not_waited_for() {
+fn slow_clients_are_disconnected() {
     let rig = Rig::with("", |options| {
         options.waits.headers = Duration::from_millis(150);
         options.waits.body = Duration::from_millis(150);
@@ -260,7 +260,7 @@ fn who_is_too_slow_is_not_waited_for() {
 }
 
 #[test]
-fn there_are_no_more_websockets_than_allowed() {
+fn websockets_are_limited() {
     let rig = Rig::new();
     let all: Vec<_> = (0..SUBSCRIBERS)
         .map(|_| connect(rig.address, "").unwrap())
@@ -272,7 +272,7 @@ fn there_are_no_more_websockets_than_allowed() {
 }
 
 #[test]
-fn a_client_that_says_too_much_is_disconnected() {
+fn a_client_that_sends_too_much_is_disconnected() {
     let rig = Rig::new();
     let mut socket = connect(rig.address, "").unwrap();
     let long = "x".repeat(daemon::limits::CLIENT_MESSAGE_BYTES + 1);

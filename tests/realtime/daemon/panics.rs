@@ -25,7 +25,7 @@ fn fragile(when: AxisTask) -> (Rig, Arc<AtomicBool>) {
 }
 
 #[test]
-fn a_panic_while_the_axis_moves_stops_it_and_the_daemon_goes_on() {
+fn a_panic_while_the_axis_moves_stops_it_and_the_daemon_continues() {
     let (rig, defect) = fragile(AxisTask::Capturing);
     let mut attempt = 0;
     let scan = loop {
@@ -62,7 +62,7 @@ fn a_panic_while_the_axis_moves_stops_it_and_the_daemon_goes_on() {
 }
 
 #[test]
-fn a_keeper_that_is_gone_ends_the_daemon_with_an_error() {
+fn the_daemon_exits_with_an_error_when_the_device_thread_ends() {
     let (mut rig, defect) = fragile(AxisTask::Idle);
     rig.ready();
     defect.store(true, Ordering::Release);

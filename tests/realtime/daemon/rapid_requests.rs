@@ -9,7 +9,7 @@ use super::rig::{Rig, machine_was_busy, post, request, wait};
 
 /// A list is not an object: its numbers in order must not begin a sweep.
 #[test]
-fn a_list_in_place_of_an_object_moves_nothing() {
+fn a_list_instead_of_an_object_is_refused() {
     let rig = Rig::new();
     rig.ready();
     for (path, body) in [
@@ -55,7 +55,7 @@ fn a_stop_just_after_the_start_is_not_lost() {
 
 /// Frequent reads of the status must not get moves refused.
 #[test]
-fn looking_at_the_axis_has_no_move_refused() {
+fn status_reads_do_not_get_moves_refused() {
     let rig = Rig::new();
     rig.ready();
     let address = rig.address;

@@ -11,7 +11,7 @@ use units::Span;
 use super::rig::{Process, Rig, finished, place, request, run, sweep, wait};
 
 #[test]
-fn a_scan_is_listed_downloaded_as_replay_makes_it_and_deleted() {
+fn a_scan_is_listed_downloaded_like_its_replay_and_deleted() {
     let rig = Rig::new();
     rig.ready();
     let scan = rig.whole_scan(&json!({"speed_deg_s": 56.25, "name": "hall"}));
@@ -80,7 +80,7 @@ fn a_scan_is_listed_downloaded_as_replay_makes_it_and_deleted() {
 }
 
 #[test]
-fn a_scan_that_is_stopped_is_partial_and_kept() {
+fn a_stopped_scan_is_partial_and_kept() {
     let mut rig = Rig::new();
     let id = sweep(rig.address);
     let path = format!("/api/v1/scans/{id}");
@@ -121,7 +121,7 @@ fn a_scan_that_is_stopped_is_partial_and_kept() {
 }
 
 #[test]
-fn a_scan_in_which_the_daemon_is_killed_is_found_at_the_next_start() {
+fn a_scan_is_recovered_after_the_daemon_was_killed() {
     let folder = place();
     let daemon = Process::start(folder.path());
     let id = sweep(daemon.address);
@@ -161,7 +161,7 @@ fn a_scan_in_which_the_daemon_is_killed_is_found_at_the_next_start() {
 }
 
 #[test]
-fn a_log_whose_end_never_reached_the_disk_makes_no_whole_scan() {
+fn a_truncated_log_does_not_count_as_a_complete_scan() {
     let mut rig = Rig::new();
     rig.ready();
     let id = rig.whole_scan(&json!({"speed_deg_s": 56.25}))["id"].clone();
@@ -208,7 +208,7 @@ fn a_log_whose_end_never_reached_the_disk_makes_no_whole_scan() {
 }
 
 #[test]
-fn a_disk_that_is_nearly_full_ends_a_scan_and_begins_none() {
+fn a_nearly_full_disk_ends_a_scan_and_prevents_new_ones() {
     let free = Arc::new(AtomicU64::new(u64::MAX));
     let reported = Arc::clone(&free);
     let rig = Rig::with("", |options| {
@@ -265,7 +265,7 @@ fn after_a_suspension_devices_reconnect_and_the_scan_is_partial() {
 }
 
 #[test]
-fn a_sleep_that_only_its_end_shows_makes_a_scan_partial() {
+fn a_suspension_detected_only_afterwards_makes_a_scan_partial() {
     let slept = Arc::new(AtomicI64::new(0));
     let reported = Arc::clone(&slept);
     let rig = Rig::with("", |options| {
@@ -298,7 +298,7 @@ fn written(rig: &Rig, id: &str) -> serde_json::Value {
 }
 
 #[test]
-fn a_cloud_that_the_disk_had_no_room_for_is_made_once_there_is() {
+fn a_cloud_is_built_once_the_disk_has_space() {
     let (free, looks) = (
         Arc::new(AtomicU64::new(u64::MAX)),
         Arc::new(AtomicU64::new(0)),
@@ -390,7 +390,7 @@ fn a_cloud_that_the_disk_had_no_room_for_is_made_once_there_is() {
 }
 
 #[test]
-fn a_scan_that_waits_for_room_can_be_deleted() {
+fn a_scan_that_waits_for_disk_space_can_be_deleted() {
     let free = Arc::new(AtomicU64::new(u64::MAX));
     let reported = Arc::clone(&free);
     let rig = Rig::with("", |options| {
@@ -405,7 +405,7 @@ fn a_scan_that_waits_for_room_can_be_deleted() {
 }
 
 #[test]
-fn a_download_takes_no_room_that_a_scan_was_promised() {
+fn a_download_leaves_the_space_reserved_for_a_scan() {
     // Free bytes for a number of reads, and for all later ones.
     let (free, looks) = (
         Arc::new(AtomicU64::new(u64::MAX)),

@@ -38,7 +38,7 @@ fn kill(signal: &str, id: u32) {
 }
 
 #[test]
-fn the_service_manager_hears_of_start_life_and_end() {
+fn the_service_manager_is_notified_of_start_watchdog_and_stop() {
     let folder = place();
     let socket = folder.path().join("notify");
     let manager = Manager::new(&socket);
@@ -99,7 +99,7 @@ fn printed_to(folder: &Path, line: &str, journal: bool) -> String {
 }
 
 #[test]
-fn a_failure_has_its_priority_in_the_journal_and_nowhere_else() {
+fn priority_prefixes_are_written_only_to_the_journal() {
     let folder = place();
     let line = "daemon --config missing.toml";
     let journal = printed_to(folder.path(), line, true);
@@ -122,7 +122,7 @@ fn a_failure_has_its_priority_in_the_journal_and_nowhere_else() {
 }
 
 #[test]
-fn what_happens_is_in_the_journal_line_by_line() {
+fn events_are_logged_line_by_line() {
     let folder = place();
     let path = folder.path().join("stderr");
     let file = File::create(&path).unwrap();

@@ -81,7 +81,7 @@ impl Drop for Cable {
 }
 
 #[test]
-fn an_unstopped_axis_is_reported_as_moving_until_it_rests() {
+fn an_unstopped_axis_is_reported_as_moving_until_it_is_at_rest() {
     let table = tempfile::tempdir().unwrap();
     let link = table.path().join("epos");
     let axis = engine::config::Config::default().axis;

@@ -47,7 +47,7 @@ fn begin(rig: &Rig, router: &mut Peer) -> String {
 
 #[test]
 #[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
-fn a_capture_is_begun_and_stopped_by_calls() {
+fn a_capture_is_started_and_stopped_by_service_calls() {
     let python = python();
     let place = endpoint();
     let mut router = Peer::start(&python, "router", &place);
@@ -103,7 +103,7 @@ fn scans(rig: &Rig) -> u64 {
 /// Without a configured capture the service does not exist.
 #[test]
 #[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
-fn nothing_moves_by_ros_unless_it_is_configured() {
+fn ros_moves_nothing_unless_configured() {
     let python = python();
     let place = endpoint();
     let mut router = Peer::start(&python, "router", &place);

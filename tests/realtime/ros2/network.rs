@@ -71,7 +71,7 @@ fn a_router_that_starts_late_or_restarts_gets_everything() {
 /// A capture does not wait for a blocked router. Once the router reads again it gets new messages.
 #[test]
 #[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
-fn a_router_that_stalls_costs_the_capture_nothing() {
+fn a_stalled_router_does_not_affect_the_capture() {
     let python = python();
     let place = endpoint();
     let mut router = Peer::start(&python, "router", &place);
@@ -104,7 +104,7 @@ fn a_router_that_stalls_costs_the_capture_nothing() {
 
 /// Connecting to a port that does not speak zenoh is retried and disturbs nothing else.
 #[test]
-fn what_never_answers_is_no_router() {
+fn a_port_that_never_answers_is_retried_without_side_effects() {
     let silent = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     let rig = daemon(&format!("tcp/{}", silent.local_addr().unwrap()), "");
     let scan = rig.ready().whole_scan(&json!({ "speed_deg_s": 56.25 }));

@@ -73,7 +73,7 @@ fn stamps(received: &[Value]) -> Vec<i64> {
 /// Two subscribers, one at the router and one behind it, and eight WebSockets.
 #[test]
 #[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
-fn every_client_gets_the_whole_sweep_and_the_capture_loses_nothing() {
+fn every_client_receives_the_whole_sweep_and_the_capture_loses_nothing() {
     let python = python();
     let place = endpoint();
     let mut near = Peer::start(&python, "router", &place);

@@ -56,7 +56,7 @@ fn clouds(folder: &Path, mark: &str) -> Vec<(String, Vec<u8>)> {
 }
 
 #[test]
-fn frames_hold_the_whole_cloud_in_its_order() {
+fn frames_contain_the_whole_cloud_in_order() {
     let captured = Captured::new(Setting::default());
     let whole = std::fs::read(captured.cloud_file("whole.ply")).unwrap();
     let folder = tempfile::tempdir().unwrap();

@@ -11,7 +11,7 @@ const WAYS: [Attachment; 4] = [
 ];
 
 #[test]
-fn the_cards_scan_is_true_over_every_way_to_the_drive() {
+fn the_default_scan_is_accurate_over_every_drive_link() {
     for attached in WAYS {
         let captured = Captured::new(Setting::over(attached));
         let (scan, cloud) = captured.scan();
@@ -39,7 +39,7 @@ fn the_cards_scan_is_true_over_every_way_to_the_drive() {
 
 /// The log of every attachment replays to the same bytes.
 #[test]
-fn replay_is_bit_identical_over_every_way_to_the_drive() {
+fn replay_is_bit_identical_over_every_drive_link() {
     for attached in WAYS {
         let captured = Captured::new(Setting::over(attached));
         let read = |name| std::fs::read(captured.cloud_file(name)).unwrap();

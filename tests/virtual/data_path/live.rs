@@ -12,7 +12,7 @@ use velomotion_tests::capture::{Captured, Setting};
 const MOST_LAG: Span = Span::from_millis(50);
 
 #[test]
-fn the_live_cloud_is_close_behind_and_a_replay_is_at_least_as_good() {
+fn the_live_cloud_is_nearly_as_accurate_as_a_replay() {
     for attached in [
         Attachment::Usb,
         Attachment::Rs232,

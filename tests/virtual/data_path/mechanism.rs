@@ -123,14 +123,14 @@ fn as_true_as_its_gear(day: impl Fn(u64) -> Setting, servo: Servo) {
 }
 
 #[test]
-fn a_real_drive_over_usb_is_as_true_as_its_gear() {
+fn a_real_drive_over_usb_is_as_accurate_as_its_gear() {
     for servo in [FIRST_ORDER, second_order(700), second_order(1_000)] {
         as_true_as_its_gear(|day| setting(Attachment::Usb, day), servo);
     }
 }
 
 #[test]
-fn a_real_drive_over_can_is_as_true_as_its_gear() {
+fn a_real_drive_over_can_is_as_accurate_as_its_gear() {
     for servo in [FIRST_ORDER, second_order(700), second_order(1_000)] {
         as_true_as_its_gear(|day| setting(Attachment::Can, day), servo);
     }
@@ -138,7 +138,7 @@ fn a_real_drive_over_can_is_as_true_as_its_gear() {
 
 /// An on-board bus with SYNC each millisecond.
 #[test]
-fn a_real_drive_over_a_quick_can_is_as_true_as_its_gear() {
+fn a_real_drive_over_fast_can_is_as_accurate_as_its_gear() {
     let usual = |day| Setting {
         poll_period: None,
         links: Links::usual(Attachment::Can, 1_000 * day + 3),

@@ -13,7 +13,7 @@ use velomotion_tests::capture::{Captured, Setting};
 
 /// The scan of the quick start: 45 deg at 56.25 deg/s in a hall whose surfaces are within 20 m.
 #[test]
-fn the_cards_scan_is_true_to_a_few_millimetres() {
+fn the_default_scan_is_accurate_to_a_few_millimetres() {
     let captured = Captured::new(Setting::default());
     let (scan, cloud) = captured.scan();
     assert!(cloud.len() > 180_000, "{} points", cloud.len());
@@ -65,7 +65,7 @@ fn the_error_does_not_depend_on_the_day() {
 
 /// The lidar counts microseconds of the hour: a sweep across the hour is one sweep.
 #[test]
-fn a_scan_across_the_hour_is_whole() {
+fn a_scan_across_the_hour_is_complete() {
     let usual = Captured::new(Setting::default());
     let mut setting = Setting::default();
     // Homing takes some seconds: the hour turns during the sweep for some of these starts, and
@@ -97,7 +97,7 @@ fn a_scan_across_the_hour_is_whole() {
 }
 
 #[test]
-fn slow_sweeps_both_ways_are_found_and_true() {
+fn slow_sweeps_both_ways_are_found_and_accurate() {
     let mut setting = Setting::default();
     setting.wish.speed = DegPerS(20.0);
     setting.wish.acceleration = DegPerS2(500.0);
@@ -120,7 +120,7 @@ fn slow_sweeps_both_ways_are_found_and_true() {
 }
 
 #[test]
-fn one_way_sweeps_leave_the_way_back_out() {
+fn one_way_sweeps_omit_the_return_move() {
     let mut setting = Setting::default();
     setting.wish.sweeps = 2;
     let (scan, cloud) = Captured::new(setting).scan();
@@ -136,7 +136,7 @@ fn one_way_sweeps_leave_the_way_back_out() {
 /// After Ctrl-C at any time the axis comes to rest, is disabled, and stays; a sweep that had begun
 /// becomes a cloud.
 #[test]
-fn an_interrupted_capture_stops_the_axis_and_keeps_what_there_was() {
+fn an_interrupted_capture_stops_the_axis_and_keeps_its_points() {
     let mut clouds = 0;
     for after_ms in (1..3_200).step_by(97) {
         let mut setting = Setting::default();

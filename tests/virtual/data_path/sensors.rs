@@ -67,7 +67,7 @@ fn scan(log: &Path, sensor: Option<&str>) -> Result<ScanReport, Failure> {
 }
 
 #[test]
-fn of_several_lidars_one_must_be_named() {
+fn one_of_several_lidars_must_be_selected() {
     let captured = Captured::new(Setting::default());
     let alone = scan(&captured.log(), None).unwrap();
     let folder = tempfile::tempdir().unwrap();

@@ -25,7 +25,7 @@ fn solve(captured: &Captured, tolerance: &str) -> Result<Alignment, ScanError> {
 const RANGES_M: f64 = 2e-3;
 
 #[test]
-fn the_cheapest_method_that_is_good_enough_is_taken_and_is() {
+fn the_cheapest_method_within_the_tolerance_is_chosen() {
     let captured = Captured::new(Setting::over(Attachment::Can));
     let (mut methods, at_m) = (Vec::new(), 10.0);
     for tolerance in ["200mm@10m", "20mm@10m", "3mm@10m"] {
@@ -74,7 +74,7 @@ fn the_cheapest_method_that_is_good_enough_is_taken_and_is() {
 }
 
 #[test]
-fn without_a_method_that_meets_the_tolerance_a_slower_sweep_is_suggested() {
+fn a_slower_sweep_is_suggested_when_no_method_meets_the_tolerance() {
     let captured = Captured::new(Setting::over(Attachment::Usb));
     let Err(ScanError::UnreachableTolerance(out)) = solve(&captured, "1mm@100m") else {
         panic!("polls of a millisecond and more cannot be that accurate");

@@ -38,7 +38,7 @@ fn normal_below(x: f64) -> f64 {
 /// the square of range, and noise is a fifth of the threshold. Detected returns report their
 /// reflectivity at any range.
 #[test]
-fn targets_of_known_reflectivity_are_seen_as_far_as_the_manual_says_and_reported_as_they_are() {
+fn known_targets_have_the_range_and_reflectivity_of_the_manual() {
     for (range_m, reflectivities) in [
         (0.5, &[100, 255][..]),
         (0.9, &[100, 255]),
@@ -81,7 +81,7 @@ fn targets_of_known_reflectivity_are_seen_as_far_as_the_manual_says_and_reported
 
 /// The caster gives the normal, and the reported value shows the cosine of incidence.
 #[test]
-fn a_plane_that_is_tilted_reports_less_by_the_cosine_of_incidence() {
+fn reflectivity_falls_with_the_cosine_of_incidence() {
     let wall = "[materials]\nwhite = { reflectivity = 90 }\n[[objects]]\nmaterial = \"white\"\nplane = {}\nposition_m = [0, 12, 0]\n\
                 rotation_deg = [60, 0, 30]\n";
     // About x by 60 deg, then about z by 30 deg.
@@ -110,7 +110,7 @@ fn a_plane_that_is_tilted_reports_less_by_the_cosine_of_incidence() {
 /// Asphalt from 1.2 m above: `0.14 sin(e)^3 / 1.2^2` returns at e below level, and 4e-5 is detected
 /// half the time: at 4.3 deg.
 #[test]
-fn ground_that_is_grazed_drops_out() {
+fn ground_at_grazing_incidence_is_not_detected() {
     let ground = "[materials]\nasphalt = { reflectivity = 14 }\n[[objects]]\nmaterial = \"asphalt\"\nplane = {}\nposition_m = [0, 0, -1.2]\n";
     let shares = |effect: &str| {
         let (points, shots) = seen(&format!("{ground}{effect}"), 0.1);
@@ -132,7 +132,7 @@ fn ground_that_is_grazed_drops_out() {
 /// A window 25 m ahead: it dazzles where it faces the sensor and is elsewhere too dark to be
 /// detected, 1.2 % of a white wall.
 #[test]
-fn glass_returns_where_it_faces_the_sensor() {
+fn glass_returns_only_where_it_faces_the_sensor() {
     let window = "[materials]\nglass = { reflectivity = 6, specular = 0.8 }\n[[objects]]\nmaterial = \"glass\"\nplane = {}\n\
                   position_m = [0, 25, 0]\nrotation_deg = [90, 0, 0]\n";
     let from_head_on_deg = |point: [f64; 3]| (point[1] / length(point)).acos().to_degrees();

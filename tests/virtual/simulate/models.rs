@@ -60,7 +60,7 @@ fn bound_m(range_m: f64, unit_mm: f64) -> f64 {
 }
 
 #[test]
-fn every_model_is_read_as_it_was_made() {
+fn every_model_round_trips() {
     for (model, name, unit_mm) in MODELS {
         for returns in ["strongest", "last", "dual"] {
             let scene = Simulated::new(&scene(model, returns), |_| {});
@@ -83,7 +83,7 @@ fn every_model_is_read_as_it_was_made() {
 }
 
 #[test]
-fn both_returns_of_a_pulse_arrive() {
+fn both_returns_of_a_pulse_are_decoded() {
     for (model, name, unit_mm) in MODELS {
         let scene = Simulated::new(&scene(model, "dual"), |scene| {
             let listed = Listed::new(Arc::new(Pane) as Arc<_>, None);

@@ -17,7 +17,7 @@ fn shipped(of: &str) -> &'static str {
 
 /// The ideal scanner loses only range steps of 2 mm and azimuth steps of 0.01 deg.
 #[test]
-fn the_hall_comes_back_as_it_was() {
+fn the_hall_is_recovered_from_its_log() {
     let scene = Simulated::new(shipped("hall"), |scene| scene.effects.leave_out(|_| true));
     assert!(scene.report.effects.is_empty());
     let (scan, cloud) = replayed(&scene.log(), TiltSource::Log);
@@ -36,7 +36,7 @@ fn the_hall_comes_back_as_it_was() {
 
 /// The ideal motion of scan patterns has no ramps.
 #[test]
-fn sweeps_both_ways_without_ramps_come_back() {
+fn sweeps_both_ways_without_ramps_are_recovered() {
     let text = "scene = \"hall\"\n[motion]\nkind = \"sweeps\"\nfrom_deg = -10.0\nto_deg = 30.0\nspeed_deg_s = 100.0\nboth_ways = true\n\
                 [mount]\nd_m = 0.1\n";
     let scene = Simulated::new(text, |_| {});
@@ -54,7 +54,7 @@ fn sweeps_both_ways_without_ramps_come_back() {
 }
 
 #[test]
-fn noise_of_ranges_is_as_large_as_asked_for() {
+fn range_noise_is_as_large_as_requested() {
     // The same room, whose scene calls for no effect.
     let text = shipped("rig").to_owned() + "\n[effects.range_noise]\nsd_m = 0.03\n";
     let scene = Simulated::new(&text, |_| {});
@@ -68,7 +68,7 @@ fn noise_of_ranges_is_as_large_as_asked_for() {
 
 /// The hall with its beam footprint: noise of 1 cm, and at edges some points between two surfaces.
 #[test]
-fn the_hall_as_a_real_scanner_would_see_it() {
+fn a_realistic_scan_of_the_hall_is_recovered() {
     let text = shipped("hall").to_owned() + "\n[effects.divergence]\n";
     let scene = Simulated::new(&text, |_| {});
     assert_eq!(scene.report.effects.len(), 7);
@@ -97,7 +97,7 @@ fn the_hall_as_a_real_scanner_would_see_it() {
 /// request, so that no later answer is paired with the wrong request. Otherwise every later answer
 /// could belong to either of two requests and the sweep would seem to end.
 #[test]
-fn lost_answers_of_the_drive_cost_samples_and_nothing_else() {
+fn lost_answers_of_the_drive_cost_only_samples() {
     for seed in [3, 5, 8] {
         let lossy = format!(
             "seed = {seed}\n{}\n[effects.loss]\ndrive_share = 0.02\n",
@@ -119,7 +119,7 @@ fn lost_answers_of_the_drive_cost_samples_and_nothing_else() {
 
 /// Such a cloud would look right and be wrong.
 #[test]
-fn a_mount_that_a_log_cannot_say_is_warned_of() {
+fn a_mount_that_a_log_cannot_store_gives_a_warning() {
     for (mount, reported) in [
         ("d_m = 0.1", true),
         ("position_m = [0, 0, 0.2]", true),

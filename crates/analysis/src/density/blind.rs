@@ -314,7 +314,7 @@ mod tests {
     }
 
     #[test]
-    fn holes_between_rings_stand_in_rows() {
+    fn holes_between_rings_form_rows() {
         // Without 50 and 51 degrees, a gap of 3 degrees remains on both sides, with holes of 1.5
         // degrees along it.
         let angles: Vec<f64> = (0..=180)
@@ -338,7 +338,7 @@ mod tests {
     }
 
     #[test]
-    fn holes_are_as_large_as_there_is_room_and_none_is_left_out() {
+    fn every_hole_is_found_at_its_full_size() {
         let turn = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
         let mut points: Vec<DVec3> = (0..4_000)
             .map(|i| {
@@ -370,7 +370,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_holes_cost_no_more_than_so_many_looks_each() {
+    fn work_is_bounded_per_hole_when_holes_are_equal() {
         // Two rings with a belt between, of pairs of points so close that more than ten touch a
         // hole. There are as many equal holes as pairs. The cost follows the listed holes, not the
         // number of points.
@@ -398,7 +398,7 @@ mod tests {
     }
 
     #[test]
-    fn a_size_that_is_none_is_refused() {
+    fn invalid_hole_sizes_are_refused() {
         for got in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             let error = holes(&[DVec3::X], got, 10, &EVERYWHERE).unwrap_err();
             assert!(matches!(error, DensityError::Least { .. }), "{got}");

@@ -133,7 +133,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_direction_lies_in_the_ball_of_its_cell_at_every_level() {
+    fn directions_lie_in_the_ball_of_their_cell_at_every_level() {
         for k in 0..2_000 {
             let (a, z) = (f64::from(k) * 2.4, f64::from(k) / 1_000.0 - 0.999_5);
             let r = (1.0 - z * z).sqrt();
@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn bits_are_spread_and_gathered() {
+    fn spreading_and_gathering_bits_round_trips() {
         for bits in [0, 1, 2, 0xdead_beef, 0xffff_ffff] {
             assert_eq!(every_other(spread(bits)), bits);
             assert_eq!(every_other(spread(bits) | 0xaaaa), bits);

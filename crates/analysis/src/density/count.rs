@@ -197,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn counts_are_those_of_one_after_the_other() {
+    fn counts_agree_with_sequential_counting() {
         let (locator, directions) = (locator(3), lattice(200_000));
         let counts = BinCounts::new(&locator, &directions).unwrap();
         let mut slow = vec![0; 1_280];
@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn all_in_one_bin() {
+    fn all_points_in_one_bin() {
         let locator = locator(4);
         let counts = BinCounts::new(&locator, &vec![DVec3::Y; 5_120]).unwrap();
         let statistics = counts.statistics();
@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn of_some_bins_only() {
+    fn statistics_of_a_subset_of_the_bins() {
         let counts = BinCounts(vec![4, 0, 8, 100]);
         let some = counts.statistics_of(|bin| bin < 3);
         assert_eq!(some.coverage(), Some(2.0 / 3.0));
@@ -246,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn none_one_and_two() {
+    fn zero_one_and_two_points_are_counted() {
         let locator = locator(1);
         for n in 0..3 {
             let directions = &[DVec3::Z, DVec3::NEG_Z][..n];
@@ -267,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_direction_is_named() {
+    fn invalid_directions_are_refused_by_index() {
         let locator = locator(2);
         let wrong = [
             DVec3::new(f64::NAN, 0.0, 1.0),
@@ -288,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn classes_of_a_histogram_hold_every_bin_once() {
+    fn histogram_classes_hold_every_bin_once() {
         let counts = BinCounts::new(&locator(2), &lattice(9_999)).unwrap();
         for classes in [0, 1, 2, 7, 100] {
             let histogram = counts.histogram(classes);

@@ -40,7 +40,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn gaps_are_angles_to_the_nearest() {
+    fn gaps_are_angles_to_the_nearest_neighbour() {
         let directions = [DVec3::X, DVec3::Y];
         let places = [DVec3::Z, DVec3::X, DVec3::new(0.6, 0.8, 0.0)];
         let found = gaps(&directions, &places).unwrap();
@@ -53,7 +53,7 @@ mod tests {
     }
 
     #[test]
-    fn quantiles_are_of_the_numbers_themselves() {
+    fn quantiles_are_values_of_the_input() {
         let numbers = [5.0, 1.0, 4.0, 2.0, 3.0];
         let expected = [
             (0.0, 1.0),

@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn the_papers_bins_are_5120_of_unequal_size() {
+    fn the_paper_uses_5120_bins_of_unequal_size() {
         let bins = Icosahedron::new(4).unwrap();
         assert_eq!(bins.bins().len(), 5_120);
         let areas = bins
@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn faces_lie_in_their_caps_and_in_the_face_they_are_cut_from() {
+    fn faces_lie_in_their_caps_and_parent_faces() {
         let all = Icosahedron::new(5).unwrap();
         for (above, below) in all.levels().iter().zip(&all.levels()[1..]) {
             for (number, face) in below.iter().enumerate() {

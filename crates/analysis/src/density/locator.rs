@@ -158,7 +158,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(24))]
 
         #[test]
-        fn it_finds_what_looking_at_every_bin_finds(
+        fn the_locator_agrees_with_a_search_of_every_bin(
             level in 0..6_u32, directions in prop::collection::vec(direction(), 50),
         ) {
             let icosahedron = Icosahedron::new(level).unwrap();
@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn corners_and_edges_of_bins_too() {
+    fn corners_and_edges_of_bins_agree_with_a_full_search() {
         for level in 0..=4 {
             let icosahedron = Icosahedron::new(level).unwrap();
             let locator = Locator::new(&icosahedron);
@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn of_equally_near_bins_it_is_the_first() {
+    fn the_first_of_equally_near_bins_is_chosen() {
         // A corner of the icosahedron is equally far from five bins, the middle of an edge from
         // two.
         let icosahedron = Icosahedron::new(0).unwrap();
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn few_are_compared() {
+    fn few_candidates_are_compared_per_lookup() {
         let locator = Locator::new(&Icosahedron::new(4).unwrap());
         let mean = locator.candidates.len() as f64 / (locator.starts.len() - 1) as f64;
         assert!(mean < 4.0, "{mean}");

@@ -46,7 +46,7 @@ fn found(points: &[DVec3]) -> (f64, Vec<Hole>) {
 }
 
 #[test]
-fn seventy_thousand_points_in_seven_places_leave_what_seven_points_leave() {
+fn seventy_thousand_points_in_seven_places_have_the_holes_of_seven_points() {
     let places = places();
     let (radius_rad, all) = found(&places);
     let many: Vec<DVec3> = places.iter().cycle().copied().take(MANY as usize).collect();
@@ -64,7 +64,7 @@ fn seventy_thousand_points_in_seven_places_leave_what_seven_points_leave() {
 }
 
 #[test]
-fn seventy_thousand_equal_points_leave_their_far_side() {
+fn seventy_thousand_equal_points_leave_a_hole_at_the_antipode() {
     for place in places() {
         let (radius_rad, all) = found(&vec![place; MANY as usize]);
         assert!((radius_rad - PI).abs() < 3e-8);
@@ -74,7 +74,7 @@ fn seventy_thousand_equal_points_leave_their_far_side() {
 }
 
 #[test]
-fn seventy_thousand_points_on_one_circle_leave_its_poles() {
+fn seventy_thousand_points_on_a_circle_leave_holes_at_its_poles() {
     for from_z_rad in [0.4_f64, 1.2, 2.0, 3.1] {
         let (few_rad, few) = found(&circle(500, from_z_rad));
         let (many_rad, many) = found(&circle(MANY, from_z_rad));
@@ -86,7 +86,7 @@ fn seventy_thousand_points_on_one_circle_leave_its_poles() {
 }
 
 #[test]
-fn points_on_a_great_circle_leave_both_its_poles() {
+fn points_on_a_great_circle_leave_holes_at_both_poles() {
     for points in [500, 20_000, MANY] {
         let (radius_rad, all) = found(&circle(points, FRAC_PI_2));
         assert!((radius_rad - FRAC_PI_2).abs() < 1e-6);

@@ -260,7 +260,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(64))]
 
         #[test]
-        fn it_finds_what_asking_all_finds(
+        fn nearest_points_agree_with_a_linear_search(
             points in prop::collection::vec(direction(), 0..2_000), asked in prop::collection::vec(direction(), 20), within in 0.0..0.3_f64,
         ) {
             let nearby = Nearby::new(&points);

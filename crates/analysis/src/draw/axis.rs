@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn decades_have_their_numbers_and_nought_its_place() {
+    fn log_axes_label_decades_and_zero() {
         let axis = PlotAxis::new(Scale::Log, [0.0, 2e-6, 150.0].into_iter(), 100.0, 0.0);
         assert_eq!(axis.place(0.0), Some(96.0));
         assert!(axis.place(2e-6).unwrap() < 92.0);
@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn short_axes_have_numbers_within_a_decade() {
+    fn short_log_axes_have_labels_within_a_decade() {
         let axis = PlotAxis::new(Scale::Log, [9.0, 30.0].into_iter(), 0.0, 100.0);
         assert_eq!(labels(&axis), ["8", "10", "15", "20", "30"]);
         let axis = PlotAxis::new(Scale::Linear, [9.0, 43.0].into_iter(), 0.0, 100.0);
@@ -191,7 +191,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn values_stay_on_the_axis_in_their_order(
+        fn axes_keep_the_order_of_values(
             values in prop::collection::vec((1.0..10.0_f64, -12..12_i32), 1..20), log: bool,
         ) {
             let scale = if log { Scale::Log } else { Scale::Linear };

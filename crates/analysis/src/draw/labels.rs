@@ -100,7 +100,7 @@ mod tests {
     };
 
     #[test]
-    fn a_name_goes_right_else_left_else_nowhere() {
+    fn labels_go_right_then_left_then_are_dropped() {
         let (area, (left, _)) = place("abc", (20.0, 50.0), &ROOM, &[]).unwrap();
         assert_eq!(left, 28.0);
         let (_, (left, _)) = place("abc", (95.0, 50.0), &ROOM, &[]).unwrap();

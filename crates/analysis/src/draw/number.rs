@@ -92,7 +92,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn they_read_back_within_half_a_percent(x in -1e12..1e12_f64, power in -20..20_i32) {
+        fn printed_numbers_are_within_half_a_percent(x in -1e12..1e12_f64, power in -20..20_i32) {
             let x = x * 10_f64.powi(power);
             let back: f64 = short(x).parse().unwrap();
             prop_assert!((back - x).abs() <= 5.01e-3 * x.abs(), "{} {}", x, back);

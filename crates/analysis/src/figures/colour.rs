@@ -100,7 +100,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn much_is_dark_and_little_is_light_evenly() {
+    fn lightness_falls_evenly_with_the_value() {
         assert_eq!(
             (colour(1.0), colour(0.0)),
             ("#440154".into(), "#fde725".into())
@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn shades_go_by_factors_from_the_least_to_the_greatest() {
+    fn shades_are_logarithmic_from_minimum_to_maximum() {
         let shades = Shades::new([0, 10, 1_000, 40].into_iter());
         assert_eq!((shades.low, shades.high), (10, 1_000));
         assert_eq!(

@@ -245,7 +245,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rays_meet_the_nearest_plane() {
+    fn rays_hit_the_nearest_plane() {
         let near = |to: DVec3, plane: usize, right_m: f64, up_m: f64| {
             let (got, right, up) = meet(to.normalize()).unwrap();
             assert_eq!(got, plane, "{to}");
@@ -293,7 +293,7 @@ mod tests {
     }
 
     #[test]
-    fn runs_hold_every_square() {
+    fn runs_cover_every_cell() {
         let mut cells = vec![0; CELLS * CELLS];
         cells[3..6].copy_from_slice(&[1, 1, 2]);
         cells[CELLS] = 500;

@@ -69,7 +69,7 @@ fn all_figures(scans: &AnalyzedScans) -> [String; 4] {
 }
 
 #[test]
-fn figures_are_well_formed_and_tell_of_every_scan_in_words() {
+fn figures_are_well_formed_and_describe_every_scan() {
     for level in [0, 2, 6] {
         let scans = scans(level);
         for figure in all_figures(&scans) {
@@ -105,7 +105,7 @@ fn figures_are_well_formed_and_tell_of_every_scan_in_words() {
 }
 
 #[test]
-fn every_bin_is_drawn_on_its_sides() {
+fn every_bin_is_drawn_in_each_view_that_shows_it() {
     let scans = scans(2);
     let figure = density(&scans);
     // A triangle is a path that ends; two more are the sign of empty bins.
@@ -129,7 +129,7 @@ fn every_bin_is_drawn_on_its_sides() {
 }
 
 #[test]
-fn levels_beyond_what_is_drawn_go_together_and_keep_every_point() {
+fn finer_levels_are_merged_for_drawing_without_losing_points() {
     let (coarse, fine) = (scans(5), scans(6));
     assert!(density(&fine).contains("(20480 bins)"));
     // As many triangles, though the bins are four times as many.
@@ -143,7 +143,7 @@ fn levels_beyond_what_is_drawn_go_together_and_keep_every_point() {
 }
 
 #[test]
-fn what_holds_nothing_is_drawn_too() {
+fn empty_scans_are_drawn() {
     let mut scans = scans(2);
     let none = AnalyzedScan {
         hole_deg: 180.0,
@@ -192,7 +192,7 @@ fn read(csv: &str, from: usize) -> (Vec<String>, Vec<Vec<f64>>) {
 }
 
 #[test]
-fn tables_have_the_very_numbers() {
+fn tables_print_the_exact_counts() {
     let scans = scans(3);
     let (names, rows) = read(&csv::k(&scans), 1);
     assert_eq!(rows.len(), 2 * 37);
@@ -320,7 +320,7 @@ fn the_page_reports_values_and_warnings_of_a_view() {
 
 /// Ten scans have ten colours; all curves but the first have gaps, so that what they lie on shows.
 #[test]
-fn curves_are_told_apart_where_they_coincide() {
+fn coinciding_curves_are_distinguishable() {
     let mut scans = scans(2);
     let one = scans.scans.swap_remove(0);
     scans.scans = (0..10)
@@ -348,7 +348,7 @@ fn curves_are_told_apart_where_they_coincide() {
 
 /// A scan of few points beside one of many is not squeezed into a corner.
 #[test]
-fn each_histogram_has_a_scale_of_its_own() {
+fn each_histogram_has_its_own_scale() {
     let mut scans = scans(2);
     let alone = csv::histogram(&scans);
     let many = grid(60, &[0.0])
@@ -383,7 +383,7 @@ fn each_histogram_has_a_scale_of_its_own() {
 }
 
 #[test]
-fn the_page_stands_alone_with_every_figure_and_table() {
+fn the_page_is_self_contained_with_every_figure_and_table() {
     let scans = scans(3);
     let page = page(&scans);
     page_is_whole(&page, &scans);

@@ -301,7 +301,7 @@ mod tests {
     }
 
     #[test]
-    fn harmonics_of_high_degree_stay_whole_at_the_poles() {
+    fn harmonics_of_high_degree_are_accurate_at_the_poles() {
         // The squares of all harmonics of a degree are (2 l + 1) / (4 pi) together, wherever the
         // point is (addition theorem).
         for z in [
@@ -331,7 +331,7 @@ mod tests {
     }
 
     #[test]
-    fn harmonics_of_low_degree_are_those_of_the_books() {
+    fn harmonics_of_low_degree_match_the_textbook() {
         let (z, phi) = (0.3_f64, 1.1_f64);
         let sine = (1.0 - z * z).sqrt();
         let sums = of(z, phi, 3);
@@ -354,7 +354,7 @@ mod tests {
     }
 
     #[test]
-    fn angles_are_as_near_as_they_say() {
+    fn angles_are_within_their_stated_error() {
         for number in -2000..=2000_i32 {
             let z = f64::from(number) / 2000.0;
             assert!((f64::from(polar(z as f32)) - z.acos()).abs() < 1e-4, "{z}");
@@ -366,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    fn folded_sums_are_the_plain_ones() {
+    fn folded_sums_agree_with_direct_sums() {
         let (degree, places) = (9, PLACES * 9);
         let counts: Vec<u32> = (0..places as u32)
             .map(|p| (p * p * 7 + 3 * p) % 11)

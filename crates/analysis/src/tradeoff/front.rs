@@ -103,7 +103,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(512))]
 
         #[test]
-        fn it_is_what_the_definition_says(
+        fn the_front_agrees_with_its_definition(
             choices in (1..5_usize).prop_flat_map(|n| prop::collection::vec(prop::collection::vec(cost(), n), 0..40)),
         ) {
             prop_assert_eq!(front(&choices), slow(&choices));
@@ -114,7 +114,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(512))]
 
         #[test]
-        fn within_spread_too(
+        fn the_front_within_spread_agrees_with_its_definition(
             choices in prop::collection::vec((prop::array::uniform2(cost()), prop::array::uniform2(0.0..2.0_f64)), 0..30),
         ) {
             let middles: Vec<Vec<f64>> = choices.iter().map(|(c, _)| c.to_vec()).collect();
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_told_apart_is_on_the_front() {
+    fn indistinguishable_choices_are_on_the_front() {
         let middles = [vec![1.00, 5.0], vec![1.01, 5.0], vec![2.0, 5.0]];
         let bests = [vec![0.99, 5.0], vec![0.98, 5.0], vec![1.9, 5.0]];
         assert_eq!(front_within_spread(&middles, &bests), [true, true, false]);
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn the_middle_of_a_hollow_curve_is_on_it_and_what_lies_behind_is_not() {
+    fn dominated_choices_are_not_on_the_front() {
         let choices = [[1.0, 4.0], [2.0, 2.0], [4.0, 1.0], [3.0, 3.0], [2.0, 2.0]];
         let choices: Vec<Vec<f64>> = choices.iter().map(|c| c.to_vec()).collect();
         assert_eq!(front(&choices), [true, true, true, false, true]);

@@ -87,7 +87,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_page_stands_alone_and_has_every_choice() {
+    fn the_page_is_self_contained_and_has_every_choice() {
         let report = example();
         let page = self::page(&report);
         for outside in ["http:", "https:", "src=", "<script", "<link", "@import"] {

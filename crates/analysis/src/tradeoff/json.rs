@@ -109,7 +109,7 @@ mod tests {
     /// The whole format: a key that is renamed, added or removed fails here, and [`SCHEMA`] must
     /// increase.
     #[test]
-    fn the_shape_is_as_programs_know_it() {
+    fn the_json_structure_is_stable() {
         let mut report = example();
         report.studies[0].rows.truncate(2);
         let json = serde_json::to_value(self::report(&report)).unwrap();

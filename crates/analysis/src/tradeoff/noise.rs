@@ -26,7 +26,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_noise_has_the_deviation_it_should() {
+    fn noise_has_the_specified_standard_deviation() {
         let mut noise = SeededNoise(7);
         let drawn: Vec<f64> = (0..20_000).map(|_| noise.normal()).collect();
         let n = drawn.len() as f64;

@@ -310,7 +310,7 @@ mod tests {
 
     /// The paper's figures, with 0.80 s for 45 degrees and no ramps.
     #[test]
-    fn the_papers_resolutions_come_out() {
+    fn resolutions_match_the_paper() {
         let vlp = PatternLidar::vlp_16();
         let fast = sweep(56.25, f64::INFINITY);
         assert!(close(fast.duration_s(), 0.8, 1e-12));
@@ -333,7 +333,7 @@ mod tests {
     /// With the drive's factory ramps of 500 deg/s2 the same sweep takes 0.8 s of way and 112.5 ms
     /// more.
     #[test]
-    fn ramps_make_it_longer_and_a_short_way_is_a_triangle() {
+    fn ramps_lengthen_the_sweep_and_short_sweeps_are_triangular() {
         let fast = sweep(56.25, 500.0);
         assert!(close(fast.duration_s(), 0.9125, 1e-12));
         assert!(close(fast.angle_deg(0.1125), -0.5 * 56.25 * 0.1125, 1e-12));
@@ -353,7 +353,7 @@ mod tests {
     /// revolution apart. In the middle sixteen lasers fill each other's gaps, unless their 2
     /// degrees are a multiple of the tilt per revolution: then their lines coincide.
     #[test]
-    fn gaps_are_a_turns_tilt_unless_the_lasers_fill_them() {
+    fn gaps_are_the_tilt_of_one_revolution_unless_lasers_fill_them() {
         let vlp = PatternLidar::vlp_16();
         for (speed, field, middle) in [
             (1.0, 0.1, 0.1),
@@ -382,7 +382,7 @@ mod tests {
 
         /// Searches for a line from every place of a fine ladder of elevations.
         #[test]
-        fn gaps_are_what_a_fine_ladder_finds(speed_deg_s in 3.0..60.0_f64, phase in 0.0..1.0_f64) {
+        fn gaps_agree_with_a_search_on_a_fine_grid(speed_deg_s in 3.0..60.0_f64, phase in 0.0..1.0_f64) {
             let (vlp, sweep) = (PatternLidar::vlp_16(), sweep(speed_deg_s, 500.0));
             let gaps = vlp.gaps_at(&sweep, phase);
             let passes = (0..).map(|k| (f64::from(k) + phase) / 10.0);
@@ -464,7 +464,7 @@ mod tests {
     }
 
     #[test]
-    fn the_widest_circle_is_what_trying_everything_finds() {
+    fn the_widest_circle_agrees_with_an_exhaustive_search() {
         for speed in [56.25, 7.0] {
             let (vlp, sweep) = (PatternLidar::vlp_16(), sweep(speed, 500.0));
             let fast = vlp.widest_circle_deg(&sweep, 10.0);
@@ -477,7 +477,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(64))]
 
         #[test]
-        fn the_way_is_the_area_under_the_speed(
+        fn the_distance_is_the_area_under_the_speed(
             way_deg in 0.1..90.0_f64, speed_deg_s in 0.05..90.0_f64, accel_deg_s2 in 1.0..5_000.0_f64,
         ) {
             let sweep = TiltSweep { way_deg, speed_deg_s, accel_deg_s2 };
@@ -494,7 +494,7 @@ mod tests {
         }
 
         #[test]
-        fn the_order_goes_through_all(n in 1..2_000_u64) {
+        fn the_stride_order_visits_every_index(n in 1..2_000_u64) {
             let order = StrideOrder::new(n);
             let mut seen = vec![false; n as usize];
             for i in 0..n {

@@ -114,7 +114,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_findings_are_those_of_the_pattern() {
+    fn findings_match_the_pattern() {
         let mut clock = || Stamp::from_nanos(0);
         let mut bench = Bench {
             clock: &mut clock,

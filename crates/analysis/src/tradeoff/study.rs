@@ -572,7 +572,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn fronts_are_marked_by_number_and_said() {
+    fn fronts_are_marked_by_number_and_described() {
         let report = example();
         let findings = &report.studies[0];
         assert_eq!(findings.marks(), ["1", "1,2", "1,2", "2"]);
@@ -584,7 +584,7 @@ mod tests {
     }
 
     #[test]
-    fn where_groups_are_apart_each_has_its_front() {
+    fn separate_groups_have_separate_fronts() {
         let mut report = example();
         let findings = &mut report.studies[0];
         findings.trades.truncate(1);
@@ -602,7 +602,7 @@ mod tests {
     }
 
     #[test]
-    fn a_quick_look_and_a_debug_build_are_said() {
+    fn quick_runs_and_debug_builds_are_reported() {
         let mut report = example();
         assert_eq!(report.cautions().len(), 1);
         report.machine.build = "debug";

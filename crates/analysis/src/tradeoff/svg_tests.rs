@@ -5,7 +5,7 @@ use super::*;
 use crate::draw::xml::elements;
 
 #[test]
-fn a_figure_is_well_formed_and_has_every_choice_in_every_plot() {
+fn the_figure_is_well_formed_and_has_every_choice_in_every_plot() {
     let report = example();
     let findings = &report.studies[0];
     let svg = figure(findings);
@@ -30,7 +30,7 @@ fn a_figure_is_well_formed_and_has_every_choice_in_every_plot() {
 }
 
 #[test]
-fn everything_is_inside_the_figure() {
+fn all_elements_are_inside_the_figure() {
     let report = example();
     let svg = figure(&report.studies[0]);
     let numbers = |name: &str| -> Vec<f64> {
@@ -47,7 +47,7 @@ fn everything_is_inside_the_figure() {
 }
 
 #[test]
-fn what_is_not_a_number_is_left_out_of_the_figure() {
+fn nan_values_are_left_out_of_the_figure() {
     let mut report = example();
     let findings = &mut report.studies[0];
     findings.rows[3].values[1] = Measurement::Computed(f64::NAN);
@@ -61,6 +61,6 @@ fn what_is_not_a_number_is_left_out_of_the_figure() {
 
 #[test]
 #[should_panic(expected = "in /svg")]
-fn the_check_finds_tags_that_do_not_match() {
+fn mismatched_tags_are_detected() {
     elements("<svg><g><path/></svg></g>");
 }

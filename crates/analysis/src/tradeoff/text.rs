@@ -148,7 +148,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_table_stands_in_its_columns() {
+    fn table_columns_are_aligned() {
         let expected = "
                                   worst
                                  error,
@@ -166,7 +166,7 @@ bad <&> way     21 (18.9..35.7)       1      9      2";
     }
 
     #[test]
-    fn long_names_go_over_several_lines() {
+    fn long_names_are_wrapped() {
         let mut report = example();
         let long = "a way whose name is so long that it would leave no room at all for what was measured of it";
         report.studies[0].rows[0].name = long.to_owned();

@@ -117,7 +117,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn middle_and_ends_of_measurements() {
+    fn timings_have_median_minimum_and_maximum() {
         let odd = TimingSpread::of(vec![3.0, 1.0, 2.0]);
         assert_eq!((odd.median, odd.min, odd.max, odd.runs), (2.0, 1.0, 3.0, 3));
         let even = TimingSpread::of(vec![4.0, 1.0, 2.0, 9.0]).times(10.0);
@@ -127,7 +127,7 @@ mod tests {
 
     /// Two works that advance the clock themselves by 3 us and 1 ms.
     #[test]
-    fn short_work_is_repeated_and_each_round_begins_with_another() {
+    fn short_work_is_repeated_and_rounds_rotate_their_order() {
         let now = Cell::new(0_i64);
         let log = RefCell::new(Vec::new());
         let work = |name: char, ns: i64| -> Work<'_, Infallible> {
@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn work_that_fails_ends_it() {
+    fn failing_work_ends_the_measurement() {
         let mut calls = 0;
         let mut works: [Work<'_, &str>; 1] = [Box::new(|| {
             calls += 1;

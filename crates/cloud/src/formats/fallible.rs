@@ -138,7 +138,7 @@ mod tests {
     use crate::tests::samples::SmallDisk;
 
     #[test]
-    fn after_the_first_error_writes_are_pretended() {
+    fn writes_after_the_first_error_are_skipped() {
         let (mut output, fault) = FallibleOutput::new(SmallDisk::new(5));
         output.write_all(b"1234").unwrap();
         assert!(fault.get().is_none());

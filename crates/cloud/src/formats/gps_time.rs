@@ -68,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn a_known_instant_of_2018() {
+    fn gps_time_matches_a_known_instant_of_2018() {
         // 2018-09-18 00:00:00 UTC is GPS week 2019, second 172,818.
         let gps_s = 2019.0 * 604_800.0 + 172_818.0;
         assert_eq!(at_s(1_537_228_800), gps_s - 1e9);
@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn the_leap_second_of_2017_is_one_more_second() {
+    fn the_leap_second_of_2017_adds_a_second() {
         assert_eq!(at_s(1_483_228_800) - at_s(1_483_228_799), 2.0);
         assert!(LEAPS_UNIX_S.is_sorted());
     }

@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn every_format_writes_what_its_writer_was_given() {
+    fn every_format_writes_the_points_of_its_writer() {
         for format in Format::ALL {
             let file = samples::SharedOutput::default();
             let mut sink = format.writer(file.clone(), Fields::FILE);

@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn an_organised_cloud_has_its_rows() {
+    fn an_organised_cloud_has_rows() {
         let (head, _) = parsed(&written(4, &cloud(12)));
         assert!(head.contains(&("WIDTH".to_owned(), "3".to_owned())));
         assert!(head.contains(&("HEIGHT".to_owned(), "4".to_owned())));

@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn strings_end_with_a_zero_that_counts() {
+    fn string_lengths_include_the_terminating_zero() {
         let mut cdr = Cdr::new();
         cdr.string("ab");
         cdr.string("");

@@ -228,7 +228,7 @@ mod tests {
 
     /// The messages equal those of a recording, bit for bit, for any batches.
     #[test]
-    fn clouds_are_those_of_a_recording() {
+    fn clouds_equal_those_of_a_recording() {
         let mut writer = McapWriter::new(Cursor::new(Vec::new()));
         fed(&mut writer, 100);
         let bytes = writer.into_inner().unwrap().into_inner();
@@ -255,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn an_error_of_the_receiver_ends_it() {
+    fn an_error_of_the_receiver_ends_the_stream() {
         let mut sink = Clouds::new(Frames::default(), |_| {
             Err(SinkError::Order {
                 format: FORMAT,

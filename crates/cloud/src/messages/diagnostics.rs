@@ -29,7 +29,7 @@ mod tests {
     use crate::tests::cdr_reader::Reader;
 
     #[test]
-    fn diagnostics_are_read_back() {
+    fn diagnostics_round_trip() {
         let check = |level, values| Diagnostic {
             name: "clock".into(),
             level,

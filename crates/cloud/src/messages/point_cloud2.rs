@@ -301,7 +301,7 @@ mod tests {
     }
 
     #[test]
-    fn the_default_fields_are_the_velodyne_drivers() {
+    fn default_fields_match_the_velodyne_driver() {
         let cloud = samples::cloud_from(100, START_NS);
         let mut message = CloudMessage::new(Fields::FILE);
         // In three batches, the middle one empty.
@@ -340,7 +340,7 @@ mod tests {
     }
 
     #[test]
-    fn every_column_has_a_place() {
+    fn every_column_has_a_field() {
         let cloud = samples::cloud_from(3, START_NS);
         let mut message = CloudMessage::new(Fields::ALL);
         message.push(&cloud, 0..3, "lidar").unwrap();

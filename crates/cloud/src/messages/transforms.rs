@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn the_tilt_is_that_of_eq_4_to_6() {
+    fn the_tilt_transform_agrees_with_eq_4_to_6() {
         for degrees in [-90.0, -45.0, 0.0, 12.3, 180.0] {
             let placed =
                 Mount::new(Metres(0.0)).place([1.0, 2.0, 3.0], Tilt::new(Degrees(degrees)));
@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn forward_is_ros_x_and_left_is_ros_y() {
+    fn forward_is_x_and_left_is_y_in_ros() {
         assert!(close(
             turned(Rotation::to_ros(), [0.0, 1.0, 0.0]),
             [1.0, 0.0, 0.0]
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn a_prefix_is_before_every_name() {
+    fn the_prefix_precedes_every_frame_name() {
         let frames = Frames::with_prefix("left/");
         let mut names = vec![frames.of_clouds(true), frames.of_clouds(false)];
         let fixed = frames.fixed(Some(Metres(0.06)));
@@ -197,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn transforms_are_read_back() {
+    fn transforms_round_trip() {
         let mut cdr = Cdr::new();
         let stamp = Time { sec: 1, nanosec: 2 };
         let mount = Transform {

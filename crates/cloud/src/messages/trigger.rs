@@ -23,7 +23,7 @@ mod tests {
     use crate::tests::cdr_reader::Reader;
 
     #[test]
-    fn an_answer_is_read_back() {
+    fn trigger_responses_round_trip() {
         let mut cdr = Cdr::new();
         trigger_response(&mut cdr, true, "scan-1");
         let mut reader = Reader::new(cdr.bytes());

@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_not_requested_get_no_room() {
+    fn columns_not_requested_are_not_allocated() {
         let mut points = Points::new(Fields::RING);
         let rows = points.spare::<64>().unwrap();
         assert!(rows.ring.is_some() && rows.time.is_none() && rows.tilt_deg.is_none());

@@ -100,7 +100,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(128))]
 
     #[test]
-    fn columns_asked_for_are_kept_and_the_others_stay_empty(
+    fn requested_columns_are_kept_and_others_stay_empty(
         fields in any_fields(),
         given in prop::collection::vec(any_point(), 0..40),
     ) {
@@ -118,7 +118,7 @@ proptest! {
     }
 
     #[test]
-    fn appending_batches_is_pushing_their_points(
+    fn appending_batches_equals_pushing_their_points(
         fields in any_fields(),
         wider in any_fields(),
         given in prop::collection::vec(any_point(), 0..40),
@@ -142,7 +142,7 @@ proptest! {
 }
 
 #[test]
-fn a_batch_without_a_column_is_refused_whole() {
+fn a_batch_with_a_missing_column_is_refused_entirely() {
     let mut whole = Points::new(Fields::TIME);
     let mut batch = Points::new(Fields::RING);
     batch.push(Point::default());

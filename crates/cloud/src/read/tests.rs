@@ -23,7 +23,7 @@ fn written(format: Format, points: &crate::Points) -> Vec<u8> {
 }
 
 #[test]
-fn messages_are_read_back() {
+fn messages_round_trip() {
     let points = cloud(3_000);
     for format in Format::ALL {
         let bytes = written(format, &points);
@@ -78,7 +78,7 @@ fn changed_bytes_never_panic() {
 }
 
 #[test]
-fn other_programs_ply() {
+fn ply_files_of_other_programs_are_read() {
     let little = |rest: &[u8]| {
         let mut bytes = b"ply\nformat binary_little_endian 1.0\ncomment by hand\nelement camera 1\nproperty list uchar short view\nelement vertex 2\nproperty uchar red\nproperty double z\nproperty float x\nproperty short y\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n".to_vec();
         bytes.extend(rest);
@@ -104,7 +104,7 @@ fn other_programs_ply() {
 }
 
 #[test]
-fn other_programs_pcd() {
+fn pcd_files_of_other_programs_are_read() {
     let head = "# .PCD v.7\nVERSION .7\nFIELDS rgb x y z\nSIZE 1 4 4 4\nTYPE U F F F\nCOUNT 3 1 1 1\nWIDTH 3\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 3\n";
     let expected = [[1.5, -2.0, 3.25], [0.0, 7.0, -0.5]];
     let text = format!("{head}DATA ascii\n1 2 3 1.5 -2 3.25\n0 0 0 nan nan nan\n0 0 0 0 7 -0.5\n");
@@ -134,7 +134,7 @@ fn other_programs_pcd() {
 }
 
 #[test]
-fn other_programs_text() {
+fn text_files_of_other_programs_are_read() {
     for text in [
         "1,2,3\n4,5,6\n",
         "1 2 3\n\n4 5 6",
@@ -215,7 +215,7 @@ fn errors_name_offset_and_content() {
 
 /// Rows without a place are left out and counted, whatever the format that can have them.
 #[test]
-fn non_finite_rows_are_left_out_and_counted() {
+fn non_finite_rows_are_skipped_and_counted() {
     let ply = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\nnan nan nan\n4 inf 6\n7 8 9\n";
     let pcd = "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 4\nHEIGHT 1\nPOINTS 4\nDATA ascii\n1 2 3\nnan nan nan\n4 inf 6\n7 8 9\n";
     let csv = "x,y,z\n1,2,3\nnan,NaN,nan\n4,inf,6\n7,8,9\n";

@@ -121,7 +121,7 @@ fn rihs01(name: &str, all: &BTreeMap<String, Vec<Field>>) -> String {
 }
 
 #[test]
-fn hashes_of_messages_are_those_of_their_definitions() {
+fn message_hashes_match_their_definitions() {
     for topic in Topic::ALL {
         let kind = topic.message_type();
         assert_eq!(rihs01(kind.name, &types(&kind)), kind.hash, "{}", kind.name);
@@ -131,7 +131,7 @@ fn hashes_of_messages_are_those_of_their_definitions() {
 /// A service is hashed as the type that holds a request, a response and an event; the event is made
 /// for every service alike.
 #[test]
-fn the_hash_of_the_service_is_that_of_its_definition() {
+fn the_service_hash_matches_its_definition() {
     let (request, response) = TRIGGER.definition.split_once("---\n").unwrap();
     let name = TRIGGER.name;
     let of = |part: &str| format!("{name}_{part}");

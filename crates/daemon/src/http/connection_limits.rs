@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn a_host_has_its_share_and_its_own_oldest_revoked() {
+    fn a_host_over_its_share_loses_its_oldest_connection() {
         let limits = ConnectionLimits::new(CONNECTIONS);
         let other = limits.enter(host(1)).unwrap();
         let all: Vec<ConnectionSlot> = (0..3 * SHARE)
@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn where_all_slots_are_taken_who_has_shown_least_revoked() {
+    fn the_least_trusted_connection_is_revoked_when_all_slots_are_taken() {
         let limits = ConnectionLimits::new(4);
         let all: Vec<ConnectionSlot> = (0..4).map(|_| limits.enter(None).unwrap()).collect();
         all[0].connection.raise(Trust::Token);

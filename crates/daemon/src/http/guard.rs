@@ -237,7 +237,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_of_this_machine_are_recognised() {
+    fn host_names_of_this_machine_are_recognised() {
         let own: IpAddr = "127.0.0.1".parse().unwrap();
         for host in [
             "localhost",

@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn the_description_has_every_route_and_no_other() {
+    fn the_description_lists_exactly_the_routes() {
         let described: serde_json::Value = serde_json::from_str(page::OPENAPI).unwrap();
         let paths = described["paths"].as_object().unwrap();
         let devices = device_routes();
@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn the_description_has_every_format() {
+    fn the_description_lists_every_format() {
         let described: serde_json::Value = serde_json::from_str(page::OPENAPI).unwrap();
         let parameters = &described["paths"]["/api/v1/scans/{id}/cloud"]["get"]["parameters"];
         let format = parameters
@@ -271,7 +271,7 @@ mod tests {
     }
 
     #[test]
-    fn every_reference_of_the_description_is_there() {
+    fn every_reference_in_the_description_resolves() {
         let described: serde_json::Value = serde_json::from_str(page::OPENAPI).unwrap();
         let mut references = Vec::new();
         collect(&described, &mut references);

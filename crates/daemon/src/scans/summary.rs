@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn whole_sentences_without_places() {
+    fn summaries_are_complete_sentences_without_paths() {
         let stopped = || Failure::new(Kind::Interrupted, "stopped by the user");
         let full = || {
             let message = format!("the cloud {PLACE}/cloud.ply could not be written: disk full");

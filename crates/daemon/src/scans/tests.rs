@@ -17,7 +17,7 @@ fn finished(scans: &Scans, name: Option<&str>) -> String {
 }
 
 #[test]
-fn what_is_newest_does_not_hang_on_the_clock() {
+fn the_newest_scan_does_not_depend_on_the_clock() {
     let folder = tempfile::tempdir().unwrap();
     let scans = Scans::open(folder.path()).unwrap();
     let ids: Vec<String> = (0..4).map(|_| finished(&scans, None)).collect();
@@ -45,7 +45,7 @@ fn what_is_newest_does_not_hang_on_the_clock() {
 }
 
 #[test]
-fn what_cannot_be_read_is_shown_and_left_as_it_is() {
+fn unreadable_scans_are_listed_and_left_unchanged() {
     let folder = tempfile::tempdir().unwrap();
     let scans = Scans::open(folder.path()).unwrap();
     let (later, strange) = (finished(&scans, None), finished(&scans, None));
@@ -95,7 +95,7 @@ fn what_cannot_be_read_is_shown_and_left_as_it_is() {
 }
 
 #[test]
-fn the_folder_is_the_truth() {
+fn the_list_of_scans_follows_the_folder() {
     let folder = tempfile::tempdir().unwrap();
     let scans = Scans::open(folder.path()).unwrap();
     let (first, second) = (finished(&scans, Some("hall")), finished(&scans, None));
@@ -110,7 +110,7 @@ fn the_folder_is_the_truth() {
 }
 
 #[test]
-fn an_unfinished_scan_waits_for_its_cloud() {
+fn unfinished_scans_wait_for_their_cloud() {
     let folder = tempfile::tempdir().unwrap();
     let scans = Scans::open(folder.path()).unwrap();
     let with_log = scans.begin(&asked(Some("a")), false).unwrap().head.id;
@@ -132,7 +132,7 @@ fn an_unfinished_scan_waits_for_its_cloud() {
 }
 
 #[test]
-fn the_oldest_go_when_there_are_too_many_and_the_newest_stays() {
+fn the_oldest_scans_are_deleted_over_the_limit_and_the_newest_is_kept() {
     let folder = tempfile::tempdir().unwrap();
     let scans = Scans::open(folder.path()).unwrap();
     let ids: Vec<String> = (0..4).map(|_| finished(&scans, None)).collect();
@@ -145,7 +145,7 @@ fn the_oldest_go_when_there_are_too_many_and_the_newest_stays() {
 }
 
 #[test]
-fn names_cannot_leave_the_folder() {
+fn scan_names_cannot_escape_the_folder() {
     let folder = tempfile::tempdir().unwrap();
     let scans = Scans::open(folder.path()).unwrap();
     for name in ["", "../x", "a/b", "a b", ".", &"x".repeat(61)] {

@@ -35,7 +35,7 @@ fn shape(decoded: &[Decoded]) -> Vec<(u32, usize, Option<u32>)> {
 
 /// Frames in the Communication Guide's format, CRC calculated independently.
 #[test]
-fn golden_requests() {
+fn usb_requests_match_golden_bytes() {
     let mut codec = Codec::usb(1);
     assert_eq!(
         encode(&mut codec, STATUSWORD, ObjectAccess::Read),
@@ -57,7 +57,7 @@ fn golden_requests() {
 }
 
 #[test]
-fn golden_answers() {
+fn usb_answers_match_golden_bytes() {
     let read = [0x90, 2, 0, 4, 0, 0, 0, 0, 0x37, 2, 0, 0, 0x68, 0];
     assert_eq!(shape(&decode(&read)), [(0, 2, Some(0x237))]);
     let written = [0x90, 2, 0, 2, 0, 0, 0, 0, 0x40, 0x8B];
@@ -67,21 +67,21 @@ fn golden_answers() {
 }
 
 #[test]
-fn an_echo_is_no_answer() {
+fn an_echo_is_not_an_answer() {
     let mut codec = Codec::usb(1);
     let echo = encode(&mut codec, STATUSWORD, ObjectAccess::Read);
     assert_eq!(decode(&echo), [Decoded::Foreign]);
 }
 
 #[test]
-fn a_wrong_checksum_is_told() {
+fn a_wrong_checksum_is_reported() {
     let read = [0x90, 2, 0, 4, 0, 0, 0, 0, 0x36, 2, 0, 0, 0x68, 0];
     assert_eq!(decode(&read), [Decoded::Damaged]);
 }
 
 /// A known defect of other clients: reception fails if the last data byte, or any other, is 0x90.
 #[test]
-fn stuffing_at_every_position() {
+fn stuffing_is_handled_at_every_position() {
     for place in 0..4 {
         for others in [0u32, 0x0101_0101, 0x9090_9090, 0x0290_0290] {
             let value = others & !(0xFF << (8 * place)) | 0x90 << (8 * place);
@@ -108,7 +108,7 @@ fn stuffing_at_every_position() {
 
 /// The dialogue of the Communication Guide, "RS232 Communication": reading the statusword.
 #[test]
-fn golden_rs232() {
+fn rs232_read_frames_match_golden_bytes() {
     let mut codec = Codec::new(DriveLink::Rs232, 1);
     assert_eq!(encode(&mut codec, STATUSWORD, ObjectAccess::Read), [0x10]);
     assert!(!codec.is_ready());
@@ -132,7 +132,7 @@ fn golden_rs232() {
 }
 
 #[test]
-fn golden_rs232_write() {
+fn rs232_write_frames_match_golden_bytes() {
     let mut codec = Codec::new(DriveLink::Rs232, 1);
     let opcode = encode(
         &mut codec,
@@ -151,7 +151,7 @@ fn golden_rs232_write() {
 }
 
 #[test]
-fn rs232_refusals_are_told_and_end_the_dialogue() {
+fn rs232_refusals_are_reported_and_end_the_exchange() {
     for accepted in [false, true] {
         let mut codec = Codec::new(DriveLink::Rs232, 1);
         encode(&mut codec, STATUSWORD, ObjectAccess::Read);
@@ -168,7 +168,7 @@ fn rs232_refusals_are_told_and_end_the_dialogue() {
 }
 
 #[test]
-fn rs232_comes_back_after_a_flush_and_quiet() {
+fn rs232_recovers_after_a_flush_and_silence() {
     let mut codec = Codec::new(DriveLink::Rs232, 1);
     for failure in 1..=3 {
         encode(&mut codec, STATUSWORD, ObjectAccess::Read);
@@ -193,7 +193,7 @@ fn rs232_comes_back_after_a_flush_and_quiet() {
 
 /// SDO requests and responses (CiA 301, "SDO services").
 #[test]
-fn golden_can() {
+fn can_frames_match_golden_bytes() {
     let mut codec = Codec::new(DriveLink::Can, 1);
     let frame =
         |id: [u8; 2], data: [u8; 8]| [&[0, 0, id[0], id[1], 8, 0, 0, 0][..], &data].concat();
@@ -238,7 +238,7 @@ fn golden_can() {
 
 /// The device name of the guide's example, in segments.
 #[test]
-fn golden_can_segments() {
+fn can_segments_match_golden_bytes() {
     let mut codec = Codec::new(DriveLink::Can, 1);
     let name = Address::new(0x1008, 0);
     let open = encode(
@@ -272,7 +272,7 @@ fn golden_can_segments() {
 
 proptest! {
     #[test]
-    fn any_bytes_are_taken(bytes in proptest::collection::vec(any::<u8>(), 0..600)) {
+    fn arbitrary_bytes_are_accepted(bytes in proptest::collection::vec(any::<u8>(), 0..600)) {
         for link in [DriveLink::Usb, DriveLink::Rs232, DriveLink::Can] {
             let mut codec = Codec::new(link, 1);
             codec.encode(STATUSWORD, ObjectAccess::Read, at(500));

@@ -50,7 +50,7 @@ fn sweeping(link: DriveLink, after: Span) -> Rig {
 }
 
 #[test]
-fn bursts_are_survived() {
+fn damage_in_bursts_is_survived() {
     for link in [DriveLink::Usb, DriveLink::Rs232] {
         for damage in DAMAGES {
             for (k, burst) in (0..).zip([2, 20, 50, 75, 100]) {
@@ -136,7 +136,7 @@ fn silence_ends_the_sweep_without_extra_time() {
 
 /// A heartbeat with an unknown state is a damaged one: SLCAN has no checksum.
 #[test]
-fn a_damaged_heartbeat_ends_nothing() {
+fn a_damaged_heartbeat_is_ignored() {
     let mut rig = sweeping(DriveLink::Can, Span::from_millis(600));
     let mut n = 0;
     rig.fake.distort = Box::new(move |_, mut bytes| {

@@ -40,7 +40,7 @@ fn the_stream_is_sampled_at_1_khz_with_none_lost() {
 }
 
 #[test]
-fn the_stream_goes_on_while_the_state_is_asked_for() {
+fn the_stream_continues_while_the_state_is_read() {
     let mut rig = homed();
     rig.run(DriveCommand::Sweep(to(-15.0))).unwrap();
     let moving: Vec<_> = rig
@@ -75,7 +75,7 @@ fn a_drive_that_refuses_the_mapping_is_polled() {
 }
 
 #[test]
-fn a_refused_inhibit_time_does_not_cost_the_stream() {
+fn a_refused_inhibit_time_keeps_the_stream() {
     let mut rig = can();
     rig.fake.refuses = vec![(0x1800, 3)];
     let Ok(CommandOutcome::Connected(connected)) = rig.run(DriveCommand::Connect) else {
@@ -110,7 +110,7 @@ fn a_stalled_stream_is_replaced_by_polls() {
 }
 
 #[test]
-fn lost_and_repeated_frames_of_the_stream_leave_the_others_right() {
+fn lost_and_repeated_stream_frames_do_not_affect_the_others() {
     let mut rig = homed();
     rig.fake.bus.copies = Box::new(|n| match n % 17 {
         3 => 0,
@@ -134,7 +134,7 @@ fn lost_and_repeated_frames_of_the_stream_leave_the_others_right() {
 }
 
 #[test]
-fn the_drives_own_time_goes_with_each_sample_of_a_log() {
+fn logged_samples_have_the_drives_time() {
     let mut rig = homed();
     rig.run(DriveCommand::Sweep(to(-15.0))).unwrap();
     let observed = rig.observations();
@@ -206,7 +206,7 @@ fn the_host_sends_heartbeats_until_a_stop_is_complete() {
 }
 
 #[test]
-fn between_commands_the_host_may_be_silent() {
+fn the_host_may_be_silent_between_commands() {
     let mut rig = homed();
     rig.run(DriveCommand::Goto(to(0.0))).unwrap();
     rig.now += Span::from_secs(30);
@@ -216,7 +216,7 @@ fn between_commands_the_host_may_be_silent() {
 }
 
 #[test]
-fn a_silent_heartbeat_in_mid_sweep_stops_it() {
+fn a_missing_heartbeat_in_mid_sweep_stops_the_axis() {
     let mut rig = homed();
     rig.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
     assert_eq!(rig.run_for(Span::from_millis(600)), None);

@@ -72,7 +72,7 @@ fn a_clean_log_gives_the_clients_own_samples() {
 
 /// The drive's time is that of the sample: 120 us after the SYNC here.
 #[test]
-fn the_drives_time_is_that_of_the_position() {
+fn the_drives_time_belongs_to_the_position() {
     let Recorded { samples, .. } = recorded(DriveLink::Can);
     for sample in samples {
         let latched = sample.request + Span::from_micros(120);

@@ -34,7 +34,7 @@ fn moving() -> Rig {
 }
 
 #[test]
-fn a_fault_in_mid_sweep_is_named_and_the_axis_made_safe() {
+fn a_fault_in_mid_sweep_is_named_and_the_axis_is_made_safe() {
     let mut rig = moving();
     let at = rig.now + Span::from_millis(10);
     rig.fake.fault_at = Some((at, 0xFF07));
@@ -57,7 +57,7 @@ fn a_fault_in_mid_sweep_is_named_and_the_axis_made_safe() {
 }
 
 #[test]
-fn a_blocked_axis_is_given_up_after_the_planned_time() {
+fn a_move_of_a_blocked_axis_fails_after_the_planned_time() {
     let mut rig = Rig::homed();
     rig.fake.blocked = true;
     let began = rig.now;
@@ -133,7 +133,7 @@ fn a_fault_that_does_not_clear_ends_the_connection() {
 }
 
 #[test]
-fn a_limit_switch_mask_that_does_not_take_prevents_every_move() {
+fn a_limit_switch_mask_that_is_not_accepted_prevents_moves() {
     let mut rig = Rig::new(AxisConfig::default());
     rig.fake.stubborn = vec![(0x2071, 4)];
     let error = rig.run(DriveCommand::Connect).unwrap_err();
@@ -144,7 +144,7 @@ fn a_limit_switch_mask_that_does_not_take_prevents_every_move() {
 }
 
 #[test]
-fn a_drive_that_restarted_in_between_is_noticed_before_it_moves() {
+fn a_restart_between_commands_is_detected_before_the_next_move() {
     let mut rig = Rig::homed();
     rig.fake.objects.insert((0x2071, 4), 8);
     assert!(matches!(
@@ -207,7 +207,7 @@ fn stop_in_mid_sweep_stops() {
 }
 
 #[test]
-fn stop_does_not_wait_for_a_link_that_lost_an_answer() {
+fn stop_does_not_wait_for_a_lost_answer() {
     let mut rig = moving();
     // Every reply is lost until the drive receives a quick stop.
     let mut stopped = false;
@@ -275,7 +275,7 @@ fn a_lost_link_in_mid_sweep_is_reported_as_not_stopped() {
 }
 
 #[test]
-fn lost_answers_to_samples_cost_samples_and_nothing_else() {
+fn lost_answers_to_polls_cost_only_samples() {
     let mut rig = Rig::homed();
     rig.fake.hand = Box::new(|n, request| {
         if is_read(request, 0x6064) && n % 40 == 7 {
@@ -292,7 +292,7 @@ fn lost_answers_to_samples_cost_samples_and_nothing_else() {
 }
 
 #[test]
-fn late_replies_are_used_with_their_true_times() {
+fn late_replies_are_used_with_their_actual_times() {
     let mut rig = Rig::homed();
     rig.fake.hand = Box::new(|n, _| match n % 50 {
         20 => Fate::Late(Span::from_millis(130)),
@@ -339,7 +339,7 @@ fn damage_and_repetition_are_survived() {
 }
 
 #[test]
-fn a_write_whose_answer_is_lost_is_not_repeated() {
+fn a_write_is_not_repeated_when_its_answer_is_lost() {
     let mut rig = Rig::new(AxisConfig::default());
     rig.fake.hand = Box::new(|_, request| {
         if is_write(request, 0x607F, 1500) {
@@ -357,7 +357,7 @@ fn a_write_whose_answer_is_lost_is_not_repeated() {
 }
 
 #[test]
-fn a_sweep_does_not_fail_by_the_last_lost_answer() {
+fn a_lost_last_answer_does_not_fail_the_sweep() {
     let mut rig = Rig::homed();
     assert!(rig.run(DriveCommand::Sweep(to(-15.0))).is_ok());
     let mut lost = 0;

@@ -263,7 +263,7 @@ fn from_home(world: &World, angle_deg: f64) -> MovePlan {
 
 /// A complete capture, from power-on to the brake.
 #[test]
-fn connect_home_sweep_brake() {
+fn connect_home_sweep_and_brake_succeed() {
     let mut world = World::new(NodeConfig::default());
     assert_eq!(world.node.state(), DeviceState::Fault);
     let Ok(CommandOutcome::Connected(connected)) = world.run(DriveCommand::Connect) else {
@@ -299,7 +299,7 @@ fn connect_home_sweep_brake() {
 }
 
 #[test]
-fn samples_are_the_shaft_at_a_time_between_their_stamps() {
+fn samples_are_shaft_positions_between_their_stamps() {
     for link in LINKS {
         let mut world = World::homed_on(link);
         world.run(DriveCommand::Sweep(to(45.0))).unwrap();
@@ -398,7 +398,7 @@ fn a_limit_switch_in_mid_sweep_is_named() {
 }
 
 #[test]
-fn a_restart_in_mid_sweep_is_noticed() {
+fn a_restart_in_mid_sweep_is_detected() {
     for link in LINKS {
         let mut world = World::moving_on(link);
         world.node.power_cycle();
@@ -419,7 +419,7 @@ fn a_restart_in_mid_sweep_is_noticed() {
 }
 
 #[test]
-fn the_whole_story_on_each_link() {
+fn connect_home_sweep_and_brake_succeed_on_each_link() {
     for link in LINKS {
         let mut world = World::on(link, NodeConfig::default());
         let Ok(CommandOutcome::Connected(connected)) = world.run(DriveCommand::Connect) else {
@@ -448,7 +448,7 @@ fn the_whole_story_on_each_link() {
 
 /// Time from the fault to the client's quick stop, although the drive reacts on its own.
 #[test]
-fn faults_in_mid_sweep_are_named_and_answered_within_100_ms() {
+fn faults_in_mid_sweep_are_named_and_handled_within_100_ms() {
     for link in LINKS {
         for error in [
             DeviceError::FOLLOWING,
@@ -496,7 +496,7 @@ fn a_blocked_motor_is_a_following_error() {
 }
 
 #[test]
-fn a_cut_cable_in_mid_sweep_is_told_and_on_can_stops_the_axis() {
+fn a_cut_cable_in_mid_sweep_is_reported_and_stops_the_axis_on_can() {
     for link in LINKS {
         let mut world = World::moving_on(link);
         let at = world.now;
@@ -538,7 +538,7 @@ fn an_axis_whose_answers_are_all_damaged_is_stopped() {
 /// The simulated EPOS2 has no writable object of that length, but it takes the whole transfer
 /// before it aborts.
 #[test]
-fn long_objects_of_the_software_drive_are_read_and_refuse_to_be_written() {
+fn long_objects_of_the_software_drive_are_readable_and_refuse_writes() {
     for link in LINKS {
         let mut world = World::on(link, NodeConfig::default());
         world.run(DriveCommand::Connect).unwrap();
@@ -586,7 +586,7 @@ fn long_objects_of_the_software_drive_are_read_and_refuse_to_be_written() {
 /// A lagging servo arrives some hundredths of a second after its demand, at the end of the axis:
 /// too late for an immediate check.
 #[test]
-fn a_servo_that_lags_is_home_and_arrives() {
+fn a_lagging_servo_homes_and_arrives() {
     for (natural_millihertz, damping_permille) in [(15_000, 700), (15_000, 1_000), (8_000, 1_000)] {
         for link in LINKS {
             let servo = Servo::SecondOrder {

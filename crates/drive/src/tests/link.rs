@@ -137,7 +137,7 @@ fn noise_before_a_reply_does_not_lose_it() {
 }
 
 #[test]
-fn an_urgent_request_does_not_wait_for_the_marker() {
+fn an_urgent_request_does_not_wait_for_the_probe() {
     let mut link = RequestLink::new(Codec::usb(1));
     link.submit(read(0x6064));
     link.transmit(at(0)).unwrap();
@@ -410,7 +410,7 @@ proptest! {
 
     /// With arbitrary input there is no panic, only one request at a time, and every command ends.
     #[test]
-    fn a_client_survives_any_bytes(
+    fn the_client_survives_arbitrary_bytes(
         inputs in proptest::collection::vec(
             prop_oneof![
                 proptest::collection::vec(any::<u8>(), 0..30),

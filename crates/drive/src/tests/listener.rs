@@ -39,7 +39,7 @@ fn a_log_gives_the_clients_samples_writes_and_states() {
 }
 
 #[test]
-fn lost_and_late_answers_leave_the_log_right() {
+fn lost_and_late_answers_do_not_corrupt_the_log() {
     let mut rig = Rig::homed();
     rig.fake.hand = Box::new(|n, request| match n % 31 {
         _ if matches!(
@@ -66,7 +66,7 @@ fn lost_and_late_answers_leave_the_log_right() {
 }
 
 #[test]
-fn a_log_that_starts_in_mid_traffic_is_decoded() {
+fn logs_that_start_in_mid_traffic_are_decoded() {
     let mut rig = Rig::homed();
     rig.run(DriveCommand::Sweep(to(-15.0))).unwrap();
     let all = sampled(&rig.observations());
@@ -79,7 +79,7 @@ fn a_log_that_starts_in_mid_traffic_is_decoded() {
 }
 
 #[test]
-fn requests_to_other_nodes_are_not_ours() {
+fn requests_to_other_nodes_are_ignored() {
     let mut rig = Rig::homed();
     rig.run(DriveCommand::Goto(to(-15.0))).unwrap();
     let mut listener = DriveListener::new(2);
@@ -95,7 +95,7 @@ proptest! {
 
     /// Noise between frames, damaged and missing frames: fewer samples, never wrong ones.
     #[test]
-    fn noise_never_makes_a_sample(
+    fn noise_never_produces_a_sample(
         noise in proptest::collection::vec((any::<prop::sample::Index>(), proptest::collection::vec(any::<u8>(), 0..20), any::<bool>()), 0..20),
         missing in proptest::collection::vec(any::<prop::sample::Index>(), 0..10),
     ) {

@@ -203,7 +203,7 @@ fn direct_writes_are_refused_for_the_controlword_and_while_enabled() {
 /// The bytes that USB doubles, that begin its frames, and that RS232 uses as handshake and answer
 /// opcode, at every position of the data.
 #[test]
-fn every_byte_passes_at_every_position() {
+fn every_byte_value_passes_at_every_position() {
     for link in LINKS {
         let mut rig = rig(link);
         for special in [0x90, 0x02, 0x4F, 0x46, 0x00] {

@@ -12,7 +12,7 @@ fn target(qc: i32) -> (u16, u8, u32) {
 }
 
 #[test]
-fn connect_identifies_clears_and_configures() {
+fn connect_identifies_the_drive_clears_faults_and_configures() {
     let mut rig = Rig::new(AxisConfig::default());
     let Ok(CommandOutcome::Connected(connected)) = rig.run(DriveCommand::Connect) else {
         panic!("{:?}", rig.events)
@@ -55,7 +55,7 @@ fn missing_switches_and_brake_are_not_configured() {
 }
 
 #[test]
-fn connect_brings_an_axis_to_rest_that_another_left_moving() {
+fn connect_stops_an_axis_left_moving() {
     let mut rig = Rig::homed();
     rig.client.start(DriveCommand::Goto(to(45.0))).unwrap();
     assert_eq!(rig.run_for(Span::from_millis(300)), None);
@@ -103,7 +103,7 @@ fn homing_by_current_writes_its_threshold_and_others_do_not() {
 }
 
 #[test]
-fn a_sweep_is_sampled_from_standstill_to_standstill() {
+fn sweeps_are_sampled_from_standstill_to_standstill() {
     let mut rig = Rig::homed();
     let Ok(CommandOutcome::Arrived(arrived)) = rig.run(DriveCommand::Sweep(to(-15.0))) else {
         panic!("{:?}", rig.events)
@@ -152,7 +152,7 @@ fn samples_lie_between_their_stamps() {
 }
 
 #[test]
-fn polling_as_fast_as_answers_come() {
+fn polls_follow_each_answer_immediately() {
     let mut config = AxisConfig::default();
     config.timing.poll_period = Span::ZERO;
     let mut rig = Rig::new(config);
@@ -165,7 +165,7 @@ fn polling_as_fast_as_answers_come() {
 }
 
 #[test]
-fn a_goto_needs_no_standstill_around_it() {
+fn a_goto_does_not_wait_for_standstill() {
     let mut rig = Rig::homed();
     rig.run(DriveCommand::Goto(to(-15.0))).unwrap();
     let samples = rig.samples();
@@ -174,7 +174,7 @@ fn a_goto_needs_no_standstill_around_it() {
 }
 
 #[test]
-fn a_move_to_where_the_axis_stands_arrives() {
+fn a_move_to_the_current_position_arrives() {
     let mut rig = Rig::homed();
     assert!(matches!(
         rig.run(DriveCommand::Goto(to(-60.0))),
@@ -220,7 +220,7 @@ fn status_changes_nothing() {
 }
 
 #[test]
-fn clear_faults_clears() {
+fn clear_faults_clears_the_fault() {
     let mut rig = Rig::new(AxisConfig::default());
     assert_eq!(
         rig.run(DriveCommand::ClearFaults),
@@ -232,7 +232,7 @@ fn clear_faults_clears() {
 }
 
 #[test]
-fn refusals_come_before_the_first_byte() {
+fn refusals_precede_the_first_byte() {
     let mut rig = Rig::homed();
     let fast = crate::MoveCommand {
         speed: Rpm(1501),
@@ -274,7 +274,7 @@ fn moves_need_a_connection_and_a_reference() {
 }
 
 #[test]
-fn one_command_at_a_time() {
+fn only_one_command_runs_at_a_time() {
     let mut rig = Rig::homed();
     rig.client.start(DriveCommand::Goto(to(0.0))).unwrap();
     assert_eq!(
@@ -288,7 +288,7 @@ fn one_command_at_a_time() {
 }
 
 #[test]
-fn the_client_can_live_on_a_thread() {
+fn the_client_is_send() {
     fn sendable<T: Send + 'static>(_: &T) {}
     let mut client = crate::DriveClient::new(AxisConfig::default(), crate::DriveLink::Usb);
     client.start(DriveCommand::Connect).unwrap();

@@ -259,7 +259,7 @@ proptest! {
 
     /// Arbitrary bytes cause no panic, and every command ends.
     #[test]
-    fn any_bytes_end(inputs in proptest::collection::vec(proptest::collection::vec(any::<u8>(), 0..12), 0..60)) {
+    fn arbitrary_bytes_do_not_hang_the_client(inputs in proptest::collection::vec(proptest::collection::vec(any::<u8>(), 0..12), 0..60)) {
         let mut client = DriveClient::new(AxisConfig::default(), DriveLink::Rs232);
         client.start(DriveCommand::Connect).unwrap();
         let mut now = at(0);

@@ -14,7 +14,7 @@ fn hex(text: &str) -> Vec<u8> {
 
 /// Quick stop, then statusword and position; the replies are the guide's examples.
 #[test]
-fn stop_sends_the_frames_of_the_guide() {
+fn stop_sends_the_frames_of_the_communication_guide() {
     let mut client = DriveClient::new(AxisConfig::default(), DriveLink::Usb);
     let mut now = Stamp::from_nanos(0);
     client.start(DriveCommand::Stop).unwrap();

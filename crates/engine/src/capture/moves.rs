@@ -153,12 +153,12 @@ mod tests {
     }
 
     #[test]
-    fn one_sweep_from_home_is_one_move() {
+    fn a_sweep_from_home_is_one_move() {
         assert_eq!(ways(request(), 0.0), [(0.0, -45.0, true)]);
     }
 
     #[test]
-    fn sweeps_one_way_go_back_in_between() {
+    fn one_way_sweeps_return_in_between() {
         let request = SweepRequest {
             sweeps: 2,
             ..request()
@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn both_ways_every_move_is_a_sweep_once_there() {
+    fn every_move_of_both_ways_is_a_sweep_after_the_approach() {
         let request = SweepRequest {
             sweeps: 3,
             both_ways: true,
@@ -198,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_axis_cannot_do_is_refused() {
+    fn moves_beyond_the_axis_are_refused() {
         let tries = [
             SweepRequest {
                 to: Degrees(-45.1),

@@ -431,7 +431,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_listened_for_in_vain_is_said() {
+    fn a_missing_lidar_is_reported_with_address_and_ports() {
         let of = |config: &ListenConfig| silence(config).message;
         assert_eq!(
             of(&ListenConfig::default()),
@@ -451,7 +451,7 @@ mod tests {
     }
 
     #[test]
-    fn a_capture_without_a_cloud_says_where_its_log_is() {
+    fn a_capture_without_a_cloud_reports_its_log() {
         let two = Failure::new(Kind::BadInput, "2 lidars in one recording")
             .help("choose one with --sensor");
         let failure = without_cloud(two, Path::new("hall.pcapng"));

@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn others_need_a_token() {
+    fn remote_addresses_need_a_token() {
         let open = DaemonConfig::default();
         for local in ["127.0.0.1:1", "127.8.0.1:1", "[::1]:1"] {
             assert!(open.check(local.parse().unwrap()).is_ok(), "{local}");
@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn a_token_is_long_enough_and_not_printed() {
+    fn tokens_have_a_minimum_length_and_are_not_printed() {
         assert!(settings("token = 'short'").unwrap_err().contains("16"));
         assert!(settings("token = '0123456789 abcdef'").is_err());
         let settings = settings("token = '0123456789abcdef'").unwrap();

@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_said_is_the_router_of_this_machine_and_no_motion() {
+    fn defaults_are_the_local_router_and_no_motion() {
         let usual = settings("").unwrap();
         assert_eq!(usual.router, "tcp/localhost:7447");
         assert_eq!((usual.domain, usual.namespace.as_str()), (0, "/"));
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn what_can_be_said_is_taken() {
+    fn valid_settings_are_accepted() {
         let said = settings(
             "router = 'tcp/[fe80::1%eth0]:7448'\ndomain = 232\nnamespace = '/left/top_2'\nframe_prefix = 'left/'\n\
              [capture]\nspeed_deg_s = 20.0\nboth_ways = true",
@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_is_refused_with_what_was_expected() {
+    fn invalid_settings_are_refused_with_the_expected_form() {
         for (text, wanted) in [
             ("router = 'localhost:7447'", "tcp/HOST:PORT"),
             ("router = 'udp/localhost:7447'", "tcp/HOST:PORT"),

@@ -1,7 +1,7 @@
 use super::*;
 
 #[test]
-fn the_checkouts_own_file_says_sim_and_nothing_but_defaults() {
+fn the_shipped_file_sets_sim_and_only_defaults() {
     let text = include_str!("../../../../velomotion.toml");
     let config: Config = toml::from_str(text).unwrap();
     assert_eq!(config.device.default.as_deref(), Some("sim"));
@@ -15,7 +15,7 @@ fn the_checkouts_own_file_says_sim_and_nothing_but_defaults() {
 }
 
 #[test]
-fn numbers_that_no_scanner_has_are_refused() {
+fn out_of_range_numbers_are_refused() {
     for (text, key) in [
         ("[mount]\nd_m = nan", "mount.d_m"),
         ("[axis]\nmin_deg = -inf", "axis.min_deg"),
@@ -69,7 +69,7 @@ fn numbers_that_no_scanner_has_are_refused() {
 }
 
 #[test]
-fn a_brake_and_a_switch_that_are_not_named_are_not_there() {
+fn brakes_and_limit_switches_are_absent_by_default() {
     let axis = |text: &str| toml::from_str::<Config>(text).unwrap().axis;
     assert_eq!(axis("").brake_output, None);
     assert_eq!(axis("[axis]\nnode = 2").brake_output, None);
@@ -87,7 +87,7 @@ fn a_brake_and_a_switch_that_are_not_named_are_not_there() {
 }
 
 #[test]
-fn device_is_a_name_or_tables() {
+fn the_device_is_a_name_or_tables() {
     let config: Config = toml::from_str(
         "[device]\ndefault = 'bench'\n[device.bench]\nkind = 'usb'\nport = '/dev/ttyUSB3'",
     )

@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn a_log_gets_exactly_what_came_between_its_turns() {
+    fn a_log_gets_exactly_the_packets_between_start_and_stop() {
         let (hearing, socket) = hearing();
         let send = |n| (0..n).for_each(|_| assert_eq!(socket.send(&[7; 100]).unwrap(), 100));
         send(3);

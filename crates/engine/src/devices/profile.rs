@@ -105,7 +105,7 @@ mod tests {
     use crate::config;
 
     #[test]
-    fn a_gentle_axis_homes_gently() {
+    fn homing_keeps_to_the_acceleration_limit_of_the_axis() {
         let gentle = AxisSettings {
             max_accel_deg_s2: 100.0,
             ..AxisSettings::default()

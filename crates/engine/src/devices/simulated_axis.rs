@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn every_homing_method_finds_the_angle_that_the_configuration_gives() {
+    fn every_homing_method_finds_the_configured_angle() {
         // Method, position of its reference, and where the axis moves from there.
         let cases = [
             (1, -46.0, -45.0),
@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn a_home_switch_keeps_off_an_input_that_has_a_limit_switch() {
+    fn a_home_switch_does_not_use_the_input_of_a_limit_switch() {
         let mut axis = AxisConfig::default();
         assert!(node(&axis).switches[2].is_some());
         axis.limit_switches.positive = Some(HOME_INPUT);

@@ -267,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn slow_subscribers_lag_and_others_miss_nothing() {
+    fn slow_subscribers_lag_without_affecting_others() {
         let events = Arc::new(Events::new(false));
         let mut idle = events.subscribe_client().unwrap();
         let mut reader = events.subscribe_client().unwrap();
@@ -309,7 +309,7 @@ mod tests {
     }
 
     #[test]
-    fn points_are_wanted_while_any_request_is_on() {
+    fn points_are_produced_while_any_request_is_active() {
         let events = Arc::new(Events::new(false));
         let (one, other) = (
             PointsRequest::new(&events, false),

@@ -264,7 +264,7 @@ mod tests {
     use units::{Degrees, Stamp};
 
     #[test]
-    fn the_binary_layout_is_as_documented() {
+    fn the_binary_layout_matches_its_documentation() {
         let mut points = Points::new(fields());
         for number in 0..5_u8 {
             points.push(Point {

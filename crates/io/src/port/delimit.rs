@@ -90,7 +90,7 @@ mod tests {
     ];
 
     #[test]
-    fn frames_back_to_back() {
+    fn adjacent_frames_are_separated() {
         let stream = [&ANSWER[..], &STUFFED, &ANSWER].concat();
         assert_eq!(
             pieces(&stream),
@@ -153,7 +153,7 @@ mod tests {
 
     proptest::proptest! {
         #[test]
-        fn every_byte_is_in_one_piece(bytes in proptest::collection::vec(
+        fn every_byte_is_in_exactly_one_piece(bytes in proptest::collection::vec(
             proptest::prop_oneof![
                 proptest::prelude::Just(0x90_u8), proptest::prelude::Just(2), proptest::prelude::any::<u8>()
             ], 0..200)) {

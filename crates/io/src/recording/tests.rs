@@ -159,7 +159,7 @@ fn frame(ns: i64, link: DriveLink, direction: Direction, frame: &[u8]) -> OwnedR
 }
 
 #[test]
-fn pcap_in_micro_and_nanoseconds_and_both_byte_orders() {
+fn pcap_is_read_in_both_resolutions_and_byte_orders() {
     let data = ethernet(&[], &ip(2368, b"firing"));
     for big_endian in [false, true] {
         for (magic, nanoseconds) in [(0xA1B2_C3D4, false), (0xA1B2_3C4D, true)] {
@@ -263,7 +263,7 @@ fn other_packets_are_counted_by_kind() {
 }
 
 #[test]
-fn faults_name_the_short_layer() {
+fn errors_name_the_truncated_layer() {
     let mut lies = ethernet(&[], &ip(2368, b"lies"));
     lies[39] += 1;
     let (_, _, counts) = read(&pcap(0xA1B2_C3D4, false, 1, &[(6, 0, None, &lies)]));
@@ -283,7 +283,7 @@ fn faults_name_the_short_layer() {
 }
 
 #[test]
-fn pcapng_times_in_every_resolution_and_both_byte_orders() {
+fn pcapng_times_are_read_in_every_resolution_and_byte_order() {
     let data = ethernet(&[], &ip(2368, b"x"));
     let second = 1_700_000_000_i64;
     for big in [false, true] {
@@ -383,7 +383,7 @@ fn pcapng_sections_reset_interfaces_and_other_blocks_are_skipped() {
 }
 
 #[test]
-fn a_can_recording_in_classic_pcap() {
+fn can_recordings_in_classic_pcap_are_read() {
     let answer = [
         0, 0, 5, 0x81, 8, 0, 0, 0, 0x4B, 0x41, 0x60, 0, 0x40, 1, 0, 0,
     ];
@@ -455,7 +455,7 @@ fn other_files_are_described() {
 }
 
 #[test]
-fn real_recordings_have_their_known_content() {
+fn real_recordings_have_the_known_content() {
     let cuts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/recordings");
     let contents = [
         ("vlp16-strongest-gps.pcap", 26, 5),
@@ -469,7 +469,7 @@ fn real_recordings_have_their_known_content() {
 
 #[test]
 #[ignore = "needs the whole recordings"]
-fn whole_recordings_have_their_known_content() {
+fn whole_recordings_have_the_known_content() {
     let folder = std::env::var_os("VELOMOTION_RECORDINGS").map_or_else(
         || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/recordings"),
         PathBuf::from,

@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn cached_offsets_are_those_computed() {
+    fn cached_offsets_equal_computed_ones() {
         for model in [&VLP_16, &VLP_32C] {
             let channels = Geometry::new(model, true, None).channels;
             let mut cache = PaceCache::new(&channels);

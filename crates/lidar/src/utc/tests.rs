@@ -71,7 +71,7 @@ fn the_hour_follows_from_the_fix() {
 }
 
 #[test]
-fn the_hour_changes_on_either_side_first() {
+fn the_hour_may_wrap_first_in_either_clock() {
     // Old sentences, and one of the next second, on both sides of 11:00:00 and of midnight.
     for begin_s in [TEN_59, TEN_59 + 13 * 3_600] {
         for fix_late_s in [-1, 0, 1, 2, 4] {
@@ -177,7 +177,7 @@ fn each_reason_for_no_lock_is_reported_once() {
 }
 
 #[test]
-fn a_lock_without_position_packets_ends() {
+fn the_lock_ends_without_position_packets() {
     let t = TEN_59 * S;
     let mut clock = UtcClock::new();
     clock.data(stamp(t));
@@ -192,7 +192,7 @@ fn a_lock_without_position_packets_ends() {
 }
 
 #[test]
-fn a_clock_set_by_the_first_sentence_is_utc() {
+fn a_clock_set_by_the_first_sentence_gives_utc() {
     // The device's clock is 700 s ahead until it is set by the sentence.
     let t = TEN_59 * S;
     let mut clock = UtcClock::new();

@@ -256,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bus_that_is_slower_one_way_shows_in_the_bound() {
+    fn an_asymmetric_bus_delay_is_within_the_bound() {
         let (stream, truth) = stream(1_000, 17, |_| 70, |_| 30_000);
         let (samples, _) = angle_samples(&stream, gearing());
         assert!(
@@ -268,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn few_samples_are_at_the_middle() {
+    fn few_samples_are_placed_at_the_middle() {
         let (stream, _) = stream(3, 17, |_| 70, |_| 90);
         let (samples, _) = angle_samples(&stream, gearing());
         assert_eq!(samples[1].host.as_nanos(), EPOCH + 1_080_000);

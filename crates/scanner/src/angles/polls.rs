@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sample_is_at_the_middle_of_its_poll() {
+    fn samples_are_at_the_middle_of_their_poll() {
         let (samples, _) = with_shared_sd(&[poll(100, 50)], gearing());
         assert_eq!(samples[0].host.as_nanos(), 125_000);
         assert_eq!(samples[0].bound.as_nanos(), 25_000);
@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slow_poll_on_a_ramp_stays_if_better_than_the_line_across_the_gap() {
+    fn slow_polls_on_a_ramp_are_kept_if_better_than_interpolation() {
         let at = |position, poll| ShaftSample {
             position: Quadcounts(position),
             ..poll
@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn polls_that_all_have_one_round_trip_are_all_kept() {
+    fn polls_of_equal_round_trip_are_all_kept() {
         let polls: Vec<_> = (0..10).map(|i| poll(i * 1_000, 500)).collect();
         assert_eq!(with_shared_sd(&polls, gearing()).0.len(), 10);
         assert!(with_shared_sd(&[], gearing()).0.is_empty());

@@ -55,7 +55,7 @@ fn worst_us(seconds: f64, ppm: f64, mean_us: f64) -> f64 {
 }
 
 #[test]
-fn a_drifting_clock_is_found_under_the_noise() {
+fn a_drifting_clock_is_fitted_below_the_noise() {
     for ppm in [-50.0, 0.0, 50.0] {
         let worst = worst_us(45.0, ppm, 66.0);
         assert!(worst < 5.0, "{ppm} ppm: {worst} us");
@@ -79,7 +79,7 @@ fn one_packet_gives_its_own_offset() {
 }
 
 #[test]
-fn two_packets_do_not_make_a_slope_out_of_jitter() {
+fn two_packets_give_no_slope_from_jitter() {
     // 1 ms of jitter over one packet would be 750,000 ppm.
     let arrivals = [(0, 0), (1_327_104, 2_327_104)].map(|(device, host)| Arrival {
         device: Stamp::from_nanos(device),
@@ -93,7 +93,7 @@ fn two_packets_do_not_make_a_slope_out_of_jitter() {
 }
 
 #[test]
-fn repeated_device_times_take_the_earliest_arrival() {
+fn repeated_device_times_use_the_earliest_arrival() {
     let arrivals = [30, 10, 20].map(|late| Arrival {
         device: Stamp::from_nanos(0),
         host: Stamp::from_nanos(EPOCH + late),

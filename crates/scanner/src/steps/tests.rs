@@ -151,7 +151,7 @@ fn only(timeline: &Timeline) -> ClockStep {
 /// Steps by NTP, a leap second or a user, from 12 ms to a year, both ways, with and without a
 /// polled drive.
 #[test]
-fn the_hosts_clock_is_set() {
+fn a_step_of_the_host_clock_is_found() {
     for poll_us in [Some(2_500), Some(1_000), Some(60_000), None] {
         let recorded = Recorded::new(40, poll_us);
         for by_ms in [
@@ -188,7 +188,7 @@ fn the_hosts_clock_is_set() {
 
 /// Two steps in one recording add up, and may undo each other.
 #[test]
-fn the_hosts_clock_is_set_twice() {
+fn two_steps_of_the_host_clock_are_found() {
     let recorded = Recorded::new(60, Some(2_500));
     for (first, second) in [(S, -S), (S, S), (-90 * S, 25_000_000), (-S, -7_200 * S)] {
         let seen = recorded.stepped(&[(20 * S, first), (41 * S, second)]);
@@ -208,7 +208,7 @@ fn the_hosts_clock_is_set_twice() {
 
 /// Steps in the first and the last second are found too.
 #[test]
-fn the_hosts_clock_is_set_near_the_ends() {
+fn steps_of_the_host_clock_near_the_ends_are_found() {
     let recorded = Recorded::new(20, Some(2_500));
     for when in [S / 4, S, 19 * S, 19 * S + S / 2] {
         for by in [S, -S] {
@@ -228,7 +228,7 @@ fn the_hosts_clock_is_set_near_the_ends() {
 /// The lidar's clock is set by its first pulse, forward or back, or restarts after an outage: it
 /// gets another piece, and host times are not affected.
 #[test]
-fn the_lidars_clock_is_set() {
+fn a_step_of_the_lidar_clock_is_found() {
     for poll_us in [Some(2_500), None] {
         for (by, outage) in [
             (300_700_000, 0),
@@ -348,7 +348,7 @@ fn an_early_packet_is_ignored() {
 
 /// With few packets there are no steps, and nothing panics.
 #[test]
-fn a_handful_of_packets() {
+fn few_packets_have_no_steps() {
     for count in 1..40 {
         let mut recorded = Recorded::new(1, None);
         recorded.packets.truncate(count);

@@ -70,7 +70,7 @@ impl Axis {
 }
 
 #[test]
-fn a_move_from_end_to_end_is_a_sweep_with_its_measured_speed() {
+fn a_move_between_the_limits_is_a_sweep_with_its_measured_speed() {
     let mut axis = Axis::new();
     axis.command(-45.0, 0x1F);
     axis.travel(-45.0, 45.0);
@@ -85,7 +85,7 @@ fn a_move_from_end_to_end_is_a_sweep_with_its_measured_speed() {
 }
 
 #[test]
-fn the_way_back_is_a_sweep_only_if_it_was_planned() {
+fn the_return_move_is_a_sweep_only_if_planned() {
     let mut axis = Axis::new();
     for way in [-45.0, 45.0] {
         axis.command(axis.angle + way, 0x1F);
@@ -102,7 +102,7 @@ fn the_way_back_is_a_sweep_only_if_it_was_planned() {
 }
 
 #[test]
-fn moves_to_the_start_and_homing_are_no_sweeps() {
+fn moves_to_the_start_and_homing_are_not_sweeps() {
     let mut axis = Axis::new();
     axis.angle = -10.0;
     axis.stay(20);
@@ -118,7 +118,7 @@ fn moves_to_the_start_and_homing_are_no_sweeps() {
 }
 
 #[test]
-fn the_approach_from_the_far_end_is_no_sweep_even_both_ways() {
+fn the_approach_from_the_far_end_is_never_a_sweep() {
     let plan = SweepPlan {
         from_deg: -45.0,
         to_deg: 0.0,
@@ -136,7 +136,7 @@ fn the_approach_from_the_far_end_is_no_sweep_even_both_ways() {
 }
 
 #[test]
-fn a_sweep_that_was_cut_short_keeps_the_angle_it_reached() {
+fn an_interrupted_sweep_ends_at_the_angle_it_reached() {
     let mut axis = Axis::new();
     axis.command(-45.0, 0x1F);
     axis.travel(-12.0, 45.0);
@@ -158,7 +158,7 @@ fn a_drive_that_lost_its_position_ends_the_sweep() {
 }
 
 #[test]
-fn an_axis_that_never_moved_made_no_sweep() {
+fn an_axis_at_rest_has_no_sweep() {
     let mut axis = Axis::new();
     axis.command(-45.0, 0x1F);
     axis.stay(100);

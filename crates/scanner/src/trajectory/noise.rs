@@ -109,7 +109,7 @@ mod tests {
     use units::{Span, Stamp};
 
     #[test]
-    fn the_share_of_errors_in_their_bounds_is_found() {
+    fn the_ratio_of_errors_to_their_bounds_is_estimated() {
         // 50 deg/s at 1 kHz, bounds of 0.5 ms; errors of +-0.1 ms alternate irregularly.
         let samples: Vec<_> = (0..2_000i64)
             .map(|i| {

@@ -313,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cubic_comes_back() {
+    fn a_cubic_is_recovered() {
         let motion = |t: f64| 1.0 - 3.0 * t + 2.0 * t * t - 0.7 * t * t * t;
         let fit = fit(&observed(200, 2.0, motion), Stamp::from_nanos(0), 0.0, 2.0).unwrap();
         assert!(worst(&fit, 2.0, motion) < 1e-6);
@@ -353,7 +353,7 @@ mod tests {
     }
 
     #[test]
-    fn the_banded_solution_equals_the_dense_one() {
+    fn the_banded_solution_agrees_with_the_dense_one() {
         use nalgebra::{DMatrix, DVector};
         let count = 12;
         let mut band = Banded::zeros(count);

@@ -24,7 +24,7 @@ fn joined(samples: Vec<AngleSample>, method: Method) -> Option<Trajectory> {
 }
 
 #[test]
-fn lines_go_through_their_samples_and_straight_between_them() {
+fn linear_interpolation_passes_through_its_samples() {
     let linear = joined(vec![at(10, 1.0), at(0, 0.0), at(30, -1.0)], Method::Linear).unwrap();
     let angle = |ns| linear.angle(at_once(ns)).map(|a| a.0);
     assert_eq!(angle(0), Some(0.0));
@@ -84,7 +84,7 @@ fn the_bound_contains_slow_polls_and_gaps() {
 }
 
 #[test]
-fn leaving_one_out_sees_noise_but_not_uniform_motion() {
+fn leave_one_out_detects_noise_but_not_uniform_motion() {
     let all = [(Stamp::from_nanos(0), Stamp::from_nanos(1_000))];
     let smooth = (0..100).map(|i| at(i * 10, i as f64)).collect();
     let rms = joined(smooth, Method::Linear).unwrap().rms_deg(&all);
@@ -98,7 +98,7 @@ fn leaving_one_out_sees_noise_but_not_uniform_motion() {
 
 /// Jitter may bring two stamps together; the speed between them is then arbitrary.
 #[test]
-fn a_cubic_stays_between_its_samples_however_close_their_stamps_are() {
+fn cubics_stay_between_samples_of_close_stamps() {
     let samples = vec![
         at(0, 0.0),
         at(1_000_000, 1.0),

@@ -63,7 +63,7 @@ mod tests {
     use crate::effect_models::testing::at;
 
     #[test]
-    fn the_platform_lags_by_half_the_play_either_way() {
+    fn the_platform_lags_by_half_the_backlash_in_either_direction() {
         let mut backlash = Backlash::new(&BacklashSettings { play_deg: 0.2 }).unwrap();
         let mut platform = |gear: f64| {
             let mut axis = at(gear);

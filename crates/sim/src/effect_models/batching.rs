@@ -68,7 +68,7 @@ mod tests {
     use crate::effects::MessageKind;
 
     #[test]
-    fn packets_wait_for_the_next_look() {
+    fn packets_wait_for_the_next_poll() {
         let mut batching = Batching::new(&BatchingSettings { period_ms: 10.0 }).unwrap();
         let times = |arrived: Vec<LinkMessage>| -> Vec<i64> {
             arrived.iter().map(|message| message.time_ns).collect()

@@ -63,7 +63,7 @@ mod tests {
     use crate::effects::MessageKind;
 
     #[test]
-    fn some_come_twice() {
+    fn the_requested_share_is_duplicated() {
         let settings = DuplicateSettings {
             share: 0.5,
             later_us: 20.0,

@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn the_table_keeps_to_80_columns_and_says_what_was_not_needed() {
+    fn the_table_fits_80_columns_and_lists_unneeded_effects() {
         let used = [
             used("divergence", 0),
             used("range_noise", 10_000),
@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_on_and_nothing_measured() {
+    fn explanations_without_effects_or_timings_are_valid() {
         let nothing = Explanation::new(&[], &[], 0);
         assert_eq!(nothing.absent, EffectsConfig::NAMES);
         assert!(nothing.to_string().starts_with("absent: "));

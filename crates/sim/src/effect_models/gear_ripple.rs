@@ -78,7 +78,7 @@ mod tests {
     use crate::effect_models::testing::at;
 
     #[test]
-    fn the_platform_is_ahead_by_the_ripple_of_the_shaft() {
+    fn the_platform_leads_by_the_ripple_of_the_shaft() {
         let mut gear = UnevenGear::new(&GearRippleSettings {
             amplitude_deg: 0.01,
             per_motor_turn: 2,

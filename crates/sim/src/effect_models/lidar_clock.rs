@@ -99,7 +99,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_fast_clock_shows_more_than_has_passed() {
+    fn a_fast_clock_runs_ahead() {
         let settings = LidarClockSettings {
             drift_ppm: 12.0,
             ..LidarClockSettings::default()
@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn time_wanders_but_never_back() {
+    fn the_clock_wanders_but_never_goes_back() {
         let settings = LidarClockSettings {
             drift_ppm: -1_000.0,
             wander_us: 250.0,

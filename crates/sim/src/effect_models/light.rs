@@ -63,7 +63,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn there_and_back() {
+    fn reflectivity_and_light_round_trip() {
         for reflectivity in 0..=255_u8 {
             let light = of_reflectivity(f64::from(reflectivity));
             assert!((to_reflectivity(light) - f64::from(reflectivity)).abs() < 1e-9);

@@ -67,7 +67,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_goes_clockwise_over_zero_too() {
+    fn the_field_of_view_may_cross_zero() {
         let view = |from_deg, to_deg| {
             LimitedFieldOfView::new(&LimitedFieldOfViewSettings { from_deg, to_deg }).unwrap()
         };

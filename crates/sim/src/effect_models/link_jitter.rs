@@ -114,7 +114,7 @@ mod tests {
     use crate::effect_models::testing::arrivals;
 
     #[test]
-    fn nothing_overtakes_and_the_mean_is_as_asked() {
+    fn jitter_keeps_the_order_and_the_requested_mean() {
         let mut jitter = LinkJitter::new(&LinkJitterSettings::default(), 5).unwrap();
         let sent: Vec<i64> = (0..20_000).map(|number| number * 1_327_104).collect();
         let arrived = arrivals(&mut jitter, MessageKind::Data, &sent);

@@ -70,7 +70,7 @@ mod tests {
     use crate::effects::MessageKind;
 
     #[test]
-    fn as_many_as_asked_are_lost_on_either_link() {
+    fn the_requested_share_is_lost_on_either_link() {
         let settings = LossSettings {
             lidar_share: 0.1,
             drive_share: 1.0,

@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn a_box_is_met_where_it_stands_then() {
+    fn a_moving_box_is_hit_where_it_is_at_that_time() {
         let objects = walker();
         let mut surroundings = around(ball(9.0, 60));
         let mut range_m = |time_s: f64| {

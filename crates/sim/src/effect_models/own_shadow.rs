@@ -120,7 +120,7 @@ mod tests {
     use crate::effect_models::testing::firing;
 
     #[test]
-    fn a_sector_hides_its_azimuths_at_its_tilts() {
+    fn a_sector_blocks_its_azimuths_at_its_tilts() {
         let sector = ShadowSector {
             azimuth_from_deg: 350.0,
             azimuth_to_deg: 10.0,
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn the_base_hides_beams_below() {
+    fn the_base_blocks_beams_below_it() {
         let shadow = OwnShadow::new(&OwnShadowSettings {
             sectors: Vec::new(),
             below_deg: Some(-40.0),

@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_as_large_as_asked_for_and_every_return_has_its_own() {
+    fn range_noise_has_the_requested_deviation_for_each_return() {
         let all = changes(0.02, true);
         assert_eq!(all.len(), 32_000);
         let count = all.len() as f64;

@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn targets_are_seen_as_far_as_they_send_light() {
+    fn targets_are_detected_as_far_as_they_return_enough_light() {
         let reflectance = Reflectance::new(&ReflectanceSettings::default(), 1).unwrap();
         let share =
             |range_m, reflectivity| share_noticed(&reflectance, echo(range_m, reflectivity));
@@ -202,7 +202,7 @@ mod tests {
 
     /// A window returns little diffuse light at an angle, and dazzles head-on.
     #[test]
-    fn glass_is_seen_where_it_faces_the_sensor() {
+    fn glass_returns_only_where_it_faces_the_sensor() {
         let reflectance = Reflectance::new(&ReflectanceSettings::default(), 1).unwrap();
         let seen = |deg: f64, range_m| {
             let pane = Echo {
@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn the_normal_distribution() {
+    fn the_normal_distribution_matches_known_values() {
         for (x, p) in [
             (0.0, 0.5),
             (1.0, 0.841_344_746),

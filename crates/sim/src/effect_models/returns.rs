@@ -37,7 +37,7 @@ mod tests {
     use crate::effect_models::testing::echo;
 
     #[test]
-    fn the_last_or_the_second_strongest() {
+    fn the_second_return_is_the_last_or_the_second_strongest() {
         let of = |pairs: &[(f64, f64)]| {
             let returns: Vec<Return> = (pairs.iter())
                 .map(|&(range_m, strength)| Return {

@@ -138,7 +138,7 @@ mod tests {
 
     /// The lag behind a ramp is 1/w for the first order and 2 z / w for the second.
     #[test]
-    fn behind_a_ramp_by_a_known_time() {
+    fn the_lag_behind_a_ramp_matches_theory() {
         for (damping, lag_s) in [
             (None, 1.0 / (TAU * 20.0)),
             (Some(0.7), 1.4 / (TAU * 20.0)),
@@ -163,7 +163,7 @@ mod tests {
 
     /// The step response of the first order is exponential (the command takes one step).
     #[test]
-    fn first_order_nears_exponentially() {
+    fn a_first_order_servo_approaches_exponentially() {
         let settings = ServoLagSettings {
             frequency_hz: 5.0,
             damping: None,

@@ -137,7 +137,7 @@ fn run_of(simulation: &Simulation, effects: &mut ConfiguredEffects, threads: usi
 }
 
 #[test]
-fn every_effect_has_a_table_here_and_goes_by_its_name() {
+fn every_effect_is_tested_here_under_its_name() {
     let names = TABLES.map(|(name, _)| name);
     assert_eq!(names, EffectsConfig::NAMES);
     for name in names {
@@ -165,7 +165,7 @@ fn the_first_invalid_setting_is_reported() {
 }
 
 #[test]
-fn every_effect_acts_and_all_together_give_the_same_on_any_number_of_threads() {
+fn every_effect_acts_and_threads_do_not_change_the_result() {
     let names = TABLES.map(|(name, _)| name);
     let mut one = configured(&names);
     let alone = run(&mut one, 1);
@@ -184,7 +184,7 @@ fn every_effect_acts_and_all_together_give_the_same_on_any_number_of_threads() {
 
 /// Each effect alone on different numbers of threads, and no effects against an empty list.
 #[test]
-fn one_seed_one_result() {
+fn equal_seeds_give_equal_results() {
     let nothing = run(&mut ConfiguredEffects::default(), 2);
     let mut absent = Taken::default();
     let one = NonZeroUsize::new(1).unwrap();

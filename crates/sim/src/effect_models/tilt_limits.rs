@@ -58,7 +58,7 @@ mod tests {
     use crate::effect_models::testing::at;
 
     #[test]
-    fn the_shaft_stays_within() {
+    fn the_shaft_stays_within_its_limits() {
         let settings = TiltLimitsSettings {
             from_deg: -45.0,
             to_deg: 1.0,

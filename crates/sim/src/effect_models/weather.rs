@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn light_falls_as_beer_and_lambert_say() {
+    fn light_follows_the_beer_lambert_law() {
         let fog = |visibility_m| WeatherSettings {
             visibility_m: Some(visibility_m),
             rain_mm_h: None,
@@ -227,7 +227,7 @@ mod tests {
 
     /// A faint surface is not lost to a trace of rain, and is lost gradually as the air thickens.
     #[test]
-    fn a_faint_surface_goes_with_the_air_and_not_at_once() {
+    fn a_faint_surface_disappears_gradually_with_extinction() {
         let share = |rain_mm_h| {
             let settings = WeatherSettings {
                 visibility_m: None,
@@ -246,7 +246,7 @@ mod tests {
     /// The remaining light against the laws: 5 % one way at the visibility (Koschmieder's 3 / V),
     /// decibels per kilometre of rain, and the sum of both.
     #[test]
-    fn extinction_is_koschmieders_and_rain_comes_on_top() {
+    fn extinction_follows_koschmieder_plus_rain() {
         let one_way = |visibility_m: f64, rain_mm_h: f64, range_m: f64| {
             let fog = match visibility_m {
                 clear if clear.is_infinite() => 1.0,

@@ -52,7 +52,7 @@ fn bits(echo: &Echo) -> [u64; 7] {
 }
 
 #[test]
-fn packets_meet_the_same_as_single_rays() {
+fn ray_packets_agree_with_single_rays() {
     let near = DetectionRange {
         min_m: 6.0,
         max_m: 30.0,
@@ -109,7 +109,7 @@ fn packets_meet_the_same_as_single_rays() {
 /// A fan of rays against single rays, with and without moving objects, for full and partial
 /// packets.
 #[test]
-fn a_fan_is_its_rays() {
+fn a_fan_agrees_with_its_rays() {
     for (name, normals) in [("hall", false), ("parking", true)] {
         let reach = LidarSensor::vlp16().range();
         let mut around = Surroundings::new(scene(name), reach, false).with_normals(normals);
@@ -147,7 +147,7 @@ fn a_fan_is_its_rays() {
 }
 
 #[test]
-fn invalid_rays_meet_nothing() {
+fn invalid_rays_hit_nothing() {
     let around = Surroundings::new(scene("hall"), LidarSensor::vlp16().range(), true);
     let mut all = firings(&LidarSensor::vlp16(), 24, 1);
     for (at, firing) in all.iter_mut().enumerate() {
@@ -191,7 +191,7 @@ fn mesh() -> Surface {
 }
 
 #[test]
-fn moving_objects_are_met_by_packets_and_by_rays() {
+fn moving_objects_are_hit_by_packets_and_single_rays() {
     let sensor = LidarSensor::vlp16();
     let hall = scene("hall");
     let objects = [

@@ -19,7 +19,7 @@ fn pattern(text: &str) -> Pattern {
 }
 
 #[test]
-fn the_papers_counts() {
+fn point_counts_match_the_paper() {
     for (text, frames, points) in [
         ("vlp16", 1, 14_416),
         ("vlp16,seam=once", 1, 14_400),
@@ -43,7 +43,7 @@ fn the_papers_counts() {
 }
 
 #[test]
-fn each_frame_is_the_first_turned() {
+fn each_frame_is_the_first_one_rotated() {
     for text in [
         "rmbl:120",
         "rmbl:50,tilt=stepped",
@@ -73,7 +73,7 @@ fn each_frame_is_the_first_turned() {
 }
 
 #[test]
-fn a_sweep_that_is_no_whole_number_of_frames_ends_in_its_last() {
+fn a_partial_last_frame_ends_the_sweep() {
     // 45 deg at 13 deg/s and 20 Hz: 69.23 frames.
     let cut = pattern("velomotion16:13");
     assert_eq!(cut.frames(), 70);
@@ -87,7 +87,7 @@ fn a_sweep_that_is_no_whole_number_of_frames_ends_in_its_last() {
 }
 
 #[test]
-fn beside_the_axis_rays_meet_the_sphere_where_the_equation_says() {
+fn rays_off_the_axis_hit_the_sphere_as_the_equation_gives() {
     let (level, lifted) = (
         pattern("velomotion16:50,frames=2"),
         pattern("velomotion16:50,frames=2,d=0.06"),
@@ -172,7 +172,7 @@ fn simulated(sensor: LidarSensor, from_deg: f64, speed_deg_s: f64, d_m: f64) -> 
 }
 
 #[test]
-fn the_simulation_sees_the_same_directions() {
+fn patterns_agree_with_the_simulation() {
     // Rotation of the head at 7200 deg/s during a firing: 55.296 us for a VLP-16, 46.08 us for an
     // HDL-32E.
     let (vlp, hdl) = (7_200.0 * 55.296e-6, 7_200.0 * 46.08e-6);
@@ -209,7 +209,7 @@ fn the_simulation_sees_the_same_directions() {
 }
 
 #[test]
-fn directions_of_a_scan_fill_its_field_of_view() {
+fn directions_fill_the_field_of_view() {
     for text in [
         "vlp16",
         "hdl32e,from=20",

@@ -98,7 +98,7 @@ mod tests {
     /// All rays of a pattern are in its view, and the view ends at the outermost rays, wherever the
     /// sensor is.
     #[test]
-    fn the_view_is_that_of_the_sensor_where_it_is() {
+    fn the_view_follows_the_position_of_the_sensor() {
         for text in [
             "vlp16",
             "vlp16,d=0.5",
@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn elevations_from_the_axis_are_those_of_points_on_the_sphere() {
+    fn elevations_from_the_axis_match_points_on_the_sphere() {
         for share in [-0.95_f64, -0.5, 0.0, 0.006, 0.5, 0.9] {
             let mut before = f64::NEG_INFINITY;
             for degrees in -89..=89 {

@@ -101,7 +101,7 @@ fn motion(by_qc: i32) -> Vec<Vec<u8>> {
 }
 
 #[test]
-fn frames_by_hand_are_the_golden_ones() {
+fn hand_made_frames_equal_the_golden_ones() {
     assert_eq!(
         read(0x6041, 0),
         [0x90, 0x02, 0x10, 0x02, 0x41, 0x60, 0x00, 0x01, 0x64, 0xCF]
@@ -115,7 +115,7 @@ fn frames_by_hand_are_the_golden_ones() {
 }
 
 #[test]
-fn the_encoder_tells_where_the_platform_truly_is_within_the_millisecond_too() {
+fn the_encoder_reports_the_true_platform_angle_within_a_cycle() {
     let mut rig = Rig::new(RigConfig::new(START));
     for (ms, request) in motion(9_000).iter().enumerate() {
         rig.advance(after(1_000_000 * (10 + ms as i64)));
@@ -147,7 +147,7 @@ fn the_encoder_tells_where_the_platform_truly_is_within_the_millisecond_too() {
 }
 
 #[test]
-fn datagrams_leave_when_their_last_sequence_has_ended() {
+fn datagrams_are_sent_after_their_last_firing_sequence() {
     let mut rig = Rig::new(RigConfig::new(START));
     let mut data = 0;
     while data < 40 {
@@ -174,7 +174,7 @@ fn datagrams_leave_when_their_last_sequence_has_ended() {
 }
 
 #[test]
-fn a_packet_that_ends_with_a_control_cycle_leaves_all_the_same() {
+fn a_packet_that_ends_with_a_control_cycle_is_sent() {
     // 3 x 1327.104 us on a clock that is slow by as much as makes them 4 ms.
     let lidar = RigLidar {
         drift_ppm: -4_672.0,
@@ -210,7 +210,7 @@ fn time_does_not_go_back() {
 }
 
 #[test]
-fn the_seed_decides_the_garbage_of_the_drive_and_nothing_of_the_lidar() {
+fn the_seed_changes_padding_of_the_drive_and_nothing_of_the_lidar() {
     let run = |seed| {
         let mut rig = Rig::new(RigConfig {
             seed,
@@ -246,7 +246,7 @@ fn moved(config: RigConfig) -> (Vec<DriveOutput>, Vec<Datagram>, Truth) {
 }
 
 #[test]
-fn a_gear_that_is_not_true_shows_in_the_lidar_and_in_no_byte_of_the_drive() {
+fn gear_errors_affect_the_lidar_and_no_byte_of_the_drive() {
     let plain = moved(RigConfig::new(START));
     let ripple = GearRipple {
         amplitude: Degrees(0.2),
@@ -269,7 +269,7 @@ fn a_gear_that_is_not_true_shows_in_the_lidar_and_in_no_byte_of_the_drive() {
 }
 
 #[test]
-fn a_servo_that_lags_shows_in_the_encoder_as_in_the_platform() {
+fn servo_lag_affects_encoder_and_platform_alike() {
     let mut config = RigConfig::new(START);
     config.drive.servo = Some(Servo::FirstOrder {
         corner_millihertz: 15_000,
@@ -321,7 +321,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn the_steps_of_time_do_not_show(
+    fn results_do_not_depend_on_the_time_steps(
         mut stops in prop::collection::vec(0..100_000_000_i64, 0..60),
         on_cycles in prop::collection::vec(0..100_i64, 0..20),
         polls in prop::collection::vec(0..100_000_000_i64, 20),

@@ -187,7 +187,7 @@ proptest! {
 }
 
 #[test]
-fn the_nearest_of_many_wins_and_brings_its_reflectivity() {
+fn the_nearest_surface_wins_with_its_reflectivity() {
     let scene = scene([
         (ball(dvec3(10.0, 0.0, 0.0), 1.0), 10),
         (plane_through(dvec3(5.0, 0.0, 0.0), DVec3::X), 20),
@@ -251,7 +251,7 @@ fn range_limits_are_closed_and_near_surfaces_block() {
 }
 
 #[test]
-fn a_ray_along_a_face_or_from_it() {
+fn rays_along_and_from_a_face_are_handled() {
     let unit = scene([(between(DVec3::ZERO, DVec3::ONE), 0)]);
     let cast = |origin, direction| {
         unit.cast(origin, direction, 0.0, FAR)
@@ -275,7 +275,7 @@ fn a_ray_along_a_face_or_from_it() {
 }
 
 #[test]
-fn cylinders_from_above_below_and_within() {
+fn cylinders_are_hit_from_above_below_and_inside() {
     let scene = scene([(drum(dvec3(1.0, 2.0, -1.0), 0.5, 4.0), 7)]);
     let cast = |origin, direction| {
         scene
@@ -292,7 +292,7 @@ fn cylinders_from_above_below_and_within() {
 }
 
 #[test]
-fn rays_that_are_not_finite_meet_nothing() {
+fn non_finite_rays_hit_nothing() {
     let scene = scene([
         (between(DVec3::splat(-5.0), DVec3::splat(5.0)), 0),
         (plane_through(dvec3(0.0, 0.0, -1.0), DVec3::Z), 0),
@@ -380,7 +380,7 @@ fn stacked_boxes_have_no_cracks() {
 }
 
 #[test]
-fn grazing_a_floor_at_two_hundredths_of_a_degree() {
+fn a_floor_at_a_grazing_angle_of_0_02_deg_is_hit() {
     let (sin, cos) = 0.02_f64.to_radians().sin_cos();
     let floor = scene([(plane_through(dvec3(0.0, 0.0, -0.03), DVec3::Z), 0)]);
     let room = between(dvec3(-500.0, -500.0, -0.03), dvec3(500.0, 500.0, 5.0));
@@ -394,7 +394,7 @@ fn grazing_a_floor_at_two_hundredths_of_a_degree() {
 }
 
 #[test]
-fn a_sphere_of_one_metre_at_a_kilometre() {
+fn a_sphere_of_one_metre_is_hit_at_a_kilometre() {
     for i in 0..1_000 {
         let miss = 0.99 * f64::from(i) / 1_000.0;
         // Turned out of the axes, so that nothing cancels by luck.

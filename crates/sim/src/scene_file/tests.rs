@@ -12,7 +12,7 @@ fn error(text: &str) -> (usize, String) {
 }
 
 #[test]
-fn the_least_scene_is_a_vlp16_that_stands_without_effects() {
+fn the_minimal_scene_is_a_static_vlp16_without_effects() {
     let scene = SceneFile::parse(LEAST, None, None).unwrap();
     let simulation = &scene.simulation;
     assert_eq!(simulation.sensor.model(), PacketModel::Vlp16);
@@ -62,7 +62,7 @@ fn invalid_motions_are_reported_with_their_line() {
 }
 
 #[test]
-fn shipped_scenes_are_sound() {
+fn shipped_scenes_are_valid() {
     for (name, text) in SHIPPED {
         let scene = SceneFile::parse(text, None, None);
         assert!(scene.is_ok(), "{name}: {scene:?}");
@@ -100,7 +100,7 @@ fn all_keys_take_effect() {
 /// Real places have the effects of a real scanner, ideal ones none; an effect that is left out is
 /// absent.
 #[test]
-fn effects_of_shipped_scenes_can_be_left_out() {
+fn effects_of_shipped_scenes_can_be_omitted() {
     for (name, text) in SHIPPED {
         let mut scene = SceneFile::parse(text, None, None).unwrap();
         let real = ["hall", "parking", "quarry"].contains(&name);
@@ -155,7 +155,7 @@ fn errors_name_the_line_and_the_fault() {
 }
 
 #[test]
-fn any_text_is_read_or_rejected() {
+fn arbitrary_text_is_read_or_rejected() {
     let whole = SHIPPED[0].1;
     for end in 0..whole.len() {
         let _ = SceneFile::parse(&whole[..end], None, None);
@@ -163,7 +163,7 @@ fn any_text_is_read_or_rejected() {
 }
 
 #[test]
-fn surroundings_are_the_files_own_or_a_shipped_scene() {
+fn objects_come_from_the_file_or_a_shipped_scene() {
     let own = LEAST.replace("scene = \"hall\"", "about = \"a ball\"")
         + "[materials]\ndull = { reflectivity = 7 }\n[[objects]]\nmaterial = \"dull\"\nsphere = { radius_m = 4 }\n";
     let look = |text: &str| {
@@ -191,7 +191,7 @@ fn surroundings_are_the_files_own_or_a_shipped_scene() {
 }
 
 #[test]
-fn ideal_sensors_other_ranges_and_mounts_in_general() {
+fn sensor_range_and_mount_settings_take_effect() {
     let text = format!(
         "{LEAST}[sensor]\nmodel = \"vlp32c\"\nideal = true\nrange_m = [0.5, 20]\n[mount]\nd_m = 0.1\nposition_m = [0.2, 0, 0.3]\n\
          rotation_deg = [0, 0, 90]\n"
@@ -226,7 +226,7 @@ fn ideal_sensors_other_ranges_and_mounts_in_general() {
 
 /// The example of the documentation is a valid scene.
 #[test]
-fn the_example_of_the_documentation_is_a_scene() {
+fn the_documented_example_is_valid() {
     let page = include_str!("../../../../docs/src/scenes.md");
     let example = page.split("```toml\n").nth(1).unwrap();
     let example = example.split("```").next().unwrap();

@@ -35,7 +35,7 @@ fn range(text: &str, from: [f64; 3], to: [f64; 3]) -> Option<f64> {
 }
 
 #[test]
-fn every_shipped_scene_can_be_cast_at() {
+fn every_shipped_scene_can_be_ray_cast() {
     for (name, text) in SHIPPED {
         let placed = placed(text);
         let caster = placed.caster().unwrap();
@@ -52,7 +52,7 @@ fn every_shipped_scene_can_be_cast_at() {
 
 /// The rig's hall; distances by hand.
 #[test]
-fn the_rig_is_in_the_hall() {
+fn the_rig_scene_has_the_geometry_of_the_hall() {
     let [hall, rig] = ["hall", "rig"].map(|name| placed(shipped(name).unwrap()));
     assert_eq!(format!("{:?}", hall.objects), format!("{:?}", rig.objects));
     assert_eq!(
@@ -254,7 +254,7 @@ fn invalid_values_are_reported_with_their_own_line() {
 }
 
 #[test]
-fn each_kind_of_geometry_stands_where_it_is_put() {
+fn each_kind_of_geometry_is_placed_at_its_position() {
     let at = |shape: &str| {
         format!("[[objects]]\nposition_m = [5, 0, 0]\nrotation_deg = [0, 0, 90]\n{shape}\n")
     };
@@ -312,7 +312,7 @@ fn each_kind_of_geometry_stands_where_it_is_put() {
 }
 
 #[test]
-fn rotations_go_about_x_then_y_then_z_and_are_exact_at_quarters() {
+fn rotations_apply_x_then_y_then_z_and_are_exact_at_90_deg() {
     let turned = |degrees| place::rotation(degrees) * DVec3::new(1.0, 2.0, 3.0);
     assert_eq!(turned([90.0, 0.0, 0.0]), DVec3::new(1.0, -3.0, 2.0));
     assert_eq!(turned([90.0, 90.0, 0.0]), DVec3::new(2.0, -3.0, -1.0));
@@ -325,7 +325,7 @@ fn rotations_go_about_x_then_y_then_z_and_are_exact_at_quarters() {
 }
 
 #[test]
-fn faces_copies_and_openings() {
+fn faces_copies_and_openings_take_effect() {
     let text = r#"
 [materials]
 dark = { reflectivity = 10 }
@@ -479,7 +479,7 @@ fn generated_geometry_depends_only_on_the_seed() {
 }
 
 #[test]
-fn cars_stand_on_the_ground_in_their_bays() {
+fn cars_are_on_the_ground_in_their_bays() {
     let text = r#"
 [materials]
 grey = { reflectivity = 50 }

@@ -66,14 +66,14 @@ fn tables_are_as_long_as_their_packets() {
 }
 
 #[test]
-fn one_laser_may_be_left_alone() {
+fn a_single_laser_can_be_selected() {
     assert_eq!(LidarSensor::hdl32e().only(15).used(), 1 << 15);
     assert_eq!(LidarSensor::vlp16().only(16).used(), 0);
     assert_eq!(LidarSensor::vlp16().only(usize::MAX).used(), 0);
 }
 
 #[test]
-fn a_reach_ends_where_the_wire_does() {
+fn the_range_is_limited_by_the_wire_format() {
     let far = DetectionRange {
         min_m: 0.5,
         max_m: 1e4,
@@ -84,7 +84,7 @@ fn a_reach_ends_where_the_wire_does() {
 }
 
 #[test]
-fn the_head_turns_between_the_first_laser_and_each_other() {
+fn rays_include_the_rotation_during_a_firing_sequence() {
     let sensor = LidarSensor::vlp32c();
     let rays = RayTable::new(&sensor, 3_600.0);
     for (beam, aim) in sensor.beams().iter().zip(rays.directions) {
@@ -124,7 +124,7 @@ fn origins_of_the_vlp16_follow_from_one_crossing() {
 }
 
 #[test]
-fn a_level_ray_goes_along_y_and_right_along_x() {
+fn a_level_ray_points_along_y_and_right_along_x() {
     let (sensor, mount) = (LidarSensor::vlp16(), LidarMount::above(0.06));
     let (origin, direction) = sensor.ray(15, 0.0, 0.0, &mount).unwrap();
     assert!(origin.distance(DVec3::new(0.0, 0.0, 0.06 - 0.0112)) < 1e-15);

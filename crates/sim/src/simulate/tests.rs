@@ -113,7 +113,7 @@ fn run(simulation: &Simulation, count: usize) -> (Taken, SimulationSummary) {
 
 /// The plain definition of a ray against the rays of a firing.
 #[test]
-fn points_are_where_plain_rays_meet_the_scene() {
+fn points_agree_with_single_rays() {
     let simulation = hall(LidarSensor::vlp16());
     let (taken, summary) = run(&simulation, 1);
     assert_eq!(taken.points.len() as u64, summary.returned);
@@ -141,7 +141,7 @@ fn points_are_where_plain_rays_meet_the_scene() {
 }
 
 #[test]
-fn any_number_of_threads_gives_the_same_bytes() {
+fn bytes_do_not_depend_on_threads() {
     for sensor in [LidarSensor::vlp16(), LidarSensor::hdl32e()] {
         let simulation = hall(sensor);
         let mut runs = Vec::new();
@@ -174,7 +174,7 @@ fn any_number_of_threads_gives_the_same_bytes() {
 }
 
 #[test]
-fn events_come_in_order_and_a_break_ends_them() {
+fn events_are_ordered_and_end_at_a_break() {
     let simulation = hall(LidarSensor::vlp16());
     let (taken, summary) = run(&simulation, 2);
     assert!(taken.times.is_sorted());
@@ -211,7 +211,7 @@ fn events_come_in_order_and_a_break_ends_them() {
 }
 
 #[test]
-fn the_drive_says_where_its_shaft_was_in_the_middle() {
+fn the_drive_reports_its_shaft_at_the_middle_of_the_exchange() {
     let simulation = hall(LidarSensor::vlp16());
     let (taken, _) = run(&simulation, 1);
     for (at, position_qc) in taken.answers {
@@ -269,7 +269,7 @@ fn run_with<F: FiringEffects, M: MechanismEffect, E: EncoderEffect, L: LinkEffec
 }
 
 #[test]
-fn packets_straddle_the_gap_of_a_limited_view() {
+fn packets_span_the_gap_of_a_limited_field_of_view() {
     let mut simulation = hall(LidarSensor::vlp16());
     simulation.motion = AxisMotion::fixed(0.0, 0.5).unwrap();
     simulation.polls = None;
@@ -353,7 +353,7 @@ fn distances(taken: &Taken) -> Vec<u16> {
 }
 
 #[test]
-fn another_effect_does_not_change_draws() {
+fn another_effect_does_not_change_random_draws() {
     let simulation = hall(LidarSensor::vlp16());
     let noise = RangeNoise::new(0.05, 3);
     let (alone, _) = run_with(&simulation, &mut with((), noise, ()));
@@ -365,7 +365,7 @@ fn another_effect_does_not_change_draws() {
 }
 
 #[test]
-fn lists_act_in_order_and_count() {
+fn effects_in_a_list_act_in_order_and_are_counted() {
     let simulation = hall(LidarSensor::hdl32e());
     let noise = RangeNoise::new(0.05, 3);
     let (pair, summary) = run_with(&simulation, &mut with((), Both(noise, Dim), ()));
@@ -404,7 +404,7 @@ impl MechanismEffect for Ahead {
 }
 
 #[test]
-fn a_mechanism_stands_between_encoder_and_platform() {
+fn the_mechanism_acts_between_encoder_and_platform() {
     let simulation = hall(LidarSensor::vlp16());
     let (ideal, _) = run(&simulation, 1);
     let mut effects = Effects {
@@ -457,7 +457,7 @@ impl LinkEffect for Bad {
 }
 
 #[test]
-fn events_come_in_order_and_moves_are_commanded_over_bad_links() {
+fn events_are_ordered_and_moves_commanded_over_bad_links() {
     let simulation = hall(LidarSensor::vlp16());
     let mut effects = Effects {
         firings: FiringEffectSet::default(),
@@ -513,7 +513,7 @@ impl ClockEffect for Fast {
 }
 
 #[test]
-fn the_lidars_clock_decides_when_it_fires() {
+fn firing_times_follow_the_lidar_clock() {
     let simulation = hall(LidarSensor::vlp16());
     let (taken, _) = run_with(&simulation, &mut with((), (), Fast));
     let last = taken.points.last().unwrap();
@@ -524,7 +524,7 @@ fn the_lidars_clock_decides_when_it_fires() {
 }
 
 #[test]
-fn a_laser_that_is_covered_never_fires() {
+fn covered_lasers_never_fire() {
     let mut simulation = hall(LidarSensor::single_beam());
     simulation.motion = AxisMotion::fixed(0.0, 0.1).unwrap();
     let (taken, summary) = run(&simulation, 1);

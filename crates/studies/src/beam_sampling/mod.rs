@@ -296,7 +296,7 @@ mod tests {
 
     /// The independent reference against the effect with the same sub-rays.
     #[test]
-    fn the_reference_with_few_sub_rays_is_what_the_effect_does() {
+    fn the_reference_agrees_with_the_effect_for_equal_sub_rays() {
         let mut two = 0;
         for scene in SCENES {
             let shots = Shots::of(scene, 48).unwrap();
@@ -320,7 +320,7 @@ mod tests {
     }
 
     #[test]
-    fn more_sub_rays_are_nearer_to_very_many() {
+    fn more_sub_rays_are_more_accurate() {
         let shots = Shots::of("parking", 48).unwrap();
         let edges = edges(&shots).unwrap();
         assert!(edges.len() > 20 && edges.len() * 10 < shots.count());

@@ -346,7 +346,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_are_as_large_as_their_numbers_steps() {
+    fn errors_match_the_resolution_of_the_number_format() {
         let near = |off: CastError, least_m: f64, most_m: f64| {
             assert!((least_m..most_m).contains(&off.worst_m), "{off:?}");
             assert!(off.rms_m <= off.worst_m && off.rms_m > 0.0, "{off:?}");
@@ -365,7 +365,7 @@ mod tests {
     }
 
     #[test]
-    fn only_the_watertight_test_lets_nothing_through() {
+    fn only_the_watertight_test_misses_nothing() {
         for circumstance in 0..3 {
             for kernel in [Kernel::WatertightF32, Kernel::WatertightF64] {
                 let off = off(circumstance, kernel, 100);
@@ -378,7 +378,7 @@ mod tests {
     /// In f64 the study's watertight test equals the caster's bit for bit, so in f32 it is the same
     /// test.
     #[test]
-    fn the_watertight_test_is_the_casters() {
+    fn the_watertight_test_equals_the_casters() {
         for circumstance in circumstances() {
             let set = Set::new(circumstance, 40);
             let own = ranges(&set.wide, kernels::watertight_f64);
@@ -388,7 +388,7 @@ mod tests {
     }
 
     #[test]
-    fn a_quick_look_has_every_row() {
+    fn a_quick_run_has_every_row() {
         let mut now = 0;
         let mut clock = || {
             now += 3_000_000;

@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_what_whole_numbers_give() {
+    fn the_reference_agrees_with_integer_arithmetic() {
         let mut chance = SeededNoise(3);
         // Numbers up to 2^26: products of three have 80 bits, more than an f64 holds. Small ones
         // make rays through edges and corners common.

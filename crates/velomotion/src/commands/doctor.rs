@@ -269,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slow_latency_timer_is_named_with_its_cure() {
+    fn a_slow_latency_timer_is_reported_with_its_remedy() {
         let finding = epos2(&unit(Some("/dev/ttyUSB3")), &|path| {
             assert!(path.ends_with("ttyUSB3/latency_timer"), "{path:?}");
             Some("16".to_owned())
@@ -293,7 +293,7 @@ mod tests {
     }
 
     #[test]
-    fn a_profile_whose_can_interface_is_not_there_is_a_problem() {
+    fn a_missing_can_interface_is_a_problem() {
         let there = [CanInterface {
             name: "can0".to_owned(),
             up: true,
@@ -311,7 +311,7 @@ mod tests {
     }
 
     #[test]
-    fn an_axis_that_cannot_be_is_a_problem() {
+    fn an_invalid_axis_configuration_is_a_problem() {
         let wrong = AxisSettings {
             min_deg: 10.0,
             ..AxisSettings::default()

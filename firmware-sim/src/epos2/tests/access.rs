@@ -9,7 +9,7 @@ use super::super::table::TABLE;
 use super::{command, enabled, get, healthy, set, ticks};
 
 #[test]
-fn accesses_are_refused_with_their_codes() {
+fn refused_accesses_have_their_abort_codes() {
     let mut node = healthy();
     let mut refused = |index, sub, raw| node.write(Address::new(index, sub), raw).unwrap_err();
     assert_eq!(refused(0x6041, 0, 0), Abort::READ_ONLY);
@@ -45,7 +45,7 @@ fn power_stage_configuration_needs_power_off() {
 }
 
 #[test]
-fn values_read_back_in_their_width() {
+fn values_round_trip_in_their_width() {
     let mut node = healthy();
     node.write(objects::HOMING_METHOD.address, 0xDEAD_BE11)
         .unwrap();
@@ -85,7 +85,7 @@ fn every_object_that_the_protocol_names_exists_in_its_width() {
 }
 
 #[test]
-fn save_survives_power_off_and_load_is_the_factory() {
+fn save_survives_power_off_and_load_restores_the_defaults() {
     let mut node = healthy();
     set(&mut node, objects::PROFILE_VELOCITY, 77);
     set(&mut node, objects::STORE_ALL, objects::SAVE);
@@ -97,7 +97,7 @@ fn save_survives_power_off_and_load_is_the_factory() {
 }
 
 #[test]
-fn the_timestamp_counts_microseconds_from_what_was_written() {
+fn the_timestamp_counts_microseconds_from_the_written_value() {
     let mut node = healthy();
     ticks(&mut node, 3);
     node.set_phase_us(250);

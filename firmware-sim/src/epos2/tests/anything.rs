@@ -328,7 +328,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(384))]
 
     #[test]
-    fn no_sequence_panics_or_leaves_the_state_machine(
+    fn arbitrary_sequences_do_not_panic_or_leave_the_state_machine(
         doings in prop::collection::vec(doing(), 1..150),
         stops in prop::option::of((-20_000i32..0, 0i32..20_000)),
     ) {

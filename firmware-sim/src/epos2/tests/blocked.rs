@@ -75,7 +75,7 @@ fn a_blocked_motor_is_a_following_error() {
 }
 
 #[test]
-fn a_short_block_within_6065_is_caught_up() {
+fn a_short_block_within_the_6065_window_is_caught_up() {
     let mut node = enabled();
     go(&mut node, 50_000, control::START_ABSOLUTE);
     ticks(&mut node, 300);

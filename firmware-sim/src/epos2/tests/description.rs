@@ -108,7 +108,7 @@ fn needs_more(entry: &Described) -> bool {
 }
 
 #[test]
-fn what_is_described_is_there_and_nothing_else() {
+fn exactly_the_described_objects_exist() {
     let node = healthy();
     let mut subs = BTreeMap::<u16, Vec<u8>>::new();
     for entry in described() {
@@ -131,7 +131,7 @@ fn what_is_described_is_there_and_nothing_else() {
 }
 
 #[test]
-fn values_are_read_in_their_width_and_from_the_factory() {
+fn values_have_their_width_and_factory_default() {
     let node = healthy();
     for entry in described() {
         let read = node.read(entry.address);
@@ -153,7 +153,7 @@ fn values_are_read_in_their_width_and_from_the_factory() {
 }
 
 #[test]
-fn writes_keep_to_access_length_and_limits() {
+fn writes_respect_access_length_and_limits() {
     for entry in described() {
         let mut node = healthy();
         let (at, bytes) = (entry.address, entry.bytes);
@@ -205,7 +205,7 @@ fn writes_keep_to_access_length_and_limits() {
 }
 
 #[test]
-fn process_data_carries_what_is_mappable() {
+fn process_data_carries_exactly_the_mappable_objects() {
     for entry in described() {
         let Address { index, sub } = entry.address;
         let mapped = (u32::from(index) << 16) | (u32::from(sub) << 8) | (8 * entry.bytes as u32);

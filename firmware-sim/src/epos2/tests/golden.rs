@@ -57,7 +57,7 @@ fn usb(node: &mut Node, request: &[u8]) -> Vec<u8> {
 }
 
 #[test]
-fn frames_of_the_usb_interface() {
+fn usb_frames_match_golden_bytes() {
     // The frames themselves say how the checksum goes.
     for frame in [
         "90020004000000003702000068 00",
@@ -92,7 +92,7 @@ fn frames_of_the_usb_interface() {
 }
 
 #[test]
-fn an_error_in_two_words_is_the_known_frame() {
+fn a_two_word_error_matches_golden_bytes() {
     let mut node = healthy();
     // 5000:00 does not exist.
     let request = {
@@ -139,7 +139,7 @@ fn rs232(node: &mut Node, request: &[u8]) -> Vec<u8> {
 }
 
 #[test]
-fn frames_of_the_rs232_interface() {
+fn rs232_frames_match_golden_bytes() {
     let known = hex("03 00000000 37020000 1980");
     assert_eq!(over_words([0, 3], &known[1..9]).to_le_bytes(), known[9..]);
     let mut node = healthy();

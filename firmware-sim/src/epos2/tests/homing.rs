@@ -98,7 +98,7 @@ fn homing_methods_find_their_reference() {
 }
 
 #[test]
-fn method_0_wants_no_homing() {
+fn method_0_does_no_homing() {
     let mut node = with_home_switch(10);
     home(&mut node, 0);
     assert_eq!(position(&node), 0);
@@ -120,7 +120,7 @@ fn homing_ignores_limit_errors_and_software_limits() {
 }
 
 #[test]
-fn homing_is_interrupted_by_bit_4_and_by_halt_and_given_up_by_quick_stop() {
+fn bit_4_and_halt_interrupt_homing_and_quick_stop_ends_it() {
     for word in [
         control::ENABLE_OPERATION,
         control::HALT_MOTION,
@@ -144,7 +144,7 @@ fn homing_is_interrupted_by_bit_4_and_by_halt_and_given_up_by_quick_stop() {
 }
 
 #[test]
-fn homing_that_cannot_begin_sets_bit_13() {
+fn homing_that_cannot_start_sets_bit_13() {
     for (object, method) in [
         (objects::HOMING_SWITCH_SPEED, 17),
         (objects::HOMING_ACCELERATION, 34),
@@ -160,7 +160,7 @@ fn homing_that_cannot_begin_sets_bit_13() {
 }
 
 #[test]
-fn a_home_switch_that_is_nowhere_ends_in_bit_13() {
+fn a_missing_home_switch_sets_bit_13() {
     let mut node = Node::new(NodeConfig {
         fault_at_power_on: DeviceError::NONE,
         ..NodeConfig::default()

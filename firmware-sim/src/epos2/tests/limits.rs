@@ -19,7 +19,7 @@ fn limit_switches_do_not_stop_the_axis_by_default() {
 }
 
 #[test]
-fn a_limit_switch_in_the_execution_mask_stops_the_axis_and_can_be_left() {
+fn a_limit_switch_in_the_execution_mask_stops_the_axis_which_can_move_away() {
     let mut node = enabled();
     set(&mut node, objects::INPUT_EXECUTION_MASK, 0x0003);
     go(&mut node, -50_000, control::START_ABSOLUTE);
@@ -50,7 +50,7 @@ fn a_limit_switch_in_the_execution_mask_stops_the_axis_and_can_be_left() {
 }
 
 #[test]
-fn mask_and_polarity_of_the_inputs() {
+fn input_mask_and_polarity_take_effect() {
     let mut node = healthy();
     assert_eq!(get(&node, objects::INPUT_STATE), 0);
     set(&mut node, objects::INPUT_POLARITY, 0x0003);
@@ -164,7 +164,7 @@ fn the_brake_opens_before_and_closes_after() {
 }
 
 #[test]
-fn a_standstill_that_is_not_found_is_not_waited_for_beyond_its_timeout() {
+fn waiting_for_standstill_ends_at_its_timeout() {
     let mut node = healthy();
     set(&mut node, objects::OUTPUT_1, objects::OUTPUT_BRAKE);
     set(&mut node, objects::OUTPUT_MASK, 1 << 2);

@@ -29,7 +29,7 @@ fn the_papers_sweep_takes_its_time() {
 }
 
 #[test]
-fn speed_and_acceleration_keep_to_607f_and_60c5() {
+fn speed_and_acceleration_are_limited_by_607f_and_60c5() {
     let mut node = enabled();
     set(&mut node, objects::PROFILE_VELOCITY, 20_000);
     set(&mut node, objects::MAX_PROFILE_VELOCITY, 600);
@@ -47,7 +47,7 @@ fn speed_and_acceleration_keep_to_607f_and_60c5() {
 }
 
 #[test]
-fn a_setpoint_waits_for_the_move_unless_at_once() {
+fn a_setpoint_waits_for_the_move_unless_immediate() {
     let mut node = enabled();
     go(&mut node, 10_000, control::START_ABSOLUTE);
     ticks(&mut node, 150);
@@ -84,7 +84,7 @@ fn relative_moves_count_from_the_demand() {
 }
 
 #[test]
-fn halt_stops_and_gives_the_move_up() {
+fn halt_stops_and_cancels_the_move() {
     let mut node = enabled();
     go(&mut node, 100_000, control::START_ABSOLUTE);
     ticks(&mut node, 300);
@@ -107,7 +107,7 @@ fn halt_stops_and_gives_the_move_up() {
 }
 
 #[test]
-fn the_window_holds_the_target_back() {
+fn target_reached_waits_for_the_position_window() {
     let mut node = enabled();
     set(&mut node, objects::POSITION_WINDOW, 5);
     set(&mut node, objects::POSITION_WINDOW_TIME, 100);
@@ -117,7 +117,7 @@ fn the_window_holds_the_target_back() {
 }
 
 #[test]
-fn nothing_to_go_is_reached_at_the_next_cycle() {
+fn a_move_of_zero_distance_is_reached_at_the_next_cycle() {
     let mut node = enabled();
     go(&mut node, 0, control::START_ABSOLUTE);
     assert!(!has(&node, status::TARGET_REACHED));
@@ -125,7 +125,7 @@ fn nothing_to_go_is_reached_at_the_next_cycle() {
 }
 
 #[test]
-fn a_target_too_far_for_its_speed_is_6320() {
+fn a_target_too_far_for_its_speed_is_error_6320() {
     let mut node = enabled();
     set(&mut node, objects::PROFILE_VELOCITY, 0);
     go(&mut node, 1, control::START_ABSOLUTE);
@@ -150,7 +150,7 @@ fn disable_operation_ramps_and_shutdown_does_not() {
 }
 
 #[test]
-fn the_encoder_is_read_at_the_instant() {
+fn the_encoder_is_read_at_the_time_of_the_request() {
     let mut node = enabled();
     set(&mut node, objects::PROFILE_VELOCITY, 600); // 20 qc/ms
     set(&mut node, objects::PROFILE_ACCELERATION, u32::MAX);

@@ -9,7 +9,7 @@ use super::super::{Node, NodeConfig};
 use super::{command, enabled, get, go, healthy, position, set, state, ticks, until};
 
 #[test]
-fn the_way_up_and_down() {
+fn enabling_and_disabling_pass_through_every_state() {
     let mut node = healthy();
     assert_eq!(state(&node), DeviceState::SwitchOnDisabled);
     command(&mut node, control::ENABLE_OPERATION);
@@ -37,7 +37,7 @@ fn the_way_up_and_down() {
 }
 
 #[test]
-fn operation_enabled_by_itself_through_switched_on() {
+fn enabling_from_ready_to_switch_on_passes_switched_on_automatically() {
     let node = enabled();
     assert_eq!(get(&node, objects::STATUSWORD), 0x0137);
 }
@@ -107,7 +107,7 @@ fn errors_that_ramp_and_errors_that_do_not() {
 }
 
 #[test]
-fn quick_stop_ramps_stays_and_is_left_by_enable() {
+fn quick_stop_ramps_holds_and_is_left_by_enable() {
     let mut node = enabled();
     go(&mut node, 100_000, control::START_ABSOLUTE);
     ticks(&mut node, 300);

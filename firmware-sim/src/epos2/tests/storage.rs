@@ -16,7 +16,7 @@ fn write(node: &mut Node, index: u16, sub: u8, raw: u32) -> Result<(), Abort> {
 }
 
 #[test]
-fn only_what_was_saved_survives_power_off() {
+fn only_saved_values_survive_power_off() {
     let mut node = healthy();
     set(&mut node, objects::PROFILE_VELOCITY, 77);
     set(&mut node, objects::TARGET_POSITION, 1234);
@@ -44,7 +44,7 @@ fn only_what_was_saved_survives_power_off() {
 }
 
 #[test]
-fn what_was_loaded_is_the_factorys_at_once_and_after_power_off() {
+fn restored_defaults_apply_at_once_and_after_power_off() {
     for sub in [1, 4] {
         let mut node = healthy();
         set(&mut node, objects::PROFILE_VELOCITY, 77);
@@ -81,7 +81,7 @@ fn a_node_id_takes_effect_at_power_on() {
 }
 
 #[test]
-fn a_reset_of_the_communication_leaves_the_rest_alone() {
+fn a_communication_reset_leaves_other_objects_unchanged() {
     let mut node = healthy();
     set(&mut node, objects::PRODUCER_HEARTBEAT, 100);
     set(&mut node, objects::PROFILE_VELOCITY, 77);
@@ -94,7 +94,7 @@ fn a_reset_of_the_communication_leaves_the_rest_alone() {
 }
 
 #[test]
-fn the_mapping_procedure_in_its_order() {
+fn the_mapping_procedure_requires_its_order() {
     let mut node = healthy();
     // In use, the mapping does not change.
     assert_eq!(write(&mut node, 0x1A00, 0, 0), Err(Abort::STATE));
@@ -120,7 +120,7 @@ fn the_mapping_procedure_in_its_order() {
 }
 
 #[test]
-fn what_cannot_be_mapped_is_refused() {
+fn unmappable_objects_are_refused() {
     let mut node = healthy();
     for (comm, map) in [(0x1800, 0x1A00), (0x1400, 0x1600)] {
         let id = raw(&node, comm, 1);
@@ -148,7 +148,7 @@ fn what_cannot_be_mapped_is_refused() {
 }
 
 #[test]
-fn identifiers_of_pdos_keep_their_rules() {
+fn pdo_identifiers_are_validated() {
     let mut node = healthy();
     for (raw, expected) in [
         (0x4000_0182, Err(Abort::RANGE)), // another while in use
@@ -167,7 +167,7 @@ fn identifiers_of_pdos_keep_their_rules() {
 }
 
 #[test]
-fn process_data_is_configured_in_pre_operational_only() {
+fn process_data_is_configurable_only_in_pre_operational() {
     let mut node = healthy();
     for command in [NmtCommand::Start, NmtCommand::Stop] {
         node.nmt(command);
@@ -183,7 +183,7 @@ fn process_data_is_configured_in_pre_operational_only() {
 }
 
 #[test]
-fn entries_that_hold_nothing_say_why() {
+fn entries_without_a_value_are_refused_with_a_reason() {
     let mut node = healthy();
     assert_eq!(node.read(Address::new(0x20C1, 0)), Err(Abort::WRITE_ONLY));
     assert_eq!(write(&mut node, 0x20C1, 0, 0), Err(Abort::STATE));

@@ -23,7 +23,7 @@ fn velocity(node: &Node) -> i32 {
 }
 
 #[test]
-fn it_ramps_to_its_speed_and_keeps_it() {
+fn the_axis_ramps_to_its_speed_and_keeps_it() {
     let mut node = turning(-600);
     set(&mut node, objects::PROFILE_ACCELERATION, 6_000);
     assert!(has(&node, SPEED_IS_ZERO));
@@ -53,7 +53,7 @@ fn a_reversal_brakes_with_6084_and_starts_with_6083() {
 }
 
 #[test]
-fn speed_keeps_to_607f_and_acceleration_to_60c5() {
+fn speed_is_limited_by_607f_and_acceleration_by_60c5() {
     let mut node = turning(20_000);
     set(&mut node, objects::MAX_PROFILE_VELOCITY, 500);
     set(&mut node, objects::MAX_ACCELERATION, 1_000);
@@ -63,7 +63,7 @@ fn speed_keeps_to_607f_and_acceleration_to_60c5() {
 }
 
 #[test]
-fn halt_stops_and_goes_on_when_it_is_lifted() {
+fn halt_stops_and_motion_resumes_when_it_is_cleared() {
     let mut node = turning(1_000);
     ticks(&mut node, 200);
     command(&mut node, control::HALT_MOTION);
@@ -77,7 +77,7 @@ fn halt_stops_and_goes_on_when_it_is_lifted() {
 }
 
 #[test]
-fn quick_stop_and_disable_take_their_ramps() {
+fn quick_stop_and_disable_use_their_ramps() {
     for (word, object, to) in [
         (
             control::QUICK_STOP,
@@ -112,7 +112,7 @@ fn the_velocity_window_counts_its_time() {
 }
 
 #[test]
-fn a_software_limit_stops_it_and_an_acceleration_of_0_is_6320() {
+fn a_software_limit_stops_the_axis_and_zero_acceleration_is_error_6320() {
     let mut node = turning(1_000);
     set(&mut node, objects::MAX_POSITION, 5_000);
     until(&mut node, 2_000, |node| state(node) == DeviceState::Fault);
@@ -127,7 +127,7 @@ fn a_software_limit_stops_it_and_an_acceleration_of_0_is_6320() {
 }
 
 #[test]
-fn positions_follow_on_when_the_mode_changes_back() {
+fn positions_continue_when_the_mode_changes_back() {
     let mut node = turning(1_000);
     ticks(&mut node, 500);
     set(&mut node, objects::MODE, mode::PROFILE_POSITION);
@@ -138,7 +138,7 @@ fn positions_follow_on_when_the_mode_changes_back() {
 }
 
 #[test]
-fn a_held_shaft_takes_the_limit_current_and_no_following_error() {
+fn a_blocked_shaft_draws_the_limit_current_without_a_following_error() {
     let mut node = turning(1_000);
     ticks(&mut node, 300);
     node.block();

@@ -108,7 +108,7 @@ mod tests {
     /// Defaults of the device description for node 1: TPDO1 in use, TPDO2 to 4 not, no remote
     /// frames.
     #[test]
-    fn defaults_of_a_real_unit() {
+    fn defaults_match_a_real_unit() {
         let node = NodeId::new(1).unwrap();
         let values = [0x4000_0181, 0xC000_0281, 0xC000_0381, 0xC000_0481];
         for (value, number) in values.into_iter().zip(PdoNumber::ALL) {
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn types_read_back() {
+    fn types_round_trip() {
         for value in 0..=255 {
             assert_eq!(TransmissionType::from_u8(value).to_u8(), value);
         }
@@ -138,7 +138,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn identifiers_read_back(value in any::<u32>()) {
+        fn identifiers_round_trip(value in any::<u32>()) {
             let id = CommunicationId::from_u32(value);
             prop_assert_eq!(CommunicationId::from_u32(id.to_u32()), id);
             let ignored = if value & EXTENDED == 0 { 0x1FFF_F800 } else { 0 };

@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn the_angle_stream_is_configured_in_the_order_the_node_wants() {
+    fn the_angle_stream_is_configured_in_the_required_order() {
         assert_eq!(
             messages(Pdo::Transmit(PdoNumber::One), &angle()),
             [

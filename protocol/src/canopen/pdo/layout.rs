@@ -247,7 +247,7 @@ mod tests {
 
     /// Position and time stamp of the tilt axis in one frame.
     #[test]
-    fn the_angle_stream() {
+    fn the_angle_stream_layout_matches_its_bytes() {
         let entries = [
             MappedObject::of(POSITION_ACTUAL),
             MappedObject::of(TIMESTAMP),
@@ -273,7 +273,7 @@ mod tests {
 
     /// TPDO1 of a real unit (1A00): an analogue value, statusword, mode.
     #[test]
-    fn values_follow_one_another_without_gaps() {
+    fn values_are_packed_without_gaps() {
         let entries = [0x20C4_0110, 0x6041_0010, 0x6061_0008].map(MappedObject::from_u32);
         let layout = PdoLayout::new(&entries).unwrap();
         assert_eq!((layout.bits(), layout.len()), (40, 5));
@@ -294,7 +294,7 @@ mod tests {
     }
 
     #[test]
-    fn lengths_need_no_whole_bytes() {
+    fn lengths_need_not_be_whole_bytes() {
         let layout = PdoLayout::new(&[entry(1), entry(12), entry(3)]).unwrap();
         let packed = layout.pack(&[1, 0xABC, 0b101]).unwrap();
         assert_eq!(
@@ -308,7 +308,7 @@ mod tests {
     }
 
     #[test]
-    fn what_fits_no_frame_is_refused() {
+    fn layouts_that_exceed_a_frame_are_refused() {
         assert_eq!(
             PdoLayout::new(&[entry(32), entry(33)]),
             Err(LayoutError::TooLong { max: 64, got: 65 })
@@ -331,7 +331,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn values_read_back(parts in prop::collection::vec((1_u8..=64, any::<u64>()), 0..8)) {
+        fn values_round_trip(parts in prop::collection::vec((1_u8..=64, any::<u64>()), 0..8)) {
             let mut bits = 0;
             let parts: std::vec::Vec<_> = parts
                 .into_iter()
@@ -347,7 +347,7 @@ mod tests {
         }
 
         #[test]
-        fn entries_read_back(value in any::<u32>()) {
+        fn entries_round_trip(value in any::<u32>()) {
             prop_assert_eq!(MappedObject::from_u32(value).to_u32(), value);
         }
     }

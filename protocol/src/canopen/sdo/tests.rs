@@ -94,7 +94,7 @@ fn failure(address: Address, answers: &[SdoResponse]) -> (TransferError, Option<
 }
 
 #[test]
-fn an_expedited_read() {
+fn expedited_reads_complete() {
     let (outcome, last) = play(STATUS, &[expedited(STATUS, &[0x40, 0x01])]);
     let value = outcome.result.unwrap();
     assert_eq!(
@@ -119,7 +119,7 @@ fn an_expedited_read() {
 }
 
 #[test]
-fn an_answer_without_a_size_has_four_bytes_of_which_the_type_takes_its_own() {
+fn unsized_answers_have_four_bytes_truncated_to_the_type() {
     let transfer = Initiate::Unsized([0xFE, 0xFF, 0xAA, 0xBB]);
     let answer = SdoResponse::InitiateUpload {
         address: STATUS,
@@ -132,7 +132,7 @@ fn an_answer_without_a_size_has_four_bytes_of_which_the_type_takes_its_own() {
 }
 
 #[test]
-fn a_segmented_read() {
+fn segmented_reads_complete() {
     let answers = [sized(NAME, 5), part(false, true, b"EPOS2")];
     let (outcome, _) = play(NAME, &answers);
     assert_eq!(outcome.result.unwrap().bytes.as_slice(), b"EPOS2");
@@ -242,7 +242,7 @@ fn unexpected_responses_end_and_abort_the_transfer() {
 }
 
 #[test]
-fn an_endless_upload_ends_at_the_capacity() {
+fn endless_uploads_end_at_the_capacity() {
     let mut client = client();
     client.read(NAME).unwrap();
     sent(&mut client, at(0));
@@ -266,7 +266,7 @@ fn an_endless_upload_ends_at_the_capacity() {
 }
 
 #[test]
-fn a_damaged_answer_is_typed() {
+fn damaged_answers_give_a_typed_error() {
     let mut client = client();
     client.read(STATUS).unwrap();
     sent(&mut client, at(0));
@@ -284,7 +284,7 @@ fn a_damaged_answer_is_typed() {
 }
 
 #[test]
-fn golden_downloads() {
+fn downloads_match_golden_bytes() {
     let mut client = client();
     client.write_scalar(STATUS, 0x000F_u16).unwrap();
     assert_eq!(
@@ -326,7 +326,7 @@ fn golden_downloads() {
 }
 
 #[test]
-fn a_wrong_toggle_in_a_write_is_typed() {
+fn a_wrong_toggle_in_a_write_gives_a_typed_error() {
     let mut client = client();
     client.write(NAME, b"123456789").unwrap();
     sent(&mut client, at(0));
@@ -341,7 +341,7 @@ fn a_wrong_toggle_in_a_write_is_typed() {
 }
 
 #[test]
-fn time_runs_from_when_a_request_was_sent() {
+fn the_timeout_starts_when_the_request_is_sent() {
     let mut client = client();
     client.read(NAME).unwrap();
     assert_eq!(client.poll_timeout(), None);
@@ -370,7 +370,7 @@ fn time_runs_from_when_a_request_was_sent() {
 }
 
 #[test]
-fn one_at_a_time() {
+fn only_one_transfer_runs_at_a_time() {
     let mut client = client();
     client.read(NAME).unwrap();
     let busy = Err(StartError::Busy { address: NAME });

@@ -42,7 +42,7 @@ fn encoded(encode: impl Fn(&mut Vec<u8>)) -> Vec<u8> {
 }
 
 #[test]
-fn golden_commands_both_ways() {
+fn commands_match_golden_bytes_in_both_directions() {
     let request = standard(0x601, &[0x40, 0x41, 0x60, 0, 0, 0, 0, 0]);
     let golden: [(&str, SlcanCommand); 17] = [
         ("\r", SlcanCommand::Empty),
@@ -83,7 +83,7 @@ fn golden_commands_both_ways() {
 }
 
 #[test]
-fn golden_replies_both_ways() {
+fn replies_match_golden_bytes_in_both_directions() {
     let answer = standard(0x581, &[0x4B, 0x41, 0x60, 0, 0x40, 1, 0, 0]);
     let golden: [(&str, SlcanReply); 10] = [
         ("\r", SlcanReply::Done),
@@ -113,7 +113,7 @@ fn golden_replies_both_ways() {
 }
 
 #[test]
-fn bit_rates_have_their_digits() {
+fn bit_rates_map_to_their_digits() {
     for (digit, rate) in (b'0'..).zip(Bitrate::ALL) {
         assert_eq!(
             commands(&[b'S', digit, CR]),
@@ -133,7 +133,7 @@ fn bit_rates_have_their_digits() {
 }
 
 #[test]
-fn small_letters_line_feeds_and_versions_of_any_length_are_taken() {
+fn lower_case_line_feeds_and_versions_of_any_length_are_accepted() {
     let frame = standard(0x7AB, &[0xCD]);
     assert_eq!(replies(b"t7ab1cd\r\n"), [Ok(received(frame, None))]);
     assert_eq!(
@@ -146,7 +146,7 @@ fn small_letters_line_feeds_and_versions_of_any_length_are_taken() {
 }
 
 #[test]
-fn lines_that_are_no_frames_say_why() {
+fn invalid_lines_are_refused_with_a_reason() {
     let character = |offset, expected, got| SlcanError::Character {
         offset,
         expected,
@@ -182,7 +182,7 @@ fn lines_that_are_no_frames_say_why() {
 }
 
 #[test]
-fn noise_costs_at_most_the_line_it_is_in() {
+fn noise_damages_at_most_its_own_line() {
     let frame = standard(0x581, &[1]);
     let good = received(frame, None);
     // Between lines.
@@ -211,7 +211,7 @@ fn noise_costs_at_most_the_line_it_is_in() {
 
 proptest! {
     #[test]
-    fn every_frame_passes_both_ways(frames in prop::collection::vec((any_frame(), any::<Option<u16>>()), 0..8)) {
+    fn frames_round_trip(frames in prop::collection::vec((any_frame(), any::<Option<u16>>()), 0..8)) {
         let mut to_adapter = Vec::new();
         let mut to_host = Vec::new();
         for (frame, stamp_ms) in &frames {
@@ -225,7 +225,7 @@ proptest! {
     }
 
     #[test]
-    fn any_bytes_are_lines_or_errors_and_a_good_line_comes_through(bytes in prop::collection::vec(
+    fn valid_lines_are_decoded_among_arbitrary_bytes(bytes in prop::collection::vec(
         prop_oneof![
             2 => prop::sample::select(&b"tTrRzZVNFSOC0128F\r\n\x07"[..]),
             1 => any::<u8>(),

@@ -53,7 +53,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
-    fn it_is_what_trying_all_circles_finds(
+    fn the_largest_hole_agrees_with_trying_all_circles(
         points in prop::collection::vec((-1.0..1.0_f64, 0.0..TAU), 1..25), squeeze in prop_oneof![Just(1.0), Just(0.3), Just(1e-3), Just(0.0)],
     ) {
         // Squeezed, they lie near one circle or one point; at 0 on the equator.
@@ -64,7 +64,7 @@ proptest! {
     }
 
     #[test]
-    fn points_close_together_leave_nearly_everything(
+    fn clustered_points_leave_a_hole_of_nearly_the_whole_sphere(
         points in prop::collection::vec((-0.1..0.1_f64, 0.0..0.1_f64), 1..12),
     ) {
         let points: Vec<DVec3> = points.iter().map(|&(z, turn)| at(z, turn)).collect();
@@ -75,7 +75,7 @@ proptest! {
 }
 
 #[test]
-fn none_one_and_two() {
+fn holes_of_zero_one_and_two_points() {
     assert_eq!(largest_hole(&[], 1e-6).unwrap(), None);
     let one = largest(&[DVec3::Z]);
     assert!((one.hole.radius_rad - PI).abs() < 3e-8 && one.hole.centre.z < -0.999_999);
@@ -88,7 +88,7 @@ fn none_one_and_two() {
 }
 
 #[test]
-fn a_ring_of_many_leaves_its_poles() {
+fn holes_of_rings_are_centred_on_the_pole() {
     // More points that touch the hole than are tried by threes.
     let ring = |n: u32, z: f64| (0..n).map(move |k| at(z, TAU * f64::from(k) / f64::from(n)));
     let points: Vec<DVec3> = ring(900, 0.5).chain(ring(900, -0.9)).collect();
@@ -103,7 +103,7 @@ fn a_ring_of_many_leaves_its_poles() {
 }
 
 #[test]
-fn points_that_come_many_times_are_one() {
+fn repeated_points_count_as_one() {
     let corners = [
         DVec3::X,
         DVec3::NEG_X,
@@ -118,7 +118,7 @@ fn points_that_come_many_times_are_one() {
 }
 
 #[test]
-fn one_point_taken_out_of_many_leaves_a_hole_where_it_was() {
+fn removing_a_point_leaves_a_hole_in_its_place() {
     let n = 60_000;
     let turn = PI * (3.0 - 5.0_f64.sqrt());
     let mut points: Vec<DVec3> = (0..n)
@@ -139,7 +139,7 @@ fn one_point_taken_out_of_many_leaves_a_hole_where_it_was() {
 }
 
 #[test]
-fn what_is_no_direction_is_named() {
+fn invalid_directions_are_refused_by_index() {
     let error = largest_hole(&[DVec3::X, DVec3::NAN], 1e-6).unwrap_err();
     assert!(
         error
@@ -154,7 +154,7 @@ fn belt(half_rad: f64) -> impl Fn(DVec3) -> f64 {
 }
 
 #[test]
-fn in_a_region_only_its_own_holes_count() {
+fn a_region_counts_only_holes_inside_it() {
     // At the edge there may be as much room all along: a coarser tolerance, or it takes millions of
     // cells.
     const TOLERANCE: f64 = 1e-4;

@@ -37,7 +37,7 @@ pub(super) fn cosine(part: u32, parts: u32) -> BigRational {
 }
 
 #[test]
-fn cosines_are_within_their_error() {
+fn cosines_are_within_their_stated_error() {
     let bound = exact(COSINE_ERROR);
     for whole in [1, 2, 3, 5, 7, 64, 150, 151, 180, 997, 32_768] {
         let step = (whole / 40).max(1);

@@ -30,7 +30,7 @@ fn rotation(frames: usize, step_rad: f64) -> FrameRotation {
 }
 
 #[test]
-fn any_registers_and_threads_count_the_same() {
+fn counts_do_not_depend_on_simd_level_or_threads() {
     let frame = vlp16(901);
     let few = scattered(1001, 5);
     for points in [&frame[..2003], &few] {
@@ -51,7 +51,7 @@ fn any_registers_and_threads_count_the_same() {
 }
 
 #[test]
-fn turned_frames_count_as_their_points_do() {
+fn counting_by_rotated_frames_agrees_with_counting_points() {
     let points: Vec<DVec3> = rmbl(9)
         .chunks(14_416)
         .flat_map(|frame| frame[..203].to_vec())
@@ -80,7 +80,7 @@ fn turned_frames_count_as_their_points_do() {
 }
 
 #[test]
-fn frames_that_were_not_turned_so_are_refused() {
+fn frames_that_do_not_match_the_rotation_are_refused() {
     let edges = Edges::equal(151).unwrap();
     let mut points: Vec<DVec3> = rmbl(3);
     let count = |points: &[DVec3], of: FrameRotation| turned(points, &of, &edges, ONE);
@@ -118,7 +118,7 @@ proptest! {
     /// Clusters of any size, here and at the antipodes, some in the same place, in any number of
     /// bins.
     #[test]
-    fn clusters_count_as_one_by_one(
+    fn clusters_agree_with_pair_by_pair_counting(
         sizes in prop::collection::vec((1..60_usize, 1e-9..2.0_f64, 0..1000_u64), 1..6),
         bins in 1..400_usize,
     ) {

@@ -51,7 +51,7 @@ fn patterns() -> [Vec<DVec3>; 4] {
 }
 
 #[test]
-fn samples_hold_their_confidence_intervals() {
+fn sampled_estimates_are_within_their_confidence_intervals() {
     // 4 patterns, 2 kinds of bins, 12 seeds at a risk of 1 in 20: 96 intervals, of which 4.8 may
     // fail. Bernstein is careful: none does.
     for points in patterns() {
@@ -100,7 +100,7 @@ fn counted_rmbl() -> (Vec<DVec3>, Edges, Estimate) {
 }
 
 #[test]
-fn a_sample_of_an_rmbl_is_within_a_ten_thousandth() {
+fn a_sampled_rmbl_is_within_a_ten_thousandth() {
     let (points, edges, truth) = counted_rmbl();
     assert_eq!((truth.method, &truth.bound), ("turned", &ErrorBound::Exact));
     let of = sampled(&points, &edges, &Sampling::default()).unwrap();
@@ -117,7 +117,7 @@ fn a_sample_of_an_rmbl_is_within_a_ten_thousandth() {
 /// No bound is claimed of harmonics: how far off they are of scans is what was measured, and their
 /// own `Estimate` says that it is not known.
 #[test]
-fn harmonics_are_near_where_points_lie_smoothly() {
+fn harmonics_are_accurate_for_smooth_point_distributions() {
     let (points, edges, truth) = counted_rmbl();
     let mut last = 1.0;
     for (degree, within) in [(4, 2e-3), (16, 2e-4), (64, 1e-4)] {
@@ -136,7 +136,7 @@ fn harmonics_are_near_where_points_lie_smoothly() {
 /// A level VLP-16 of 0.4 degrees: pairs lie on the edges of 150 and of 180 bins, none on those of
 /// 151.
 #[test]
-fn samples_see_that_bins_are_ill_posed() {
+fn samples_detect_pairs_on_bin_edges() {
     let points = vlp16(901);
     for (bins, on_edges) in [(150, 63_175.0), (180, 216_600.0), (151, 0.0)] {
         let edges = Edges::equal(bins).unwrap();
@@ -152,7 +152,7 @@ fn samples_see_that_bins_are_ill_posed() {
 }
 
 #[test]
-fn harmonics_of_hard_cases() {
+fn harmonics_of_few_points_are_bounded() {
     let edges = Edges::equal(12).unwrap();
     // Two points at the poles of the harmonics, alike, opposite, and anywhere: a series of a step,
     // which is near 1/2 at the step and right away from it.
@@ -187,7 +187,7 @@ fn harmonics_of_hard_cases() {
 }
 
 #[test]
-fn the_cheapest_that_is_good_enough_is_taken() {
+fn the_cheapest_sufficient_method_is_chosen() {
     let rotation = FrameRotation {
         axis: DVec3::Y,
         step_rad: PI / 72.0,
@@ -215,7 +215,7 @@ fn the_cheapest_that_is_good_enough_is_taken() {
 }
 
 #[test]
-fn estimates_of_no_and_one_and_two_points() {
+fn estimates_of_zero_one_and_two_points() {
     let edges = Edges::equal(151).unwrap();
     for points in [&[][..], &[DVec3::X], &[DVec3::X, DVec3::Y]] {
         for of in [

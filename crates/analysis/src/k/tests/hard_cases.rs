@@ -60,7 +60,7 @@ fn two_points_make_one_pair() {
 }
 
 #[test]
-fn coincident_points_are_in_the_first_bin_and_antipodal_ones_in_the_last() {
+fn coincident_pairs_are_in_the_first_bin_and_antipodal_ones_in_the_last() {
     let some = scattered(40, 3);
     let mut points = some.clone();
     points.extend(&some);
@@ -75,7 +75,7 @@ fn coincident_points_are_in_the_first_bin_and_antipodal_ones_in_the_last() {
 }
 
 #[test]
-fn all_on_one_circle() {
+fn points_on_one_circle_are_counted_exactly() {
     // 755 points on the equator: steps of 0.2 bins; five steps are one edge, and the pairs on it go
     // to either side by their last bit.
     let on = |i: u32| {
@@ -93,7 +93,7 @@ fn all_on_one_circle() {
 }
 
 #[test]
-fn points_at_the_poles() {
+fn points_at_the_poles_are_counted_exactly() {
     let mut points = vec![DVec3::Z; 70];
     points.extend(vec![DVec3::NEG_Z; 30]);
     points.extend([DVec3::X, DVec3::NEG_Y]);
@@ -107,7 +107,7 @@ fn points_at_the_poles() {
 }
 
 #[test]
-fn pairs_exactly_on_edges_belong_to_the_smaller_angle() {
+fn pairs_on_an_edge_belong_to_the_bin_of_smaller_angles() {
     // Dot products 0, 1/2, -1/2 and -1 without any rounding, scaled by nothing: 60, 90, 120 and 180
     // degrees.
     let half = 0.5;
@@ -135,7 +135,7 @@ fn pairs_exactly_on_edges_belong_to_the_smaller_angle() {
 }
 
 #[test]
-fn pairs_on_edges_are_counted_as_such() {
+fn pairs_on_edges_are_counted_separately() {
     let frame = vlp16(900);
     let frame = &frame[..];
     for (bins, on_edges) in [(150, 63_175), (180, 216_600), (151, 0)] {
@@ -147,7 +147,7 @@ fn pairs_on_edges_are_counted_as_such() {
 }
 
 #[test]
-fn f32_and_f64_and_fractions_agree_on_a_grid() {
+fn f32_f64_and_exact_fractions_agree_on_a_grid() {
     // A VLP-16 of 24 degrees a step and a second one, tilted: many pairs on edges of 180 and 150
     // bins, and of those of 15 and 30.
     let frame = vlp16(901);
@@ -174,7 +174,7 @@ fn f32_and_f64_and_fractions_agree_on_a_grid() {
 }
 
 #[test]
-fn angles_near_nought_and_pi_keep_their_digits() {
+fn angles_near_zero_and_pi_keep_their_precision() {
     // Bins of 5.5e-3 degrees: the first edge's cosine is 4.6e-9 below 1, of which f32 knows
     // nothing.
     let edges = Edges::equal(32_768).unwrap();
@@ -200,7 +200,7 @@ fn angles_near_nought_and_pi_keep_their_digits() {
 }
 
 #[test]
-fn what_are_not_directions_are_refused() {
+fn invalid_directions_are_refused() {
     let edges = Edges::equal(151).unwrap();
     for wrong in [DVec3::ZERO, DVec3::NAN, DVec3::X * 1.01, DVec3::INFINITY] {
         let refused = exact(&[DVec3::X, wrong], &edges, ONE);
@@ -215,7 +215,7 @@ fn what_are_not_directions_are_refused() {
 }
 
 #[test]
-fn some_of_an_rmbl_is_as_counted_one_by_one() {
+fn a_subset_of_an_rmbl_agrees_with_pair_by_pair_counting() {
     let points: Vec<DVec3> = rmbl(5).into_iter().step_by(29).collect();
     for bins in [1, 2, 7, 151, 2000] {
         let counts = counted(&points, bins);
@@ -228,7 +228,7 @@ fn some_of_an_rmbl_is_as_counted_one_by_one() {
 }
 
 #[test]
-fn counters_hold_as_many_pairs_as_32_bits_and_more() {
+fn counters_exceed_32_bits() {
     // 92,682 points have 4,294,930,221 pairs and 92,683 have 4,295,022,903: 2^32 is between them.
     // All in one place, and in two places a quarter turn apart.
     for (points, pairs) in [(92_682, 4_294_930_221), (92_683, 4_295_022_903)] {

@@ -20,7 +20,7 @@ fn cluster(count: usize, width: f64, seed: u64) -> Vec<DVec3> {
 }
 
 #[test]
-fn outlines_reach_every_pair() {
+fn outlines_contain_every_pair() {
     let mut leaves: Vec<Vec<DVec3>> = Vec::new();
     for (seed, width) in [0.0, 1e-7, 1e-3, 0.01, 0.02, 0.1, 0.5, 1.0, 2.0, 9.0]
         .into_iter()
@@ -78,7 +78,7 @@ fn outlines_reach_every_pair() {
 }
 
 #[test]
-fn outlines_are_narrow() {
+fn outlines_are_tight() {
     // Sixteen points 0.02 radians wide, 1 apart: between them 0.04 at most, a bin more for
     // roundings and what a slanting square is wider.
     let square = |middle: DVec3| -> Vec<DVec3> {
@@ -97,7 +97,7 @@ fn outlines_are_narrow() {
 }
 
 #[test]
-fn leaves_of_any_sizes_count_as_one_by_one() {
+fn leaves_of_any_size_agree_with_pair_by_pair_counting() {
     let mut points = Vec::new();
     for (seed, width) in [0.0, 1e-9, 1e-5, 3e-3, 0.02, 0.1, 0.4, 9.0]
         .into_iter()
@@ -125,7 +125,7 @@ fn leaves_of_any_sizes_count_as_one_by_one() {
 }
 
 #[test]
-fn pairs_within_single_precision_of_edges_are_on_their_sides() {
+fn pairs_near_edges_are_counted_on_the_right_side() {
     // Leaves of sixteen in one place but for 1e-8, others at an edge from there and up to 1e-6
     // nearer or farther: of most pairs f32 knows nothing, of some it does, and each is on its own
     // side. With so many edges between leaves that every loop takes part.
@@ -168,7 +168,7 @@ fn pairs_within_single_precision_of_edges_are_on_their_sides() {
 }
 
 #[test]
-fn every_register_counts_some_of_an_rmbl() {
+fn every_simd_level_counts_a_subset_of_an_rmbl_alike() {
     let points: Vec<DVec3> = rmbl(7).into_iter().step_by(13).collect();
     for bins in [40, 151, 600] {
         let edges = Edges::equal(bins).unwrap();

@@ -41,7 +41,7 @@ fn most(curve: &KCurve) -> f64 {
 }
 
 #[test]
-fn largest_and_smallest_are_what_they_were_found_to_be() {
+fn extremes_match_the_recorded_values() {
     // The last digit may be cut off and not rounded.
     for (name, largest, smallest, digit) in [
         ("vlp16", 0.094_86, -0.094_93, 1e-5),

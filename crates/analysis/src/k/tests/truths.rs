@@ -25,7 +25,7 @@ fn first_two_and_last(counts: &PairCounts) -> [u64; 3] {
 }
 
 #[test]
-fn a_frame_of_the_vlp16_has_its_counts() {
+fn a_vlp16_frame_matches_the_known_counts() {
     let edges = Edges::equal(151).unwrap();
     let truth = [37_900, 138_021, 45_100];
     assert_eq!(first_two_and_last(&counted(&vlp16(901), 151)), truth);
@@ -38,8 +38,7 @@ fn a_frame_of_the_vlp16_has_its_counts() {
 }
 
 #[test]
-fn with_900_azimuths_there_are_as_many_pairs_within_r_as_beyond_pi_less_r_but_for_half_a_pair_a_point()
- {
+fn pairs_of_900_azimuths_are_symmetric_about_90_degrees_but_for_antipodes() {
     let counts = counted(&vlp16(900), 151);
     let within = counts.cumulative();
     for bins in 1..=75 {
@@ -50,7 +49,7 @@ fn with_900_azimuths_there_are_as_many_pairs_within_r_as_beyond_pi_less_r_but_fo
 }
 
 #[test]
-fn rmbls_have_their_counts_and_curves() {
+fn rmbls_match_the_known_counts_and_curves() {
     let truths = [
         (30, [14_413_980, 44_099_850, 14_628_780], Some(0.024_38)),
         (72, [82_933_920, 250_263_432, 83_444_544], None),
@@ -70,7 +69,7 @@ fn rmbls_have_their_counts_and_curves() {
 }
 
 #[test]
-fn the_vlp16_clusters_and_disperses_as_known() {
+fn vlp16_clustering_and_dispersion_match_known_values() {
     let curve = KCurve::of_counts(&counted(&vlp16(901), 151), 10.0);
     assert!((curve.d_max - 0.094_86).abs() < 5e-6, "{}", curve.d_max);
     assert!((curve.d_min + 0.094_93).abs() < 5e-6, "{}", curve.d_min);

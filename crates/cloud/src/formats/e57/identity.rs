@@ -61,7 +61,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn identities_are_of_version_8_and_differ_with_what_they_are_of() {
+    fn identifiers_are_uuid_version_8_and_depend_on_the_content() {
         let time = |ns| [None, Some(Stamp::from_nanos(ns))];
         let some = of(&["a".into()], Summary::default(), time(1));
         assert_eq!(some, of(&["a".into()], Summary::default(), time(1)));

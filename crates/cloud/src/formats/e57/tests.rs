@@ -20,7 +20,7 @@ fn written(fields: Fields, batches: &[Points]) -> Vec<u8> {
 }
 
 #[test]
-fn files_are_read_back() {
+fn files_round_trip() {
     let cloud = cloud_from(20_000, NOW_NS + 123);
     let bytes = written(Fields::ALL, std::slice::from_ref(&cloud));
     let mut file = E57Reader::new(Cursor::new(bytes)).unwrap();
@@ -112,7 +112,7 @@ fn the_file_describes_itself() {
 }
 
 #[test]
-fn an_empty_cloud_is_a_file_too_and_so_is_one_without_columns() {
+fn clouds_without_points_or_columns_are_valid_files() {
     for (fields, batches) in [
         (Fields::FILE, vec![]),
         (Fields::NONE, vec![cloud_from(3, LATE_NS)]),
@@ -125,7 +125,7 @@ fn an_empty_cloud_is_a_file_too_and_so_is_one_without_columns() {
 }
 
 #[test]
-fn the_same_points_give_the_same_bytes_and_others_another_identity() {
+fn equal_points_give_equal_bytes_and_different_points_another_identifier() {
     let cloud = |count| vec![cloud_from(count, NOW_NS)];
     assert_eq!(
         written(Fields::FILE, &cloud(500)),
@@ -158,7 +158,7 @@ fn metadata_cannot_break_the_description() {
 }
 
 #[test]
-fn invalid_positions_are_refused_and_complete_batches_kept() {
+fn invalid_positions_are_refused_and_earlier_batches_kept() {
     let file = SharedOutput::default();
     let mut writer = E57Writer::new(file.clone());
     writer.begin(&metadata()).unwrap();

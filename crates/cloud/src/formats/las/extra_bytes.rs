@@ -97,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn offsets_follow_one_another_and_texts_fit() {
+    fn offsets_are_contiguous_and_texts_fit() {
         let extras = layout(Fields::ALL);
         let mut expected = 0;
         for extra in &extras {

@@ -33,7 +33,7 @@ fn both(batches: &[Points]) -> [Vec<u8>; 2] {
 }
 
 #[test]
-fn the_points_come_back_from_las_and_laz() {
+fn las_and_laz_points_round_trip() {
     let batches = [cloud(300), cloud(0), cloud(7)];
     let given: Vec<Point> = batches.iter().flat_map(Points::iter).collect();
     for bytes in both(&batches) {
@@ -129,7 +129,7 @@ fn every_set_of_columns_can_be_requested() {
 }
 
 #[test]
-fn an_empty_cloud_is_a_file_too() {
+fn an_empty_cloud_is_a_valid_file() {
     for bytes in both(&[]) {
         let mut reader = Reader::new(Cursor::new(bytes)).unwrap();
         assert_eq!(reader.header().number_of_points(), 0);
@@ -138,7 +138,7 @@ fn an_empty_cloud_is_a_file_too() {
 }
 
 #[test]
-fn the_same_points_give_the_same_bytes() {
+fn equal_points_give_equal_bytes() {
     assert_eq!(both(&[cloud(50)]), both(&[cloud(50)]));
 }
 
@@ -166,7 +166,7 @@ fn long_and_non_ascii_names_are_shortened() {
 }
 
 #[test]
-fn coordinates_that_do_not_fit_are_named() {
+fn coordinates_out_of_range_are_reported() {
     for (bad, fits) in [
         (f64::NAN, false),
         (f64::INFINITY, false),
@@ -232,7 +232,7 @@ fn a_full_disk_is_an_error_at_every_byte_and_never_a_panic() {
 }
 
 #[test]
-fn a_file_cut_off_by_a_full_disk_cannot_be_finished() {
+fn a_file_truncated_by_a_full_disk_cannot_be_finished() {
     let header = both(&[])[0].len() as u64;
     let mut writer = LasWriter::las(SmallDisk::new(header + 500));
     writer.begin(&metadata()).unwrap();

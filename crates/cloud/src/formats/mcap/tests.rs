@@ -139,7 +139,7 @@ fn revolutions_split_clouds() {
 }
 
 #[test]
-fn all_messages_are_there_in_the_order_of_their_times() {
+fn messages_are_complete_and_sorted_by_time() {
     let track = track();
     let batches = [
         points((0..=100).map(|ms| ms * MS)),
@@ -184,7 +184,7 @@ fn a_fixed_platform_is_in_the_lidars_frame() {
 }
 
 #[test]
-fn an_empty_cloud_is_a_file_too() {
+fn an_empty_cloud_is_a_valid_file() {
     let bytes = written(new(), None, &[]);
     assert!(read(&bytes).is_empty());
     let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
@@ -192,7 +192,7 @@ fn an_empty_cloud_is_a_file_too() {
 }
 
 #[test]
-fn the_file_has_its_source_and_is_reproducible() {
+fn files_name_their_source_and_are_reproducible() {
     let cloud = cloud_from(1000, NOW_NS);
     let bytes = written(new(), Some(&track()), std::slice::from_ref(&cloud));
     assert_eq!(bytes, written(new(), Some(&track()), &[cloud]));
@@ -286,7 +286,7 @@ fn an_aborted_file_has_its_complete_chunks() {
 }
 
 #[test]
-fn times_out_of_range_are_refused_and_complete_batches_kept() {
+fn times_out_of_range_are_refused_and_earlier_batches_kept() {
     let mut writer = new();
     writer.begin(&metadata()).unwrap();
     writer.points(&points([0, 1])).unwrap();
@@ -325,7 +325,7 @@ proptest! {
 
     /// Whatever times points come in, each is in one cloud, and no cloud spans more than it may.
     #[test]
-    fn no_point_is_lost_or_doubled(
+    fn no_point_is_lost_or_duplicated(
         after in prop::collection::vec(-20_000 * MS..40_000 * MS, 0..300),
         batch in 1_usize..50,
         turns in any::<bool>(),

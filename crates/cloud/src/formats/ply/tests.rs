@@ -124,7 +124,7 @@ fn the_header_does_not_grow_with_the_count() {
 }
 
 #[test]
-fn a_pipe_carries_what_a_file_holds() {
+fn pipes_and_files_get_the_same_bytes() {
     let (file, pipe) = written(Fields::ALL, &[cloud(3), cloud(0), cloud(40)]);
     let (file, pipe) = (read(&file), read(&pipe));
     assert_eq!(file.rows, pipe.rows);
@@ -133,7 +133,7 @@ fn a_pipe_carries_what_a_file_holds() {
 }
 
 #[test]
-fn an_empty_cloud_is_a_file_too() {
+fn an_empty_cloud_is_a_valid_file() {
     let (bytes, pipe) = written(Fields::FILE, &[]);
     assert_eq!((read(&bytes).vertices, read(&bytes).rest), (0, 0));
     assert_eq!((read(&pipe).vertices, read(&pipe).rest), (0, 0));
@@ -204,7 +204,7 @@ proptest! {
 }
 
 #[test]
-fn a_full_disk_leaves_a_whole_file_of_the_batches_before() {
+fn a_full_disk_leaves_a_valid_file_of_earlier_batches() {
     let whole = written(Fields::FILE, &[cloud(10), cloud(10)]).0.len() as u64;
     let mut reached = std::collections::BTreeSet::new();
     for room in 0..whole {
@@ -265,7 +265,7 @@ fn calls_out_of_order_are_refused() {
 }
 
 #[test]
-fn a_file_may_start_within_an_output() {
+fn a_file_may_start_at_an_offset_of_the_output() {
     let mut output = Cursor::new(vec![]);
     output.write_all(b"before").unwrap();
     let mut writer = PlyWriter::new(output);

@@ -100,7 +100,7 @@ fn a_damaged_description_keeps_its_number() {
 }
 
 #[test]
-fn a_damaged_section_header_in_the_other_byte_order() {
+fn a_damaged_section_header_of_the_other_byte_order_is_skipped() {
     for big in [false, true] {
         let (one, _) = sound(big, 2);
         let (mut two, starts) = sound(!big, 3);
@@ -152,7 +152,7 @@ impl Read for Repeat {
 }
 
 #[test]
-fn four_hundred_megabytes_take_256_kib_of_memory() {
+fn reading_400_megabytes_takes_256_kib_of_memory() {
     let head = [section(false), interface(false, 1, &[(9, &[9])])].concat();
     let data = ethernet(&[], &ip(2368, &data_packet(7)));
     let body = [

@@ -97,7 +97,7 @@ fn lidars_are_recognised_by_content_on_any_port() {
 }
 
 #[test]
-fn ipv6_on_every_link() {
+fn ipv6_is_read_on_every_link() {
     let source = [0xFE, 0x80, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 7];
     let packet = ip6(source, 17, &udp(2368, b"firing"));
     let tags = [0x88, 0xA8, 0, 7, 0x81, 0x00, 0x00, 0x05];
@@ -267,7 +267,7 @@ fn captures_with_complete_datagrams_are_valid() {
 }
 
 #[test]
-fn pcapng_of_several_sections_interfaces_and_packet_blocks() {
+fn pcapng_of_several_sections_interfaces_and_packet_blocks_is_read() {
     let packet_of = |tag: u8| ethernet(&[], &ip(2368, &[tag]));
     let cooked = [&[0; 14][..], &[8, 0], &ip(2368, b"c")].concat();
     for (one, two) in [(false, true), (true, false), (false, false), (true, true)] {
@@ -339,7 +339,7 @@ fn simple_packet_blocks_count_as_timeless() {
 }
 
 #[test]
-fn several_sensors_in_one_file() {
+fn several_sensors_in_one_file_are_distinguished() {
     let from = |last: u8, port, payload: &[u8]| {
         let mut packet = ip(port, payload);
         packet[15] = last;

@@ -154,7 +154,7 @@ fn bind_errors_name_the_reason() {
 }
 
 #[test]
-fn a_common_port_takes_one_socket() {
+fn a_common_port_uses_one_socket() {
     let free = UdpSocket::bind("127.0.0.1:0").unwrap();
     let port = free.local_addr().unwrap().port();
     drop(free);

@@ -228,7 +228,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(100))]
 
     #[test]
-    fn blocks_become_the_points_of_the_definition(
+    fn firing_blocks_place_points_as_the_definition_does(
         product in prop::sample::select(&PRODUCTS),
         modes in (any::<bool>(), any::<bool>(), any::<bool>()),
         corrections in (any_corrections(16), any_corrections(32), any::<bool>()),
@@ -256,7 +256,7 @@ proptest! {
 
     /// A replay is the same on every processor.
     #[test]
-    fn wider_registers_change_no_bit(
+    fn simd_levels_agree_bit_for_bit(
         product in prop::sample::select(&PRODUCTS),
         dual: bool,
         noise in prop::collection::vec(any::<u8>(), 1_000..2_000),

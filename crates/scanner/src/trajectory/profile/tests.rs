@@ -16,7 +16,7 @@ fn card() -> Profile {
 }
 
 #[test]
-fn the_reference_sweep_has_its_duration_and_way() {
+fn the_reference_sweep_has_the_expected_duration_and_angle() {
     let card = card();
     assert!((card.duration_s() - 0.9125).abs() < 1e-12);
     assert_eq!(card.angle_deg(0.0), 0.0);
@@ -67,7 +67,7 @@ fn stepped(profile: &Profile, until_s: f64) -> f64 {
 }
 
 #[test]
-fn the_closed_form_is_the_servo_stepped_through() {
+fn the_closed_form_agrees_with_stepping_the_servo() {
     for lag_s in [0.0, 1e-3, 0.0106, 0.08] {
         for ramp_up_s in [0.02, 0.1125] {
             let profile = Profile {
@@ -87,7 +87,7 @@ fn the_closed_form_is_the_servo_stepped_through() {
 /// The derivatives by the servo's parameters, whose closed forms are the least obvious:
 /// underdamped, overdamped, and with a double pole.
 #[test]
-fn derivatives_by_lag_and_inertia_are_differences() {
+fn derivatives_by_lag_and_inertia_agree_with_differences() {
     for damping in [
         0.1, 0.4, 0.8, 0.999, 0.999_999, 1.0, 1.000_001, 1.001, 1.5, 4.0,
     ] {
@@ -150,7 +150,7 @@ prop_compose! {
 
 proptest! {
     #[test]
-    fn derivatives_are_differences(profile in any_profile(), part in -0.05..1.2f64) {
+    fn derivatives_agree_with_differences(profile in any_profile(), part in -0.05..1.2f64) {
         // Away from the corners, which a difference would span.
         let at = profile.start_s + part * profile.duration_s();
         let near = profile.corners_s().iter().any(|corner| (corner - at).abs() < 1e-5);
@@ -180,7 +180,7 @@ proptest! {
     }
 
     #[test]
-    fn rest_before_and_the_whole_way_after(profile in any_profile()) {
+    fn profiles_rest_before_the_start_and_after_the_end(profile in any_profile()) {
         prop_assert_eq!(profile.angle_deg(profile.start_s - 1.0), profile.from_deg);
         let after = profile.start_s + profile.duration_s() + 40.0 * profile.lag_s.max(20.0 * profile.inertia_s2 / profile.lag_s.max(1e-9)) + 1e-9;
         let end = profile.from_deg + profile.way_deg;

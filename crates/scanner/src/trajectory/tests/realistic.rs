@@ -196,7 +196,7 @@ impl Run {
 /// Limits: 0.011 degrees at most and 0.0028 root mean square, of which the ripple alone, unseen by
 /// any encoder, is 0.0021.
 #[test]
-fn the_best_curve_through_a_real_drives_polls_is_as_accurate_as_its_gear() {
+fn the_best_curve_through_real_polls_is_as_accurate_as_the_gear() {
     for damping in [0.7, 1.0] {
         let seeds = 1..=4;
         let errors: Vec<_> = seeds
@@ -256,7 +256,7 @@ fn accurate_samples_are_followed() {
 
 /// On the motion it is made for, a method is never worse than the cheaper one before it.
 #[test]
-fn each_method_is_best_somewhere() {
+fn each_method_is_best_for_its_kind_of_motion() {
     let run = CARD.run();
     let rms = |method| run.error(&run.trajectory(Some(method))).1;
     let [nearest, linear, profile, servo] = [
@@ -302,7 +302,7 @@ fn motion_without_command_is_followed_and_reported() {
 
 /// A limit switch ends the sweep half way: later samples are at rest elsewhere.
 #[test]
-fn a_sweep_cut_short_keeps_its_angles() {
+fn an_interrupted_sweep_keeps_its_angles() {
     let run = Drive { way: -20.0, ..CARD }.run();
     let mut sweep = run.sweep;
     sweep.commanded.speed = DegPerS(56.25);
@@ -319,7 +319,7 @@ fn a_sweep_cut_short_keeps_its_angles() {
 
 /// A way shorter than v^2/a: the cruise is never reached.
 #[test]
-fn a_triangle_is_a_motion_too() {
+fn triangular_profiles_are_fitted() {
     for way in [-3.0, 3.0, -0.4] {
         let run = Drive {
             way,
@@ -397,7 +397,7 @@ fn degenerate_profiles_are_fitted_or_joined() {
 
 /// A filter by round-trip time must keep some polls.
 #[test]
-fn polls_that_all_have_one_round_trip() {
+fn polls_of_equal_round_trip_are_fitted() {
     let run = Drive {
         round_trip_s: (1e-3, 1e-3),
         spikes: 0.0,
@@ -481,7 +481,7 @@ fn several_sweeps_have_a_fit_each() {
 /// 45 degrees in a quarter of an hour: 360,000 polls, a cruise of 900 s between ramps of a tenth of
 /// a millisecond.
 #[test]
-fn a_quarter_of_an_hour_at_three_minutes_of_arc_a_second() {
+fn a_sweep_of_a_quarter_of_an_hour_is_followed() {
     let speed = 0.05;
     let mut noise = Noise(5);
     let mut samples = Vec::new();

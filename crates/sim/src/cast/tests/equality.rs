@@ -162,7 +162,7 @@ fn firings(count: usize) -> Vec<Ray> {
 }
 
 #[test]
-fn one_ray_or_many_any_threads_any_registers_give_the_same_bits() {
+fn ray_count_threads_and_simd_level_do_not_change_any_bit() {
     let caster = scene();
     let rays = firings(1800);
     let alone: Vec<Option<Hit<DVec3>>> = rays
@@ -200,7 +200,7 @@ fn one_ray_or_many_any_threads_any_registers_give_the_same_bits() {
 
 /// Along faces, edges and axes, from inside and outside: where single rays take another branch.
 #[test]
-fn solids_give_the_same_bits_by_one_ray_and_by_eight() {
+fn solids_give_equal_bits_for_one_ray_and_for_eight() {
     let mut numbers = Numbers(77);
     let (mut met, mut faces) = (0, [false; 6]);
     for round in 0..4_000 {
@@ -276,7 +276,7 @@ fn solids_give_the_same_bits_by_one_ray_and_by_eight() {
 }
 
 #[test]
-fn objects_in_a_tree_agree_with_each_alone() {
+fn objects_in_a_tree_agree_with_each_object_alone() {
     let caster = scene();
     let alone: Vec<Caster> = caster
         .objects()

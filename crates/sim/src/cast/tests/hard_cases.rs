@@ -19,7 +19,7 @@ fn sheet(middle: DVec3, cell: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
 }
 
 #[test]
-fn no_ray_slips_through_a_shared_edge_or_vertex() {
+fn no_ray_passes_through_a_shared_edge_or_vertex() {
     let shape = ball(40, 60, 7.3, 0.3);
     let caster = mesh(&shape);
     let (vertices, triangles) = &shape;
@@ -48,7 +48,7 @@ fn no_ray_slips_through_a_shared_edge_or_vertex() {
 }
 
 #[test]
-fn rays_exactly_through_vertices_and_along_edges_are_hits_as_in_fractions() {
+fn rays_through_vertices_and_along_edges_agree_with_exact_fractions() {
     // Whole numbers: every edge function is exactly zero.
     let vertices: Vec<DVec3> = (0..25)
         .map(|at| DVec3::new(f64::from(at % 5) - 2.0, f64::from(at / 5) - 2.0, 3.0))
@@ -76,7 +76,7 @@ fn rays_exactly_through_vertices_and_along_edges_are_hits_as_in_fractions() {
 }
 
 #[test]
-fn a_surface_grazed_at_two_hundredths_of_a_degree() {
+fn a_surface_at_a_grazing_angle_of_0_02_deg_is_hit() {
     let shape = sheet(DVec3::ZERO, 2.5);
     let caster = mesh(&shape);
     let mut numbers = Numbers(8);
@@ -125,7 +125,7 @@ fn coordinates_of_half_a_million_metres_cost_no_precision() {
 }
 
 #[test]
-fn a_sphere_of_a_metre_a_kilometre_away() {
+fn a_sphere_of_a_metre_is_hit_a_kilometre_away() {
     let mut numbers = Numbers(4);
     let (mut met, mut missed) = (0, 0);
     for _ in 0..300 {
@@ -151,7 +151,7 @@ fn a_sphere_of_a_metre_a_kilometre_away() {
 }
 
 #[test]
-fn triangles_without_an_area_are_not_there() {
+fn triangles_without_area_are_ignored() {
     // Whole multiples of a sixteenth: the middle of an edge is exactly on it.
     let a = DVec3::new(0.125, 0.25, 5.0);
     let (b, c) = (DVec3::new(1.25, -0.5, 5.0), DVec3::new(-1.125, -1.75, 5.0));
@@ -256,7 +256,7 @@ fn a_ray_that_starts_on_a_surface_does_not_hit_it_there() {
 }
 
 #[test]
-fn a_ray_from_inside_a_box_meets_the_wall_it_goes_to() {
+fn a_ray_from_inside_a_box_hits_the_wall_ahead() {
     let (low, high) = (DVec3::new(-3.0, -2.0, -1.0), DVec3::new(5.0, 4.0, 2.0));
     let room = Caster::new([Object::new(Cuboid::new(low, high))]).unwrap();
     let faces = [
@@ -312,7 +312,7 @@ fn a_ray_from_inside_a_box_meets_the_wall_it_goes_to() {
 }
 
 #[test]
-fn a_ray_along_a_plane_or_in_a_face() {
+fn rays_within_a_plane_or_face_are_handled() {
     let plane = Caster::new([Object::new(Plane)]).unwrap();
     for along in [DVec3::X, DVec3::NEG_Y, DVec3::new(0.6, 0.8, 0.0)] {
         for height in [-1.0, -1e-300, 0.0, 1e-300, 1.0] {

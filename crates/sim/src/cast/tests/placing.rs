@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn turning_object_and_ray_together_changes_nothing() {
+fn rotating_object_and_ray_together_changes_nothing() {
     let mut numbers = Numbers(21);
     let (vertices, triangles) = ball(10, 12, 1.0, 0.3);
     let shape = Arc::new(Mesh::new(&vertices, &triangles).unwrap());
@@ -50,7 +50,7 @@ fn turning_object_and_ray_together_changes_nothing() {
 }
 
 #[test]
-fn an_object_that_moves_is_met_where_it_went() {
+fn a_moving_object_is_hit_where_it_has_moved() {
     let objects = (0..10).map(|at| {
         let place = Placement::at(DVec3::X * 10.0 * f64::from(at)).unwrap();
         Object::new(Sphere { radius_m: 1.0 }).placed(place)
@@ -73,7 +73,7 @@ fn an_object_that_moves_is_met_where_it_went() {
 }
 
 #[test]
-fn stretching_and_mirroring_are_rejected() {
+fn scaling_and_mirroring_are_rejected() {
     for bad in [
         DMat3::IDENTITY * 2.0,
         DMat3::from_diagonal(DVec3::new(1.0, 1.0, -1.0)),
@@ -88,7 +88,7 @@ fn stretching_and_mirroring_are_rejected() {
 }
 
 #[test]
-fn of_two_at_one_distance_the_first_given_counts() {
+fn the_first_object_wins_at_equal_distance() {
     let wall = || Object::new(Cuboid::new(DVec3::X, DVec3::new(2.0, 1.0, 1.0)));
     for copies in [2, 9] {
         let caster = Caster::new((0..copies).map(|_| wall())).unwrap();

@@ -10,7 +10,7 @@ fn qualities() -> impl Iterator<Item = Quality> {
 }
 
 #[test]
-fn rays_meet_the_same_with_any_tree() {
+fn hits_do_not_depend_on_the_tree() {
     let (vertices, triangles) = ball(14, 18, 4.0, 0.3);
     let mesh = Mesh::new(&vertices, &triangles).unwrap();
     let mut numbers = Numbers(21);
@@ -36,7 +36,7 @@ fn rays_meet_the_same_with_any_tree() {
 }
 
 #[test]
-fn a_tree_does_not_depend_on_the_one_before() {
+fn rebuilding_a_tree_does_not_depend_on_the_previous_one() {
     let (vertices, triangles) = ball(8, 12, 4.0, 0.3);
     let mesh = Mesh::new(&vertices, &triangles).unwrap();
     let said = |mesh: &Mesh| format!("{mesh:?}");
@@ -54,7 +54,7 @@ fn a_tree_does_not_depend_on_the_one_before() {
 }
 
 #[test]
-fn qualities_shape_the_tree() {
+fn build_quality_changes_the_size_of_the_tree() {
     let (vertices, triangles) = ball(40, 60, 4.0, 0.3);
     let mesh = Mesh::new(&vertices, &triangles).unwrap();
     let nodes = |bins, sharing| mesh.rebuilt(Quality { bins, sharing }).nodes();

@@ -14,7 +14,7 @@ fn met(caster: &Caster, origin: [f64; 3], along: [f64; 3]) -> Option<(f64, [f64;
 }
 
 #[test]
-fn spheres_are_met_from_outside_and_inside() {
+fn spheres_are_hit_from_outside_and_inside() {
     let sphere = alone(Sphere { radius_m: -2.0 });
     assert_eq!(
         met(&sphere, [5.0, 0.0, 0.0], [-1.0, 0.0, 0.0]),
@@ -29,7 +29,7 @@ fn spheres_are_met_from_outside_and_inside() {
 }
 
 #[test]
-fn drums_and_pipes() {
+fn capped_and_open_cylinders_are_hit_correctly() {
     let shape = Cylinder {
         radius_m: 1.0,
         bottom_m: 0.0,
@@ -120,7 +120,7 @@ fn a_cylinder_is_the_limit_of_its_meshes() {
 }
 
 #[test]
-fn height_fields_are_met_where_their_planes_say() {
+fn height_fields_are_hit_on_their_planes() {
     // z = 0.5 x - 0.25 y over 30 x 20 m: one plane, many triangles.
     let (columns, rows, spacing_m) = (61, 41, [0.5, 0.5]);
     let height = |x: f64, y: f64| 0.5 * x - 0.25 * y;

@@ -36,7 +36,7 @@ fn received(divergence: &Divergence, surroundings: &Surroundings) -> (Firing, Ec
 }
 
 #[test]
-fn on_a_plane_nothing_is_changed_and_no_sub_ray_cast() {
+fn planes_are_unchanged_and_cast_no_sub_rays() {
     let wall = around(wall(20.0 * DVec3::Y, dvec3(0.3, -1.0, 0.1)));
     let firing = firing(20.0, -30.0);
     let before = cast(&firing, &wall);
@@ -52,7 +52,7 @@ fn on_a_plane_nothing_is_changed_and_no_sub_ray_cast() {
 
 /// Beams whose axis is within 1.5 mrad of the screen's edge see both sides.
 #[test]
-fn an_edge_far_before_a_wall_makes_two_returns() {
+fn an_edge_far_in_front_of_a_wall_gives_two_returns() {
     // Laser 0's own azimuth is 0; the others fire up to 0.124 degrees later, 2.2 mrad to the right.
     let surroundings = screen(5.0, 12.0, 0.0);
     let (firing, echoes, acted) = received(&divergence(), &surroundings);
@@ -82,7 +82,7 @@ fn an_edge_far_before_a_wall_makes_two_returns() {
 }
 
 #[test]
-fn an_edge_close_before_a_wall_makes_a_mixed_pixel() {
+fn an_edge_close_to_a_wall_gives_a_mixed_pixel() {
     let surroundings = screen(10.0, 10.5, 0.0);
     let (firing, echoes, acted) = received(&divergence(), &surroundings);
     assert!(acted > 5);
@@ -101,7 +101,7 @@ fn an_edge_close_before_a_wall_makes_a_mixed_pixel() {
 
 /// The map and the four corners against sub-rays at every shot.
 #[test]
-fn footprints_without_sub_rays_would_not_change() {
+fn footprints_without_sub_rays_are_those_that_sub_rays_leave_unchanged() {
     let surroundings = around(scenes::hall());
     let divergence = divergence();
     let (mut missed, mut shots, mut acted) = (0, 0, 0);
@@ -133,7 +133,7 @@ fn footprints_without_sub_rays_would_not_change() {
 
 /// Near moving objects the result is the same as without a map, wherever the box is.
 #[test]
-fn the_map_of_static_objects_holds_near_moving_ones() {
+fn the_map_of_static_objects_is_valid_near_moving_objects() {
     let walker = MovingObjects::of(&MovingObjectsSettings {
         boxes: vec![MovingBox {
             at_m: [3.0, 4.0, 0.3],
@@ -176,7 +176,7 @@ fn the_map_of_static_objects_holds_near_moving_ones() {
 }
 
 #[test]
-fn the_map_leaves_most_of_a_hall_alone() {
+fn most_shots_of_a_hall_need_no_sub_rays() {
     let surroundings = around(scenes::hall());
     let map = Plain::new(&surroundings, 0.002);
     let (mut plain, mut shots) = (0, 0);
@@ -194,7 +194,7 @@ fn the_map_leaves_most_of_a_hall_alone() {
 }
 
 #[test]
-fn settings_have_their_bounds() {
+fn settings_out_of_bounds_are_rejected() {
     let wrong = |change: fn(&mut DivergenceSettings)| {
         let mut settings = DivergenceSettings::default();
         change(&mut settings);

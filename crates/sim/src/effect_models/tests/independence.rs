@@ -84,7 +84,7 @@ fn among(returns: [u16; 2], others: [u16; 2], within: u16) -> bool {
 }
 
 #[test]
-fn another_effect_does_not_change_draws_per_shot() {
+fn another_effect_does_not_change_random_draws_per_shot() {
     // Fog that is dense enough to return, and fog that only dims.
     let (dense, thin) = (TABLES[4].1, "visibility_m = 1000.0");
     let nothing = shots(&[], thin, 1);
@@ -156,7 +156,7 @@ fn delays(names: &[&str], kind: MessageKind) -> Vec<Vec<i64>> {
 
 /// Consecutive links: each acts on a message as it does alone.
 #[test]
-fn another_effect_does_not_change_draws_per_message() {
+fn another_effect_does_not_change_random_draws_per_message() {
     for kind in [
         MessageKind::Data,
         MessageKind::Position,

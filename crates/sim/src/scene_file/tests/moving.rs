@@ -71,7 +71,7 @@ fn fired_s(point: &TruePoint) -> f64 {
 }
 
 #[test]
-fn a_box_at_2_m_s_is_at_each_firing_where_it_went() {
+fn a_box_at_2_m_s_is_at_its_position_of_each_firing() {
     let (taken, scene) = run(&format!("{BEFORE}{BOX}"), 2);
     let mut faces = [0; 7];
     for point in &taken.points {
@@ -122,7 +122,7 @@ fn a_box_at_2_m_s_is_at_each_firing_where_it_went() {
 }
 
 #[test]
-fn a_mesh_that_turns_and_goes_is_where_it_turned_to() {
+fn a_rotating_moving_mesh_is_at_its_pose_of_each_firing() {
     let (taken, _) = run(&format!("{BEFORE}{MESH}"), 1);
     let (mut met, mut turned) = (0, [f64::INFINITY, f64::NEG_INFINITY]);
     for point in taken.points.iter().filter(|point| point.reflectivity == 30) {
@@ -145,7 +145,7 @@ fn a_mesh_that_turns_and_goes_is_where_it_turned_to() {
 }
 
 #[test]
-fn moving_objects_and_boxes_act_together_on_any_number_of_threads() {
+fn moving_objects_and_boxes_do_not_depend_on_threads() {
     let table = "[effects.range_noise]\nsd_m = 0.01\n[effects.moving_objects]\n\
                  boxes = [{ at_m = [0, -5, 0], size_m = [1, 1, 2], reflectivity = 44 }]\n[effects.divergence]\n";
     let text = format!("{BEFORE}{BOX}{MESH}{table}");

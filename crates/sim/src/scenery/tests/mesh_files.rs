@@ -161,7 +161,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn a_box_as_a_mesh_is_the_box(rays in proptest::collection::vec((prop::array::uniform3(-6.0..6.0), prop::array::uniform3(-3.0..3.0)), 32)) {
+    fn a_box_mesh_equals_the_box(rays in proptest::collection::vec((prop::array::uniform3(-6.0..6.0), prop::array::uniform3(-3.0..3.0)), 32)) {
         let own = Object::new(Cuboid::new(DVec3::new(-1.0, -2.0, 0.25), DVec3::new(2.5, 1.0, 3.0)));
         let own = Caster::new([own]).unwrap();
         for name in NAMES {
@@ -183,7 +183,7 @@ proptest! {
 }
 
 #[test]
-fn units_and_up_are_as_the_scene_says() {
+fn units_and_up_axis_follow_the_scene() {
     let look = |more: &str| {
         let text = format!("[[objects]]\nmesh = {{ file = \"meshes/box.{more} }}\n");
         let placed = Scenery::parse(&text).unwrap().place(0, &mut files).unwrap();
@@ -199,7 +199,7 @@ fn units_and_up_are_as_the_scene_says() {
 }
 
 #[test]
-fn several_objects_share_a_file_that_is_read_once() {
+fn a_shared_mesh_file_is_read_once() {
     let text = "[[objects]]\nmesh = { file = \"meshes/box.obj\" }\n[[objects]]\nmesh = { file = \"meshes/box.obj\" }\n\
                 copies = { counts = [3, 1, 1], step_m = [9, 0, 0] }\n";
     let mut asked = 0;
@@ -289,7 +289,7 @@ fn malformed_meshes_are_refused() {
 /// No contents of a file make a reader panic: every file cut at any byte, and with any one byte
 /// changed.
 #[test]
-fn broken_files_are_errors_or_meshes_but_never_panics() {
+fn broken_files_never_panic() {
     for (format, bytes) in [
         (MeshFormat::Obj, obj()),
         (MeshFormat::Ply, ply_text()),

@@ -229,7 +229,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ranges_are_read_and_their_ends_met() {
+    fn ranges_are_parsed_and_include_their_ends() {
         let sweep: SweepRanges = "speed=5..56.25,start=-90..90/5".parse().unwrap();
         let [speed, start] = sweep.ranges.as_slice() else {
             panic!("{sweep:?}");
@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_range_is_said() {
+    fn invalid_ranges_are_reported() {
         for text in [
             "",
             "speed",
@@ -278,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn fronts_hold_what_nothing_beats() {
+    fn fronts_contain_the_undominated_settings() {
         let setting =
             |scan_s: f64, hole_deg: f64, gap_deg: f64, sd_over_mean_in_view: f64| SweepSetting {
                 values: vec![scan_s],

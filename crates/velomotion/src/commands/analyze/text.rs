@@ -305,7 +305,7 @@ mod tests {
     }
 
     #[test]
-    fn means_are_not_rounded_where_the_table_has_room() {
+    fn means_are_printed_in_full_where_the_table_has_room() {
         for (x, places, expected) in [
             (1_037_952.0 / 5_120.0, 7, "202.725"),
             (133.948_6, 8, "133.949"),

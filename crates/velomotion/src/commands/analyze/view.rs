@@ -147,7 +147,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_hundredth_at_each_end_does_not_count() {
+    fn the_outermost_hundredths_are_ignored() {
         let mut numbers: Vec<f64> = (0..=200).rev().map(f64::from).collect();
         numbers[7] = 1e9;
         assert_eq!(middle(&mut numbers), Some([2.0, 199.0]));
@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn an_origin_is_in_the_cloud_or_so_far_outside() {
+    fn the_distance_of_the_origin_from_the_cloud_is_reported() {
         let corners = |middle: DVec3| -> Vec<DVec3> {
             (0..8)
                 .map(|k| {

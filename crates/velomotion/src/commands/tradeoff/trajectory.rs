@@ -344,7 +344,7 @@ mod tests {
     }
 
     #[test]
-    fn a_servo_lags_and_arrives() {
+    fn a_lagging_servo_arrives() {
         let (stiff, soft) = (shaft(false), shaft(true));
         let (hz, damping) = SERVO;
         // The lag in the cruise is 2 damping / w: 56.25 x 2 x 0.8 / 94.2 = 0.955 degrees.

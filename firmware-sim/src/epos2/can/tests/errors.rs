@@ -7,7 +7,7 @@ use super::Bus;
 use crate::epos2::NodeConfig;
 
 #[test]
-fn an_error_and_its_end_are_told() {
+fn errors_and_their_end_are_sent() {
     let mut bus = Bus::new();
     bus.nmt(NmtCommand::Start);
     bus.take();
@@ -29,7 +29,7 @@ fn an_error_and_its_end_are_told() {
 }
 
 #[test]
-fn a_stopped_node_tells_later_and_one_without_identifier_never() {
+fn a_stopped_node_reports_errors_later_and_one_without_identifier_never() {
     let mut bus = Bus::new();
     bus.nmt(NmtCommand::Stop);
     bus.node.inject(DeviceError::TEMPERATURE);
@@ -48,7 +48,7 @@ fn a_stopped_node_tells_later_and_one_without_identifier_never() {
 }
 
 #[test]
-fn the_fault_at_power_on_comes_behind_the_boot_up() {
+fn the_power_on_fault_follows_the_boot_up_message() {
     let mut bus = Bus::of(NodeConfig::default());
     assert_eq!(bus.read(0x1003, 1), 0x8120);
     bus.nmt(NmtCommand::ResetNode);

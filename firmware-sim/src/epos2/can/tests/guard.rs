@@ -8,7 +8,7 @@ use protocol::canopen::nmt::{NmtCommand, NmtState};
 use super::Bus;
 
 #[test]
-fn the_way_through_the_nmt_states() {
+fn nmt_commands_change_the_state() {
     let mut bus = Bus::new();
     assert_eq!(bus.node.nmt_state(), NmtState::PreOperational);
     for (command, state) in [
@@ -41,7 +41,7 @@ fn the_way_through_the_nmt_states() {
 }
 
 #[test]
-fn the_heartbeat_tells_the_state_evenly() {
+fn heartbeats_report_the_state_periodically() {
     let mut bus = Bus::new();
     bus.ticks(500);
     assert_eq!(bus.take(), [], "off from the factory");
@@ -63,7 +63,7 @@ fn the_heartbeat_tells_the_state_evenly() {
 }
 
 #[test]
-fn a_saved_heartbeat_begins_a_period_after_boot_up() {
+fn a_saved_heartbeat_starts_one_period_after_boot_up() {
     let mut bus = Bus::new();
     bus.write(0x1017, 0, 50);
     bus.write(0x1010, 1, u32::from_le_bytes(*b"save"));
@@ -76,7 +76,7 @@ fn a_saved_heartbeat_begins_a_period_after_boot_up() {
 }
 
 #[test]
-fn the_axis_stops_when_the_masters_heartbeat_does() {
+fn the_axis_stops_when_the_masters_heartbeat_ends() {
     let mut bus = Bus::new();
     bus.write(0x1016, 1, 0x007F_0064); // node 127, 100 ms
     bus.nmt(NmtCommand::Start);

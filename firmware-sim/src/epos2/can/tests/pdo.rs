@@ -17,7 +17,7 @@ fn sample(data: &[u8]) -> (i32, u32) {
 }
 
 #[test]
-fn position_and_time_stamp_on_each_sync() {
+fn each_sync_sends_position_and_time_stamp() {
     let mut bus = Bus::new();
     bus.stream_angle(1, 0);
     bus.send(0x080, &[]);
@@ -51,7 +51,7 @@ fn position_and_time_stamp_on_each_sync() {
 }
 
 #[test]
-fn every_third_sync_and_only_when_something_happened() {
+fn pdos_are_sent_on_every_third_sync_and_only_after_events() {
     let mut bus = Bus::new();
     bus.stream_angle(3, 0);
     bus.nmt(NmtCommand::Start);
@@ -77,7 +77,7 @@ fn every_third_sync_and_only_when_something_happened() {
 }
 
 #[test]
-fn events_send_changes_no_oftener_than_the_inhibit_time() {
+fn event_pdos_respect_the_inhibit_time() {
     let mut bus = Bus::new();
     // The factory's TPDO 1 is the statusword, by event.
     bus.nmt(NmtCommand::Start);
@@ -106,7 +106,7 @@ fn events_send_changes_no_oftener_than_the_inhibit_time() {
 }
 
 #[test]
-fn remote_frames_ask_where_they_may() {
+fn remote_frames_are_answered_where_allowed() {
     let mut bus = Bus::new();
     bus.stream_angle(253, 0);
     bus.nmt(NmtCommand::Start);
@@ -133,7 +133,7 @@ fn remote_frames_ask_where_they_may() {
 }
 
 #[test]
-fn a_controlword_and_a_target_by_pdo() {
+fn controlword_and_target_are_received_by_pdo() {
     let mut bus = Bus::new();
     bus.send(0x201, &[0x06, 0]);
     assert_eq!(bus.read(0x6041, 0), 0x0140, "not operational");
@@ -172,7 +172,7 @@ fn a_short_rpdo_is_error_8210() {
 }
 
 #[test]
-fn what_it_cannot_take_is_left_out() {
+fn invalid_pdo_values_are_ignored() {
     let mut bus = Bus::new();
     bus.nmt(NmtCommand::Start);
     // Mode 42 does not exist; the controlword before it counts.

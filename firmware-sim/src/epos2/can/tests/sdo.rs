@@ -32,7 +32,7 @@ impl Bus {
 }
 
 #[test]
-fn golden_bytes_of_expedited_transfers() {
+fn expedited_transfers_match_golden_bytes() {
     let mut bus = Bus::new();
     // The four lengths: 6041, 6064, 6061, and a write to 6040.
     assert_eq!(
@@ -69,7 +69,7 @@ fn golden_bytes_of_expedited_transfers() {
 }
 
 #[test]
-fn golden_bytes_of_the_device_name_in_segments() {
+fn segmented_reads_match_golden_bytes() {
     let mut bus = Bus::new();
     assert_eq!(
         bus.sdo([0x40, 8, 0x10, 0, 0, 0, 0, 0]),
@@ -95,7 +95,7 @@ fn golden_bytes_of_the_device_name_in_segments() {
 }
 
 #[test]
-fn golden_bytes_of_a_segmented_write() {
+fn segmented_writes_match_golden_bytes() {
     let mut bus = Bus::new();
     assert_eq!(
         bus.sdo([0x21, 0x7A, 0x60, 0, 4, 0, 0, 0]),
@@ -113,7 +113,7 @@ fn golden_bytes_of_a_segmented_write() {
 }
 
 #[test]
-fn refusals_carry_their_codes() {
+fn refusals_have_their_abort_codes() {
     let mut bus = Bus::new();
     let read = |index: u16, sub| {
         let [low, high] = index.to_le_bytes();
@@ -142,7 +142,7 @@ fn refusals_carry_their_codes() {
 }
 
 #[test]
-fn a_wrong_toggle_a_new_transfer_and_an_abort_end_the_old_one() {
+fn a_wrong_toggle_a_new_transfer_and_an_abort_end_a_transfer() {
     let mut bus = Bus::new();
     bus.sdo([0x40, 8, 0x10, 0, 0, 0, 0, 0]);
     assert_eq!(
@@ -182,7 +182,7 @@ fn a_wrong_toggle_a_new_transfer_and_an_abort_end_the_old_one() {
 }
 
 #[test]
-fn a_silent_client_is_told_of_the_timeout() {
+fn a_silent_client_gets_a_timeout_abort() {
     let mut bus = Bus::new();
     bus.sdo([0x40, 8, 0x10, 0, 0, 0, 0, 0]);
     bus.ticks(1_000);
@@ -194,7 +194,7 @@ fn a_silent_client_is_told_of_the_timeout() {
 }
 
 #[test]
-fn it_answers_its_own_requests_only_and_not_when_stopped() {
+fn the_node_answers_only_its_own_requests_and_none_when_stopped() {
     let mut bus = Bus::new();
     let read = [0x40, 0x41, 0x60, 0, 0, 0, 0, 0];
     bus.send(0x602, &read);
@@ -210,7 +210,7 @@ fn it_answers_its_own_requests_only_and_not_when_stopped() {
 /// Every entry through the client of the protocol crate, so that both sides of a segmented transfer
 /// meet.
 #[test]
-fn every_entry_reads_over_can_as_it_is() {
+fn every_entry_is_read_over_can_unchanged() {
     let mut bus = Bus::new();
     for entry in &crate::epos2::table::TABLE {
         let mut client = SdoClient::<8>::new(NodeId::new(1).unwrap(), Span::from_millis(1));
@@ -236,7 +236,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn any_frames_are_survived_and_a_read_after_them_is_answered(
+    fn reads_are_answered_after_arbitrary_frames(
         frames in prop::collection::vec(
             (prop_oneof![4 => Just(0x601u16), 1 => 1u16..0x800], prop::collection::vec(any::<u8>(), 0..=8)),
             0..80,

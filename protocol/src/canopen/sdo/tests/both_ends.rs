@@ -108,7 +108,7 @@ fn noise() -> impl Strategy<Value = SdoResponse> {
 
 proptest! {
     #[test]
-    fn every_length_is_read_and_written(
+    fn every_length_round_trips(
         data in prop::collection::vec(any::<u8>(), 0..=CAPACITY), expedite: bool, announce: bool,
     ) {
         let mut client = client();
@@ -123,7 +123,7 @@ proptest! {
     }
 
     #[test]
-    fn scalars_of_every_type_read_back(value in any::<i32>()) {
+    fn scalars_of_every_type_round_trip(value in any::<i32>()) {
         fn trip<T: Scalar + PartialEq + core::fmt::Debug>(value: T) {
             let mut client = client();
             client.write_scalar(NAME, value).unwrap();
@@ -142,7 +142,7 @@ proptest! {
     }
 
     #[test]
-    fn any_eight_bytes_are_a_message_both_ways(bytes in any::<[u8; 8]>()) {
+    fn every_eight_bytes_decode_in_both_directions(bytes in any::<[u8; 8]>()) {
         let request = SdoRequest::from_bytes(bytes);
         prop_assert_eq!(SdoRequest::from_bytes(request.to_bytes()), request);
         let answer = SdoResponse::from_bytes(bytes);
