@@ -111,8 +111,8 @@ fn main() {
 /// A short sweep.
 fn log() -> Captured {
     let mut setting = Setting::default();
-    setting.wish.to = Degrees(-5.0);
-    setting.wish.speed = DegPerS(56.25);
+    setting.sweep_request.to = Degrees(-5.0);
+    setting.sweep_request.speed = DegPerS(56.25);
     Captured::new(setting)
 }
 
@@ -127,11 +127,11 @@ fn records(log: &Captured) -> Vec<OwnedRecord> {
 
 /// One capture, with the events of its motion.
 fn one(state: &DaemonState, log: &Captured, records: &[OwnedRecord]) -> String {
-    let asked = CaptureRequest {
+    let capture = CaptureRequest {
         speed_deg_s: 56.25,
         ..CaptureRequest::default()
     };
-    let id = state.scans.begin(&asked, true).unwrap().id.clone();
+    let id = state.scans.begin(&capture, true).unwrap().id.clone();
     std::fs::copy(log.log(), state.scans.place(&id).join(LOG)).unwrap();
     let config = scanner::ScanConfig::default();
     let preview = state.service.start_preview(&id, &config);

@@ -36,7 +36,7 @@ fn main() {
     println!("|---|---|---|---|");
     for text in PATTERNS {
         let pattern = PatternRequest::parse(text)
-            .and_then(|wish| wish.build())
+            .and_then(|request| request.build())
             .expect("a pattern");
         let directions = pattern.directions();
         let count = || BinCounts::new(&locator, &directions).expect("directions");

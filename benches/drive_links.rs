@@ -121,18 +121,18 @@ fn device(kind: DeviceKind) -> Device {
 fn measure(kind: DeviceKind, drive: &SoftwareDrive, axis: AxisConfig, seconds: f64) -> Measured {
     let opened = ports::open(&device(kind), drive.port.as_ref()).unwrap();
     // As in a log: what was sent and received is what counts, not what the client made of it.
-    let heard = RefCell::new(Heard::new(&axis));
+    let received = RefCell::new(ReceivedTraffic::new(&axis));
     let port = RecordingPort::new(opened.port, opened.link, |record: &Record<'_>| {
-        heard.borrow_mut().hear(record);
+        received.borrow_mut().receive(record);
     });
     let client = DriveClient::new(axis, opened.link);
     let mut session = Session::new(client, port, Arc::new(AtomicBool::new(false)));
     session.run(DriveCommand::Connect, &mut |_| {}).unwrap();
     session.run(DriveCommand::Home, &mut |_| {}).unwrap();
-    let before = heard.borrow().listener.clone();
-    *heard.borrow_mut() = Heard {
+    let before = received.borrow().listener.clone();
+    *received.borrow_mut() = ReceivedTraffic {
         listener: before,
-        ..Heard::new(&AxisConfig::default())
+        ..ReceivedTraffic::new(&AxisConfig::default())
     };
     let child = drive.process.id().to_string();
     let (begin, client_s, drive_s) = (Instant::now(), cpu_s("self"), cpu_s(&child));
@@ -141,11 +141,11 @@ fn measure(kind: DeviceKind, drive: &SoftwareDrive, axis: AxisConfig, seconds: f
         .run(DriveCommand::Hold { until }, &mut |_| {})
         .unwrap();
     let took = begin.elapsed().as_secs_f64();
-    let said = heard.replace(Heard::new(&AxisConfig::default()));
+    let traffic = received.replace(ReceivedTraffic::new(&AxisConfig::default()));
     let measured = Measured {
-        samples: said.samples,
-        beats: said.beats,
-        answers: said.answers,
+        samples: traffic.samples,
+        beats: traffic.beats,
+        answers: traffic.answers,
         seconds: took,
         client_share: (cpu_s("self") - client_s) / took,
         drive_share: (cpu_s(&child) - drive_s) / took,
@@ -217,7 +217,7 @@ fn read_position(bus: &mut dyn CanPort, sdo: &mut SdoClient<8>) -> i32 {
 }
 
 /// What a log of the session tells.
-struct Heard {
+struct ReceivedTraffic {
     listener: DriveListener,
     samples: Vec<ShaftSample>,
     beats: Vec<Stamp<Host>>,
@@ -226,7 +226,7 @@ struct Heard {
     stream: CobId,
 }
 
-impl Heard {
+impl ReceivedTraffic {
     fn new(axis: &AxisConfig) -> Self {
         Self {
             listener: DriveListener::new(axis.node),
@@ -241,7 +241,7 @@ impl Heard {
         }
     }
 
-    fn hear(&mut self, record: &Record<'_>) {
+    fn receive(&mut self, record: &Record<'_>) {
         if is_frame(record, Direction::ToDevice, CobId::SYNC) {
             self.beats.push(record.host);
         }
@@ -356,7 +356,7 @@ fn main() {
         "| link | poll period | samples/s | round trip us: median | 99 % | worst | client, of a core | software drive |"
     );
     println!("|---|---|---|---|---|---|---|---|");
-    let [polled, asked, streamed] = [10.0, 10.0, 60.0].map(|usual| seconds.unwrap_or(usual));
+    let [polled, polled_s, streamed] = [10.0, 10.0, 60.0].map(|usual| seconds.unwrap_or(usual));
     let paces = [("1 ms", Span::from_millis(1)), ("none", Span::ZERO)];
     for (name, kind, interface) in links.iter().take(2) {
         for (pace, period) in paces {
@@ -370,7 +370,7 @@ fn main() {
         for (pace, period) in paces {
             let drive = SoftwareDrive::start(interface);
             let name = format!("{name}, by SDO");
-            row(&name, pace, &ask(*kind, &drive, period, asked));
+            row(&name, pace, &ask(*kind, &drive, period, polled_s));
         }
     }
     println!();

@@ -94,11 +94,11 @@ fn sweep() -> Simulation {
 }
 
 /// The tables of an effect, of `all`, or of `none`.
-fn wishes(name: &str) -> EffectsConfig {
-    let asked = TABLES
+fn config(name: &str) -> EffectsConfig {
+    let effects = TABLES
         .iter()
         .filter(|(other, _)| name == "all" || *other == name);
-    let text: String = asked
+    let text: String = effects
         .map(|(name, table)| format!("[{name}]\n{table}\n"))
         .collect();
     toml::from_str(&text).expect("tables as they are")
@@ -106,7 +106,7 @@ fn wishes(name: &str) -> EffectsConfig {
 
 /// A run; what it gives is how often effects acted.
 fn run(simulation: &Simulation, name: &str) -> ConfiguredEffects {
-    let mut asked = wishes(name).build(1, None).expect("settings as they are");
+    let mut effects = config(name).build(1, None).expect("settings as they are");
     let one = NonZeroUsize::MIN;
     let ran = match name {
         // The engine that has no effects in it, as for a scene that asks for none.
@@ -115,10 +115,10 @@ fn run(simulation: &Simulation, name: &str) -> ConfiguredEffects {
             one,
             &mut Nowhere,
         ),
-        _ => simulation.run(&mut asked, one, &mut Nowhere),
+        _ => simulation.run(&mut effects, one, &mut Nowhere),
     };
     ran.expect("a run");
-    asked
+    effects
 }
 
 fn instructions(name: &str) -> Option<u64> {
@@ -153,9 +153,9 @@ fn main() {
     let mut times = vec![Duration::MAX; names.len()];
     for _ in 0..rounds {
         for (name, least) in names.iter().zip(&mut times) {
-            let begun = Instant::now();
+            let start = Instant::now();
             run(&simulation, name);
-            *least = begun.elapsed().min(*least);
+            *least = start.elapsed().min(*least);
         }
     }
     let counts: Vec<Option<u64>> = names.iter().map(|name| instructions(name)).collect();

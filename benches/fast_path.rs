@@ -94,8 +94,8 @@ fn table(recording: &Recording, runs: usize, only: &str) {
         "{:<40}{:>10}{:>12}{:>10}{:>10}",
         "", "Mpts/s", "ns/point", "spread", "GB/s"
     );
-    let asked = rows.into_iter().filter(|(name, _)| name.contains(only));
-    let (names, mut work): (Vec<_>, Vec<_>) = asked.unzip();
+    let selected = rows.into_iter().filter(|(name, _)| name.contains(only));
+    let (names, mut work): (Vec<_>, Vec<_>) = selected.unzip();
     for (name, timing) in names.iter().zip(Timing::in_turns(runs, &mut work)) {
         let ns = timing.least() * 1e9 / points as f64;
         println!(

@@ -183,7 +183,7 @@ fn number(payload: &[u8]) -> u64 {
 
 /// Statistics of the numbers of one stream.
 #[derive(Clone, Copy, Default)]
-struct Heard {
+struct SensorStream {
     packets: u64,
     next: u64,
     missing: u64,
@@ -218,7 +218,7 @@ fn receive(seconds: u64, log: Option<PathBuf>) -> Result<(), Box<dyn Error>> {
 
     let stop = Arc::new(AtomicBool::new(false));
     let sensors = sensors(data, position, seconds, Arc::clone(&stop))?;
-    let mut heard = [[Heard::default(); 2]; SENSORS as usize];
+    let mut streams_by_sensor = [[SensorStream::default(); 2]; SENSORS as usize];
     let mut delays_us = Vec::with_capacity(seconds as usize * 5_000);
     let (begin, thread_before, before) = (
         Instant::now(),
@@ -237,7 +237,7 @@ fn receive(seconds: u64, log: Option<PathBuf>) -> Result<(), Box<dyn Error>> {
             return;
         };
         let sensor = usize::from(last.wrapping_sub(FIRST_ADDRESS));
-        let Some(stream) = heard
+        let Some(stream) = streams_by_sensor
             .get_mut(sensor)
             .and_then(|s| s.get_mut(usize::from(port == position)))
         else {
@@ -256,7 +256,7 @@ fn receive(seconds: u64, log: Option<PathBuf>) -> Result<(), Box<dyn Error>> {
         .join()
         .map_err(|_| "the thread of the sensors panicked")??;
 
-    let streams = heard.as_flattened();
+    let streams = streams_by_sensor.as_flattened();
     let received: u64 = streams.iter().map(|stream| stream.packets).sum();
     let missing: u64 = streams.iter().map(|stream| stream.missing).sum();
     delays_us.sort_by(f32::total_cmp);
@@ -322,8 +322,8 @@ fn sensors(
         .stdout(Stdio::piped())
         .spawn()?;
     Ok(thread::spawn(move || {
-        let said = child.stdout.take().map(BufReader::new);
-        let line = said.and_then(|said| said.lines().next());
+        let lines = child.stdout.take().map(BufReader::new);
+        let line = lines.and_then(|lines| lines.lines().next());
         let ended = child.wait();
         thread::sleep(GRACE);
         stop.store(true, Ordering::Release);

@@ -33,8 +33,8 @@ use velomotion_tests::capture::{Captured, Setting};
 const RUNS: usize = 41;
 
 fn main() {
-    let asked = std::env::args().skip_while(|word| word != "--runs").nth(1);
-    let runs = asked.and_then(|n| n.parse().ok()).unwrap_or(RUNS).max(1);
+    let argument = std::env::args().skip_while(|word| word != "--runs").nth(1);
+    let runs = argument.and_then(|n| n.parse().ok()).unwrap_or(RUNS).max(1);
     println!("{runs} rounds; medians, quartiles in brackets");
     println!(
         "{:<24}{:>10}{:>16}{:>10}{:>10}  best / linear",
@@ -51,7 +51,7 @@ fn main() {
 
 fn setting(attached: Attachment, real: bool) -> Setting {
     let mut setting = Setting::over(attached);
-    setting.wish.acceleration = DegPerS2(500.0);
+    setting.sweep_request.acceleration = DegPerS2(500.0);
     if real {
         setting.servo = Some(Servo::SecondOrder {
             natural_millihertz: 15_000,

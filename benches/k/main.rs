@@ -87,16 +87,16 @@ fn run(what: &str, points: &[DVec3], frames: usize, edges: &Edges) -> Result<Fou
 
 fn main() {
     let edges = Edges::equal(151).expect("151 bins are few");
-    let mut asked: Vec<String> = std::env::args()
+    let mut patterns: Vec<String> = std::env::args()
         .skip(1)
         .filter(|word| word.contains(':'))
         .collect();
-    if asked.is_empty() {
-        asked.extend(USUAL.map(str::to_owned));
+    if patterns.is_empty() {
+        patterns.extend(USUAL.map(str::to_owned));
     }
     let load = std::fs::read_to_string("/proc/loadavg").unwrap_or_default();
     println!("load {load}");
-    for words in asked {
+    for words in patterns {
         let Some((what, frames)) = words.split_once(':') else {
             continue;
         };

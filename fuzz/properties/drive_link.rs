@@ -207,7 +207,7 @@ impl World {
             }
             _ => input.short().to_vec(),
         };
-        self.hear(&bytes);
+        self.receive(&bytes);
     }
 
     /// Runs one undisturbed iteration of the client's loop.
@@ -269,26 +269,28 @@ impl World {
         let Some((_, bytes)) = self.to_node.pop_front() else {
             return;
         };
-        let mut said = Vec::new();
-        let mut say = |bytes: &[u8]| said.push(bytes.to_vec());
+        let mut answers = Vec::new();
+        let mut send = |bytes: &[u8]| answers.push(bytes.to_vec());
         let qc = position(&mut self.node);
         match &mut self.server {
-            Server::Usb(server) => server.input(&mut self.node, &bytes, &mut say),
-            Server::Rs232(server) => server.input(&mut self.node, &bytes, &mut say),
+            Server::Usb(server) => server.input(&mut self.node, &bytes, &mut send),
+            Server::Rs232(server) => server.input(&mut self.node, &bytes, &mut send),
             Server::Can(server) => {
                 let frame = CanFrame::from_socketcan(&bytes).expect("a frame of the client's");
                 server.input(&mut self.node, &frame, &mut |frame| {
-                    say(&frame.to_socketcan());
+                    send(&frame.to_socketcan());
                 });
             }
         }
         let qc = self.marks.as_mut().map_or(qc, |marks| {
-            said.iter_mut().for_each(|answer| marks.put(&bytes, answer));
+            answers
+                .iter_mut()
+                .for_each(|answer| marks.put(&bytes, answer));
             marks.next()
         });
         self.truth.push((self.now, qc));
         self.to_host
-            .extend(said.into_iter().map(|bytes| (self.now, bytes)));
+            .extend(answers.into_iter().map(|bytes| (self.now, bytes)));
     }
 
     /// Delivers up to `len` bytes to the host; on CAN, one frame.
@@ -299,14 +301,14 @@ impl World {
                 let rest = bytes.split_off(len);
                 self.to_host.push_front((since, rest));
             }
-            self.hear(&bytes);
+            self.receive(&bytes);
             if !all {
                 return;
             }
         }
     }
 
-    fn hear(&mut self, bytes: &[u8]) {
+    fn receive(&mut self, bytes: &[u8]) {
         self.received.extend(bytes);
         let pushed = bytes.iter().filter_map(|&byte| self.decoder.push(byte));
         self.values.extend(

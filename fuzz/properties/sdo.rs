@@ -535,14 +535,14 @@ fn usb(node: &mut Node, request: &SerialFrame) -> UsbAnswer {
 
 fn read_is_the_same(node: &mut Node, address: Address, got: &Exchanged) {
     let request = ReadObject { node: 0, address }.to_frame();
-    let said = usb(node, &request);
+    let answer = usb(node, &request);
     match got {
         Ok(value) if value.bytes.len() <= 4 => {
-            assert_eq!(said.error, CommError::NONE, "{address:?}");
-            let words = said.value().expect("a value").to_le_bytes();
+            assert_eq!(answer.error, CommError::NONE, "{address:?}");
+            let words = answer.value().expect("a value").to_le_bytes();
             assert_eq!(*value.bytes, words[..value.bytes.len()], "{address:?}");
         }
-        Err(TransferError::Aborted(error)) => assert_eq!(said.error, *error, "{address:?}"),
+        Err(TransferError::Aborted(error)) => assert_eq!(answer.error, *error, "{address:?}"),
         // Longer than the interface's or the client's buffer, or the unit is silent.
         _ => {}
     }

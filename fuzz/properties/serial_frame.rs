@@ -173,9 +173,9 @@ fn rs232_server(input: &mut Input<'_>) {
 }
 
 fn say_rs232(server: &mut Rs232Server, node: &mut Node, bytes: &[u8]) {
-    let mut said = 0;
+    let mut decoded = 0;
     server.input(node, bytes, &mut |chunk| {
-        said += 1;
+        decoded += 1;
         if let [byte] = chunk {
             assert!([rs232::OKAY, rs232::FAILED, SerialFrame::ANSWER].contains(byte));
             return;
@@ -190,5 +190,8 @@ fn say_rs232(server: &mut Rs232Server, node: &mut Node, bytes: &[u8]) {
         };
         SerialAnswer::parse(&frame).expect("an answer");
     });
-    assert!(said <= 2 * bytes.len(), "a handshake and an announcement");
+    assert!(
+        decoded <= 2 * bytes.len(),
+        "a handshake and an announcement"
+    );
 }

@@ -69,10 +69,10 @@ fn any_sentence(sentence: &[u8]) {
     assert_eq!(fields[2], if rmc.valid { b"A" } else { b"V" });
     let Some(utc) = rmc.utc else { return };
     let (time, date) = (fields[1], fields[9]);
-    let said = format!("{:02}{:02}{:02}", utc.hour, utc.minute, utc.second);
-    assert_eq!(&time[..6], said.as_bytes());
-    let said = format!("{:02}{:02}{:02}", utc.day, utc.month, utc.year % 100);
-    assert_eq!(date, said.as_bytes());
+    let text = format!("{:02}{:02}{:02}", utc.hour, utc.minute, utc.second);
+    assert_eq!(&time[..6], text.as_bytes());
+    let text = format!("{:02}{:02}{:02}", utc.day, utc.month, utc.year % 100);
+    assert_eq!(date, text.as_bytes());
     date_counts_back(&utc);
 }
 

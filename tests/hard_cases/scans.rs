@@ -45,9 +45,9 @@ fn a_scan_into_the_year_2100_equals_one_of_today() {
 fn scans_between_both_tilt_limits_are_true() {
     for attached in [Attachment::Usb, Attachment::Can] {
         let mut setting = Setting::over(attached);
-        setting.wish.acceleration = DegPerS2(500.0);
-        setting.wish.sweeps = 2;
-        setting.wish.both_ways = true;
+        setting.sweep_request.acceleration = DegPerS2(500.0);
+        setting.sweep_request.sweeps = 2;
+        setting.sweep_request.both_ways = true;
         setting.servo = Some(Servo::SecondOrder {
             natural_millihertz: 15_000,
             damping_permille: 400,
@@ -59,11 +59,11 @@ fn scans_between_both_tilt_limits_are_true() {
             let near = cloud.iter().filter(|p| (p.tilt.0 - limit.0).abs() < 0.01);
             assert!(near.count() > 1_000, "{attached:?}: {limit:?}");
         }
-        let beyond = |p: &cloud::Point| p.tilt.0 < -45.02 || p.tilt.0 > 0.02;
-        let beyond = cloud.iter().filter(beyond).count();
+        let outside = |p: &cloud::Point| p.tilt.0 < -45.02 || p.tilt.0 > 0.02;
+        let outside = cloud.iter().filter(outside).count();
         assert!(
-            beyond > 100,
-            "{attached:?}: {beyond} points beyond the limits"
+            outside > 100,
+            "{attached:?}: {outside} points beyond the limits"
         );
         let error = captured.error();
         assert!(error.worst_m < 10e-3 && error.rms_m < 2e-3, "{error:?}");

@@ -101,8 +101,14 @@ impl Captured {
         })
         .unwrap();
         axis.timing.poll_period = setting.poll_period.unwrap_or(axis.timing.poll_period);
-        let steps = motion::steps(&setting.wish, &axis, Degrees(0.0)).unwrap();
-        let mut config = scan_config(&Config::default(), "sim", true, &setting.wish, &steps);
+        let steps = motion::steps(&setting.sweep_request, &axis, Degrees(0.0)).unwrap();
+        let mut config = scan_config(
+            &Config::default(),
+            "sim",
+            true,
+            &setting.sweep_request,
+            &steps,
+        );
         config.rs232_baud = (setting.links.attached == Attachment::Rs232).then_some(115_200);
         let mut rig = simulated::rig(&axis, &config, setting.start);
         rig.lidar.clock_at_start_us = setting.lidar_clock_us;

@@ -204,8 +204,8 @@ fn must(attached: Attachment, fault: Fault, must: Must) -> Must {
 /// A sweep of 1.5 s with a fault in its middle.
 fn setting(attached: Attachment) -> Setting {
     let mut setting = Setting::over(attached);
-    setting.wish.speed = DegPerS(30.0);
-    setting.wish.acceleration = DegPerS2(500.0);
+    setting.sweep_request.speed = DegPerS(30.0);
+    setting.sweep_request.acceleration = DegPerS2(500.0);
     setting
 }
 

@@ -33,8 +33,8 @@ fn setting(attached: Attachment, (speed, to): (f64, f64), seed: u64) -> Setting 
     // Other phases of polls, rotor and control cycle.
     setting.start += Span::from_micros(137_731 * seed as i64);
     setting.lidar_clock_us += 7_919_111 * seed as u32;
-    setting.wish.speed = DegPerS(speed);
-    setting.wish.to = Degrees(to);
+    setting.sweep_request.speed = DegPerS(speed);
+    setting.sweep_request.to = Degrees(to);
     setting
 }
 
@@ -119,7 +119,7 @@ fn point_errors_match_sd(attached: Attachment, servo: Option<Servo>) {
             let mut setting = setting(attached, sweep, seed);
             if servo.is_some() {
                 setting.servo = servo;
-                setting.wish.acceleration = DegPerS2(500.0);
+                setting.sweep_request.acceleration = DegPerS2(500.0);
             }
             seen.extend(points(&Captured::new(setting), case, seed));
         }

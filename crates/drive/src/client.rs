@@ -84,12 +84,12 @@ impl DriveClient {
         self.config.check()?;
         if let (Some((running, _)), true) = (&self.running, kind != CommandKind::Stop) {
             return Err(DriveError::Busy {
-                asked: kind,
+                requested: kind,
                 running: *running,
             });
         }
         if needs_connection(kind) && !self.connected {
-            return Err(DriveError::NotConnected { asked: kind });
+            return Err(DriveError::NotConnected { requested: kind });
         }
         let ops = Ops::new(Arc::clone(&self.core), Arc::clone(&self.config));
         let procedure: Procedure = match command {

@@ -61,18 +61,18 @@ pub enum DriveError {
         fastest: DegPerS2,
     },
     /// Another command is running; only a stop may interrupt it.
-    #[error("{asked} refused: {running} is still running")]
+    #[error("{requested} refused: {running} is still running")]
     Busy {
         /// The command that was refused.
-        asked: CommandKind,
+        requested: CommandKind,
         /// The command that is running.
         running: CommandKind,
     },
     /// The command requires a connected drive.
-    #[error("{asked} refused: the drive has not been connected and configured")]
+    #[error("{requested} refused: the drive has not been connected and configured")]
     NotConnected {
         /// The command that was refused.
-        asked: CommandKind,
+        requested: CommandKind,
     },
     /// The link works, but every reply to this request was lost.
     #[error("{operation} on the drive link: expected an answer, {} {attempts} time(s)",

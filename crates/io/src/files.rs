@@ -311,10 +311,13 @@ mod tests {
             .output()
             .unwrap();
         let text = String::from_utf8(df.stdout).unwrap();
-        let says: f64 = text.lines().last().unwrap().trim().parse().unwrap();
+        let expected: f64 = text.lines().last().unwrap().trim().parse().unwrap();
         let free = free_bytes(folder.path()).unwrap() as f64;
         // Other programs may write in between.
-        assert!((free / says - 1.0).abs() < 0.05, "{free} and {says}");
+        assert!(
+            (free / expected - 1.0).abs() < 0.05,
+            "{free} and {expected}"
+        );
         assert!(free_bytes(&folder.path().join("none")).is_err());
     }
 

@@ -27,7 +27,7 @@ pub enum Echo {
     /// Dual mode: the last return is the strongest, at one distance.
     LastAndStrongest,
     /// Dual mode's second return: the strongest, or the second strongest if the last is the
-    /// strongest. Packets do not tell which.
+    /// strongest. Packets do not state which.
     StrongestOrSecond,
     /// The return mode is unknown.
     Unknown,

@@ -121,10 +121,10 @@ fn laser_id_is_the_index_in_the_firing_order() {
             .unwrap();
         by_ring += &RosLaser::invented(&VLP_16, i).yaml(ring);
     }
-    let said = from_ros_yaml(&by_ring, &VLP_16).unwrap_err().to_string();
+    let message = from_ros_yaml(&by_ring, &VLP_16).unwrap_err().to_string();
     assert!(
-        said.starts_with("calibration YAML line 9: vert_correction: expected an elevation within 2 deg of the 1 deg of laser 1 of a VLP-16, got -1"),
-        "{said}"
+        message.starts_with("calibration YAML line 9: vert_correction: expected an elevation within 2 deg of the 1 deg of laser 1 of a VLP-16, got -1"),
+        "{message}"
     );
 }
 
@@ -186,86 +186,86 @@ fn toml_files_give_their_corrections() {
 #[test]
 fn toml_errors_name_the_line() {
     let good = toml_file();
-    let said = |from: &str, to: &str| {
+    let message = |from: &str, to: &str| {
         let text = good.replacen(from, to, 1);
         assert_ne!(text, good, "{from}");
         from_toml(&text, &VLP_16).unwrap_err().to_string()
     };
-    let assert_said = |from: &str, to: &str, expected: &str| {
-        let said = said(from, to);
+    let assert_error = |from: &str, to: &str, expected: &str| {
+        let message = message(from, to);
         assert!(
-            said.starts_with(&format!("calibration TOML line {expected}")),
-            "{from} -> {to}: {said}"
+            message.starts_with(&format!("calibration TOML line {expected}")),
+            "{from} -> {to}: {message}"
         );
     };
-    assert_said(
+    assert_error(
         "elevation_deg = -15",
         "elevation = -15",
         "5: unknown field `elevation`",
     );
-    assert_said(
+    assert_error(
         "elevation_deg = -15\n",
         "",
         "3: missing field `elevation_deg`",
     );
-    assert_said("id = 3\n", "", "27: missing field `id`");
-    assert_said(
+    assert_error("id = 3\n", "", "27: missing field `id`");
+    assert_error(
         "elevation_deg = 1\n",
         "elevation_deg = nan\n",
         "13: elevation_deg: expected a finite number, got NaN",
     );
-    assert_said(
+    assert_error(
         "elevation_deg = 1\n",
         "elevation_deg = \"1\"\n",
         "13: invalid type: string",
     );
-    assert_said(
+    assert_error(
         "elevation_deg = 1\n",
         "elevation_deg = 11\n",
         "13: elevation_deg: expected an elevation within 2 deg of the 1 deg of laser 1",
     );
-    assert_said(
+    assert_error(
         "tangential_offset_m = 0.003",
         "tangential_offset_m = 3.0",
         "9: tangential_offset_m: expected at most 1 m",
     );
-    assert_said(
+    assert_error(
         "range_offset_m = -0.01",
         "range_offset_m = -inf",
         "7: range_offset_m: expected a finite number, got -inf",
     );
-    assert_said(
+    assert_error(
         "azimuth_offset_deg = 0.00",
         "azimuth_offset_deg = 90",
         "6: azimuth_offset_deg: expected an azimuth offset within 2 deg",
     );
-    assert_said(
+    assert_error(
         "id = 3",
         "id = 4",
         "36: laser number: expected each number once, got 4",
     );
-    assert_said(
+    assert_error(
         "id = 3",
         "id = 16",
         "28: laser number: expected 0 to 15, in firing order, got 16",
     );
-    assert_said(
+    assert_error(
         "id = 3",
         "id = -1",
         "28: laser number: expected 0 to 15, in firing order, got -1",
     );
-    assert_said(
+    assert_error(
         &table(15),
         "",
         "2: expected the 16 lasers of a VLP-16, got 15",
     );
-    assert_said(
+    assert_error(
         "\"VLP-16\"",
         "\"HDL-32E\"",
         "2: model: expected \"VLP-16\", which the sensor is, got \"HDL-32E\"",
     );
-    assert_said("[[laser]]", "[laser]", "11: duplicate key");
-    assert_said("# made up", "made up", "1:");
+    assert_error("[[laser]]", "[laser]", "11: duplicate key");
+    assert_error("# made up", "made up", "1:");
     assert!(
         from_toml("", &VLP_16)
             .unwrap_err()
@@ -278,104 +278,104 @@ fn toml_errors_name_the_line() {
 fn ros_errors_name_the_line() {
     let good = ros_file(&VLP_16, 0..16);
     let laser_1 = RosLaser::invented(&VLP_16, 1);
-    let assert_said = |from: &str, to: &str, expected: &str| {
+    let assert_error = |from: &str, to: &str, expected: &str| {
         let text = good.replacen(from, to, 1);
         assert_ne!(text, good, "{from}");
-        let said = from_ros_yaml(&text, &VLP_16).unwrap_err().to_string();
+        let message = from_ros_yaml(&text, &VLP_16).unwrap_err().to_string();
         assert!(
-            said.starts_with(&format!("calibration YAML line {expected}")),
-            "{from} -> {to}: {said}"
+            message.starts_with(&format!("calibration YAML line {expected}")),
+            "{from} -> {to}: {message}"
         );
     };
-    assert_said(
+    assert_error(
         "laser_id: 1,",
         "laser_id: 0,",
         "8: laser number: expected each number once, got 0",
     );
-    assert_said(
+    assert_error(
         "laser_id: 1,",
         "laser_id: 99,",
         "8: laser number: expected 0 to 15, in firing order, got 99",
     );
-    assert_said(
+    assert_error(
         "laser_id: 1,",
         "laser_id: one,",
         "8: laser_id: expected a whole number, got \"one\"",
     );
-    assert_said(
+    assert_error(
         "laser_id: 1,",
         "",
         "6: expected key laser_id, which is missing",
     );
-    assert_said("rot_correction", "rotation", "4: key rotation is not known");
-    assert_said(
+    assert_error("rot_correction", "rotation", "4: key rotation is not known");
+    assert_error(
         "laser_id: 1, rot_correction",
         "laser_id: 1, laser_id",
         "8: key laser_id is repeated",
     );
     let vert = |vert: f64| format!("vert_correction: {vert},");
-    assert_said(
+    assert_error(
         &vert(laser_1.vert),
         "vert_correction: .nan,",
         "8: vert_correction: expected a finite number, got \".nan\"",
     );
-    assert_said(
+    assert_error(
         &vert(laser_1.vert),
         "vert_correction: inf,",
         "8: vert_correction: expected a finite number, got \"inf\"",
     );
-    assert_said(
+    assert_error(
         &vert(laser_1.vert),
         "vert_correction: -15,",
         "8: vert_correction: expected radians, at most half a revolution, got \"-15\"",
     );
-    assert_said(
+    assert_error(
         &vert(laser_1.vert),
         "vert_correction: [1],",
         "8: vert_correction: expected a finite number, got a list of 1",
     );
-    assert_said(
+    assert_error(
         "horiz_offset_correction: ",
         "horiz_offset_correction: 4",
         "3: horiz_offset_correction: expected at most 1 m",
     );
-    assert_said(
+    assert_error(
         "num_lasers: 16",
         "num_lasers: 32",
         "66: num_lasers: expected at most 16, the length of the list, got \"32\"",
     );
-    assert_said(
+    assert_error(
         "distance_resolution: 0.002",
         "distance_resolution: 0.004",
         "67: distance_resolution: expected the 0.002 m of a VLP-16, got \"0.004\"",
     );
-    assert_said(
+    assert_error(
         "num_lasers: 16\n",
         "",
         "1: expected key num_lasers, which is missing",
     );
-    assert_said(
+    assert_error(
         "lasers:\n",
         "lasers: &all\n",
         "1: anchors and tags are not supported",
     );
-    assert_said(
+    assert_error(
         "lasers:\n",
         "lasers: 3\nother:\n",
         "2: key other is not known",
     );
-    assert_said("}", "", "");
-    let said = from_ros_yaml(&good, &HDL_32E).unwrap_err().to_string();
+    assert_error("}", "", "");
+    let message = from_ros_yaml(&good, &HDL_32E).unwrap_err().to_string();
     assert_eq!(
-        said,
+        message,
         "calibration YAML line 2: expected the 32 lasers of a HDL-32E, got 16"
     );
-    let said = from_ros_yaml(&ros_file(&PUCK_HI_RES, 0..16), &VLP_16)
+    let message = from_ros_yaml(&ros_file(&PUCK_HI_RES, 0..16), &VLP_16)
         .unwrap_err()
         .to_string();
     assert!(
-        said.contains("within 2 deg of the -15 deg of laser 0 of a VLP-16"),
-        "{said}"
+        message.contains("within 2 deg of the -15 deg of laser 0 of a VLP-16"),
+        "{message}"
     );
     for (text, expected) in [
         ("", "1: expected a document, got an empty file"),
@@ -390,10 +390,10 @@ fn ros_errors_name_the_line() {
         ("? [a]\n: b", "1: expected a key, got a list of 1"),
         (&"[".repeat(40), "1: nested too deeply"),
     ] {
-        let said = from_ros_yaml(text, &VLP_16).unwrap_err().to_string();
+        let message = from_ros_yaml(text, &VLP_16).unwrap_err().to_string();
         assert!(
-            said.starts_with(&format!("calibration YAML line {expected}")),
-            "{said}"
+            message.starts_with(&format!("calibration YAML line {expected}")),
+            "{message}"
         );
     }
 }
@@ -417,11 +417,11 @@ fn lasers_beyond_num_lasers_are_ignored() {
         read,
         from_ros_yaml(&ros_file(&HDL_32E, 0..32), &HDL_32E).unwrap()
     );
-    let said = from_ros_yaml(&lasers(31), &HDL_32E)
+    let message = from_ros_yaml(&lasers(31), &HDL_32E)
         .unwrap_err()
         .to_string();
     assert_eq!(
-        said,
+        message,
         "calibration YAML line 132: laser_id: expected 32 or more beyond the first num_lasers, got 31"
     );
 }
@@ -438,10 +438,10 @@ fn azimuth_offsets_with_the_wrong_sign_are_refused() {
         }
         .yaml(i);
     }
-    let said = from_ros_yaml(&text, &VLP_32C).unwrap_err().to_string();
+    let message = from_ros_yaml(&text, &VLP_32C).unwrap_err().to_string();
     assert!(
-        said.starts_with("calibration YAML line 5: rot_correction: expected an azimuth offset within 2 deg of the 1.4 deg of laser 0 of a VLP-32C, got -1."),
-        "{said}"
+        message.starts_with("calibration YAML line 5: rot_correction: expected an azimuth offset within 2 deg of the 1.4 deg of laser 0 of a VLP-32C, got -1."),
+        "{message}"
     );
 }
 
@@ -459,10 +459,10 @@ fn effective_two_point_corrections_are_refused() {
     let plain = from_ros_yaml(&good, &VLP_16).unwrap();
     assert_eq!(with("false", 1.3, 1.4).unwrap(), plain);
     assert_eq!(with("True", dist, dist).unwrap(), plain);
-    let said = with("true", dist, dist + 0.01).unwrap_err().to_string();
+    let message = with("true", dist, dist + 0.01).unwrap_err().to_string();
     assert!(
-        said.starts_with("calibration YAML line 2: dist_correction_y is not supported: a range correction that differs"),
-        "{said}"
+        message.starts_with("calibration YAML line 2: dist_correction_y is not supported: a range correction that differs"),
+        "{message}"
     );
     assert!(
         with("perhaps", dist, dist)

@@ -265,10 +265,10 @@ fn frames_that_end_within_a_step_of_the_cut_are_whole() {
 #[test]
 fn cuts_that_are_not_finite_are_refused() {
     for cut in [f64::NAN, f64::INFINITY] {
-        let said = FrameCutter::new(cut).unwrap_err().to_string();
+        let message = FrameCutter::new(cut).unwrap_err().to_string();
         assert!(
-            said.starts_with("frames: expected an azimuth in degrees"),
-            "{said}"
+            message.starts_with("frames: expected an azimuth in degrees"),
+            "{message}"
         );
     }
 }
@@ -385,10 +385,10 @@ fn grids_hold_one_model_and_can_be_reused() {
     let mut packets = packets(12, angle, anywhere, false);
     let mut frame = organised(&packets, Duplicates::Unique);
     packets[0].1[1_205] = 0x24; // Puck Hi-Res
-    let mut said = None;
-    decode(&packets, |firing| said = frame.push(firing).err());
+    let mut message = None;
+    decode(&packets, |firing| message = frame.push(firing).err());
     assert_eq!(
-        said.unwrap().to_string(),
+        message.unwrap().to_string(),
         "organised frame: expected firings of a VLP-16, got one of a Puck Hi-Res"
     );
     assert_eq!(frame.columns().len(), 24);

@@ -323,7 +323,10 @@ fn vlp16_with_a_limited_field_of_view() {
     for (ms, from, to) in gaps {
         let turned_deg = (to - from).rem_euclid(360.0);
         let rpm = turned_deg / 6.0 / (ms * 1e-3);
-        assert!((rpm - 300.0).abs() < 6.0, "{rpm} rpm while looking away");
+        assert!(
+            (rpm - 300.0).abs() < 6.0,
+            "{rpm} rpm outside the field of view"
+        );
     }
 }
 
@@ -524,14 +527,14 @@ fn assert_organised(name: &str, datagrams: &[Datagram], returns: usize, layers: 
 fn utc(datagrams: &[Datagram]) -> (Vec<UtcState>, Vec<f64>, usize) {
     let mut clock = UtcClock::new();
     let mut decoder = Decoder::new(Options::default());
-    let (mut states, mut off, mut told) = (Vec::new(), Vec::new(), 0);
+    let (mut states, mut off, mut with_utc) = (Vec::new(), Vec::new(), 0);
     let mut timekeeper = Timekeeper::new(Options::default());
     for datagram in datagrams {
         let Datagram { host, payload } = datagram;
         let mut last = None;
         decoder.packet(*host, payload, &mut |firing| {
             for point in firing.points() {
-                told += usize::from(clock.utc(point.time).is_some());
+                with_utc += usize::from(clock.utc(point.time).is_some());
             }
             last = Some(firing.start);
         });
@@ -548,7 +551,7 @@ fn utc(datagrams: &[Datagram]) -> (Vec<UtcState>, Vec<f64>, usize) {
             off.push((utc.as_nanos() - host.as_nanos()) as f64 * 1e-9);
         }
     }
-    (states, off, told)
+    (states, off, with_utc)
 }
 
 #[test]
@@ -563,13 +566,13 @@ fn utc_of_a_whole_recording_agrees_with_the_host() {
 }
 
 fn assert_utc_of_a_locked_sensor(datagrams: &[Datagram], min_points: usize) {
-    let (states, off, told) = utc(datagrams);
+    let (states, off, with_utc) = utc(datagrams);
     assert_eq!(states, [UtcState::Locked { hours: 0 }]);
     let (least, most) = off
         .iter()
         .fold((f64::MAX, f64::MIN), |(a, b), &x| (a.min(x), b.max(x)));
     println!(
-        "UTC less host: {least:.6} to {most:.6} s over {} packets, {told} points",
+        "UTC less host: {least:.6} to {most:.6} s over {} packets, {with_utc} points",
         off.len()
     );
     // The host's clock is 0.367 s fast; the rest is the jitter of arrival, 88 us.
@@ -577,7 +580,7 @@ fn assert_utc_of_a_locked_sensor(datagrams: &[Datagram], min_points: usize) {
     assert!(most - least < 0.000_2, "{least} {most}");
     // All points except those before the first position packet, of the pending packet and of the
     // last one.
-    assert!(told > min_points, "{told}");
+    assert!(with_utc > min_points, "{with_utc}");
 }
 
 #[test]

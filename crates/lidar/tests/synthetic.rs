@@ -498,9 +498,9 @@ fn the_model_of_the_user_takes_precedence() {
         (60, "HDL-32E")
     );
     assert_eq!(decoder.stats().conflicts.len(), 1);
-    let said = decoder.stats().conflicts[0].to_string();
+    let message = decoder.stats().conflicts[0].to_string();
     assert!(
-        said.ends_with("says VLP-16; decoded as HDL-32E as asked"),
-        "{said}"
+        message.ends_with("says VLP-16; decoded as HDL-32E as asked"),
+        "{message}"
     );
 }

@@ -177,7 +177,7 @@ mod tests {
             "@ros2_lv/0/q1/0/0/NN/%/%/velomotion"
         );
         let kind = Topic::Points.message_type();
-        let said = token(
+        let key = token(
             &named,
             "q1",
             (2, Entity::Publisher),
@@ -186,12 +186,12 @@ mod tests {
         );
         let hash = kind.hash;
         assert_eq!(
-            said,
+            key,
             format!(
                 "@ros2_lv/3/q1/0/2/MP/%/%a%b/velomotion/%a%b%velomotion%points/sensor_msgs::msg::dds_::PointCloud2_/{hash}/::,10:,:,:,,"
             )
         );
-        assert!(said.split('/').all(|part| !part.is_empty()));
+        assert!(key.split('/').all(|part| !part.is_empty()));
     }
 
     #[test]

@@ -85,7 +85,7 @@ pub struct SweepPlan {
     pub accel_deg_s2: f64,
     /// Number of sweeps.
     pub sweeps: u32,
-    /// Whether the way back is a sweep too.
+    /// Whether the return move is a sweep too.
     pub both_ways: bool,
 }
 

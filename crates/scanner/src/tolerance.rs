@@ -231,7 +231,7 @@ mod tests {
             delay_share: 0.2,
             fastest: DegPerS(-56.25),
         };
-        for (bound_mm, would_do_mm, said) in [
+        for (bound_mm, would_do_mm, expected) in [
             (0.0512, 0.057, "within 0.0512 mm"),
             (1.018, 1.2, "within 1.02 mm"),
             (5.08, 5.6, "within 5.08 mm"),
@@ -241,7 +241,7 @@ mod tests {
             let Tolerance { off, at } = out.tolerance_that_would_do();
             assert!((off.0 * 1e3 - would_do_mm).abs() < 1e-9, "{off:?}");
             assert_eq!(at.0, 20.0);
-            assert!(out.to_string().contains(said), "{out}");
+            assert!(out.to_string().contains(expected), "{out}");
         }
     }
 

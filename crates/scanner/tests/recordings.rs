@@ -122,14 +122,14 @@ fn assert_models_placed_as_defined(read: impl Fn(&'static str) -> Recording) {
     for recording in RECORDINGS.into_iter().map(read) {
         let tilting = recording.tilting();
         for model in protocol::vlp16::models::ALL {
-            let told = Options {
+            let corrected = Options {
                 model: Some(model),
                 ..Options::default()
             };
-            assert_same(model.name, &recording, &tilting, &told);
+            assert_same(model.name, &recording, &tilting, &corrected);
             let corrected = Options {
                 corrections: Some(Arc::new(moved(model))),
-                ..told
+                ..corrected
             };
             assert_same("corrected", &recording, &tilting, &corrected);
         }

@@ -1,7 +1,7 @@
 //! One sweep through the hall without effects; prints a checksum of the output.
 //!
 //! Built with and without the feature `effects` to count instructions: absent effects must not cost
-//! any (`tests/unasked_is_absent.rs`).
+//! any (`tests/absent_effects.rs`).
 
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;

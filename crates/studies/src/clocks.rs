@@ -226,16 +226,16 @@ mod tests {
             let recordings = recordings(link, 45, 1);
             for ((name, _, method), (bias_us, worst_us)) in METHODS.into_iter().zip(table) {
                 let off = off(&recordings, method).unwrap();
-                let said = format!("{}, {name}: {} {}", link.name(), off.bias_us, off.worst_us);
+                let case = format!("{}, {name}: {} {}", link.name(), off.bias_us, off.worst_us);
                 // With few recordings rare spikes move the bias of arrivals by a quarter, and the
                 // others scatter by 1 us.
                 assert!(
                     (off.bias_us - bias_us).abs() < 0.3 * bias_us + 1.5,
-                    "{said}"
+                    "{case}"
                 );
                 assert!(
                     (off.worst_us - worst_us).abs() < 0.35 * worst_us + 2.0,
-                    "{said}"
+                    "{case}"
                 );
             }
         }

@@ -182,14 +182,14 @@ mod tests {
 
     #[test]
     fn dropped_packets_are_in_the_summary() {
-        let heard = Reception {
+        let reception = Reception {
             packets: 700,
             dropped_by_kernel: 3,
             dropped_by_log: 2,
             ..Reception::default()
         };
         assert_eq!(
-            reception_line(&heard),
+            reception_line(&reception),
             "700 lidar packets, 3 dropped by the kernel; 2 records dropped by the log"
         );
         let others = Reception {

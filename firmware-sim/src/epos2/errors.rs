@@ -122,11 +122,11 @@ mod tests {
             errors.push(DeviceError(code));
         }
         errors.acknowledge();
-        let mut told = [0; 8];
-        for told in &mut told {
-            *told = errors.next_pending().unwrap().error.0;
+        let mut reported = [0; 8];
+        for reported in &mut reported {
+            *reported = errors.next_pending().unwrap().error.0;
         }
-        assert_eq!(told, [3, 4, 5, 6, 7, 8, 9, 0]);
+        assert_eq!(reported, [3, 4, 5, 6, 7, 8, 9, 0]);
         assert_eq!(errors.next_pending(), None);
     }
 

@@ -83,17 +83,17 @@ fn a_long_write_to_another_node_ends_in_a_timeout() {
 #[test]
 fn network_management_reaches_the_addressed_node() {
     let mut bench = Bench::new();
-    let mut tell = |node, command: NmtCommand| {
+    let mut send_nmt = |node, command: NmtCommand| {
         let specifier = u16::from(command.to_u8());
         let error = bench.error(&GatewayNmt { node, specifier }.to_frame());
         assert_eq!(error, CommError::NONE);
         bench.near.nmt_state()
     };
-    assert_eq!(tell(2, NmtCommand::Start), NmtState::PreOperational);
-    assert_eq!(tell(0, NmtCommand::Start), NmtState::Operational);
-    assert_eq!(tell(1, NmtCommand::Stop), NmtState::Stopped);
-    assert_eq!(tell(300, NmtCommand::Start), NmtState::Stopped);
-    assert_eq!(tell(0, NmtCommand::ResetNode), NmtState::PreOperational);
+    assert_eq!(send_nmt(2, NmtCommand::Start), NmtState::PreOperational);
+    assert_eq!(send_nmt(0, NmtCommand::Start), NmtState::Operational);
+    assert_eq!(send_nmt(1, NmtCommand::Stop), NmtState::Stopped);
+    assert_eq!(send_nmt(300, NmtCommand::Start), NmtState::Stopped);
+    assert_eq!(send_nmt(0, NmtCommand::ResetNode), NmtState::PreOperational);
 }
 
 #[test]
@@ -106,8 +106,8 @@ fn can_frames_are_sent_and_requested() {
     assert_eq!(bench.error(&send(0, 2)), CommError::NONE);
     assert_eq!(bench.error(&send(0x800, 2)), CommError::CAN_ID);
     assert_eq!(bench.error(&send(0x100, 9)), CommError::LENGTH);
-    let ask = |cob_id, len| RequestCanFrame { cob_id, len }.to_frame();
-    assert_eq!(bench.error(&ask(0x704, 1)), CommError::TIMEOUT);
-    assert_eq!(bench.error(&ask(0x702, 9)), CommError::LENGTH);
-    assert_eq!(bench.error(&ask(0x800, 1)), CommError::CAN_ID);
+    let request = |cob_id, len| RequestCanFrame { cob_id, len }.to_frame();
+    assert_eq!(bench.error(&request(0x704, 1)), CommError::TIMEOUT);
+    assert_eq!(bench.error(&request(0x702, 9)), CommError::LENGTH);
+    assert_eq!(bench.error(&request(0x800, 1)), CommError::CAN_ID);
 }

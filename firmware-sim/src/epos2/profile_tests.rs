@@ -300,22 +300,22 @@ proptest! {
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Order {
+enum Operation {
     GoTo(i64, MotionLimits),
     RunAt(i32, u32),
     Steps(u16),
 }
 
-fn order() -> impl Strategy<Value = Order> {
+fn operation() -> impl Strategy<Value = Operation> {
     let extreme = prop_oneof![any::<u32>(), 0u32..3, Just(u32::MAX)];
     let limits =
         (0i32..=25_000, extreme.clone(), extreme.clone()).prop_map(|(v, a, d)| limits(v, a, d));
     // Farther than the world is long: a 32-bit position from an origin as far away.
     let target = (any::<i32>(), any::<i32>()).prop_map(|(a, b)| fine(i64::from(a) + i64::from(b)));
     prop_oneof![
-        (target, limits).prop_map(|(target, limits)| Order::GoTo(target, limits)),
-        (-25_000i32..=25_000, extreme).prop_map(|(speed, a)| Order::RunAt(speed, a)),
-        (0u16..300).prop_map(Order::Steps),
+        (target, limits).prop_map(|(target, limits)| Operation::GoTo(target, limits)),
+        (-25_000i32..=25_000, extreme).prop_map(|(speed, a)| Operation::RunAt(speed, a)),
+        (0u16..300).prop_map(Operation::Steps),
     ]
 }
 
@@ -326,16 +326,16 @@ proptest! {
     fn large_numbers_do_not_overflow(
         from in any::<i32>(),
         qc_per_turn in prop_oneof![Just(MAX_QC_PER_TURN), 4..=MAX_QC_PER_TURN],
-        orders in prop::collection::vec(order(), 1..30),
+        operations in prop::collection::vec(operation(), 1..30),
     ) {
         let mut generator = Generator::new(fine(from.into()).clamp(-WORLD_END, WORLD_END), qc_per_turn);
-        for order in orders {
-            match order {
-                Order::GoTo(target, limits) => {
+        for operation in operations {
+            match operation {
+                Operation::GoTo(target, limits) => {
                     let _ = generator.go_to(target, limits);
                 }
-                Order::RunAt(speed, acceleration) => generator.run_at(Speed::from_rpm(speed), acceleration, acceleration),
-                Order::Steps(n) => {
+                Operation::RunAt(speed, acceleration) => generator.run_at(Speed::from_rpm(speed), acceleration, acceleration),
+                Operation::Steps(n) => {
                     for _ in 0..n {
                         generator.step();
                         prop_assert!(generator.position.abs() <= WORLD_END);

@@ -28,7 +28,7 @@ fn send(server: &mut Rs232Server, node: &mut Node, bytes: &[u8]) -> Vec<u8> {
 }
 
 /// The master's side of one exchange.
-fn ask(server: &mut Rs232Server, node: &mut Node, request: &SerialFrame) -> SerialFrame {
+fn exchange(server: &mut Rs232Server, node: &mut Node, request: &SerialFrame) -> SerialFrame {
     assert_eq!(send(server, node, &[request.opcode]), b"O");
     let mut body = Vec::new();
     encode_body(request, &mut body).unwrap();
@@ -74,12 +74,12 @@ fn exchanges_follow_each_other() {
         }
         .to_frame();
         assert_eq!(
-            WriteObject::parse_answer(&ask(&mut server, &mut node, &write)),
+            WriteObject::parse_answer(&exchange(&mut server, &mut node, &write)),
             Ok(Ok(()))
         );
         let read = ReadObject { node: 1, address }.to_frame();
         assert_eq!(
-            ReadObject::parse_answer(&ask(&mut server, &mut node, &read)),
+            ReadObject::parse_answer(&exchange(&mut server, &mut node, &read)),
             Ok(Ok(value))
         );
     }
@@ -103,7 +103,7 @@ fn unknown_opcodes_and_damaged_bodies_are_refused() {
         address: objects::STATUSWORD.address,
     }
     .to_frame();
-    ask(&mut server, &mut node, &read);
+    exchange(&mut server, &mut node, &read);
 }
 
 #[test]
@@ -127,7 +127,7 @@ fn network_management_has_no_answer() {
         address: objects::STATUSWORD.address,
     }
     .to_frame();
-    ask(&mut server, &mut node, &read);
+    exchange(&mut server, &mut node, &read);
 }
 
 #[test]
@@ -142,7 +142,7 @@ fn silence_ends_a_pending_exchange() {
         address: objects::STATUSWORD.address,
     }
     .to_frame();
-    ask(&mut server, &mut node, &read);
+    exchange(&mut server, &mut node, &read);
 }
 
 proptest! {
@@ -159,6 +159,6 @@ proptest! {
             node.tick();
         }
         let request = ReadObject { node: 0, address: objects::STATUSWORD.address }.to_frame();
-        prop_assert!(ReadObject::parse_answer(&ask(&mut server, &mut node, &request)).unwrap().is_ok());
+        prop_assert!(ReadObject::parse_answer(&exchange(&mut server, &mut node, &request)).unwrap().is_ok());
     }
 }

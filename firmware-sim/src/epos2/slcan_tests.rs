@@ -29,7 +29,7 @@ impl Port {
         port
     }
 
-    fn say(&mut self, bytes: &[u8]) -> String {
+    fn send(&mut self, bytes: &[u8]) -> String {
         let mut out = Vec::new();
         self.server.input(&mut self.node, bytes, &mut |line| {
             out.extend_from_slice(line)
@@ -51,48 +51,48 @@ impl Port {
 #[test]
 fn a_host_opens_reads_and_closes() {
     let mut port = Port::new();
-    assert_eq!(port.say(b"\r\r\r"), "\r\r\r");
-    assert_eq!(port.say(b"V\rN\r"), "V1013\rNEPOS\r");
+    assert_eq!(port.send(b"\r\r\r"), "\r\r\r");
+    assert_eq!(port.send(b"V\rN\r"), "V1013\rNEPOS\r");
     assert_eq!(
-        port.say(b"t6018404160000000\r"),
+        port.send(b"t6018404160000000\r"),
         "\x07",
         "closed and too short"
     );
-    assert_eq!(port.say(b"t60184041600000000000\r"), "\x07", "closed");
-    assert_eq!(port.say(b"S8\rO\r"), "\r\r");
-    assert_eq!(port.say(b"S8\rO\rZ1\r"), "\x07\x07\x07", "open already");
-    assert_eq!(port.say(b"F\r"), "F00\r");
+    assert_eq!(port.send(b"t60184041600000000000\r"), "\x07", "closed");
+    assert_eq!(port.send(b"S8\rO\r"), "\r\r");
+    assert_eq!(port.send(b"S8\rO\rZ1\r"), "\x07\x07\x07", "open already");
+    assert_eq!(port.send(b"F\r"), "F00\r");
     assert_eq!(
-        port.say(b"t60184041600000000000\r"),
+        port.send(b"t60184041600000000000\r"),
         "z\rt58184B41600040010000\r"
     );
     // The device name, in segments.
     assert_eq!(
-        port.say(b"t60184008100000000000\r"),
+        port.send(b"t60184008100000000000\r"),
         "z\rt58184108100005000000\r"
     );
     assert_eq!(
-        port.say(b"t60186000000000000000\r"),
+        port.send(b"t60186000000000000000\r"),
         "z\rt58180545504F53320000\r"
     );
     // NMT: a reset boots, a remote frame is a guarding request.
-    assert_eq!(port.say(b"t00028101\r"), "z\rt701100\r");
-    assert_eq!(port.say(b"r7011\r"), "z\rt70117F\r");
+    assert_eq!(port.send(b"t00028101\r"), "z\rt701100\r");
+    assert_eq!(port.send(b"r7011\r"), "z\rt70117F\r");
     assert_eq!(
-        port.say(b"T000006018FFFFFFFFFFFFFFFF\r"),
+        port.send(b"T000006018FFFFFFFFFFFFFFFF\r"),
         "Z\r",
         "no node answers to 29 bits"
     );
-    assert_eq!(port.say(b"X\r"), "\x07");
-    assert_eq!(port.say(b"C\rC\r"), "\r\x07");
-    assert_eq!(port.say(b"t60184041600000000000\r"), "\x07");
+    assert_eq!(port.send(b"X\r"), "\x07");
+    assert_eq!(port.send(b"C\rC\r"), "\r\x07");
+    assert_eq!(port.send(b"t60184041600000000000\r"), "\x07");
 }
 
 #[test]
 fn listen_only_mode_receives_and_does_not_send() {
     let mut port = Port::new();
-    assert_eq!(port.say(b"L\r"), "\r");
-    assert_eq!(port.say(b"t00028101\r"), "\x07");
+    assert_eq!(port.send(b"L\r"), "\r");
+    assert_eq!(port.send(b"t00028101\r"), "\x07");
     port.node.power_cycle();
     assert_eq!(port.ticks(1), "t701100\r");
 }
@@ -100,10 +100,10 @@ fn listen_only_mode_receives_and_does_not_send() {
 #[test]
 fn frames_carry_time_stamps_when_enabled() {
     let mut port = Port::new();
-    assert_eq!(port.say(b"Z1\rO\r"), "\r\r");
+    assert_eq!(port.send(b"Z1\rO\r"), "\r\r");
     port.ticks(60_998);
     assert_eq!(
-        port.say(b"r7011\r"),
+        port.send(b"r7011\r"),
         "z\rt70117F03E7\r",
         "999 ms into the minute"
     );
@@ -112,7 +112,7 @@ fn frames_carry_time_stamps_when_enabled() {
 #[test]
 fn a_sync_stream_loses_no_samples() {
     let mut port = Port::new();
-    port.say(b"S8\rO\r");
+    port.send(b"S8\rO\r");
     for line in [
         "t60182300180181010080", // 1800:1 not in use
         "t60182F00180201000000", // on each SYNC
@@ -123,14 +123,14 @@ fn a_sync_stream_loses_no_samples() {
         "t60182F001A0002000000", // two
         "t60182300180181010040", // 1800:1 in use
     ] {
-        let answer = port.say(std::format!("{line}\r").as_bytes());
+        let answer = port.send(std::format!("{line}\r").as_bytes());
         assert!(answer.starts_with("z\rt581860"), "{line}: {answer}");
     }
-    assert_eq!(port.say(b"t00020101\r"), "z\r");
+    assert_eq!(port.send(b"t00020101\r"), "z\r");
     let mut stamps = Vec::new();
     for _ in 0..2_000 {
         port.ticks(1);
-        let answer = port.say(b"t0800\r");
+        let answer = port.send(b"t0800\r");
         let data = answer.strip_prefix("z\rt1818").unwrap().trim_end();
         let stamp = u32::from_str_radix(&data[8..], 16).unwrap().swap_bytes();
         stamps.push(stamp);
@@ -146,11 +146,11 @@ proptest! {
         junk in prop::collection::vec(prop_oneof![3 => any::<u8>(), 1 => Just(b'\r'), 2 => prop::sample::select(b"tTrRSOCLZ0123456789ABCDEF".as_slice())], 0..300),
     ) {
         let mut port = Port::new();
-        port.say(&junk);
+        port.send(&junk);
         // What is left of a line ends, and whatever the channel is, it is open then.
-        port.say(b"\r");
-        port.say(b"C\r");
-        prop_assert_eq!(port.say(b"O\r"), "\r");
-        prop_assert_eq!(port.say(b"V\r"), "V1013\r");
+        port.send(b"\r");
+        port.send(b"C\r");
+        prop_assert_eq!(port.send(b"O\r"), "\r");
+        prop_assert_eq!(port.send(b"V\r"), "V1013\r");
     }
 }

@@ -40,7 +40,7 @@ fn decode(bytes: &[u8]) -> SerialFrame {
 }
 
 /// Asks and returns the one answer.
-fn ask(server: &mut UsbServer, node: &mut Node, request: &SerialFrame) -> SerialFrame {
+fn exchange(server: &mut UsbServer, node: &mut Node, request: &SerialFrame) -> SerialFrame {
     let answers = send(server, node, &to_bytes(request));
     assert_eq!(answers.len(), 1);
     decode(&answers[0])
@@ -64,7 +64,7 @@ fn short_values_are_padded_with_garbage() {
     let (mut server, mut node) = (UsbServer::new(1), node());
     let mut above = Vec::new();
     for _ in 0..20 {
-        let answer = ask(
+        let answer = exchange(
             &mut server,
             &mut node,
             &read(1, objects::STATUSWORD.address),
@@ -72,7 +72,7 @@ fn short_values_are_padded_with_garbage() {
         let raw = ReadObject::parse_answer(&answer).unwrap().unwrap();
         assert_eq!(objects::STATUSWORD.decode(raw), 0x0140);
         above.push(raw >> 16);
-        let answer = ask(
+        let answer = exchange(
             &mut server,
             &mut node,
             &read(1, objects::POSITION_ACTUAL.address),
@@ -106,7 +106,7 @@ fn error_codes_are_sent_in_two_words_or_four() {
     let (mut server, mut node) = (UsbServer::new(2), node());
     let missing = read(1, Address::new(0x5000, 0));
     let lengths: Vec<_> = (0..20)
-        .map(|_| ask(&mut server, &mut node, &missing).words.len())
+        .map(|_| exchange(&mut server, &mut node, &missing).words.len())
         .collect();
     assert!(lengths.contains(&2) && lengths.contains(&4));
     let write = |address, value| {
@@ -150,7 +150,7 @@ fn error_codes_are_sent_in_two_words_or_four() {
         ),
     ] {
         assert_eq!(
-            refusal(&ask(&mut server, &mut node, &request)),
+            refusal(&exchange(&mut server, &mut node, &request)),
             code,
             "{request:?}"
         );
@@ -184,7 +184,7 @@ fn node_0_and_the_units_own_id_address_the_unit() {
             address: objects::PROFILE_VELOCITY.address,
             value: u32::from(id) + 5,
         };
-        let answer = ask(&mut server, &mut node, &request.to_frame());
+        let answer = exchange(&mut server, &mut node, &request.to_frame());
         assert_eq!(WriteObject::parse_answer(&answer), Ok(Ok(())));
         assert_eq!(
             node.read(objects::PROFILE_VELOCITY.address).unwrap().raw(),
@@ -201,9 +201,9 @@ fn the_device_name_is_read_in_a_segment() {
         address: objects::DEVICE_NAME,
     }
     .to_frame();
-    let answer = ask(&mut server, &mut node, &begin);
+    let answer = exchange(&mut server, &mut node, &begin);
     assert_eq!(refusal(&answer), CommError::NONE);
-    let segment = ask(
+    let segment = exchange(
         &mut server,
         &mut node,
         &SegmentedRead { toggle: false }.to_frame(),
@@ -213,8 +213,8 @@ fn the_device_name_is_read_in_a_segment() {
         (segment.bytes.as_slice(), segment.more),
         (&b"EPOS2"[..], false)
     );
-    ask(&mut server, &mut node, &begin);
-    let wrong = ask(
+    exchange(&mut server, &mut node, &begin);
+    let wrong = exchange(
         &mut server,
         &mut node,
         &SegmentedRead { toggle: true }.to_frame(),
@@ -235,11 +235,11 @@ fn a_number_is_written_in_segments() {
         .to_frame()
     };
     assert_eq!(
-        refusal(&ask(&mut server, &mut node, &begin(5))),
+        refusal(&exchange(&mut server, &mut node, &begin(5))),
         CommError::TOO_LONG
     );
     assert_eq!(
-        refusal(&ask(&mut server, &mut node, &begin(3))),
+        refusal(&exchange(&mut server, &mut node, &begin(3))),
         CommError::TOO_SHORT
     );
     let segment = |toggle, bytes: &[u8]| {
@@ -249,20 +249,20 @@ fn a_number_is_written_in_segments() {
         })
         .to_frame()
     };
-    ask(&mut server, &mut node, &begin(4));
-    let first = ask(&mut server, &mut node, &segment(false, &[0x78, 0x56]));
+    exchange(&mut server, &mut node, &begin(4));
+    let first = exchange(&mut server, &mut node, &segment(false, &[0x78, 0x56]));
     assert_eq!(SegmentedWrite::parse_answer(&first), Ok(Ok(false)));
-    let last = ask(&mut server, &mut node, &segment(true, &[0x34, 0x12]));
+    let last = exchange(&mut server, &mut node, &segment(true, &[0x34, 0x12]));
     assert_eq!(SegmentedWrite::parse_answer(&last), Ok(Ok(true)));
     assert_eq!(node.read(address).unwrap().raw(), Some(0x1234_5678));
-    ask(&mut server, &mut node, &begin(4));
+    exchange(&mut server, &mut node, &begin(4));
     assert_eq!(
-        refusal(&ask(&mut server, &mut node, &segment(true, &[1]))),
+        refusal(&exchange(&mut server, &mut node, &segment(true, &[1]))),
         CommError::TOGGLE
     );
-    ask(&mut server, &mut node, &begin(4));
+    exchange(&mut server, &mut node, &begin(4));
     assert_eq!(
-        refusal(&ask(&mut server, &mut node, &segment(false, &[1; 5]))),
+        refusal(&exchange(&mut server, &mut node, &segment(false, &[1; 5]))),
         CommError::TOO_LONG
     );
 }
@@ -276,7 +276,7 @@ fn network_management_and_can_frames_are_answered_on_usb() {
     }
     .to_frame();
     assert_eq!(
-        refusal(&ask(&mut server, &mut node, &start)),
+        refusal(&exchange(&mut server, &mut node, &start)),
         CommError::NONE
     );
     assert_eq!(
@@ -288,7 +288,7 @@ fn network_management_and_can_frames_are_answered_on_usb() {
         specifier: NmtCommand::Stop.to_u8().into(),
     }
     .to_frame();
-    ask(&mut server, &mut node, &other);
+    exchange(&mut server, &mut node, &other);
     assert_eq!(
         node.read(objects::STATUSWORD.address).unwrap().raw(),
         Some(0x0340)
@@ -300,7 +300,7 @@ fn network_management_and_can_frames_are_answered_on_usb() {
     }
     .to_frame();
     assert_eq!(
-        refusal(&ask(&mut server, &mut node, &frame)),
+        refusal(&exchange(&mut server, &mut node, &frame)),
         CommError::NONE
     );
 }

@@ -188,18 +188,18 @@ mod tests {
         let mut consumer = HeartbeatConsumer::new(node(1), Span::from_millis(100));
         assert_eq!(consumer.poll_timeout(), None);
         assert_eq!(consumer.handle_timeout(at(1_000_000)), None);
-        let mut hear = |state, ms| consumer.handle_frame(&beat(1, state), at(ms));
-        assert_eq!(hear(NmtState::BootUp, 0), Some(HeartbeatEvent::BootUp));
+        let mut receive = |state, ms| consumer.handle_frame(&beat(1, state), at(ms));
+        assert_eq!(receive(NmtState::BootUp, 0), Some(HeartbeatEvent::BootUp));
         assert_eq!(
-            hear(PreOperational, 10),
+            receive(PreOperational, 10),
             Some(HeartbeatEvent::State {
                 from: Some(NmtState::BootUp),
                 to: PreOperational
             })
         );
-        assert_eq!(hear(PreOperational, 60), None);
+        assert_eq!(receive(PreOperational, 60), None);
         assert!(matches!(
-            hear(Operational, 110),
+            receive(Operational, 110),
             Some(HeartbeatEvent::State { .. })
         ));
         // Heartbeats of other nodes do not count.

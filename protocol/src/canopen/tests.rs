@@ -81,91 +81,94 @@ fn segment(toggle: bool, last: bool, bytes: &[u8]) -> SdoSegment {
 /// EPOS2 Communication Guide, "SDO communication" (node 1); the segments are those of reading the
 /// device name.
 fn sdo_messages() -> Vec<(&'static str, BusMessage)> {
-    let ask = |request| BusMessage::SdoRequest(node(1), request);
-    let say = |answer| BusMessage::SdoResponse(node(1), answer);
+    let request = |request| BusMessage::SdoRequest(node(1), request);
+    let response = |answer| BusMessage::SdoResponse(node(1), answer);
     let address = STATUSWORD.address;
     let six = Address::new(0x2080, 3);
     std::vec![
         (
             "601#4041600000000000",
-            ask(SdoRequest::InitiateUpload { address })
+            request(SdoRequest::InitiateUpload { address })
         ),
-        ("581#4B41600040010000", say(upload(address, &[0x40, 0x01]))),
+        (
+            "581#4B41600040010000",
+            response(upload(address, &[0x40, 0x01]))
+        ),
         (
             "581#4380200344332211",
-            say(upload(six, &[0x44, 0x33, 0x22, 0x11]))
+            response(upload(six, &[0x44, 0x33, 0x22, 0x11]))
         ),
         (
             "581#4780200333221100",
-            say(upload(six, &[0x33, 0x22, 0x11]))
+            response(upload(six, &[0x33, 0x22, 0x11]))
         ),
-        ("581#4F80200311000000", say(upload(six, &[0x11]))),
+        ("581#4F80200311000000", response(upload(six, &[0x11]))),
         (
             "601#2380200344332211",
-            ask(download(six, &[0x44, 0x33, 0x22, 0x11]))
+            request(download(six, &[0x44, 0x33, 0x22, 0x11]))
         ),
         (
             "601#2780200333221100",
-            ask(download(six, &[0x33, 0x22, 0x11]))
+            request(download(six, &[0x33, 0x22, 0x11]))
         ),
         (
             "601#2B4060000F000000",
-            ask(download(Address::new(0x6040, 0), &[0x0F, 0]))
+            request(download(Address::new(0x6040, 0), &[0x0F, 0]))
         ),
         (
             "601#2F60600001000000",
-            ask(download(Address::new(0x6060, 0), &[1]))
+            request(download(Address::new(0x6060, 0), &[1]))
         ),
         (
             "581#6040600000000000",
-            say(SdoResponse::InitiateDownload {
+            response(SdoResponse::InitiateDownload {
                 address: Address::new(0x6040, 0)
             })
         ),
         (
             "581#8041600000000206",
-            say(SdoResponse::Abort {
+            response(SdoResponse::Abort {
                 address,
                 error: AbortCode::NO_OBJECT
             })
         ),
         (
             "601#8041600000000405",
-            ask(SdoRequest::Abort {
+            request(SdoRequest::Abort {
                 address,
                 error: AbortCode::TIMEOUT
             })
         ),
         (
             "601#4008100000000000",
-            ask(SdoRequest::InitiateUpload { address: NAME })
+            request(SdoRequest::InitiateUpload { address: NAME })
         ),
         (
             "581#4108100005000000",
-            say(SdoResponse::InitiateUpload {
+            response(SdoResponse::InitiateUpload {
                 address: NAME,
                 transfer: Initiate::Segmented { size: Some(5) }
             })
         ),
         (
             "601#6000000000000000",
-            ask(SdoRequest::UploadSegment { toggle: false })
+            request(SdoRequest::UploadSegment { toggle: false })
         ),
         (
             "581#0545504F53320000",
-            say(SdoResponse::UploadSegment(segment(false, true, b"EPOS2")))
+            response(SdoResponse::UploadSegment(segment(false, true, b"EPOS2")))
         ),
         // Writing nine bytes in segments: announced, seven, two.
         (
             "601#2180200309000000",
-            ask(SdoRequest::InitiateDownload {
+            request(SdoRequest::InitiateDownload {
                 address: six,
                 transfer: Initiate::Segmented { size: Some(9) }
             })
         ),
         (
             "601#0001020304050607",
-            ask(SdoRequest::DownloadSegment(segment(
+            request(SdoRequest::DownloadSegment(segment(
                 false,
                 false,
                 &[1, 2, 3, 4, 5, 6, 7]
@@ -173,42 +176,42 @@ fn sdo_messages() -> Vec<(&'static str, BusMessage)> {
         ),
         (
             "581#2000000000000000",
-            say(SdoResponse::DownloadSegment { toggle: false })
+            response(SdoResponse::DownloadSegment { toggle: false })
         ),
         (
             "601#1B08090000000000",
-            ask(SdoRequest::DownloadSegment(segment(true, true, &[8, 9])))
+            request(SdoRequest::DownloadSegment(segment(true, true, &[8, 9])))
         ),
         (
             "581#3000000000000000",
-            say(SdoResponse::DownloadSegment { toggle: true })
+            response(SdoResponse::DownloadSegment { toggle: true })
         ),
         (
             "601#7000000000000000",
-            ask(SdoRequest::UploadSegment { toggle: true })
+            request(SdoRequest::UploadSegment { toggle: true })
         ),
         // Forms the EPOS2 does not use and other nodes may.
         (
             "581#42416000AABBCCDD",
-            say(SdoResponse::InitiateUpload {
+            response(SdoResponse::InitiateUpload {
                 address,
                 transfer: Initiate::Unsized([0xAA, 0xBB, 0xCC, 0xDD])
             })
         ),
         (
             "581#4041600000000000",
-            say(SdoResponse::InitiateUpload {
+            response(SdoResponse::InitiateUpload {
                 address,
                 transfer: Initiate::Segmented { size: None }
             })
         ),
         (
             "601#A041600000000000",
-            ask(SdoRequest::Unknown([0xA0, 0x41, 0x60, 0, 0, 0, 0, 0]))
+            request(SdoRequest::Unknown([0xA0, 0x41, 0x60, 0, 0, 0, 0, 0]))
         ),
         (
             "581#C241600000000000",
-            say(SdoResponse::Unknown([0xC2, 0x41, 0x60, 0, 0, 0, 0, 0]))
+            response(SdoResponse::Unknown([0xC2, 0x41, 0x60, 0, 0, 0, 0, 0]))
         ),
     ]
 }

@@ -3,8 +3,7 @@
 //!
 //! Sources: maxon EPOS2 Communication Guide (framing, commands, communication errors) and EPOS2
 //! Firmware Specification (objects, device control, device errors). The same objects over CANopen
-//! are framed elsewhere; here is neither a timeout nor a retry nor an opinion about what to ask the
-//! drive.
+//! are framed in `canopen`. Timeouts, retries and the order of accesses are left to the client.
 
 pub mod cia402;
 mod crc;

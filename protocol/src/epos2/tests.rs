@@ -186,7 +186,11 @@ fn a_sync_pair_restarts_a_frame_at_any_point() {
                     .into_iter()
                     .filter_map(|b| decoder.push(b))
                     .collect();
-                assert_eq!(after.last(), Some(&Ok(frame)), "not in step again");
+                assert_eq!(
+                    after.last(),
+                    Some(&Ok(frame)),
+                    "the decoder did not resynchronise"
+                );
                 continue;
             }
             assert_eq!(last, Some(Ok(frame)), "cut at {cut} of {bytes}");
@@ -361,7 +365,7 @@ proptest! {
     ) {
         let frame = SerialFrame::new(0, &words).unwrap();
         let mut bytes = usb::to_bytes(&frame).to_vec();
-        // Behind the length: a shorter or longer frame is anybody's guess once in 65536.
+        // After the length: a frame of another length has a valid CRC once in 65536.
         let bit = 32 + bit.index(8 * (bytes.len() - 4));
         bytes[bit / 8] ^= 1 << (bit % 8);
         prop_assert!(decode_all(&bytes).iter().all(Result::is_err));

@@ -69,7 +69,7 @@ impl UsbDecoder {
         *self = Self::default();
     }
 
-    /// Whether a frame has begun and is not complete.
+    /// Whether a frame has started and is not complete.
     #[must_use]
     pub const fn is_within_frame(&self) -> bool {
         !matches!(self.state, DecoderState::Hunting)

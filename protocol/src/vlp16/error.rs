@@ -25,7 +25,7 @@ pub enum PacketError {
         /// The two bytes found.
         got: [u8; 2],
     },
-    /// A block's azimuth is beyond a full turn.
+    /// A block's azimuth exceeds a full revolution.
     #[error(
         "{layer} offset {offset}: expected an azimuth of 0 to 36000 hundredths of a degree, got {got}"
     )]

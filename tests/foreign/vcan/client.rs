@@ -31,7 +31,7 @@ struct SweepFrames<W> {
 }
 
 impl<W: std::io::Write> SweepFrames<W> {
-    fn hear(&mut self, record: &Record<'_>) {
+    fn receive(&mut self, record: &Record<'_>) {
         self.log.write(record).unwrap();
         let Wire::Drive {
             link,
@@ -67,7 +67,7 @@ pub fn sweep(out: &Path) {
     axis.can.host_limit = Span::from_secs(2);
     axis.can.node_limit = Span::from_secs(2);
     axis.timing.timeout_moving = Span::from_secs(1);
-    let wish = SweepRequest {
+    let sweep_request = SweepRequest {
         from: Degrees(0.0),
         to: Degrees(-45.0),
         speed: DegPerS(10.0),
@@ -75,7 +75,7 @@ pub fn sweep(out: &Path) {
         sweeps: 1,
         both_ways: false,
     };
-    let steps = motion::steps(&wish, &axis, Degrees(0.0)).unwrap();
+    let steps = motion::steps(&sweep_request, &axis, Degrees(0.0)).unwrap();
     let gearing = axis.gearing;
     let head = LogConfig {
         metadata: String::new(),
@@ -88,7 +88,7 @@ pub fn sweep(out: &Path) {
     });
     let line = BusLine(SocketCan::open(BUS).unwrap());
     let port = RecordingPort::new(line, DriveLink::Can, |record: &Record<'_>| {
-        received.borrow_mut().hear(record);
+        received.borrow_mut().receive(record);
     });
     let client = DriveClient::new(axis, DriveLink::Can);
     let mut session = Session::new(client, port, Arc::new(AtomicBool::new(false)));

@@ -61,9 +61,9 @@ fn foreign_packets_are_ignored() {
                 upper
             }
             9 => {
-                let mut beyond = packet.bytes.clone();
-                beyond[2..4].copy_from_slice(&36_001u16.to_le_bytes());
-                beyond
+                let mut invalid = packet.bytes.clone();
+                invalid[2..4].copy_from_slice(&36_001u16.to_le_bytes());
+                invalid
             }
             12 => position_packet(17, Pps::Absent, b"").to_vec(),
             _ => continue,

@@ -53,7 +53,7 @@ pub struct Plan {
     /// The seed that determines everything else.
     pub seed: u64,
     /// The moves.
-    pub wish: SweepRequest,
+    pub sweep_request: SweepRequest,
     /// The fault.
     pub fault: Either,
     /// Time from the beginning to the fault.
@@ -127,7 +127,7 @@ impl Plan {
                 _ => Real::Killed,
             }),
         };
-        let wish = SweepRequest {
+        let sweep_request = SweepRequest {
             from: Degrees(0.0),
             to: Degrees(-(random.between(10, 46) as f64)),
             speed: DegPerS(random.between(20, 91) as f64),
@@ -137,7 +137,7 @@ impl Plan {
         };
         Self {
             seed,
-            wish,
+            sweep_request,
             fault,
             after,
             mended_after: Span::from_millis(random.between(50, 2_500)),

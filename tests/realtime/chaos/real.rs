@@ -107,21 +107,21 @@ impl World {
 
     fn go_through(&mut self, plan: &Plan, what: Real) -> Result<Made, String> {
         self.ready()?;
-        let asked = CaptureRequest {
-            speed_deg_s: plan.wish.speed.0,
-            from_deg: Some(plan.wish.from.0),
-            to_deg: Some(plan.wish.to.0),
-            accel_deg_s2: Some(plan.wish.acceleration.0),
-            sweeps: Some(plan.wish.sweeps),
-            both_ways: plan.wish.both_ways,
+        let request = CaptureRequest {
+            speed_deg_s: plan.sweep_request.speed.0,
+            from_deg: Some(plan.sweep_request.from.0),
+            to_deg: Some(plan.sweep_request.to.0),
+            accel_deg_s2: Some(plan.sweep_request.acceleration.0),
+            sweeps: Some(plan.sweep_request.sweeps),
+            both_ways: plan.sweep_request.both_ways,
             tolerance: None,
             name: Some(plan.name()),
         };
-        let begun = self
+        let answer = self
             .daemon
             .client
-            .post::<ScanView>("/api/v1/captures", &asked);
-        if let Err(refused) = begun {
+            .post::<ScanView>("/api/v1/captures", &request);
+        if let Err(refused) = answer {
             // The fault has not begun.
             return Err(format!("refused: {refused}"));
         }
@@ -159,7 +159,7 @@ impl World {
         let path = format!("/api/v1/scans/{}", scan.id);
         let whole: Value = self.daemon.client.get(&path).map_err(|f| f.to_string())?;
         let report = &whole["report"];
-        let asked = scan.asked.as_ref().ok_or("the request is unknown")?;
+        let request = scan.asked.as_ref().ok_or("the request is unknown")?;
         let sweeps = report["sweeps"].as_array().map_or(0, Vec::len);
         let far = report["sweeps"]
             .as_array()
@@ -168,10 +168,10 @@ impl World {
             .all(|sweep| {
                 let angle = |key: &str| sweep[key].as_f64().unwrap_or(f64::NAN);
                 let range = (angle("to_deg") - angle("from_deg")).abs();
-                (range - asked.to_deg.unwrap_or(f64::NAN).abs()).abs() < 0.2
+                (range - request.to_deg.unwrap_or(f64::NAN).abs()).abs() < 0.2
             });
         let lost = report["lost_packets"].as_u64();
-        match (sweeps == asked.sweeps.unwrap_or(1) as usize, far, lost) {
+        match (sweeps == request.sweeps.unwrap_or(1) as usize, far, lost) {
             (true, true, Some(0)) => Ok(()),
             _ => Err(format!("{}: reported whole: {report}", scan.id)),
         }

@@ -29,13 +29,13 @@ const SAFE: Span = Span::from_secs(2);
 pub fn make(plan: &Plan, what: Virtual, scans: &Scans) -> Result<Wanted, String> {
     let (captured, ended) = Captured::run(setting(plan, what));
     rests(plan, &captured, &ended)?;
-    let asked = CaptureRequest {
-        speed_deg_s: plan.wish.speed.0,
+    let request = CaptureRequest {
+        speed_deg_s: plan.sweep_request.speed.0,
         name: Some(plan.name()),
         ..CaptureRequest::default()
     };
     let id = scans
-        .begin(&asked, true)
+        .begin(&request, true)
         .map_err(|f| f.to_string())?
         .head
         .id;
@@ -106,7 +106,7 @@ fn done(scans: &Scans, id: &str, ended: Result<(), SessionError>) -> Result<(), 
 
 fn setting(plan: &Plan, what: Virtual) -> Setting {
     let mut setting = Setting {
-        wish: plan.wish,
+        sweep_request: plan.sweep_request,
         links: Links::usual(plan.attached, plan.seed),
         ..Setting::default()
     };
@@ -160,7 +160,7 @@ fn rests(plan: &Plan, captured: &Captured, ended: &Result<(), SessionError>) -> 
         ));
     }
     // Over USB and RS232 a profile move ends at its target at the latest.
-    let longest = plan.wish.to.0.abs() / plan.wish.speed.0 + 1.0;
+    let longest = plan.sweep_request.to.0.abs() / plan.sweep_request.speed.0 + 1.0;
     if went_on.as_secs_f64() > longest.max(HOMING_S) {
         return Err(format!(
             "the axis went on for {went_on:?}; its move takes {longest} s"

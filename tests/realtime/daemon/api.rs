@@ -165,8 +165,8 @@ fn homing_before_a_scan_is_planned_and_reported() {
             );
         }
         let homing_s = plan()["homing_s"].as_f64().unwrap();
-        let begun = rig.post("/api/v1/captures", &json!({"speed_deg_s": 56.25}));
-        assert_eq!(begun.status, 201, "{}", begun.text());
+        let answer = rig.post("/api/v1/captures", &json!({"speed_deg_s": 56.25}));
+        assert_eq!(answer.status, 201, "{}", answer.text());
         // Status reports angles while the axis homes.
         seen.clear();
         super::rig::wait("the sweep", || {
@@ -180,7 +180,7 @@ fn homing_before_a_scan_is_planned_and_reported() {
             (activity["step"].as_u64() > Some(0) || activity["doing"] == "idle").then_some(())
         });
         rig.post("/api/v1/captures/stop", &json!({}));
-        rig.finished(begun.json()["id"].as_str().unwrap());
+        rig.finished(answer.json()["id"].as_str().unwrap());
         let ways = |from: f64, to: f64| seen.iter().any(|angle| (from..to).contains(angle));
         // 30 deg at 10 deg/s.
         if (homing_s - 3.0).abs() < 0.01 && ways(-28.0, -20.0) && ways(-15.0, -5.0) {

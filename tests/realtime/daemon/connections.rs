@@ -34,12 +34,12 @@ impl Deaf {
         let mut deaf = Self(stream);
         // Sends until the buffers are full of requests; their answers exceed the buffers of the way
         // back.
-        while deaf.say(path) == Some(true) {}
+        while deaf.request(path) == Some(true) {}
         deaf
     }
 
     /// Whether the socket took more; `None` after the daemon closed it.
-    fn say(&mut self, path: &str) -> Option<bool> {
+    fn request(&mut self, path: &str) -> Option<bool> {
         let request = format!("GET {path} HTTP/1.1\r\nhost: localhost\r\n\r\n").repeat(100);
         match self.0.write(request.as_bytes()) {
             Ok(_) => Some(true),
@@ -80,7 +80,7 @@ fn clients_that_never_read_do_not_block_others() {
     assert_eq!(status(&rig), 200);
     assert!(begin.elapsed() < SOON, "{:?}", begin.elapsed());
     // The latest connections are open: only the oldest were closed.
-    let inside = deaf.iter_mut().filter_map(|deaf| deaf.say("/page.css"));
+    let inside = deaf.iter_mut().filter_map(|deaf| deaf.request("/page.css"));
     assert!(inside.count() > CONNECTIONS / 2);
 }
 
@@ -88,21 +88,23 @@ fn clients_that_never_read_do_not_block_others() {
 fn clients_that_never_read_are_disconnected() {
     let rig = guarded(Duration::from_millis(200));
     let mut deaf = Deaf::new(rig.address, "/page.css");
-    wait("its end", || deaf.say("/page.css").is_none().then_some(()));
+    wait("its end", || {
+        deaf.request("/page.css").is_none().then_some(())
+    });
     // Without a token the time limit is that of a download.
     let rig = Rig::with("", |options| {
         options.waits.download = Duration::from_millis(200);
     });
     let mut deaf = Deaf::new(rig.address, "/api/v1/openapi.json");
     wait("its end", || {
-        deaf.say("/api/v1/openapi.json").is_none().then_some(())
+        deaf.request("/api/v1/openapi.json").is_none().then_some(())
     });
 }
 
 #[test]
 fn the_oldest_client_without_token_is_disconnected_first() {
     let rig = guarded(Duration::from_secs(600));
-    let ask = |stream: &mut TcpStream, headers: &str| {
+    let request_with = |stream: &mut TcpStream, headers: &str| {
         let head = format!("GET /login HTTP/1.1\r\nhost: localhost\r\n{headers}\r\n");
         let _ = stream.write_all(head.as_bytes());
         let mut first = [0; 12];
@@ -111,10 +113,10 @@ fn the_oldest_client_without_token_is_disconnected_first() {
     let connect = || TcpStream::connect(rig.address).unwrap();
     let mut strangers: Vec<TcpStream> = (0..CONNECTIONS).map(|_| connect()).collect();
     // The last of them is connected, so all are.
-    assert!(ask(&mut strangers[CONNECTIONS - 1], ""));
+    assert!(request_with(&mut strangers[CONNECTIONS - 1], ""));
     strangers[1].set_nonblocking(true).unwrap();
     let mut late = connect();
-    assert!(ask(&mut late, ""));
+    assert!(request_with(&mut late, ""));
     assert!(closed(&mut strangers[0]));
     assert!(!closed(&mut strangers[1]), "one too many has left");
     drop((strangers, late));
@@ -142,7 +144,7 @@ fn the_oldest_client_without_token_is_disconnected_first() {
     }
     wait("a place again", || {
         let mut stream = connect();
-        ask(&mut stream, "").then_some(())
+        request_with(&mut stream, "").then_some(())
     });
 }
 
@@ -168,8 +170,8 @@ fn a_waiting_command_ends_at_a_signal() {
     let mut command = velomotion(folder.path(), "tilt stop").spawn().unwrap();
     // The first connection checks for a daemon; the second carries the request.
     drop(socket.accept().unwrap());
-    let (mut asked, _) = socket.accept().unwrap();
-    asked.read_exact(&mut [0; 4]).unwrap();
+    let (mut connection, _) = socket.accept().unwrap();
+    connection.read_exact(&mut [0; 4]).unwrap();
     let id = command.id().to_string();
     wait("its end", || {
         let sent = Command::new("kill").args(["-TERM", &id]).status();

@@ -110,7 +110,7 @@ fn with_a_scan(bytes: u64, waits: Waits, log: impl FnOnce(&Path)) -> Rig {
 }
 
 /// A client that sends a request and reads only the head of the answer.
-fn ask(rig: &Rig, path: &str) -> (TcpStream, String) {
+fn open_download(rig: &Rig, path: &str) -> (TcpStream, String) {
     let mut stream = TcpStream::connect(rig.address).unwrap();
     let request = format!("GET {path} HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\n\r\n");
     stream.write_all(request.as_bytes()).unwrap();
@@ -126,7 +126,7 @@ const LARGE: u64 = 64 << 20;
 #[test]
 fn concurrent_downloads_are_limited() {
     let rig = with_a_scan(LARGE, Waits::default(), |_| {});
-    let mut all: Vec<_> = (0..DOWNLOADS).map(|_| ask(&rig, CLOUD)).collect();
+    let mut all: Vec<_> = (0..DOWNLOADS).map(|_| open_download(&rig, CLOUD)).collect();
     assert!(all.iter().all(|(_, status)| status == "200"));
     let refused = rig.get(CLOUD);
     assert_eq!(refused.refused(429, "one more").json()["kind"], "limit");
@@ -134,7 +134,7 @@ fn concurrent_downloads_are_limited() {
     assert_eq!(rig.get("/api/v1/scans").status, 200);
     drop(all.pop());
     wait("a free place", || {
-        (ask(&rig, CLOUD).1 == "200").then_some(())
+        (open_download(&rig, CLOUD).1 == "200").then_some(())
     });
 }
 
@@ -145,10 +145,12 @@ fn an_unread_download_is_closed() {
         ..Waits::default()
     };
     let rig = with_a_scan(LARGE, waits, |_| {});
-    let mut all: Vec<_> = (0..DOWNLOADS).map(|_| ask(&rig, CLOUD).0).collect();
+    let mut all: Vec<_> = (0..DOWNLOADS)
+        .map(|_| open_download(&rig, CLOUD).0)
+        .collect();
     // A download slot is free again, and the dropped client finds less than was announced.
     wait("a free place", || {
-        (ask(&rig, CLOUD).1 == "200").then_some(())
+        (open_download(&rig, CLOUD).1 == "200").then_some(())
     });
     let ended_early = all.iter_mut().any(|stalled| {
         let mut read = Vec::new();
@@ -157,7 +159,7 @@ fn an_unread_download_is_closed() {
     });
     assert!(ended_early, "whose place was it?");
     // A client that reads slowly gets everything.
-    let (mut slow, _) = ask(&rig, CLOUD);
+    let (mut slow, _) = open_download(&rig, CLOUD);
     let (mut taken, mut piece) = (0_u64, vec![0; 4 << 20]);
     for _ in 0..8 {
         std::thread::sleep(Duration::from_millis(50));
@@ -251,8 +253,8 @@ fn slow_clients_are_disconnected() {
         options.waits.body = Duration::from_millis(150);
     });
     // No bytes at all, and half a head.
-    for begun in [&b""[..], b"GET /api/v1/status HTTP/1.1\r\nhost: loc"] {
-        let answer = raw(rig.address, begun);
+    for partial in [&b""[..], b"GET /api/v1/status HTTP/1.1\r\nhost: loc"] {
+        let answer = raw(rig.address, partial);
         assert!(answer.status == 408 || answer.body.is_empty(), "{answer:?}");
     }
     let half = b"POST /api/v1/captures HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\ncontent-type: application/json\r\ncontent-length: 100\r\n\r\n{";

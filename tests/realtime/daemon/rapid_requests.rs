@@ -34,16 +34,16 @@ fn a_stop_just_after_the_start_is_not_lost() {
         rig.ready();
         let address = rig.address;
         // 45 s without a stop.
-        let begun = std::thread::spawn(move || {
+        let answer = std::thread::spawn(move || {
             post(address, "/api/v1/captures", &json!({ "speed_deg_s": 1.0 }))
         });
         let stopped = wait("a stop of a capture", || {
             let stopped = rig.post("/api/v1/captures/stop", &json!({})).json();
             (stopped["stopped"] == true).then_some(stopped)
         });
-        let begun = begun.join().unwrap();
-        assert_eq!(begun.status, 201, "{}", begun.text());
-        let id = begun.json()["id"].as_str().unwrap().to_owned();
+        let answer = answer.join().unwrap();
+        assert_eq!(answer.status, 201, "{}", answer.text());
+        let id = answer.json()["id"].as_str().unwrap().to_owned();
         assert!(
             stopped["scan"].is_null() || stopped["scan"] == id.as_str(),
             "{stopped}"

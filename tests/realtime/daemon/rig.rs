@@ -74,17 +74,17 @@ impl Rig {
     }
 
     /// Makes a scan and waits for its end.
-    pub fn scan(&self, asked: &Value) -> Value {
-        let begun = self.post("/api/v1/captures", asked);
-        assert_eq!(begun.status, 201, "{}", begun.text());
-        self.finished(begun.json()["id"].as_str().unwrap())
+    pub fn scan(&self, request: &Value) -> Value {
+        let answer = self.post("/api/v1/captures", request);
+        assert_eq!(answer.status, 201, "{}", answer.text());
+        self.finished(answer.json()["id"].as_str().unwrap())
     }
 
     /// Makes a complete scan. Software devices go silent while a busy machine does not schedule
     /// them; the capture then stops and is repeated.
-    pub fn whole_scan(&self, asked: &Value) -> Value {
+    pub fn whole_scan(&self, request: &Value) -> Value {
         for _ in 0..4 {
-            let scan = self.scan(asked);
+            let scan = self.scan(request);
             if scan["state"] == "whole" {
                 return scan;
             }
@@ -296,9 +296,9 @@ pub fn place() -> tempfile::TempDir {
 pub fn sweep(address: SocketAddr) -> String {
     for _ in 0..4 {
         ready(address);
-        let begun = post(address, "/api/v1/captures", &json!({ "speed_deg_s": 5.0 }));
-        assert_eq!(begun.status, 201, "{}", begun.text());
-        let id = begun.json()["id"].as_str().unwrap().to_owned();
+        let answer = post(address, "/api/v1/captures", &json!({ "speed_deg_s": 5.0 }));
+        assert_eq!(answer.status, 201, "{}", answer.text());
+        let id = answer.json()["id"].as_str().unwrap().to_owned();
         if sweeps(address) {
             return id;
         }

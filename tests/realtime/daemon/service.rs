@@ -22,7 +22,7 @@ impl Manager {
     }
 
     /// The lines of the next message.
-    fn hear(&self) -> Vec<String> {
+    fn messages(&self) -> Vec<String> {
         let mut bytes = [0; 4096];
         let length = self.0.recv(&mut bytes).unwrap();
         let text = String::from_utf8(bytes[..length].to_vec()).unwrap();
@@ -52,7 +52,7 @@ fn the_service_manager_is_notified_of_start_watchdog_and_stop() {
     let is = |line: &'static str| move |printed: &String| printed == line;
     // A heartbeat may precede READY.
     let ready = loop {
-        let printed = manager.hear();
+        let printed = manager.messages();
         if !printed.iter().any(is("WATCHDOG=1")) {
             break printed;
         }
@@ -65,11 +65,11 @@ fn the_service_manager_is_notified_of_start_watchdog_and_stop() {
         "{ready:?}"
     );
     for _ in 0..3 {
-        assert_eq!(manager.hear(), ["WATCHDOG=1"]);
+        assert_eq!(manager.messages(), ["WATCHDOG=1"]);
     }
     kill("-TERM", daemon.id());
     let last = loop {
-        let printed = manager.hear();
+        let printed = manager.messages();
         if printed != ["WATCHDOG=1"] {
             break printed;
         }
@@ -81,11 +81,11 @@ fn the_service_manager_is_notified_of_start_watchdog_and_stop() {
 }
 
 /// The text that `line` writes to stderr, a file that is or is not announced as the journal.
-fn printed_to(folder: &Path, line: &str, journal: bool) -> String {
+fn printed_to(folder: &Path, line: &str, to_journal: bool) -> String {
     let path = folder.join("stderr");
     let file = File::create(&path).unwrap();
     let about = file.metadata().unwrap();
-    let inode = if journal {
+    let inode = if to_journal {
         about.ino()
     } else {
         about.ino() + 1
@@ -102,16 +102,16 @@ fn printed_to(folder: &Path, line: &str, journal: bool) -> String {
 fn priority_prefixes_are_written_only_to_the_journal() {
     let folder = place();
     let line = "daemon --config missing.toml";
-    let journal = printed_to(folder.path(), line, true);
-    let lines: Vec<&str> = journal.lines().collect();
-    assert_eq!(lines.len(), 2, "{journal}");
+    let to_journal = printed_to(folder.path(), line, true);
+    let lines: Vec<&str> = to_journal.lines().collect();
+    assert_eq!(lines.len(), 2, "{to_journal}");
     assert!(
         lines[0].starts_with("<3>cannot read the configuration missing.toml"),
-        "{journal}"
+        "{to_journal}"
     );
     assert!(
         lines[1].starts_with("<3>name an existing text file"),
-        "{journal}"
+        "{to_journal}"
     );
     let plain = printed_to(folder.path(), line, false);
     assert!(plain.contains("missing.toml"), "{plain}");

@@ -47,8 +47,8 @@ fn a_stalled_disk_does_not_delay_a_stop() {
     // The disk's watcher and several requests for scans block.
     let wanting: Vec<_> = (0..3)
         .map(|_| {
-            let asked = json!({"speed_deg_s": 10.0});
-            std::thread::spawn(move || post(address, "/api/v1/captures", &asked))
+            let request = json!({"speed_deg_s": 10.0});
+            std::thread::spawn(move || post(address, "/api/v1/captures", &request))
         })
         .collect();
     wait("a request at the disk", || {
@@ -63,10 +63,10 @@ fn a_stalled_disk_does_not_delay_a_stop() {
     assert_eq!(moving.join().unwrap().status, 409);
     drop(stalled);
     for wanting in wanting {
-        let begun = wanting.join().unwrap();
-        assert!([201, 409].contains(&begun.status), "{}", begun.text());
-        if begun.status == 201 {
-            rig.finished(begun.json()["id"].as_str().unwrap());
+        let answer = wanting.join().unwrap();
+        assert!([201, 409].contains(&answer.status), "{}", answer.text());
+        if answer.status == 201 {
+            rig.finished(answer.json()["id"].as_str().unwrap());
         }
     }
 }

@@ -14,7 +14,7 @@ fn key(service: &str) -> String {
 /// Calls a service. Returns success and message.
 fn call(router: &mut Peer, service: &str) -> (bool, String) {
     let command = json!({ "do": "call", "key": key(service), "attachment": true });
-    let printed = router.ask(&command);
+    let printed = router.request(&command);
     let answers: Vec<&Value> = printed
         .iter()
         .filter(|v| v.get("answered").is_some())
@@ -78,7 +78,7 @@ fn a_capture_is_started_and_stopped_by_service_calls() {
 
     // A request that is not rmw_zenoh's moves nothing.
     let command = json!({ "do": "call", "key": key("start_capture"), "attachment": false });
-    let printed = router.ask(&command);
+    let printed = router.request(&command);
     assert!(
         printed
             .iter()
@@ -111,7 +111,7 @@ fn ros_moves_nothing_unless_configured() {
     connected(&rig, true);
     rig.ready();
     let command = json!({ "do": "call", "key": key("start_capture"), "attachment": true });
-    let printed = router.ask(&command);
+    let printed = router.request(&command);
     let answered = printed.iter().any(|v| v.get("answered").is_some());
     assert!(!answered, "{printed:?}");
     assert!(call(&mut router, "stop_capture").0);

@@ -47,11 +47,11 @@ impl Peer {
             .unwrap();
         let mouth = child.stdin.take().unwrap();
         let printed = Arc::new(Mutex::new(Vec::new()));
-        let (lines, hearing) = (child.stdout.take().unwrap(), Arc::clone(&printed));
+        let (lines, output) = (child.stdout.take().unwrap(), Arc::clone(&printed));
         std::thread::spawn(move || {
             for line in BufReader::new(lines).lines().map_while(Result::ok) {
                 let value = serde_json::from_str(&line).unwrap_or_else(|e| panic!("{e}: {line}"));
-                hearing.lock().unwrap().push(value);
+                output.lock().unwrap().push(value);
             }
         });
         let peer = Self {
@@ -79,7 +79,7 @@ impl Peer {
     }
 
     /// Sends a command and waits for its end. Returns what was printed meanwhile.
-    pub fn ask(&mut self, command: &Value) -> Vec<Value> {
+    pub fn request(&mut self, command: &Value) -> Vec<Value> {
         let before = self.all(|value| Some(value.clone())).len();
         writeln!(self.mouth, "{command}").unwrap();
         self.mouth.flush().unwrap();
@@ -101,7 +101,7 @@ impl Peer {
         let (path, last) = kind.name.rsplit_once('/').unwrap();
         let dds = format!("{}::dds_::{last}_", path.replace('/', "::"));
         let key = format!("{name}/{dds}/{}", kind.hash);
-        self.ask(&json!({ "do": how, "who": who, "key": key }));
+        self.request(&json!({ "do": how, "who": who, "key": key }));
     }
 
     /// Messages of a topic that `who` received.

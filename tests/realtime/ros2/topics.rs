@@ -277,7 +277,7 @@ fn check_bytes(rig: &Rig, id: &str, peer: &Peer) {
 
 /// Checks what another implementation of the format reads in the tokens.
 fn check_graph(peer: &mut Peer) {
-    let printed = peer.ask(&json!({ "do": "graph", "domain": 0 }));
+    let printed = peer.request(&json!({ "do": "graph", "domain": 0 }));
     let graph = printed.iter().find(|value| value.get("topics").is_some());
     let graph = graph.unwrap();
     let wanted = |kind: &str, quality: (&str, &str, u32)| {

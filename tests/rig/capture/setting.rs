@@ -14,7 +14,7 @@ use crate::random::Random;
 #[derive(Clone, Copy, Debug)]
 pub struct Setting {
     /// The moves.
-    pub wish: SweepRequest,
+    pub sweep_request: SweepRequest,
     /// Delays of the links.
     pub links: Links,
     /// Host time of the beginning.
@@ -63,17 +63,17 @@ impl PacketLoss {
     ) -> (u64, u64) {
         let (from, until) = (start + self.after, start + self.after + self.span);
         let mut random = Random(seed);
-        let (mut lost, mut missed, mut in_a_row, mut begun) = (0, 0, 0, false);
+        let (mut lost, mut missed, mut in_a_row, mut started) = (0, 0, 0, false);
         packets.retain(|packet| {
             let goes = (from..until).contains(&packet.host) && random.below(1_000) < self.per_mille;
             match (packet.datagram.port == sim::DATA_PORT, goes) {
                 (true, true) => {
                     lost += 1;
-                    in_a_row += u64::from(begun);
+                    in_a_row += u64::from(started);
                 }
                 (true, false) => {
                     missed += in_a_row;
-                    (in_a_row, begun) = (0, true);
+                    (in_a_row, started) = (0, true);
                 }
                 (false, _) => {}
             }
@@ -87,7 +87,7 @@ impl Default for Setting {
     /// 45 deg at 56.25 deg/s over USB, 2026-11-21 02:05:33 UTC.
     fn default() -> Self {
         Self {
-            wish: SweepRequest {
+            sweep_request: SweepRequest {
                 from: Degrees(0.0),
                 to: Degrees(-45.0),
                 speed: DegPerS(56.25),

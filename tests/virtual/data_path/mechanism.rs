@@ -39,7 +39,7 @@ fn second_order(damping_permille: u32) -> Servo {
 
 fn setting(attached: Attachment, seed: u64) -> Setting {
     let mut setting = Setting::over(attached);
-    setting.wish.acceleration = DegPerS2(500.0);
+    setting.sweep_request.acceleration = DegPerS2(500.0);
     setting.links.request = HALF;
     setting.links.answer = HALF;
     setting.links.seed = 1_000 * seed + 3;

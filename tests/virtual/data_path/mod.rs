@@ -99,10 +99,10 @@ fn a_scan_across_the_hour_is_complete() {
 #[test]
 fn slow_sweeps_both_ways_are_found_and_accurate() {
     let mut setting = Setting::default();
-    setting.wish.speed = DegPerS(20.0);
-    setting.wish.acceleration = DegPerS2(500.0);
-    setting.wish.sweeps = 2;
-    setting.wish.both_ways = true;
+    setting.sweep_request.speed = DegPerS(20.0);
+    setting.sweep_request.acceleration = DegPerS2(500.0);
+    setting.sweep_request.sweeps = 2;
+    setting.sweep_request.both_ways = true;
     let captured = Captured::new(setting);
     let (scan, _) = captured.scan();
     let ways: Vec<(f64, f64)> = scan
@@ -122,7 +122,7 @@ fn slow_sweeps_both_ways_are_found_and_accurate() {
 #[test]
 fn one_way_sweeps_omit_the_return_move() {
     let mut setting = Setting::default();
-    setting.wish.sweeps = 2;
+    setting.sweep_request.sweeps = 2;
     let (scan, cloud) = Captured::new(setting).scan();
     assert_eq!(scan.sweeps.len(), 2);
     assert!(scan.sweeps.iter().all(|s| s.cruise_deg_s < 0.0));
@@ -140,8 +140,8 @@ fn an_interrupted_capture_stops_the_axis_and_keeps_its_points() {
     let mut clouds = 0;
     for after_ms in (1..3_200).step_by(97) {
         let mut setting = Setting::default();
-        setting.wish.speed = DegPerS(30.0);
-        setting.wish.acceleration = DegPerS2(500.0);
+        setting.sweep_request.speed = DegPerS(30.0);
+        setting.sweep_request.acceleration = DegPerS2(500.0);
         setting.interrupt_after = Some(Span::from_millis(after_ms));
         let (captured, ended) = Captured::run(setting);
         assert!(

@@ -101,8 +101,8 @@ fn reflectivity_falls_with_the_cosine_of_incidence() {
         points.len()
     );
     // Without incidence every return is equally bright.
-    for unasked in ["", "[effects.reflectance]\nincidence = false\n"] {
-        let (points, _) = seen(&format!("{wall}{unasked}"), 0.02);
+    for extra in ["", "[effects.reflectance]\nincidence = false\n"] {
+        let (points, _) = seen(&format!("{wall}{extra}"), 0.02);
         assert!(!points.is_empty() && points.iter().all(|(_, reported)| *reported == 90));
     }
 }

@@ -279,10 +279,10 @@ mod tests {
             let mut directions = lattice(200_000);
             directions[place] = wrong;
             let error = BinCounts::new(&locator, &directions).unwrap_err();
-            let said = error.to_string();
+            let message = error.to_string();
             assert!(
-                said.starts_with(&format!("density: point {place}: expected a direction")),
-                "{said}"
+                message.starts_with(&format!("density: point {place}: expected a direction")),
+                "{message}"
             );
         }
     }

@@ -261,10 +261,10 @@ mod tests {
 
         #[test]
         fn nearest_points_agree_with_a_linear_search(
-            points in prop::collection::vec(direction(), 0..2_000), asked in prop::collection::vec(direction(), 20), within in 0.0..0.3_f64,
+            points in prop::collection::vec(direction(), 0..2_000), origins in prop::collection::vec(direction(), 20), within in 0.0..0.3_f64,
         ) {
             let nearby = Nearby::new(&points);
-            for to in asked {
+            for to in origins {
                 let slow = points.iter().map(|p| p.distance_squared(to)).fold(f64::INFINITY, f64::min).sqrt();
                 prop_assert_eq!(nearby.nearest(to), slow);
                 let mut all: Vec<[u64; 3]> = points.iter().filter(|p| p.distance_squared(to) <= within * within)

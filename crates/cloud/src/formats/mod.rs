@@ -179,8 +179,8 @@ mod tests {
             let summary = sink.finish().unwrap();
             assert_eq!(summary, cloud.summary(), "{format}");
             let bytes = file.content();
-            let said = bytes.windows(9).any(|window| window == b"SIMULATED");
-            assert!(said, "{format} does not say that it is simulated");
+            let marked = bytes.windows(9).any(|window| window == b"SIMULATED");
+            assert!(marked, "{format} is not marked SIMULATED");
         }
     }
 }

@@ -156,8 +156,11 @@ mod tests {
         for degrees in [-90.0, -45.0, 0.0, 12.3, 180.0] {
             let placed =
                 Mount::new(Metres(0.0)).place([1.0, 2.0, 3.0], Tilt::new(Degrees(degrees)));
-            let said = turned(Rotation::tilt(Degrees(degrees)), [1.0, 2.0, 3.0]);
-            assert!(close(placed, said), "{degrees}: {placed:?} {said:?}");
+            let expected = turned(Rotation::tilt(Degrees(degrees)), [1.0, 2.0, 3.0]);
+            assert!(
+                close(placed, expected),
+                "{degrees}: {placed:?} {expected:?}"
+            );
         }
     }
 

@@ -208,8 +208,8 @@ fn errors_name_offset_and_content() {
             "las: byte 0: expected a LAS or LAZ file",
         ),
     ] {
-        let said = places(format, text.into()).unwrap_err().to_string();
-        assert!(said.contains(words), "{said}");
+        let message = places(format, text.into()).unwrap_err().to_string();
+        assert!(message.contains(words), "{message}");
     }
 }
 

@@ -135,21 +135,21 @@ fn the_service_hash_matches_its_definition() {
     let (request, response) = TRIGGER.definition.split_once("---\n").unwrap();
     let name = TRIGGER.name;
     let of = |part: &str| format!("{name}_{part}");
-    let (asked, answered) = (of("Request"), of("Response"));
+    let (request_name, response_name) = (of("Request"), of("Response"));
     let texts = [
         (
             name.to_owned(),
             format!(
-                "{asked} request_message\n{answered} response_message\n{} event_message\n",
+                "{request_name} request_message\n{response_name} response_message\n{} event_message\n",
                 of("Event")
             ),
         ),
-        (asked.clone(), request.to_owned()),
-        (answered.clone(), response.to_owned()),
+        (request_name.clone(), request.to_owned()),
+        (response_name.clone(), response.to_owned()),
         (
             of("Event"),
             format!(
-                "service_msgs/ServiceEventInfo info\n{asked}[<=1] request\n{answered}[<=1] response\n"
+                "service_msgs/ServiceEventInfo info\n{request_name}[<=1] request\n{response_name}[<=1] response\n"
             ),
         ),
         (

@@ -72,7 +72,7 @@ mod tests {
 
     const PLACE: &str = "/data/my scans/hall";
 
-    fn said(state: ScanState, why: Failure, waits: bool, has_log: bool) -> String {
+    fn describe(state: ScanState, why: Failure, waits: bool, has_log: bool) -> String {
         said_of(state, why, waits, has_log, None)
     }
 
@@ -116,11 +116,11 @@ mod tests {
             Failure::new(Kind::Incomplete, message).help("free some space")
         };
         assert_eq!(
-            said(ScanState::Partial, stopped(), false, true),
+            describe(ScanState::Partial, stopped(), false, true),
             "Stopped by the user. What was captured is kept."
         );
         assert_eq!(
-            said(ScanState::Failed, without_cloud(None, full()), true, true),
+            describe(ScanState::Failed, without_cloud(None, full()), true, true),
             "The cloud cloud.ply could not be written: disk full. \
              The log is kept: its cloud is made as soon as the disk has room. Free some space."
         );
@@ -135,7 +135,7 @@ mod tests {
         let silent = Failure::new(Kind::NoDevice, "no lidar")
             .help("see whether it turns,\nand its cable\n(the grey one) is in");
         assert_eq!(
-            said(ScanState::Failed, silent, false, false),
+            describe(ScanState::Failed, silent, false, false),
             "No lidar. Nothing was recorded. See whether it turns, and its cable (the grey one) is in."
         );
     }

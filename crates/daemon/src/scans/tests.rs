@@ -1,6 +1,6 @@
 use super::*;
 
-fn asked(name: Option<&str>) -> CaptureRequest {
+fn request(name: Option<&str>) -> CaptureRequest {
     CaptureRequest {
         speed_deg_s: 10.0,
         name: name.map(str::to_owned),
@@ -9,7 +9,7 @@ fn asked(name: Option<&str>) -> CaptureRequest {
 }
 
 fn finished(scans: &Scans, name: Option<&str>) -> String {
-    let id = scans.begin(&asked(name), true).unwrap().head.id;
+    let id = scans.begin(&request(name), true).unwrap().head.id;
     fs::write(scans.place(&id).join(CLOUD), [0; 100]).unwrap();
     let done = scans.change(&id, |record| record.state = ScanState::Whole);
     assert_eq!(done.unwrap().unwrap().cloud_bytes, Some(100));
@@ -113,9 +113,9 @@ fn the_list_of_scans_follows_the_folder() {
 fn unfinished_scans_wait_for_their_cloud() {
     let folder = tempfile::tempdir().unwrap();
     let scans = Scans::open(folder.path()).unwrap();
-    let with_log = scans.begin(&asked(Some("a")), false).unwrap().head.id;
+    let with_log = scans.begin(&request(Some("a")), false).unwrap().head.id;
     fs::write(scans.place(&with_log).join(LOG), b"log").unwrap();
-    let without = scans.begin(&asked(Some("b")), false).unwrap().head.id;
+    let without = scans.begin(&request(Some("b")), false).unwrap().head.id;
     // A scan being made cannot be deleted.
     assert!(scans.delete(&without).is_err());
     // A folder with only a log, and one that is not a scan.
@@ -149,7 +149,7 @@ fn scan_names_cannot_escape_the_folder() {
     let folder = tempfile::tempdir().unwrap();
     let scans = Scans::open(folder.path()).unwrap();
     for name in ["", "../x", "a/b", "a b", ".", &"x".repeat(61)] {
-        let failure = scans.begin(&asked(Some(name)), true).unwrap_err();
+        let failure = scans.begin(&request(Some(name)), true).unwrap_err();
         assert_eq!(failure.kind, Kind::Usage, "{name}");
     }
     assert_eq!(scans.view("../x"), None);

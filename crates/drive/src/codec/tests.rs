@@ -126,7 +126,7 @@ fn rs232_read_frames_match_golden_bytes() {
         .filter_map(|b| codec.push(b, at(3)))
         .collect();
     assert_eq!(shape(&decoded), [(0, 2, Some(0x237))]);
-    assert!(!codec.is_ready(), "the last word is the master's");
+    assert!(!codec.is_ready(), "the master sends the last byte");
     assert_eq!(codec.outgoing(at(3)).unwrap().bytes, [OKAY]);
     assert!(codec.is_ready());
 }
@@ -161,7 +161,7 @@ fn rs232_refusals_are_reported_and_end_the_exchange() {
         }
         assert_eq!(codec.push(&[FAILED], at(2)), Some(Decoded::Refused));
         assert_eq!(codec.outgoing(at(2)), None);
-        assert_eq!(codec.deadline(), Some(at(22)), "it may have more to say");
+        assert_eq!(codec.deadline(), Some(at(22)), "more bytes may follow");
         codec.expire(at(22));
         assert!(codec.is_ready());
     }
@@ -175,7 +175,11 @@ fn rs232_recovers_after_a_flush_and_silence() {
         codec.cancel(at(0));
         assert!(!codec.is_ready());
         let flush = codec.outgoing(at(0));
-        assert_eq!(flush.is_some(), failure < 3, "then the guide's silence");
+        assert_eq!(
+            flush.is_some(),
+            failure < 3,
+            "the guide prescribes silence after three flushes"
+        );
         if let Some(flush) = flush {
             assert!(flush.bytes.iter().all(|&b| b == FAILED));
         }
@@ -197,9 +201,9 @@ fn can_frames_match_golden_bytes() {
     let mut codec = Codec::new(DriveLink::Can, 1);
     let frame =
         |id: [u8; 2], data: [u8; 8]| [&[0, 0, id[0], id[1], 8, 0, 0, 0][..], &data].concat();
-    let asked = [0x40, 0x41, 0x60, 0, 0, 0, 0, 0];
+    let bytes = [0x40, 0x41, 0x60, 0, 0, 0, 0, 0];
     let request = encode(&mut codec, STATUSWORD, ObjectAccess::Read);
-    assert_eq!(request, frame([6, 1], asked));
+    assert_eq!(request, frame([6, 1], bytes));
     let written = encode(
         &mut codec,
         CONTROLWORD,

@@ -1,8 +1,8 @@
 //! Stop and brake: axis at rest and observed to be, power off, brake set.
 //!
-//! The encoder decides about standstill. The velocity (606C) is too coarse, one count per control
-//! cycle being 30 rpm at 2000 qc per turn; a position that varies by a few counts for 50 ms is at
-//! rest.
+//! The encoder decides about standstill. The velocity (606C) is too coarse: one count per control
+//! cycle is 30 rpm at 2000 qc per revolution. A position that varies by a few counts for 50 ms is
+//! at rest.
 
 use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::control;

@@ -27,10 +27,14 @@ fn matching_starts_only_with_a_single_sync() {
     assert_eq!(
         syncs.handle_pdo(7, us(9_500)),
         None,
-        "to one before the log?"
+        "its SYNC may precede the log"
     );
     syncs.handle_sync(us(100_000));
-    assert_eq!(syncs.handle_pdo(8, us(100_500)), None, "or to the first?");
+    assert_eq!(
+        syncs.handle_pdo(8, us(100_500)),
+        None,
+        "it may belong to the first SYNC"
+    );
     syncs.handle_sync(us(200_000));
     assert_eq!(syncs.handle_pdo(9, us(200_500)), Some(us(200_000)));
 }
@@ -84,7 +88,7 @@ fn a_long_pause_restarts_matching_and_a_short_one_does_not() {
     );
     assert!(
         syncs.earliest_sync(us(4_000_000)) < us(4_000_000),
-        "none is open"
+        "no SYNC is open"
     );
     syncs.handle_sync(us(4_000_000));
     assert_eq!(syncs.handle_pdo(77, us(4_000_500)), Some(us(4_000_000)));

@@ -110,7 +110,10 @@ fn continuous_damage_ends_the_sweep_in_time() {
                 "{link:?} {damage:?}: {:?} {error}",
                 rig.now - stop
             );
-            assert_ne!(rig.fake.state, ENABLED, "{link:?} {damage:?}: it observed");
+            assert_ne!(
+                rig.fake.state, ENABLED,
+                "{link:?} {damage:?}: the drive is still enabled"
+            );
         }
     }
 }

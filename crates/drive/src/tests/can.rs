@@ -31,7 +31,7 @@ fn the_stream_is_sampled_at_1_khz_with_none_lost() {
     assert!(samples.len() > 59_500, "{}", samples.len());
     assert!(
         syncs.len() - samples.len() <= 1,
-        "the last may be under way"
+        "the last frame may be in flight"
     );
     for (sample, sync) in samples.iter().zip(syncs) {
         assert_eq!(sample.request, *sync);
@@ -54,8 +54,8 @@ fn the_stream_continues_while_the_state_is_read() {
     }
     assert!((795..=805).contains(&moving.len()), "{}", moving.len());
     // The position was not polled.
-    let asked = |(_, request): &(Stamp<Host>, SerialRequest)| matches!(request, SerialRequest::ReadObject(r) if r.address.index == 0x6064);
-    assert!(!rig.fake.requests.iter().any(asked));
+    let is_position_read = |(_, request): &(Stamp<Host>, SerialRequest)| matches!(request, SerialRequest::ReadObject(r) if r.address.index == 0x6064);
+    assert!(!rig.fake.requests.iter().any(is_position_read));
 }
 
 #[test]
@@ -281,7 +281,7 @@ fn replies_about_another_object_or_of_another_node_are_ignored() {
             return;
         }
     }
-    panic!("no end: {:?}", rig.client);
+    panic!("the command does not end: {:?}", rig.client);
 }
 
 #[test]

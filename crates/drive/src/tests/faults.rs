@@ -304,7 +304,7 @@ fn late_replies_are_used_with_their_actual_times() {
         .iter()
         .filter(|s| s.answer - s.request > Span::from_millis(100))
         .count();
-    assert!(late > 0, "a late answer is an answer, with its true times");
+    assert!(late > 0, "late answers count, with their true times");
 }
 
 #[test]

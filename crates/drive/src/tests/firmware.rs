@@ -125,7 +125,7 @@ impl World {
                 return end;
             }
         }
-        panic!("no end after 120 s: {:?}", self.client);
+        panic!("the command does not end within 120 s: {:?}", self.client);
     }
 
     fn step(&mut self) -> Option<Result<CommandOutcome, DriveError>> {
@@ -159,7 +159,7 @@ impl World {
         }
     }
 
-    fn say(&mut self, replies: Vec<Vec<u8>>) {
+    fn deliver(&mut self, replies: Vec<Vec<u8>>) {
         for bytes in replies {
             let delay = self.server.delay(bytes.len());
             let free = self.to_host.back().map_or(self.now, |m| m.0);
@@ -184,13 +184,13 @@ impl World {
             let [start, end] = [way.start, way.end].map(|q32| q32 as f64 / 2f64.powi(32));
             self.truth.push((self.now, start, end));
             let replies = self.server.poll(&mut self.node);
-            self.say(replies);
+            self.deliver(replies);
         }
         if let Some((_, frame)) = self.to_node.pop_front_if(|m| m.0 <= self.now) {
             let into = 1000 - (self.next_tick - self.now).as_nanos() / 1000;
             self.node.set_phase_us(into as u32);
             let replies = self.server.input(&mut self.node, &frame);
-            self.say(replies);
+            self.deliver(replies);
         }
         if let Some((_, bytes)) = self.to_host.pop_front_if(|m| m.0 <= self.now) {
             let bytes = (self.distort)(self.now, bytes);
@@ -351,7 +351,7 @@ fn stop_in_mid_sweep_keeps_the_position() {
         assert_eq!(world.step(), None);
     }
     world.client.start(DriveCommand::Stop).unwrap();
-    let asked = world.now;
+    let start = world.now;
     let Ok(CommandOutcome::Stopped(stopped)) = world.finish() else {
         panic!("{:?}", world.events.last())
     };
@@ -359,7 +359,7 @@ fn stop_in_mid_sweep_keeps_the_position() {
     assert_eq!(world.node.brake(), BrakeState::Closed);
     // 1125 rpm at 20,000 rpm/s take 56 ms to stop; then 50 ms of standstill, the brake, and some
     // round trips.
-    assert!(world.now - asked < Span::from_millis(200));
+    assert!(world.now - start < Span::from_millis(200));
     // The axis can move on.
     assert!(world.run(DriveCommand::Goto(to(0.0))).is_ok());
 }
@@ -392,7 +392,7 @@ fn a_limit_switch_in_mid_sweep_is_named() {
         assert_eq!(found.first(), Some(&DeviceError::POSITIVE_LIMIT));
         assert!(
             world.run(DriveCommand::Goto(to(0.0))).is_ok(),
-            "{link:?}: it can leave the switch"
+            "{link:?}: the axis can leave the switch"
         );
     }
 }
@@ -514,7 +514,7 @@ fn a_cut_cable_in_mid_sweep_is_reported_and_stops_the_axis_on_can() {
             }
             assert_eq!(world.node.state(), DeviceState::Fault);
             let way = world.node.segment();
-            assert_eq!(way.start, way.end, "it stands");
+            assert_eq!(way.start, way.end, "the axis is at rest");
         }
     }
 }

@@ -402,7 +402,7 @@ fn a_wrong_toggle_bit_is_reported() {
 fn a_stop_from_mid_sweep_is_immediate_and_keeps_the_position() {
     for link in LINKS {
         let mut rig = moving_on(link);
-        let asked = rig.now;
+        let start = rig.now;
         rig.client.start(DriveCommand::Stop).unwrap();
         let Ok(CommandOutcome::Stopped(stopped)) = rig.finish() else {
             panic!("{link:?}: {:?}", rig.events.last())
@@ -412,7 +412,7 @@ fn a_stop_from_mid_sweep_is_immediate_and_keeps_the_position() {
             f64::from(stopped.position.0),
             rig.fake.position(rig.now).floor()
         );
-        let reaction = rig.quick_stop().unwrap() - asked;
+        let reaction = rig.quick_stop().unwrap() - start;
         assert!(reaction < Span::from_millis(10), "{link:?}: {reaction:?}");
         assert_eq!(rig.fake.state, DISABLED);
         assert_eq!(rig.fake.objects[&(0x1016, 1)], 0);

@@ -262,7 +262,7 @@ fn moves_need_a_connection_and_a_reference() {
     assert_eq!(
         rig.client.start(DriveCommand::Home),
         Err(DriveError::NotConnected {
-            asked: CommandKind::Home
+            requested: CommandKind::Home
         })
     );
     rig.run(DriveCommand::Connect).unwrap();
@@ -280,7 +280,7 @@ fn only_one_command_runs_at_a_time() {
     assert_eq!(
         rig.client.start(DriveCommand::Status),
         Err(DriveError::Busy {
-            asked: CommandKind::Status,
+            requested: CommandKind::Status,
             running: CommandKind::Goto,
         })
     );

@@ -65,7 +65,7 @@ impl Rig {
                 return end;
             }
         }
-        panic!("no end after 120 s: {:?}", self.client);
+        panic!("the command does not end within 120 s: {:?}", self.client);
     }
 
     /// Runs for a span; `None` if the command has not ended.

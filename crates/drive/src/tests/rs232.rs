@@ -134,7 +134,7 @@ fn a_unit_that_always_refuses_is_reported() {
             .max(now + Span::from_nanos(1));
         client.handle_timeout(now);
     }
-    panic!("no end: {client:?}");
+    panic!("the command does not end: {client:?}");
 }
 
 /// What happens to a byte on its way.

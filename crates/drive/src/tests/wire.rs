@@ -343,7 +343,7 @@ impl Fake {
         let state = self.bus.state;
         self.bus = FakeBus::default();
         if state != NmtState::PreOperational {
-            self.say(
+            self.send_frame(
                 &Heartbeat {
                     node: node(),
                     state: NmtState::BootUp,
@@ -365,7 +365,7 @@ impl Fake {
         } else if self.bus.next_heartbeat.is_none_or(|at| at <= now) {
             self.bus.next_heartbeat = Some(now + Span::from_millis(period));
             let state = self.bus.state;
-            self.say(
+            self.send_frame(
                 &Heartbeat {
                     node: node(),
                     state,
@@ -387,11 +387,11 @@ impl Fake {
 
     pub fn emergency(&mut self, code: u16, now: Stamp<Host>) {
         if self.bus.state == NmtState::Operational {
-            self.say(&Emergency::new(node(), code, 1).to_frame(), now);
+            self.send_frame(&Emergency::new(node(), code, 1).to_frame(), now);
         }
     }
 
-    pub fn say(&mut self, frame: &CanFrame, now: Stamp<Host>) {
+    pub fn send_frame(&mut self, frame: &CanFrame, now: Stamp<Host>) {
         let at = now + Span::from_micros(150);
         self.send_at(frame.to_socketcan().to_vec(), at);
     }

@@ -127,13 +127,13 @@ mod tests {
 
     #[test]
     fn valid_settings_are_accepted() {
-        let said = settings(
+        let configured = settings(
             "router = 'tcp/[fe80::1%eth0]:7448'\ndomain = 232\nnamespace = '/left/top_2'\nframe_prefix = 'left/'\n\
              [capture]\nspeed_deg_s = 20.0\nboth_ways = true",
         )
         .unwrap();
-        assert_eq!(said.resolve("/x/y"), "/left/top_2/x/y");
-        assert!(said.capture.unwrap().both_ways);
+        assert_eq!(configured.resolve("/x/y"), "/left/top_2/x/y");
+        assert!(configured.capture.unwrap().both_ways);
     }
 
     #[test]
@@ -158,8 +158,8 @@ mod tests {
             ("[capture]\nspeed = 1", "unknown field"),
             ("[capture]\n", "speed_deg_s"),
         ] {
-            let said = settings(text).unwrap_err();
-            assert!(said.contains(wanted), "{text}: {said}");
+            let message = settings(text).unwrap_err();
+            assert!(message.contains(wanted), "{text}: {message}");
         }
         let long = format!("namespace = '/{}'", "n".repeat(LONGEST));
         assert!(settings(&long).is_err());

@@ -33,8 +33,8 @@ fn out_of_range_numbers_are_refused() {
         ),
     ] {
         let config: Config = toml::from_str(text).unwrap();
-        let said = config.check().unwrap_err();
-        assert!(said.starts_with(key), "{text}: {said}");
+        let message = config.check().unwrap_err();
+        assert!(message.starts_with(key), "{text}: {message}");
     }
     for (keys, key) in [
         ("kind = 'usb'\naccel_deg_s2 = -5.0", "device.a.accel_deg_s2"),

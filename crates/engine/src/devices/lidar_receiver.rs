@@ -242,7 +242,7 @@ mod tests {
     use io::udp::ListenConfig;
     use std::net::{Ipv4Addr, UdpSocket};
 
-    fn hearing() -> (LidarReceiver, UdpSocket) {
+    fn receiver() -> (LidarReceiver, UdpSocket) {
         let config = ListenConfig {
             address: Ipv4Addr::LOCALHOST,
             data_port: 0,
@@ -261,20 +261,20 @@ mod tests {
 
     #[test]
     fn a_log_gets_exactly_the_packets_between_start_and_stop() {
-        let (hearing, socket) = hearing();
+        let (receiver, socket) = receiver();
         let send = |n| (0..n).for_each(|_| assert_eq!(socket.send(&[7; 100]).unwrap(), 100));
         send(3);
         // On loopback a datagram is in the receiver's queue when it is sent.
         let writer = LogWriter::new(Vec::new(), &LogConfig::default()).unwrap();
         let log = LogRecorder::start(writer).unwrap();
-        let before = hearing.record_to(Some(log.handle())).unwrap();
+        let before = receiver.record_to(Some(log.handle())).unwrap();
         assert_eq!(before.data, 3);
         send(5);
-        let after = hearing.record_to(None).unwrap();
+        let after = receiver.record_to(None).unwrap();
         assert_eq!(after.data, 8);
         send(2);
-        assert_eq!(hearing.counts().unwrap().data, 10);
-        assert_eq!(hearing.packets(), 10);
+        assert_eq!(receiver.counts().unwrap().data, 10);
+        assert_eq!(receiver.packets(), 10);
         assert_eq!(log.finish().unwrap().log.lidar, 5);
     }
 }

@@ -227,11 +227,14 @@ mod tests {
             let node = homed(&axis);
             // World position and angle have one zero: the reported position is that of the shaft.
             let world = node.segment().end >> 32;
-            let said = i64::from(get(&node, objects::POSITION_ACTUAL));
+            let reported = i64::from(get(&node, objects::POSITION_ACTUAL));
             // A switch is sampled once per millisecond; a stop is detected by the rising current.
-            assert!((world - said).abs() <= 2, "{method}: {world} {said}");
+            assert!(
+                (world - reported).abs() <= 2,
+                "{method}: {world} {reported}"
+            );
             let wanted = axis.gearing.position(axis.homing.home_position).unwrap();
-            assert_eq!(said, i64::from(wanted.0), "{method}");
+            assert_eq!(reported, i64::from(wanted.0), "{method}");
             let limits = get(&node, objects::INPUT_STATE) & 0b11;
             assert_eq!(limits, 0, "{method}: on a limit switch");
         }

@@ -108,12 +108,16 @@ fn each_reason_for_no_lock_is_reported_once() {
     let mut clock = UtcClock::new();
     assert_eq!(clock.state().to_string(), "no lock: no position packet yet");
     clock.data(stamp(t));
-    let mut expect = |ms: i64, pps, status, fix_s, said: &str| {
+    let mut expect = |ms: i64, pps, status, fix_s, expected: &str| {
         let at = t + ms * 1_000_000;
-        let change = send(&mut clock, at, pps, status, fix_s).expect(said);
-        assert_eq!(change.state.to_string(), said);
+        let change = send(&mut clock, at, pps, status, fix_s).expect(expected);
+        assert_eq!(change.state.to_string(), expected);
         assert_eq!(send(&mut clock, at + 10_000_000, pps, status, fix_s), None);
-        assert_eq!(clock.utc(stamp(at)).is_some(), said == "locked", "{said}");
+        assert_eq!(
+            clock.utc(stamp(at)).is_some(),
+            expected == "locked",
+            "{expected}"
+        );
     };
     expect(0, 0, 'V', TEN_59, "no lock: no pulse per second");
     expect(

@@ -121,7 +121,7 @@ impl TwoSidedClock {
             taken.saturating_since(latched.sample.request)
         };
         let least = run.iter().map(ahead).min()?;
-        let most = least.saturating_add(beat(run).half());
+        let most = least.saturating_add(median_interval(run).half());
         let arrivals: Vec<Arrival<Drive>> = run
             .iter()
             .filter(|latched| ahead(latched) <= most)
@@ -151,7 +151,7 @@ impl TwoSidedClock {
 }
 
 /// Median interval of the samples.
-fn beat(run: &[LatchedSample]) -> Span {
+fn median_interval(run: &[LatchedSample]) -> Span {
     let pairs = run.windows(2).filter_map(|pair| match pair {
         [a, b] => Some(b.device_ns.saturating_sub(a.device_ns)),
         _ => None,

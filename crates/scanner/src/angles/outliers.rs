@@ -38,13 +38,12 @@ fn is_plausible(last: &AngleSample, this: &AngleSample, next: &AngleSample) -> b
     let whole = since + until;
     let across = next.angle.0 - last.angle.0;
     let share = if whole > 0.0 { since / whole } else { 0.5 };
-    let beside = (this.angle.0 - last.angle.0 - across * share).abs();
-    // Motion in one direction never deviates from the line by more than its ends differ. To that
-    // comes half of a turn back and forth under full acceleration; sample times vary within their
-    // bounds.
+    let deviation = (this.angle.0 - last.angle.0 - across * share).abs();
+    // Motion in one direction never deviates from the line by more than its ends differ. A reversal
+    // under full acceleration adds half of its distance; sample times vary within their bounds.
     let slack = (last.bound + this.bound + next.bound).as_secs_f64();
     let hard = 0.5 * HARDEST_DEG_S2 * (whole + slack).powi(2);
-    beside <= ALWAYS_DEG + across.abs() + hard
+    deviation <= ALWAYS_DEG + across.abs() + hard
 }
 
 #[cfg(test)]

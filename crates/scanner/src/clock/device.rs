@@ -248,7 +248,7 @@ impl<C: Copy> DeviceClock<C> {
             return Some(only);
         }
         let x = self.since_origin(device);
-        let beyond = |piece: &ClockPiece| {
+        let outside_ns = |piece: &ClockPiece| {
             (piece.from_ns - x)
                 .max(x - piece.to_ns)
                 .max(PIECE_MARGIN_NS)
@@ -262,7 +262,7 @@ impl<C: Copy> DeviceClock<C> {
         };
         self.pieces.iter().min_by(|a, b| {
             let nearer = || distance(a).cmp(&distance(b));
-            beyond(a).total_cmp(&beyond(b)).then_with(nearer)
+            outside_ns(a).total_cmp(&outside_ns(b)).then_with(nearer)
         })
     }
 

@@ -82,17 +82,17 @@ impl Ends {
         }
     }
 
-    /// Standard deviation at -1 (beginning) to 1 (end), or beyond: the variance of a line is a
+    /// Standard deviation at -1 (beginning) to 1 (end), or outside: the variance of a line is a
     /// parabola.
-    pub fn at(self, beside: f64) -> f64 {
-        let end = if beside < 0.0 {
+    pub fn at(self, position: f64) -> f64 {
+        let end = if position < 0.0 {
             self.begin_ns
         } else {
             self.end_ns
         };
         let middle = self.middle_ns * self.middle_ns;
         let more = (end * end - middle).max(0.0);
-        (middle + more * beside * beside).sqrt()
+        (middle + more * position * position).sqrt()
     }
 }
 

@@ -328,8 +328,8 @@ pub(super) fn lower_hull(points: &[Point]) -> Vec<Point> {
     let mut hull: Vec<Point> = Vec::new();
     for &p in points {
         while let [.., a, b] = hull.as_slice() {
-            let turn = (b.0 - a.0) * (p.1 - a.1) - (b.1 - a.1) * (p.0 - a.0);
-            if turn > 0.0 {
+            let cross = (b.0 - a.0) * (p.1 - a.1) - (b.1 - a.1) * (p.0 - a.0);
+            if cross > 0.0 {
                 break;
             }
             hull.pop();

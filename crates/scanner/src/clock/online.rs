@@ -52,7 +52,7 @@ struct OnlineState {
     late: Option<(f64, f64)>,
     /// Lengths of the last intervals between prompt packets, as a ring.
     intervals: [f64; INTERVALS],
-    turn: usize,
+    next_interval: usize,
 }
 
 impl OnlineClock {
@@ -137,10 +137,10 @@ impl OnlineState {
         if late < 0.0 {
             let now = x.max(self.last.0);
             self.from = (now, self.offset(now));
-            if let Some(interval) = self.intervals.get_mut(self.turn) {
+            if let Some(interval) = self.intervals.get_mut(self.next_interval) {
                 *interval = (x - self.prompt.0).max(0.0);
             }
-            self.turn = (self.turn + 1) % INTERVALS;
+            self.next_interval = (self.next_interval + 1) % INTERVALS;
             self.prompt = at;
         }
         self.last = (x.max(self.last.0), y);

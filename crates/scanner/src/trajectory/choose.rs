@@ -367,11 +367,11 @@ fn observed(samples: &[AngleSample], noise: &Noise, origin: Stamp<Host>) -> Vec<
 fn condensed(observed: &[Observed], guess: &Profile) -> Vec<Observed> {
     let [start, up, brake, end] = guess.corners_s();
     // The guess may be off, and the servo settles later.
-    let beside = SETTLED_S + 0.5 * (up - start).max(end - brake);
-    let is_straight = |o: &Observed| o.at_s > up + beside && o.at_s < brake - beside;
+    let margin_s = SETTLED_S + 0.5 * (up - start).max(end - brake);
+    let is_straight = |o: &Observed| o.at_s > up + margin_s && o.at_s < brake - margin_s;
     let first = observed.partition_point(|o| !is_straight(o) && o.at_s < brake);
     let last = observed
-        .partition_point(|o| o.at_s < brake - beside)
+        .partition_point(|o| o.at_s < brake - margin_s)
         .max(first);
     let (before, rest) = observed.split_at_checked(first).unwrap_or((observed, &[]));
     let (straight, after) = rest.split_at_checked(last - first).unwrap_or((rest, &[]));

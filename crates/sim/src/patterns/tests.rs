@@ -290,8 +290,8 @@ fn invalid_patterns_are_reported() {
         ("rmbl:50,d=7", "d: expected -5 to 5 m"),
         ("rmbl:0.001", "at most 100000000 points, got"),
     ] {
-        let said = wrong(text);
-        assert!(said.contains(words), "{text}: {said}");
+        let message = wrong(text);
+        assert!(message.contains(words), "{text}: {message}");
     }
 }
 
@@ -306,8 +306,8 @@ fn options_without_numbers_reject_numbers() {
         ("seam", "expected seam=once or seam=twice"),
         ("colour", "a number: rpm, step, start"),
     ] {
-        let said = request.set_number(key, 1.0).unwrap_err().to_string();
-        assert!(said.contains(words), "{key}: {said}");
+        let message = request.set_number(key, 1.0).unwrap_err().to_string();
+        assert!(message.contains(words), "{key}: {message}");
     }
     // An option that is part of the name may be set again.
     request.set_number("speed", 10.0).unwrap();

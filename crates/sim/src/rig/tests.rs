@@ -73,7 +73,7 @@ fn answer(bytes: &[u8]) -> (u32, i32) {
     (u32::from_le_bytes(long(0)), i32::from_le_bytes(long(4)))
 }
 
-fn ask(rig: &mut Rig, request: &[u8]) -> i32 {
+fn exchange(rig: &mut Rig, request: &[u8]) -> i32 {
     rig.drive_input(request);
     let (error, value) = answer(&rig.drive_output().unwrap().bytes);
     assert_eq!((error, rig.drive_output()), (0, None));
@@ -119,12 +119,12 @@ fn the_encoder_reports_the_true_platform_angle_within_a_cycle() {
     let mut rig = Rig::new(RigConfig::new(START));
     for (ms, request) in motion(9_000).iter().enumerate() {
         rig.advance(after(1_000_000 * (10 + ms as i64)));
-        ask(&mut rig, request);
+        exchange(&mut rig, request);
     }
     let mut read_at = Vec::new();
     for i in 0..1_500 {
         rig.advance(after(20_000_000 + 237_000 * i));
-        read_at.push((rig.now(), ask(&mut rig, &read(0x6064, 0))));
+        read_at.push((rig.now(), exchange(&mut rig, &read(0x6064, 0))));
     }
     let truth = rig.truth();
     let mut moved_within_a_cycle = 0;

@@ -367,11 +367,11 @@ fn stacked_boxes_have_no_cracks() {
         let s = spread(i + 1);
         let origin = dvec3(9.0 * s.x - 4.0, 3.0 * s.y - 1.0, 9.0 * s.z - 4.0);
         let along = edge(0) + (edge(4) - edge(0)) * spread(i + 77).y * 0.999;
-        let seam = edge(1 + i % 3);
+        let crossing = edge(1 + i % 3);
         let (x, z) = match i % 5 {
-            0 | 1 => (seam, along.max(edge(0) + 0.01)),
-            2 | 3 => (along.max(edge(0) + 0.01), seam),
-            _ => (seam, edge(1 + i / 5 % 3)),
+            0 | 1 => (crossing, along.max(edge(0) + 0.01)),
+            2 | 3 => (along.max(edge(0) + 0.01), crossing),
+            _ => (crossing, edge(1 + i / 5 % 3)),
         };
         let to = dvec3(x, 3.3, z) - origin;
         let hit = scene.cast(origin, to.normalize(), 0.0, FAR).unwrap();

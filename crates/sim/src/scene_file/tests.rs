@@ -53,12 +53,12 @@ fn invalid_motions_are_reported_with_their_line() {
             "accel_deg_s2: expected",
         ),
     ] {
-        let (line, said) = error(&text(rest));
-        assert_eq!(line, at, "{said}");
-        assert!(said.contains(what), "{said}");
+        let (line, message) = error(&text(rest));
+        assert_eq!(line, at, "{message}");
+        assert!(message.contains(what), "{message}");
     }
-    let (line, said) = error("[motion]\nkind = \"fixed\"\nangle_deg = 0\nduration_s = 0\n");
-    assert_eq!(line, 4, "{said}");
+    let (line, message) = error("[motion]\nkind = \"fixed\"\nangle_deg = 0\nduration_s = 0\n");
+    assert_eq!(line, 4, "{message}");
 }
 
 #[test]

@@ -111,19 +111,22 @@ fn unknown_keys_are_reported_with_the_known_keys_and_the_line() {
         "sim: scene, line 3, column 12: unknown field `radios_m`, expected `radius_m`"
     );
     let text = "[materials.a]\nreflectivity = 1\n[materials.b]\nshiny = 2\n";
-    let said = wrong(text);
+    let message = wrong(text);
     assert!(
-        said.starts_with("sim: scene, line 4, column 1: unknown field `shiny`"),
-        "{said}"
+        message.starts_with("sim: scene, line 4, column 1: unknown field `shiny`"),
+        "{message}"
     );
-    assert!(said.contains("`specular`"), "{said}");
-    let said = wrong("[[objects]]\nsphere = { radius_m = 1 }\n\n[[objects]]\ncone = {}\n");
+    assert!(message.contains("`specular`"), "{message}");
+    let message = wrong("[[objects]]\nsphere = { radius_m = 1 }\n\n[[objects]]\ncone = {}\n");
     assert!(
-        said.starts_with("sim: scene, line 5, column 1: unknown field `cone`"),
-        "{said}"
+        message.starts_with("sim: scene, line 5, column 1: unknown field `cone`"),
+        "{message}"
     );
-    let said = wrong("[[objects]]\nsphere = { radius_m = }\n");
-    assert!(said.starts_with("sim: scene, line 2, column"), "{said}");
+    let message = wrong("[[objects]]\nsphere = { radius_m = }\n");
+    assert!(
+        message.starts_with("sim: scene, line 2, column"),
+        "{message}"
+    );
 }
 
 #[test]
@@ -131,7 +134,7 @@ fn invalid_values_are_reported_with_their_line() {
     let object = |rest: &str| {
         format!("\n[materials]\ngrey = {{ reflectivity = 50 }}\n[[objects]]\n{rest}\n")
     };
-    for (rest, says) in [
+    for (rest, expected) in [
         (
             "sphere = { radius_m = 0 }",
             "sphere.radius_m: expected a number above 0, got 0.0",
@@ -198,17 +201,17 @@ fn invalid_values_are_reported_with_their_line() {
             "trees.height_m",
         ),
     ] {
-        let said = wrong(&object(rest));
+        let message = wrong(&object(rest));
         // The table, or, where it is one value's fault, that.
         let places = ["line 4, column 1: ", "line 5, column ", "line 6, column "];
-        let names = |place: &&str| said.starts_with(&format!("sim: scene, {place}"));
-        assert!(places.iter().any(names), "{said}");
-        assert!(said.contains(says), "{said}");
+        let names = |place: &&str| message.starts_with(&format!("sim: scene, {place}"));
+        assert!(places.iter().any(names), "{message}");
+        assert!(message.contains(expected), "{message}");
     }
-    let said = wrong("[materials]\nsky = { specular = 0.5 }\n");
+    let message = wrong("[materials]\nsky = { specular = 0.5 }\n");
     assert!(
-        said.contains("line 2") && said.contains("absorbing"),
-        "{said}"
+        message.contains("line 2") && message.contains("absorbing"),
+        "{message}"
     );
     assert!(wrong("[materials]\nsky = { reflectivity = 256 }\n").contains("line 2"));
     assert!(wrong("[materials]\nsky = { reflectivity = 5, specular = 2 }\n").contains("0 to 1"));
@@ -243,13 +246,16 @@ fn invalid_values_are_reported_with_their_own_line() {
         // Of none.
         ("name = \"nothing\"\n", "line 4, column 1"),
     ] {
-        let said = wrong(&format!("{first}[[objects]]\n{second}"));
-        assert!(said.starts_with(&format!("sim: scene, {place}:")), "{said}");
+        let message = wrong(&format!("{first}[[objects]]\n{second}"));
+        assert!(
+            message.starts_with(&format!("sim: scene, {place}:")),
+            "{message}"
+        );
     }
-    let said = wrong("[[objects]]\nplane = {}\nmaterial = \"grey\"\n");
+    let message = wrong("[[objects]]\nplane = {}\nmaterial = \"grey\"\n");
     assert!(
-        said.contains("line 3, column 12: material: expected a name of [materials], where none is, got \"grey\""),
-        "{said}"
+        message.contains("line 3, column 12: material: expected a name of [materials], where none is, got \"grey\""),
+        "{message}"
     );
 }
 

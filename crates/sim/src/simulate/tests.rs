@@ -369,14 +369,14 @@ fn effects_in_a_list_act_in_order_and_are_counted() {
     let simulation = hall(LidarSensor::hdl32e());
     let noise = RangeNoise::new(0.05, 3);
     let (pair, summary) = run_with(&simulation, &mut with((), Both(noise, Dim), ()));
-    let mut asked = ConfiguredEffects::default();
-    let surface = &mut asked.firings.surface;
+    let mut configured = ConfiguredEffects::default();
+    let surface = &mut configured.firings.surface;
     surface.push(Listed::new(Arc::new(noise), None));
     surface.push(Listed::new(Arc::new(Dim), Some(|| 5)));
     for times in 1..=2 {
-        let (list, _) = run_with(&simulation, &mut asked);
+        let (list, _) = run_with(&simulation, &mut configured);
         assert_eq!(list.datagrams, pair.datagrams);
-        for listed in &asked.firings.surface {
+        for listed in &configured.firings.surface {
             let usage = listed.counts();
             assert_eq!(usage.calls, times * summary.shots / 32);
             assert_eq!(usage.acted, usage.calls);

@@ -201,7 +201,7 @@ struct World {
     usb: UsbServer,
     last: DeviceState,
     /// Commands out of "operation enabled" since it was entered.
-    asked: Vec<By>,
+    expected: Vec<By>,
 }
 
 impl World {
@@ -217,7 +217,7 @@ impl World {
             node,
             can: CanServer::new(),
             usb: UsbServer::new(3),
-            asked: Vec::new(),
+            expected: Vec::new(),
         }
     }
 
@@ -237,9 +237,9 @@ impl World {
             .iter()
             .find(|(to, _)| from == OperationEnabled && now == *to)
         {
-            assert!(self.asked.contains(by), "{now} was not asked for");
+            assert!(self.expected.contains(by), "{now} was not asked for");
         }
-        self.asked.clear();
+        self.expected.clear();
     }
 
     fn frame(&mut self, id: u16, data: &[u8]) {
@@ -250,10 +250,10 @@ impl World {
     fn act(&mut self, what: &Doing) {
         let causes = what.causes();
         if let Some(by) = causes.first().filter(|_| self.last == OperationEnabled) {
-            self.asked.push(*by);
+            self.expected.push(*by);
         }
         if matches!(what, Doing::Frame(..)) {
-            self.asked.extend([Shutdown, SwitchOn]);
+            self.expected.extend([Shutdown, SwitchOn]);
         }
         match what {
             Doing::Write(address, raw) => {

@@ -178,18 +178,18 @@ fn writes_respect_access_length_and_limits() {
             let refused = write(&mut node, &entry, fits, wrong);
             assert_eq!(refused, Err(expected), "{at} in {wrong} bytes");
         }
-        for (beyond, expected) in [
+        for (outside, expected) in [
             (entry.high.map(|high| high + 1), Abort::TOO_HIGH),
             (entry.low.map(|low| low - 1), Abort::TOO_LOW),
         ] {
             // Beyond what the type holds there is nothing to refuse.
             let bits = 8 * bytes - usize::from(entry.signed);
             let least = if entry.signed { -(1 << bits) } else { 0 };
-            let Some(beyond) = beyond.filter(|it| (least..1 << bits).contains(it)) else {
+            let Some(outside) = outside.filter(|it| (least..1 << bits).contains(it)) else {
                 continue;
             };
-            let refused = write(&mut node, &entry, beyond, bytes);
-            assert_eq!(refused, Err(expected), "{at} = {beyond}");
+            let refused = write(&mut node, &entry, outside, bytes);
+            assert_eq!(refused, Err(expected), "{at} = {outside}");
         }
         if needs_more(&entry) {
             continue;

@@ -118,18 +118,18 @@ fn a_two_word_error_matches_golden_bytes() {
 
 fn rs232(node: &mut Node, request: &[u8]) -> Vec<u8> {
     let (server, mut out) = (&mut Rs232Server::new(9), Vec::new());
-    let mut say = |bytes: &[u8], node: &mut Node| {
-        let mut heard = Vec::new();
+    let mut send = |bytes: &[u8], node: &mut Node| {
+        let mut answer = Vec::new();
         server.input(node, bytes, &mut |bytes: &[u8]| {
-            heard.extend_from_slice(bytes)
+            answer.extend_from_slice(bytes)
         });
-        heard
+        answer
     };
     // Opcode, handshake, body, handshake, the answer's opcode, handshake, its body, handshake.
-    assert_eq!(say(&request[..1], node), b"O");
-    assert_eq!(say(&request[1..], node), b"O\0");
-    out.extend(say(b"O", node));
-    assert_eq!(say(b"O", node), b"");
+    assert_eq!(send(&request[..1], node), b"O");
+    assert_eq!(send(&request[1..], node), b"O\0");
+    out.extend(send(b"O", node));
+    assert_eq!(send(b"O", node), b"");
     let (content, sum) = out.split_at(out.len() - 2);
     assert_eq!(content.len(), 3 + 2 * usize::from(content[0]));
     // RS232 feeds the opcode first, then the length less one.

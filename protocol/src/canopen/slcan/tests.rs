@@ -220,8 +220,8 @@ proptest! {
         }
         let sent: Vec<_> = frames.iter().map(|(frame, _)| Ok(SlcanCommand::Transmit(*frame))).collect();
         prop_assert_eq!(commands(&to_adapter), sent);
-        let heard: Vec<_> = frames.iter().map(|(frame, stamp)| Ok(received(*frame, *stamp))).collect();
-        prop_assert_eq!(replies(&to_host), heard);
+        let expected: Vec<_> = frames.iter().map(|(frame, stamp)| Ok(received(*frame, *stamp))).collect();
+        prop_assert_eq!(replies(&to_host), expected);
     }
 
     #[test]

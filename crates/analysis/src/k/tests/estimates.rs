@@ -19,14 +19,14 @@ fn against(of: &Estimate, exact: &Estimate) -> (usize, f64) {
         .iter()
         .zip(&exact.shares)
         .map(|(a, b)| (a - b).abs());
-    let beyond = off
+    let outside = off
         .clone()
         .enumerate()
         .filter(|(bin, off)| *off > of.bound.of(*bin));
-    (beyond.count(), off.fold(0.0, f64::max))
+    (outside.count(), off.fold(0.0, f64::max))
 }
 
-fn wish(tolerance: f64, risk: f64) -> Sampling {
+fn sampling(tolerance: f64, risk: f64) -> Sampling {
     Sampling {
         tolerance,
         risk,
@@ -60,19 +60,19 @@ fn sampled_estimates_are_within_their_confidence_intervals() {
             let mut mean = vec![0.0; bins];
             let mut bound = 0.0_f64;
             for seed in 0..12 {
-                let wish = Sampling {
+                let sampling = Sampling {
                     tolerance: 0.01,
                     risk: 0.05,
                     seed,
                 };
-                let of = sampled(&points, &truth.edges, &wish).unwrap();
+                let of = sampled(&points, &truth.edges, &sampling).unwrap();
                 assert!(matches!(
                     of.bound,
                     ErrorBound::Confidence { risk: 0.05, .. }
                 ));
                 assert!(of.bound.largest() <= 0.01, "{}", of.bound.largest());
-                let (beyond, off) = against(&of, &truth);
-                assert_eq!(beyond, 0, "seed {seed}, {bins} bins: {off}");
+                let (outside, off) = against(&of, &truth);
+                assert_eq!(outside, 0, "seed {seed}, {bins} bins: {off}");
                 for (mean, share) in mean.iter_mut().zip(&of.shares) {
                     *mean += share / 12.0;
                 }
@@ -95,7 +95,7 @@ fn counted_rmbl() -> (Vec<DVec3>, Edges, Estimate) {
         frames: 8,
     };
     let edges = Edges::equal(151).unwrap();
-    let truth = estimate(&points, Some(&rotation), &edges, &wish(0.0, 1e-3), ONE).unwrap();
+    let truth = estimate(&points, Some(&rotation), &edges, &sampling(0.0, 1e-3), ONE).unwrap();
     (points, edges, truth)
 }
 
@@ -140,7 +140,7 @@ fn samples_detect_pairs_on_bin_edges() {
     let points = vlp16(901);
     for (bins, on_edges) in [(150, 63_175.0), (180, 216_600.0), (151, 0.0)] {
         let edges = Edges::equal(bins).unwrap();
-        let of = sampled(&points, &edges, &wish(1e-3, 1e-3)).unwrap();
+        let of = sampled(&points, &edges, &sampling(1e-3, 1e-3)).unwrap();
         let found = of.on_edges.unwrap() as f64;
         assert!(
             (found - on_edges).abs() <= 0.1 * on_edges,
@@ -193,7 +193,8 @@ fn the_cheapest_sufficient_method_is_chosen() {
         step_rad: PI / 72.0,
         frames: 72,
     };
-    let of = |points, rotation, tolerance, risk| choose(points, rotation, &wish(tolerance, risk));
+    let of =
+        |points, rotation, tolerance, risk| choose(points, rotation, &sampling(tolerance, risk));
     assert_eq!(of(14_416, None, 1e-2, 0.1), KMethod::Exact);
     assert_eq!(of(1_037_952, None, 0.0, 0.1), KMethod::Exact);
     assert_eq!(of(1_037_952, Some(&rotation), 0.0, 0.1), KMethod::Turned);
@@ -207,7 +208,7 @@ fn the_cheapest_sufficient_method_is_chosen() {
     let edges = Edges::equal(151).unwrap();
     let truth: Estimate = exact(&points, &edges, ONE).unwrap().into();
     for (tolerance, risk, method) in [(0.1, 0.0, "exact"), (1e-3, 1e-3, "sampled")] {
-        let of = estimate(&points, None, &edges, &wish(tolerance, risk), ONE).unwrap();
+        let of = estimate(&points, None, &edges, &sampling(tolerance, risk), ONE).unwrap();
         assert!(of.bound.largest() <= tolerance, "{}", of.bound.largest());
         assert_eq!(of.method, method);
         assert_eq!(against(&of, &truth).0, 0);
@@ -227,11 +228,11 @@ fn estimates_of_zero_one_and_two_points() {
     }
     let of = sampled(&[DVec3::X, DVec3::Y], &edges, &Sampling::default()).unwrap();
     assert_eq!((of.shares[74], of.shares[75]), (0.0, 1.0));
-    let wish = Sampling {
+    let sampling = Sampling {
         risk: 0.0,
         ..Sampling::default()
     };
-    let refused = sampled(&[DVec3::X, DVec3::Y], &edges, &wish);
+    let refused = sampled(&[DVec3::X, DVec3::Y], &edges, &sampling);
     assert_eq!(
         refused,
         Err(KError::Setting {

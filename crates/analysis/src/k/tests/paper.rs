@@ -15,12 +15,12 @@ fn curve(name: &str, tolerance: f64) -> KCurve {
         .build()
         .unwrap();
     let edges = Edges::equal(151).unwrap();
-    let wish = Sampling {
+    let sampling = Sampling {
         tolerance,
         ..Sampling::default()
     };
     // Not told of their turning, so that samples are taken.
-    let of = estimate(&pattern.directions(), None, &edges, &wish, ONE).unwrap();
+    let of = estimate(&pattern.directions(), None, &edges, &sampling, ONE).unwrap();
     let curve = KCurve::of_estimate(&of, 1.0);
     assert!(curve.d_error_bound <= tolerance, "{name}");
     curve

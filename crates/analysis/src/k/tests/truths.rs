@@ -43,8 +43,8 @@ fn pairs_of_900_azimuths_are_symmetric_about_90_degrees_but_for_antipodes() {
     let within = counts.cumulative();
     for bins in 1..=75 {
         // Bins from the far end: as many as from the near end, and 14,400 / 2 antipodes.
-        let beyond = counts.pairs() - within[150 - bins];
-        assert_eq!(beyond, within[bins - 1] + 7200, "{bins} bins");
+        let far = counts.pairs() - within[150 - bins];
+        assert_eq!(far, within[bins - 1] + 7200, "{bins} bins");
     }
 }
 

@@ -2,7 +2,7 @@ use proptest::prelude::*;
 
 use super::*;
 
-fn card() -> Profile {
+fn reference() -> Profile {
     Profile {
         start_s: 0.1,
         speed_deg_s: -56.25,
@@ -17,17 +17,17 @@ fn card() -> Profile {
 
 #[test]
 fn the_reference_sweep_has_the_expected_duration_and_angle() {
-    let card = card();
-    assert!((card.duration_s() - 0.9125).abs() < 1e-12);
-    assert_eq!(card.angle_deg(0.0), 0.0);
-    assert!((card.angle_deg(2.0) + 45.0).abs() < 1e-12);
-    assert!((card.angle_deg(0.1 + 0.9125 / 2.0) + 22.5).abs() < 1e-12);
+    let reference = reference();
+    assert!((reference.duration_s() - 0.9125).abs() < 1e-12);
+    assert_eq!(reference.angle_deg(0.0), 0.0);
+    assert!((reference.angle_deg(2.0) + 45.0).abs() < 1e-12);
+    assert!((reference.angle_deg(0.1 + 0.9125 / 2.0) + 22.5).abs() < 1e-12);
     // In the cruise a lag is a delay.
     let slow = Profile {
         lag_s: 0.0106,
-        ..card
+        ..reference
     };
-    assert!((slow.angle_deg(0.5) - card.angle_deg(0.5 - 0.0106)).abs() < 1e-3);
+    assert!((slow.angle_deg(0.5) - reference.angle_deg(0.5 - 0.0106)).abs() < 1e-3);
 }
 
 /// An independent computation: the demand's speed by cases, the servo's differential equation by
@@ -74,7 +74,7 @@ fn the_closed_form_agrees_with_stepping_the_servo() {
                 lag_s,
                 ramp_up_s,
                 ramp_down_s: 0.2,
-                ..card()
+                ..reference()
             };
             for until in [0.11, 0.15, 0.3, 0.85, 0.95, 1.2] {
                 let off = profile.angle_deg(until) - stepped(&profile, until);
@@ -96,7 +96,7 @@ fn derivatives_by_lag_and_inertia_agree_with_differences() {
             let profile = Profile {
                 lag_s: 2.0 * damping / w,
                 inertia_s2: 1.0 / (w * w),
-                ..card()
+                ..reference()
             };
             for ms in [
                 1, 5, 30, 80, 113, 120, 180, 400, 801, 850, 920, 1_000, 1_500,
@@ -112,12 +112,12 @@ fn derivatives_by_lag_and_inertia_agree_with_differences() {
                     };
                     (angle(step) - angle(-step)) / (2.0 * step)
                 };
-                let said = format!("damping {damping}, {hertz} Hz, {ms} ms");
+                let case = format!("damping {damping}, {hertz} Hz, {ms} ms");
                 let difference = by(|p| &mut p.lag_s, profile.lag_s * 1e-5);
                 let off = (by_lag - difference).abs();
                 assert!(
                     off < 1e-4 * profile.speed_deg_s.abs(),
-                    "{said}: {by_lag} {difference}"
+                    "{case}: {by_lag} {difference}"
                 );
                 // By the root of the inertia, as in the fit: also degrees per second.
                 let root = profile.inertia_s2.sqrt();
@@ -125,7 +125,7 @@ fn derivatives_by_lag_and_inertia_agree_with_differences() {
                 let off = 2.0 * root * (by_inertia - difference).abs();
                 assert!(
                     off < 1e-4 * profile.speed_deg_s.abs(),
-                    "{said}: {by_inertia} {difference}"
+                    "{case}: {by_inertia} {difference}"
                 );
             }
         }

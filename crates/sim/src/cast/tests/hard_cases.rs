@@ -376,12 +376,12 @@ fn numbers_that_are_not_finite_are_rejected() {
         Ray::new(DVec3::ZERO, DVec3::ONE),
         Err(RayError::Direction(_))
     ));
-    let said = Ray::new(DVec3::ZERO, DVec3::X * 2.0)
+    let message = Ray::new(DVec3::ZERO, DVec3::X * 2.0)
         .unwrap_err()
         .to_string();
     assert!(
-        said.contains("expected length 1 within 1e-6, got [2, 0, 0]"),
-        "{said}"
+        message.contains("expected length 1 within 1e-6, got [2, 0, 0]"),
+        "{message}"
     );
     assert_eq!(
         Mesh::new(&[DVec3::ZERO; 3], &[[0, 1, 2], [0, 3, 1]]).unwrap_err(),

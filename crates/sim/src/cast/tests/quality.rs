@@ -39,8 +39,8 @@ fn hits_do_not_depend_on_the_tree() {
 fn rebuilding_a_tree_does_not_depend_on_the_previous_one() {
     let (vertices, triangles) = ball(8, 12, 4.0, 0.3);
     let mesh = Mesh::new(&vertices, &triangles).unwrap();
-    let said = |mesh: &Mesh| format!("{mesh:?}");
-    assert_eq!(said(&mesh.rebuilt(Quality::default())), said(&mesh));
+    let printed = |mesh: &Mesh| format!("{mesh:?}");
+    assert_eq!(printed(&mesh.rebuilt(Quality::default())), printed(&mesh));
     for quality in qualities() {
         let once = mesh.rebuilt(quality);
         let again = mesh
@@ -49,7 +49,7 @@ fn rebuilding_a_tree_does_not_depend_on_the_previous_one() {
                 sharing: 5,
             })
             .rebuilt(quality);
-        assert_eq!(said(&again), said(&once), "{quality:?}");
+        assert_eq!(printed(&again), printed(&once), "{quality:?}");
     }
 }
 

@@ -157,7 +157,7 @@ fn moving_objects_and_boxes_do_not_depend_on_threads() {
     for threads in [2, 3, 8] {
         assert!(run(&text, threads).0 == first, "{threads}");
     }
-    let names: Vec<_> = scene.effects.lines.iter().map(|asked| asked.name).collect();
+    let names: Vec<_> = scene.effects.lines.iter().map(|line| line.name).collect();
     assert_eq!(names, ["moving_objects", "divergence", "range_noise"]);
     // Its own table asks for it, wherever else something moves.
     let line = text
@@ -171,7 +171,7 @@ fn moving_objects_and_boxes_do_not_depend_on_threads() {
         .effects
         .lines
         .iter()
-        .map(|asked| asked.name)
+        .map(|line| line.name)
         .collect();
     assert_eq!(names, ["moving_objects", "range_noise"]);
 }

@@ -202,16 +202,16 @@ fn units_and_up_axis_follow_the_scene() {
 fn a_shared_mesh_file_is_read_once() {
     let text = "[[objects]]\nmesh = { file = \"meshes/box.obj\" }\n[[objects]]\nmesh = { file = \"meshes/box.obj\" }\n\
                 copies = { counts = [3, 1, 1], step_m = [9, 0, 0] }\n";
-    let mut asked = 0;
+    let mut reads = 0;
     let mut counting = |name: &str| {
-        asked += 1;
+        reads += 1;
         files(name)
     };
     let placed = Scenery::parse(text)
         .unwrap()
         .place(0, &mut counting)
         .unwrap();
-    assert_eq!((placed.objects.len(), asked), (4, 1));
+    assert_eq!((placed.objects.len(), reads), (4, 1));
 }
 
 /// The error for a file of this name with these contents.

@@ -173,13 +173,13 @@ mod tests {
         );
         let far = far.unwrap();
         assert!((far.off_m - 449_990.0_f64.hypot(5_399_990.0)).abs() < 1e-6);
-        let said = far.warning(179.9).unwrap();
+        let message = far.warning(179.9).unwrap();
         assert!(
-            said.contains("--origin") && said.contains("about 450000,5400000,0"),
-            "{said}"
+            message.contains("--origin") && message.contains("about 450000,5400000,0"),
+            "{message}"
         );
         // A scan of a single wall is valid.
-        let beside = Outside::new(&corners(DVec3::new(11.0, 0.0, 0.0)), DVec3::ZERO).unwrap();
-        assert_eq!(beside.warning(80.0), None);
+        let close = Outside::new(&corners(DVec3::new(11.0, 0.0, 0.0)), DVec3::ZERO).unwrap();
+        assert_eq!(close.warning(80.0), None);
     }
 }

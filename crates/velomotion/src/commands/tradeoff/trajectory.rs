@@ -332,11 +332,11 @@ mod tests {
             (200.0, half, Method::Profile, 0.0076),
         ] {
             let got_deg = worst_deg(&stiff, hz, circumstance, method, 3).unwrap();
-            let said = format!("{hz} Hz, {}, {}", method.name(), circumstance.heading);
+            let case = format!("{hz} Hz, {}, {}", method.name(), circumstance.heading);
             let ratio = got_deg / expected_deg;
             assert!(
                 (0.4..1.5).contains(&ratio),
-                "{said}: {got_deg} {expected_deg}"
+                "{case}: {got_deg} {expected_deg}"
             );
         }
         let exact = worst_deg(&stiff, 200.0, ideal, Method::Profile, 1).unwrap();

@@ -115,15 +115,15 @@ fn the_axis_stops_when_the_masters_heartbeat_ends() {
 #[test]
 fn guarding_requests_are_answered_with_a_toggle() {
     let mut bus = Bus::new();
-    bus.ask(0x701);
-    bus.ask(0x701);
+    bus.send_remote(0x701);
+    bus.send_remote(0x701);
     bus.nmt(NmtCommand::Stop);
-    bus.ask(0x701);
-    bus.ask(0x702);
+    bus.send_remote(0x701);
+    bus.send_remote(0x702);
     assert_eq!(bus.with(0x701), [[0x7F], [0xFF], [0x04]]);
     bus.write(0x1017, 0, 1000);
     bus.ticks(1);
     bus.take();
-    bus.ask(0x701);
+    bus.send_remote(0x701);
     assert_eq!(bus.take(), [], "heartbeat excludes guarding");
 }

@@ -17,18 +17,18 @@ use super::CanServer;
 use crate::epos2::{Node, NodeConfig};
 
 /// Identifier and data.
-type Heard = Vec<(u16, Vec<u8>)>;
+type Frames = Vec<(u16, Vec<u8>)>;
 
 /// A unit and its bus.
 struct Bus {
     node: Node,
     server: CanServer,
-    heard: Heard,
+    received: Frames,
 }
 
-fn note(heard: &mut Heard, frame: &CanFrame) {
+fn note(received: &mut Frames, frame: &CanFrame) {
     assert!(!frame.is_remote());
-    heard.push((frame.cob_id().unwrap().get(), frame.data().to_vec()));
+    received.push((frame.cob_id().unwrap().get(), frame.data().to_vec()));
 }
 
 impl Bus {
@@ -45,7 +45,7 @@ impl Bus {
         let mut bus = Self {
             node: Node::new(config),
             server: CanServer::new(),
-            heard: Vec::new(),
+            received: Vec::new(),
         };
         bus.poll();
         assert_eq!(bus.take().first(), Some(&(0x701, Vec::from([0]))));
@@ -53,22 +53,22 @@ impl Bus {
     }
 
     fn poll(&mut self) {
-        let heard = &mut self.heard;
+        let received = &mut self.received;
         self.server
-            .poll(&mut self.node, &mut |frame| note(heard, frame));
+            .poll(&mut self.node, &mut |frame| note(received, frame));
     }
 
     fn frame(&mut self, frame: &CanFrame) {
-        let heard = &mut self.heard;
+        let received = &mut self.received;
         self.server
-            .input(&mut self.node, frame, &mut |frame| note(heard, frame));
+            .input(&mut self.node, frame, &mut |frame| note(received, frame));
     }
 
     fn send(&mut self, id: u16, data: &[u8]) {
         self.frame(&CanFrame::new(CobId::new(id).unwrap(), data).unwrap());
     }
 
-    fn ask(&mut self, id: u16) {
+    fn send_remote(&mut self, id: u16) {
         self.frame(&CanFrame::remote(CobId::new(id).unwrap(), 8).unwrap());
     }
 
@@ -84,14 +84,14 @@ impl Bus {
         }
     }
 
-    fn take(&mut self) -> Heard {
-        core::mem::take(&mut self.heard)
+    fn take(&mut self) -> Frames {
+        core::mem::take(&mut self.received)
     }
 
     /// Frames received with an identifier.
     fn with(&mut self, id: u16) -> Vec<Vec<u8>> {
-        let heard = self.take().into_iter();
-        heard
+        let received = self.take().into_iter();
+        received
             .filter(|(from, _)| *from == id)
             .map(|(_, data)| data)
             .collect()

@@ -110,25 +110,25 @@ fn remote_frames_are_answered_where_allowed() {
     let mut bus = Bus::new();
     bus.stream_angle(253, 0);
     bus.nmt(NmtCommand::Start);
-    bus.ask(0x181);
+    bus.send_remote(0x181);
     assert_eq!(bus.take(), [], "bit 30 of its identifier says no");
     bus.nmt(NmtCommand::EnterPreOperational);
     bus.write(0x1800, 1, 0xC000_0181);
     bus.write(0x1800, 1, 0x0000_0181);
     bus.nmt(NmtCommand::Start);
     bus.ticks(3);
-    bus.ask(0x181);
-    bus.ask(0x182);
+    bus.send_remote(0x181);
+    bus.send_remote(0x182);
     let stamps: Vec<_> = bus.with(0x181).iter().map(|data| sample(data).1).collect();
     assert_eq!(stamps, [3_000]);
     bus.nmt(NmtCommand::EnterPreOperational);
     bus.write(0x1800, 2, 252);
     bus.nmt(NmtCommand::Start);
-    bus.ask(0x181);
+    bus.send_remote(0x181);
     assert_eq!(bus.take(), [], "no SYNC yet");
     bus.send(0x080, &[]);
     bus.ticks(5);
-    bus.ask(0x181);
+    bus.send_remote(0x181);
     assert_eq!(sample(&bus.with(0x181)[0]).1, 3_000, "as of the SYNC");
 }
 

@@ -51,7 +51,7 @@ impl Server {
                 match transfer {
                     Initiate::Expedited(data) => self.data.extend(data.as_slice()),
                     Initiate::Segmented { size } => self.announced = size,
-                    Initiate::Unsized(_) => panic!("the client says sizes"),
+                    Initiate::Unsized(_) => panic!("the client always sends sizes"),
                 }
                 SdoResponse::InitiateDownload { address }
             }
@@ -82,7 +82,7 @@ impl Server {
                 return outcome;
             }
         }
-        panic!("no end");
+        panic!("the transfer does not end");
     }
 }
 

@@ -10,7 +10,7 @@ use std::process::Command;
 
 const EXAMPLE: &str = "hall_without_effects";
 
-fn said(command: &mut Command) -> String {
+fn output(command: &mut Command) -> String {
     let output = command.output().unwrap_or_else(|error| {
         panic!("{command:?} does not run: {error}");
     });
@@ -21,7 +21,7 @@ fn said(command: &mut Command) -> String {
 
 /// The example as it is released, with these features and no others.
 fn built(features: &[&str], into: &Path) -> PathBuf {
-    said(
+    output(
         Command::new(env!("CARGO"))
             .args(["build", "--release", "--locked", "-p", "velomotion-sim"])
             .args(["--example", EXAMPLE, "--no-default-features"])
@@ -38,7 +38,7 @@ fn built(features: &[&str], into: &Path) -> PathBuf {
 
 /// Instructions of a run, and what it printed.
 fn counted(program: &Path, into: &Path) -> (u64, String) {
-    let text = said(
+    let text = output(
         Command::new("valgrind")
             .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
             .arg(program)
@@ -53,19 +53,19 @@ fn counted(program: &Path, into: &Path) -> (u64, String) {
 #[test]
 #[ignore = "needs valgrind"]
 fn absent_effects_cost_no_instructions() {
-    let into = Path::new(env!("CARGO_TARGET_TMPDIR")).join("unasked");
+    let into = Path::new(env!("CARGO_TARGET_TMPDIR")).join("absent-effects");
     std::fs::create_dir_all(&into).unwrap();
     let without = built(&[], &into);
     let with = built(&["--features", "effects"], &into);
     let (absent, first) = counted(&without, &into);
-    let (unasked, second) = counted(&with, &into);
+    let (disabled, second) = counted(&with, &into);
     assert_eq!(first, second, "the same bytes");
-    let more = unasked as f64 / absent as f64 - 1.0;
+    let more = disabled as f64 / absent as f64 - 1.0;
     println!(
-        "{absent} instructions without effects, {unasked} with none asked for: {:+.4} %",
+        "{absent} instructions without effects, {disabled} with none enabled: {:+.4} %",
         100.0 * more
     );
-    assert!(more.abs() < 0.005, "{absent} against {unasked}");
-    // More than a thousand instructions a packet, so that there is something to count.
+    assert!(more.abs() < 0.005, "{absent} against {disabled}");
+    // More than a thousand instructions per packet, so that there is something to count.
     assert!(absent > 1_000_000);
 }
