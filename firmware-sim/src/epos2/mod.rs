@@ -4,8 +4,8 @@
 //! [`Node`] is the unit: an object dictionary, the CiA 402 state machine and a profile generator at
 //! 1 kHz in integer arithmetic, one [`Node::tick`] per millisecond. [`UsbServer`] and
 //! [`Rs232Server`] answer the frames of its serial interfaces, [`CanServer`] those of a CAN bus,
-//! [`SlcanServer`] the same through a serial CAN adapter. Sources are the EPOS2 Firmware Specification and Communication Guide; comments mark
-//! behaviour that they leave open.
+//! [`SlcanServer`] the same through a serial CAN adapter. Sources are the EPOS2 Firmware
+//! Specification and Communication Guide; comments mark behaviour that they leave open.
 //!
 //! Not simulated: modes that a tilt axis does not use, and the electrical side. The shaft follows
 //! its demand exactly unless the configuration has a servo with a lag ([`Servo`]) or something

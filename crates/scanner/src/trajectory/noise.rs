@@ -27,8 +27,8 @@ impl Noise {
         angle_sd_deg: 0.0,
     };
 
-    /// The noise of `samples`, whose angles come in steps of `quantum`. Without motion, errors count
-    /// as uniform within the bounds.
+    /// The noise of `samples`, whose angles come in steps of `quantum`. Without motion, errors
+    /// count as uniform within the bounds.
     #[must_use]
     pub fn of(samples: &[AngleSample], quantum: Degrees) -> Self {
         let angle_sd_deg = quantum.0.abs() * UNIFORM_SD / 2.0;
