@@ -70,7 +70,7 @@ mod tests {
     #[test]
     fn azimuths_and_timestamps_match_the_manual() {
         // 63-9243, "Firing sequence timing": 24 sequences of 55.296 us fill a packet in 1327.104
-        // us, 754 packets a second.
+        // us, 754 packets per second.
         let packet_ns = PacketModel::Vlp16.packet_period_ns(ReturnMode::Strongest);
         assert_eq!(24 * 55_296, packet_ns);
         assert_eq!(16 * 2_304 + 18_432, SEQUENCE_PERIOD_NS);

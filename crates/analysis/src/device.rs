@@ -178,7 +178,7 @@ mod tests {
                 tilt_deg: [-20.0, 35.0],
                 ..VELOMOTION
             },
-            // Beyond the zenith.
+            // Past the zenith.
             TiltedSensor {
                 tilt_deg: [0.0, 180.0],
                 ..VELOMOTION
@@ -187,7 +187,7 @@ mod tests {
                 tilt_deg: [40.0, 100.0],
                 ..VELOMOTION
             },
-            // So high above the axis that the nearest point is not at the smallest range.
+            // High above the axis the nearest point is not at the smallest range.
             TiltedSensor {
                 d_m: 3.0,
                 reach_m: [0.0, 10.0],

@@ -123,7 +123,7 @@ mod tests {
         );
     }
 
-    /// Equal to a plain search, for every length around the lanes and NaN in every place.
+    /// For every length around the number of lanes and NaN at every position.
     #[test]
     fn simd_lanes_agree_with_a_scalar_search() {
         for len in 0..=3 * LANES {

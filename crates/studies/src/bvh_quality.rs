@@ -284,7 +284,7 @@ mod tests {
     #[test]
     fn rays_hit_the_same_in_every_tree() {
         let mut now = Stamp::from_nanos(0);
-        // The clock advances by 3 ms per reading, so everything takes as long.
+        // The clock advances by 3 ms per reading, so every measurement takes equally long.
         let mut clock = || {
             now = now.saturating_add(Span::from_micros(3_000));
             now

@@ -214,8 +214,8 @@ fn whole(packets: &[TimedPacket]) -> Option<Vec<Stamp<Host>>> {
 mod tests {
     use super::*;
 
-    /// The table of docs/src/accuracy.md, made by another program for the same links, averaged over
-    /// other seeds.
+    /// The table of docs/src/accuracy.md, computed by another program for the same links with other
+    /// seeds.
     #[test]
     fn errors_match_the_accuracy_page() {
         for (link, table) in ArrivalLink::ALL.into_iter().zip([
@@ -227,8 +227,8 @@ mod tests {
             for ((name, _, method), (bias_us, worst_us)) in METHODS.into_iter().zip(table) {
                 let off = off(&recordings, method).unwrap();
                 let case = format!("{}, {name}: {} {}", link.name(), off.bias_us, off.worst_us);
-                // With few recordings rare spikes move the bias of arrivals by a quarter, and the
-                // others scatter by 1 us.
+                // With few recordings rare spikes change the bias of arrivals by a quarter, and the
+                // others vary by 1 us.
                 assert!(
                     (off.bias_us - bias_us).abs() < 0.3 * bias_us + 1.5,
                     "{case}"

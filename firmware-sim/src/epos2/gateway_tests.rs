@@ -36,7 +36,7 @@ impl Bench {
         let mut decoder = UsbDecoder::new();
         let mut frames = out.iter().filter_map(|byte| decoder.push(*byte));
         let answer = frames.next().unwrap().unwrap();
-        assert!(frames.next().is_none(), "one answer a request");
+        assert!(frames.next().is_none(), "one answer per request");
         SerialAnswer::parse(&answer).unwrap().error
     }
 }

@@ -158,7 +158,7 @@ mod tests {
     #[test]
     fn a_ramp_reverses_through_zero_and_keeps_its_speed() {
         let mut generator = Generator::new(0, 2000);
-        generator.run_at(Speed::from_rpm(60), 600, 600); // 2 qc a ms after 100 ms
+        generator.run_at(Speed::from_rpm(60), 600, 600); // 2 qc/ms after 100 ms
         for _ in 0..200 {
             generator.step();
         }
@@ -180,9 +180,9 @@ mod tests {
 
     #[test]
     fn a_slow_ramp_does_not_drift_in_a_quarter_of_an_hour() {
-        // 1 rpm is 1/30 qc a ms, which no binary fraction holds.
+        // 1 rpm is 1/30 qc/ms, which has no finite binary representation.
         let mut generator = Generator::new(0, 2000);
-        generator.run_at(Speed::from_rpm(1), 1000, 1); // there after 1 ms
+        generator.run_at(Speed::from_rpm(1), 1000, 1); // at speed after 1 ms
         for _ in 0..900_001 {
             generator.step();
         }

@@ -14,7 +14,7 @@ const QC_PER_TURN: u32 = 2000;
 /// qc/s of one rpm.
 const PER_RPM: f64 = QC_PER_TURN as f64 / 60.0;
 
-/// A stretch of constant acceleration: seconds, qc/s at its beginning, qc/s2.
+/// A phase of constant acceleration: seconds, initial speed in qc/s, acceleration in qc/s2.
 #[derive(Clone, Copy, Debug)]
 struct Stretch {
     t: f64,
@@ -22,7 +22,7 @@ struct Stretch {
     a: f64,
 }
 
-/// What the textbook says: stretches one after the other, then on at the last speed.
+/// The textbook motion: phases in sequence, then constant speed.
 struct Textbook {
     from: f64,
     stretches: Vec<Stretch>,
@@ -44,7 +44,7 @@ impl Textbook {
         self.stretches.iter().map(|s| s.t).sum()
     }
 
-    /// From `v0` to `v1` at no more than `a` away from zero and `d` towards it.
+    /// From `v0` to `v1` with at most `a` away from zero and `d` towards it.
     fn speed(from: f64, v0: f64, v1: f64, a: f64, d: f64) -> Self {
         let mut stretches = Vec::new();
         let mut v = v0;
@@ -71,7 +71,7 @@ impl Textbook {
         }
     }
 
-    /// To `target`, at rest there.
+    /// To rest at `target`.
     fn target(from: f64, v0: f64, target: f64, vmax: f64, a: f64, d: f64) -> Self {
         let stop = v0 * v0.abs() / (2.0 * d);
         let ahead = (target - from) * v0.signum();
@@ -126,8 +126,7 @@ fn speed(generator: &Generator) -> f64 {
     generator.speed.0 as f64 / MS as f64 / 1000.0 * PER_RPM
 }
 
-/// Rates in the order of what is met: from slow to brutal, so that a case takes some thousand
-/// milliseconds at most.
+/// Rates from slow to extreme; a case takes at most some thousand milliseconds.
 fn rate() -> impl Strategy<Value = u32> {
     (5u32..31, any::<u32>()).prop_map(|(bits, r)| (1 << bits) | (r & ((1 << bits) - 1)))
 }
@@ -170,7 +169,7 @@ impl DemandMotion {
     }
 }
 
-/// A generator on its way for so many milliseconds.
+/// A generator that has run for this many milliseconds.
 fn under_way(first: i64, m: DemandMotion, after: usize) -> Generator {
     let mut generator = Generator::new(0, QC_PER_TURN);
     generator.go_to(fine(first), m.limits()).unwrap();
@@ -180,7 +179,7 @@ fn under_way(first: i64, m: DemandMotion, after: usize) -> Generator {
     generator
 }
 
-/// Follows the textbook for as long as it lasts (but 2 s at most) and some milliseconds more.
+/// Compares with the textbook until some milliseconds after its end, for at most 2 s.
 fn follow(generator: &mut Generator, textbook: &Textbook) {
     let ms = (textbook.duration() * 1e3).min(2_000.0) as usize + 3;
     for step in 1..=ms {
@@ -210,7 +209,7 @@ proptest! {
         let [vmax, a, d] = n.scaled();
         let textbook = Textbook::target(qc(&generator), speed(&generator), second as f64, vmax, a, d);
         if generator.go_to(fine(second), n.limits()).is_err() {
-            // Only moves longer than 2^31 ms are refused: far beyond the target at 25,000 rpm, and
+            // Only moves longer than 2^31 ms are refused: far past the target at 25,000 rpm, and
             // back at 1 rpm.
             prop_assert!(textbook.duration() > f64::from(1u32 << 31) * 0.999e-3);
             return Ok(());

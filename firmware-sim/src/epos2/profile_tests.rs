@@ -1,4 +1,4 @@
-//! The profile against an independent closed form in f64, and its limits exactly.
+//! The profile against an independent closed form in f64, and its exact limits.
 
 extern crate std;
 
@@ -87,8 +87,8 @@ fn run(
     mut each: impl FnMut(usize, f64),
 ) -> usize {
     let mut steps = 0;
-    // Largest change of position in a ms, and of that change from one ms to the next; 1 unit each
-    // for rounding down, and 2^-32 ms at the joints.
+    // Largest change of position per ms, and of that change per ms; 1 unit each for rounding down,
+    // and 2^-32 ms at phase boundaries.
     let top = i128::from(l.speed.0.max(generator.speed.0.abs()));
     let most = ((top * 2 * i128::from(QC_PER_TURN)) >> 32) + 64;
     let steepest = i128::from(l.acceleration.max(l.deceleration));
@@ -107,7 +107,7 @@ fn run(
         assert!(generator.speed.0.abs() <= top as i64);
         last = Some(moved);
         each(steps, qc(generator.position));
-        assert!(steps <= most_ms, "not there after {most_ms} ms");
+        assert!(steps <= most_ms, "target not reached after {most_ms} ms");
     }
     assert_eq!(generator.position, target);
     assert_eq!(generator.speed, Speed::ZERO);
@@ -116,7 +116,8 @@ fn run(
 
 #[test]
 fn the_papers_sweep_takes_912_5_ms_on_the_drive() {
-    // 45 deg at 56.25 deg/s (1125 rpm) behind 120:1, 10000 rpm/s: 0.8 s and the ramp's 0.1125 s.
+    // 45 deg at 56.25 deg/s (1125 rpm) with a gear of 120:1, 10000 rpm/s: 0.8 s and 0.1125 s of
+    // ramp.
     let mut generator = Generator::new(fine(-15_000), QC_PER_TURN);
     let l = limits(1125, 10_000, 10_000);
     generator.go_to(fine(15_000), l).unwrap();
@@ -169,11 +170,11 @@ fn motions_that_never_end_are_refused() {
 fn degenerate_profiles_are_valid() {
     let most = u32::MAX;
     for (length, l) in [
-        (1, limits(1, 1, 1)),            // the least of everything
-        (1, limits(25_000, most, most)), // there in the first millisecond
-        (100, limits(1, most, 1)),       // a tiny speed, lopsided
+        (1, limits(1, 1, 1)),            // the smallest values
+        (1, limits(25_000, most, most)), // finished in the first millisecond
+        (100, limits(1, most, 1)),       // low speed, asymmetric ramps
         (30_000, limits(1, 10, 10)),     // 900 s
-        (3, limits(25_000, 1, most)),    // a triangle that falls like a wall
+        (3, limits(25_000, 1, most)),    // a triangle with a steep deceleration
         (3, limits(25_000, most, 1)),
         (60_000, limits(25_000, most, most)),
     ] {
@@ -214,7 +215,7 @@ fn any_limits() -> impl Strategy<Value = MotionLimits> {
         .prop_map(|(v, a, d, same)| limits((v as i32).min(25_000), a, if same { a } else { d }))
 }
 
-/// A length the limits get over in some thousand milliseconds, so that 10,000 cases are a matter of
+/// A distance that takes some thousand milliseconds with these limits, so that 10,000 cases take
 /// seconds.
 fn shorten(length: i64, l: MotionLimits) -> i64 {
     let per_rpm = f64::from(QC_PER_TURN) / 60.0;
@@ -237,7 +238,7 @@ proptest! {
         let mut generator = Generator::new(fine(from), QC_PER_TURN);
         generator.go_to(fine(to), l).unwrap();
         let textbook = Textbook::new(from as f64, to as f64, l, QC_PER_TURN);
-        // Checked at about a hundred instants, all limits at each.
+        // All limits are checked at about a hundred instants.
         let every = (textbook.duration() * 10.0) as usize + 1;
         let steps = run(&mut generator, fine(to), l, 1_000_000, |ms, position| {
             if ms % every == 0 {
@@ -310,7 +311,7 @@ fn operation() -> impl Strategy<Value = Operation> {
     let extreme = prop_oneof![any::<u32>(), 0u32..3, Just(u32::MAX)];
     let limits =
         (0i32..=25_000, extreme.clone(), extreme.clone()).prop_map(|(v, a, d)| limits(v, a, d));
-    // Farther than the world is long: a 32-bit position from an origin as far away.
+    // Outside the position range: a 32-bit position from an origin equally far away.
     let target = (any::<i32>(), any::<i32>()).prop_map(|(a, b)| fine(i64::from(a) + i64::from(b)));
     prop_oneof![
         (target, limits).prop_map(|(target, limits)| Operation::GoTo(target, limits)),

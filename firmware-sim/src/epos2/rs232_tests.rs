@@ -154,7 +154,7 @@ proptest! {
     ) {
         let (mut server, mut node) = (Rs232Server::new(6), node());
         send(&mut server, &mut node, &junk);
-        // The timeout may have been written by chance, to 65.5 s at most.
+        // The random bytes may have written the timeout, which is at most 65.5 s.
         for _ in 0..66_000 {
             node.tick();
         }

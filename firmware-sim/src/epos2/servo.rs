@@ -126,7 +126,7 @@ mod tests {
         follower.position() as f64 / FINE_PER_QC as f64
     }
 
-    /// The closed forms behind a demand that runs at 37.5 qc a ms: lag 2 z / w and 1 / w, swung in.
+    /// The closed forms of the settled lag behind a demand of 37.5 qc/ms: 2 z / w and 1 / w.
     #[test]
     fn the_lag_behind_a_ramp_matches_the_closed_form() {
         let (w, z, rate) = (15.0 * core::f64::consts::TAU, 0.8_f64, 37_500.0);
@@ -150,8 +150,8 @@ mod tests {
             let closed = rate * (t - 1.0 / w + (-w * t).exp() / w);
             one.1 = one.1.max((qc(&one.0) - closed).abs());
         }
-        // Steps of 62.5 us: a lag of 637 qc (398 qc) to half a hundredth, half a step of the demand
-        // among it.
+        // Steps of 62.5 us: a lag of 637 qc (398 qc) within half a percent, including half a step
+        // of the demand.
         assert!(second.1 < 3.0 && one.1 < 3.0, "{} {}", second.1, one.1);
         assert!((qc(&second.0) - 37.5 * 400.0 + 636.6).abs() < 3.0);
     }

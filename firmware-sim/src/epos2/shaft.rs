@@ -153,7 +153,7 @@ mod tests {
         assert_eq!(shaft.position, 0);
         shaft.jammed = false;
         shaft.follow(fine(100_000), 2000);
-        // 26,000 rpm are 866 qc a ms.
+        // 26,000 rpm are 866 qc/ms.
         assert_eq!(shaft.position / FINE_PER_QC, 866);
         assert_eq!(shaft.speed(2000), Speed::from_rpm(26_000));
     }
@@ -170,10 +170,10 @@ mod tests {
         }
         assert!(shaft.behind && !shaft.held);
         let demand = fine(7_400);
-        // 2 x 0.8 / (2 pi 15 Hz) at 37 qc a ms.
+        // 2 x 0.8 / (2 pi 15 Hz) at 37 qc/ms.
         assert!((620..636).contains(&shaft.following_error(demand)));
         assert_eq!(shaft.current_ma(demand, 9_000), 0);
-        // Against the stop it is held, and that takes a current.
+        // The stop blocks the shaft, which draws current.
         for _ in 0..300 {
             shaft.follow(demand, 2000);
         }

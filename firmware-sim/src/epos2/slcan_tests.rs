@@ -1,4 +1,4 @@
-//! The adapter with the unit behind it, as text.
+//! The adapter and its unit, as text.
 
 extern crate std;
 use std::string::String;
@@ -60,7 +60,7 @@ fn a_host_opens_reads_and_closes() {
     );
     assert_eq!(port.send(b"t60184041600000000000\r"), "\x07", "closed");
     assert_eq!(port.send(b"S8\rO\r"), "\r\r");
-    assert_eq!(port.send(b"S8\rO\rZ1\r"), "\x07\x07\x07", "open already");
+    assert_eq!(port.send(b"S8\rO\rZ1\r"), "\x07\x07\x07", "already open");
     assert_eq!(port.send(b"F\r"), "F00\r");
     assert_eq!(
         port.send(b"t60184041600000000000\r"),
@@ -81,7 +81,7 @@ fn a_host_opens_reads_and_closes() {
     assert_eq!(
         port.send(b"T000006018FFFFFFFFFFFFFFFF\r"),
         "Z\r",
-        "no node answers to 29 bits"
+        "29-bit identifiers get no answer"
     );
     assert_eq!(port.send(b"X\r"), "\x07");
     assert_eq!(port.send(b"C\rC\r"), "\r\x07");
@@ -114,14 +114,14 @@ fn a_sync_stream_loses_no_samples() {
     let mut port = Port::new();
     port.send(b"S8\rO\r");
     for line in [
-        "t60182300180181010080", // 1800:1 not in use
+        "t60182300180181010080", // 1800:1 disabled
         "t60182F00180201000000", // on each SYNC
         "t60182B00180300000000", // no inhibit time
         "t60182F001A0000000000", // nothing mapped
         "t601823001A0120006460", // 6064
         "t601823001A0220001310", // 1013
-        "t60182F001A0002000000", // two
-        "t60182300180181010040", // 1800:1 in use
+        "t60182F001A0002000000", // two objects
+        "t60182300180181010040", // 1800:1 enabled
     ] {
         let answer = port.send(std::format!("{line}\r").as_bytes());
         assert!(answer.starts_with("z\rt581860"), "{line}: {answer}");
@@ -147,7 +147,7 @@ proptest! {
     ) {
         let mut port = Port::new();
         port.send(&junk);
-        // What is left of a line ends, and whatever the channel is, it is open then.
+        // Ends a partial line, then closes and opens the channel.
         port.send(b"\r");
         port.send(b"C\r");
         prop_assert_eq!(port.send(b"O\r"), "\r");

@@ -39,7 +39,7 @@ fn decode(bytes: &[u8]) -> SerialFrame {
     frames.remove(0).unwrap()
 }
 
-/// Asks and returns the one answer.
+/// Sends a request and returns its only answer.
 fn exchange(server: &mut UsbServer, node: &mut Node, request: &SerialFrame) -> SerialFrame {
     let answers = send(server, node, &to_bytes(request));
     assert_eq!(answers.len(), 1);
@@ -54,7 +54,7 @@ fn refusal(frame: &SerialFrame) -> CommError {
     let answer = SerialAnswer::parse(frame).unwrap();
     assert!(
         matches!(answer.data.len(), 0 | 2),
-        "an error comes in two words or four"
+        "errors have two words or four"
     );
     answer.error
 }
@@ -80,7 +80,7 @@ fn short_values_are_padded_with_garbage() {
         assert_eq!(ReadObject::parse_answer(&answer), Ok(Ok(0)));
     }
     above.dedup();
-    assert!(above.len() > 15, "the same garbage each time");
+    assert!(above.len() > 15, "the garbage does not vary");
 }
 
 #[test]

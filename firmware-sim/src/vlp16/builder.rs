@@ -111,7 +111,7 @@ mod tests {
             .collect()
     }
 
-    /// Returns that differ in every place: distance 100 x sequence + laser, reflectivity laser.
+    /// Unique returns: distance 100 x sequence + laser, reflectivity laser.
     fn distinct(sequence: usize) -> Returns {
         core::array::from_fn(|laser| ((100 * sequence + laser) as u16, laser as u8))
     }
@@ -134,9 +134,9 @@ mod tests {
             packet[..10],
             [0xFF, 0xEE, 0x8C, 0x8C, 0x00, 0x00, 0x00, 0x01, 0x00, 0x01]
         );
-        // Its second sequence begins after 16 channels of 3 bytes: 100 = 0x0064.
+        // Its second sequence starts after 16 channels of 3 bytes: 100 = 0x0064.
         assert_eq!(packet[52..58], [0x64, 0x00, 0x00, 0x65, 0x00, 0x01]);
-        // Block 1: its first sequence is the third, at 360.20 deg, which is 0.20.
+        // Block 1: its first sequence is the third of the packet, at 360.20 deg, which is 0.20 deg.
         assert_eq!(packet[100..107], [0xFF, 0xEE, 20, 0, 0xC8, 0x00, 0x00]);
         // Block 11, last channel: 2315 = 0x090B, reflectivity 15.
         assert_eq!(packet[1197..1200], [0x0B, 0x09, 0x0F]);
@@ -195,8 +195,8 @@ mod tests {
         assert!(!builder.is_full());
     }
 
-    /// The layout of the manual: block b at 100 b, azimuth at 2 in it, channel c at 4 + 3 c; mode
-    /// and product at the end.
+    /// The layout of the manual: block b at 100 b, its azimuth at offset 2, channel c at offset 4 +
+    /// 3 c; mode and product at the end.
     #[test]
     fn thirty_two_lasers_fill_a_block() {
         for (model, product) in [(PacketModel::Hdl32e, 0x21), (PacketModel::Vlp32c, 0x28)] {

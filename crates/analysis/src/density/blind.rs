@@ -328,7 +328,7 @@ mod tests {
         for (row, at) in rows.iter().zip([50.5, 129.5]) {
             assert!((row.from_axis_deg - at).abs() < 0.2, "{row:?}");
             assert!((row.radius_deg - 1.5).abs() < 0.1, "{row:?}");
-            // Centres that lie outside the other holes: between 1 and 2 radii apart along the row.
+            // Centres outside the other holes are between 1 and 2 radii apart along the row.
             let around = 360.0 * 50.5_f64.to_radians().sin() / 1.5;
             assert!(
                 (0.5 * around..=around).contains(&(row.holes as f64)),

@@ -140,7 +140,7 @@ mod tests {
     }
 
     fn direction() -> impl Strategy<Value = DVec3> {
-        // Uniform on the sphere, and near the axes, where the cells of the cube meet.
+        // Uniform on the sphere, and near the axes, where cells of the cube adjoin.
         let uniform = (-1.0..1.0_f64, 0.0..std::f64::consts::TAU).prop_map(|(z, a)| {
             let r = (1.0 - z * z).sqrt();
             DVec3::new(r * a.cos(), r * a.sin(), z)

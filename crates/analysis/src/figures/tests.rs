@@ -1,5 +1,4 @@
-//! Figures are well-formed and whole, and every number that is written is the one that was
-//! computed.
+//! Figures are well-formed and complete, and every printed number is the computed one.
 
 use std::num::NonZeroUsize;
 
@@ -11,7 +10,7 @@ use crate::draw::escaped;
 use crate::draw::xml::elements;
 use crate::k::{Edges, exact};
 
-/// A lidar's grid: rings at some elevations about z, turned about y to these tilts.
+/// A lidar's grid: rings at some elevations about z, rotated about y to these tilts.
 fn grid(azimuths: u32, tilts_deg: &[f64]) -> Vec<DVec3> {
     let mut points = Vec::new();
     for tilt in tilts_deg {
@@ -108,7 +107,7 @@ fn figures_are_well_formed_and_describe_every_scan() {
 fn every_bin_is_drawn_in_each_view_that_shows_it() {
     let scans = scans(2);
     let figure = density(&scans);
-    // A triangle is a path that ends; two more are the sign of empty bins.
+    // Each triangle is a closed path; two more mark empty bins.
     let expected: usize = scans
         .bins
         .bins()
@@ -132,7 +131,7 @@ fn every_bin_is_drawn_in_each_view_that_shows_it() {
 fn finer_levels_are_merged_for_drawing_without_losing_points() {
     let (coarse, fine) = (scans(5), scans(6));
     assert!(density(&fine).contains("(20480 bins)"));
-    // As many triangles, though the bins are four times as many.
+    // An equal number of triangles for four times as many bins.
     let size = |scans: &AnalyzedScans| density(scans).matches('l').count();
     assert!(
         size(&fine).abs_diff(size(&coarse)) < 60,
@@ -166,7 +165,7 @@ fn empty_scans_are_drawn() {
     assert_eq!(csv::k(&scans).lines().count(), 1);
 }
 
-/// The fields of a line, quotes undone.
+/// The fields of a line without quotes.
 fn fields(line: &str) -> Vec<String> {
     let (mut fields, mut quoted) = (vec![String::new()], false);
     for c in line.chars() {
@@ -179,7 +178,7 @@ fn fields(line: &str) -> Vec<String> {
     fields
 }
 
-/// All numbers of a table's columns from one on, and the names before them.
+/// All numbers of a table from a column on, and the names before them.
 fn read(csv: &str, from: usize) -> (Vec<String>, Vec<Vec<f64>>) {
     let columns = csv.lines().next().unwrap().split(',').count();
     let lines: Vec<Vec<String>> = csv.lines().skip(1).map(fields).collect();
@@ -196,7 +195,7 @@ fn tables_print_the_exact_counts() {
     let scans = scans(3);
     let (names, rows) = read(&csv::k(&scans), 1);
     assert_eq!(rows.len(), 2 * 37);
-    // Quotes within are doubled, which the reader above undoes to none.
+    // Quotes inside are doubled, and the reader above removes them.
     assert_eq!(
         (names[0].as_str(), names[37].as_str()),
         ("still", "turned,tilt=<stepped> & so")
@@ -255,20 +254,20 @@ fn page_is_whole(page: &str, scans: &AnalyzedScans) {
     for (name, _) in FILES {
         assert!(page.contains(&format!("<a href=\"{name}\">")), "{name}");
     }
-    // But for the few elements of HTML that have no end, it is XML.
+    // Apart from the void elements of HTML it is XML.
     let (head, body) = page.split_once("<body>").unwrap();
     assert!(head.contains("width=device-width") && head.contains("<html lang=\"en\">"));
     let body = format!("<body>{}", body.replace("</html>", ""));
     let names = elements(&body);
     assert_eq!(names.iter().filter(|name| *name == "figcaption").count(), 4);
     assert_eq!(page.matches("<p class=\"caption\">").count(), 5);
-    // Whatever is wider than a phone scrolls in a frame of its own, and says so there.
+    // Content wider than a phone scrolls in its own frame, with a hint.
     let frames = page.matches("<div class=\"scroll").count();
     assert_eq!((frames, page.matches("class=\"hint\"").count()), (9, 9));
 }
 
-/// The page reports the known values of a view, leaves out unknown ones, and warns beside values
-/// that may mislead.
+/// The page reports the known values of a view, omits unknown ones, and warns next to misleading
+/// values.
 #[test]
 fn the_page_reports_values_and_warnings_of_a_view() {
     let mut scans = scans(3);
@@ -301,7 +300,7 @@ fn the_page_reports_values_and_warnings_of_a_view() {
         "<th scope=\"col\">sd / mean, all bins</th>".to_owned(),
         "<th scope=\"col\">sd / mean, bins in view</th>".to_owned(),
         format!("<td>{uneven:.3}</td>"),
-        // Of a scan whose view is not known: its hole and its evenness there.
+        // A scan with an unknown view has no hole and no evenness there.
         format!(
             "<td>55.500</td><td>-</td><td>{:.3}</td><td>-</td>",
             all.sd_over_mean().unwrap()
@@ -309,7 +308,7 @@ fn the_page_reports_values_and_warnings_of_a_view() {
     ] {
         assert!(glance.contains(&words), "no {words:?} in:\n{glance}");
     }
-    // The most even over the sphere is the one nearest to chance.
+    // The most even scan over the sphere is the one closest to random.
     let nearest = scans
         .scans
         .iter()
@@ -318,7 +317,7 @@ fn the_page_reports_values_and_warnings_of_a_view() {
     assert!(glance.contains(&format!("({least:.5})")), "{glance}");
 }
 
-/// Ten scans have ten colours; all curves but the first have gaps, so that what they lie on shows.
+/// Ten scans have ten colours; all curves but the first have gaps that show the curves below.
 #[test]
 fn coinciding_curves_are_distinguishable() {
     let mut scans = scans(2);
@@ -346,7 +345,7 @@ fn coinciding_curves_are_distinguishable() {
     );
 }
 
-/// A scan of few points beside one of many is not squeezed into a corner.
+/// A scan of few points next to one of many is not squeezed into a corner.
 #[test]
 fn each_histogram_has_its_own_scale() {
     let mut scans = scans(2);
@@ -357,7 +356,7 @@ fn each_histogram_has_its_own_scale() {
         .take(480 * 500)
         .collect::<Vec<_>>();
     scans.scans.push(scan("many", &many, 2));
-    // What is drawn and written of the first does not depend on the last.
+    // The figure of the first scan does not depend on the last one.
     assert!(csv::histogram(&scans).starts_with(&alone));
     let rows = |figure: &str| -> Vec<String> {
         let rows = figure.split("<g transform=").skip(1);
@@ -393,7 +392,7 @@ fn the_page_is_self_contained_with_every_figure_and_table() {
         "<td>{:.3}</td><td>{:.2}</td><td>{}</td>",
         s.mean, s.sd, s.min
     )));
-    // A row every 15 degrees, the first edge at or behind each.
+    // A row every 15 degrees: the first edge at or after each.
     let curves = page.split("The curves as numbers").nth(1).unwrap();
     let rows = curves
         .split("<tr><td>")

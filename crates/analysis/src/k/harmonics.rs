@@ -302,8 +302,8 @@ mod tests {
 
     #[test]
     fn harmonics_of_high_degree_are_accurate_at_the_poles() {
-        // The squares of all harmonics of a degree are (2 l + 1) / (4 pi) together, wherever the
-        // point is (addition theorem).
+        // The squares of all harmonics of a degree add up to (2 l + 1) / (4 pi) at every point
+        // (addition theorem).
         for z in [
             1.0,
             -1.0,
@@ -411,8 +411,8 @@ mod tests {
             }
         }
         for (l, (got, plain)) in spectrum(&points, degree).iter().zip(&plain).enumerate() {
-            // Places on the grid are off by up to 1/512 of pi: of degree l by some l2 / 512 of a
-            // radian's square, and by chance with so few points.
+            // Grid positions are off by up to pi/512, which changes degree l by some l^2 / 512 of a
+            // squared radian, and randomly with few points.
             let off = 2e-3 * (1.0 + l as f64 / 8.0);
             assert!((got - plain).abs() < off, "{l}: {got} {plain}");
         }

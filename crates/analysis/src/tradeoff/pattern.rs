@@ -330,8 +330,7 @@ mod tests {
         assert!(close(slowest, 5.208e-4, 5e-8), "{slowest}");
     }
 
-    /// With the drive's factory ramps of 500 deg/s2 the same sweep takes 0.8 s of way and 112.5 ms
-    /// more.
+    /// With the drive's default ramps of 500 deg/s2 the same sweep takes 0.8 s plus 112.5 ms.
     #[test]
     fn ramps_lengthen_the_sweep_and_short_sweeps_are_triangular() {
         let fast = sweep(56.25, 500.0);
@@ -380,7 +379,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(24))]
 
-        /// Searches for a line from every place of a fine ladder of elevations.
+        /// Searches for a line from every elevation of a fine grid.
         #[test]
         fn gaps_agree_with_a_search_on_a_fine_grid(speed_deg_s in 3.0..60.0_f64, phase in 0.0..1.0_f64) {
             let (vlp, sweep) = (PatternLidar::vlp_16(), sweep(speed_deg_s, 500.0));
@@ -417,8 +416,8 @@ mod tests {
             elevations_deg: vec![0.0],
             turns_per_s: 10.0,
         };
-        // A single laser at elevation 0 sees the pole and, if slow enough, all that it passes: 0.1
-        // degrees per revolution, at an end up to twice that.
+        // A single laser at elevation 0 sees the pole and, if slow enough, everything it passes:
+        // 0.1 degrees per revolution, at an end up to twice that.
         let circle = one.widest_circle_deg(&sweep(1.0, 500.0), 2.0);
         assert!(circle < 0.21, "{circle}");
     }

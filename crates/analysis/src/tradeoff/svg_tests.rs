@@ -1,4 +1,4 @@
-//! Figures are well-formed, whole, and inside their frame.
+//! Figures are well-formed, complete, and inside their frame.
 
 use super::super::study::example;
 use super::*;
@@ -22,7 +22,7 @@ fn the_figure_is_well_formed_and_has_every_choice_in_every_plot() {
     for group in ["plain", "clever"] {
         assert!(svg.contains(&format!(">{group}</text>")), "{group}");
     }
-    // One front a plot and one in the legend; three of eight marks lie behind a front.
+    // One front per plot and one in the legend; three of eight marks are dominated.
     assert_eq!(svg.matches("class=\"tv-front\"").count(), 3);
     assert_eq!(svg.matches(" tv-open\"").count(), 2);
     assert!(svg.contains("median, least and greatest of 5 runs"));

@@ -125,7 +125,7 @@ mod tests {
         assert!(TimingSpread::of(Vec::new()).median.is_nan());
     }
 
-    /// Two works that advance the clock themselves by 3 us and 1 ms.
+    /// Two tasks that advance the clock by 3 us and 1 ms.
     #[test]
     fn short_work_is_repeated_and_rounds_rotate_their_order() {
         let now = Cell::new(0_i64);

@@ -125,7 +125,7 @@ mod tests {
             [
                 0, 1, 0, 0, // encapsulation
                 7, 0, 0, 0, 4, 3, 2, 1, // u8, padding, u32
-                9, 0, 0, 0, 0, 0, 0, 0, // u8, padding to 16, not to 8 behind the header
+                9, 0, 0, 0, 0, 0, 0, 0, // u8, padding to 16, not to 8 after the header
                 0, 0, 0, 0, 0, 0, 0xF0, 0x3F,
             ]
         );

@@ -268,7 +268,7 @@ mod tests {
     /// Name, offset and data type.
     type Field = (String, u32, u8);
 
-    /// Fields by name: offset and data type; then the bytes of the points and how many each has.
+    /// Fields by name with offset and data type, the bytes of the points, and the bytes per point.
     fn read(message: &[u8]) -> (Vec<Field>, &[u8], usize) {
         let mut reader = Reader::new(message);
         let (sec, nanosec, frame) = reader.header();

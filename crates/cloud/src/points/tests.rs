@@ -48,7 +48,7 @@ fn lengths(points: &Points) -> Vec<(Fields, usize)> {
     ]
 }
 
-/// The point as it should come out of columns `fields`.
+/// The point as restored from columns `fields`.
 fn kept(point: Point, fields: Fields) -> Point {
     let none = Point::default();
     Point {

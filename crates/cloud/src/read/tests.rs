@@ -1,13 +1,13 @@
 use super::*;
 
-/// What a file has, without what is counted beside it.
+/// The positions of a file, without its counts.
 fn places(format: Format, bytes: Vec<u8>) -> Result<Positions, ReadError> {
     positions(format, bytes).map(|read| read.positions)
 }
 use crate::tests::samples::{SharedOutput, cloud_from, metadata};
 use crate::{Fields, Sink};
 
-/// Points of a day that every format can say: ROS 2 ends in 2038.
+/// Points of a day that every format can represent: ROS 2 ends in 2038.
 fn cloud(count: u32) -> crate::Points {
     cloud_from(count, 1_700_000_000_000_000_000)
 }
@@ -58,8 +58,8 @@ fn every_prefix_of_a_file_is_an_error_or_its_first_points() {
     }
 }
 
-/// If any byte of a file changes, there is an error or there are points: nothing panics, and
-/// nothing is reserved that a header merely promises.
+/// A file with a changed byte gives an error or points, without a panic and without memory reserved
+/// by an unverified header.
 #[test]
 fn changed_bytes_never_panic() {
     let points = cloud(5);
@@ -116,7 +116,7 @@ fn pcd_files_of_other_programs_are_read() {
         binary.extend(row.iter().flat_map(|axis| axis.to_le_bytes()));
     }
     assert_eq!(places(Format::Pcd, binary).unwrap(), expected);
-    // Columns; the first, nine nines, as one and a copy that reaches into itself.
+    // Columns; the first, nine nines, as a literal and an overlapping copy.
     let mut packed = vec![0, 9, 6 << 5, 0];
     for axis in 0..3 {
         packed.push(11);
@@ -186,7 +186,7 @@ fn errors_name_offset_and_content() {
             "VERSION 0.7\nFIELDS a b\nSIZE 4 4\nTYPE F F\nPOINTS 1\nDATA ascii\n",
             "columns x, y and z",
         ),
-        // Nothing of nothing, without end.
+        // Very many elements of zero bytes.
         (
             Format::Ply,
             "ply\nformat binary_little_endian 1.0\nelement nothing 999999999999999999\nend_header\n",
@@ -213,7 +213,7 @@ fn errors_name_offset_and_content() {
     }
 }
 
-/// Rows without a place are left out and counted, whatever the format that can have them.
+/// Rows without finite positions are skipped and counted in every format that allows them.
 #[test]
 fn non_finite_rows_are_skipped_and_counted() {
     let ply = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\nnan nan nan\n4 inf 6\n7 8 9\n";

@@ -1,5 +1,5 @@
-//! The slow reader of CDR that tests hold the writer against: it knows alignment as a rule about
-//! positions, not as padding written.
+//! A slow CDR reader to test the writer: it derives alignment from positions, not from written
+//! padding.
 
 pub struct Reader<'a> {
     payload: &'a [u8],

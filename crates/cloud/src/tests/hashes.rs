@@ -1,6 +1,6 @@
-//! Type hashes, computed from the definitions: ROS 2's RIHS01 (REP 2016), the SHA-256 of a type's
-//! description and of all that it is made of, as JSON in the order and with the blanks that
-//! `rosidl` writes.
+//! Type hashes computed from the definitions: ROS 2's RIHS01 (REP 2016), the SHA-256 of the
+//! descriptions of a type and its referenced types, as JSON in the order and with the blanks of
+//! `rosidl`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
@@ -12,7 +12,7 @@ use crate::messages::{MessageType, TRIGGER, Topic};
 /// Type, name.
 type Field = (String, String);
 
-/// What a field is: id, capacity, nested type (`type_description_interfaces/msg/FieldType`).
+/// Type of a field: id, capacity, nested type (`type_description_interfaces/msg/FieldType`).
 fn kind(package: &str, text: &str) -> (u32, u32, String) {
     let (element, more, capacity) = match text.strip_suffix(']').and_then(|t| t.split_once('[')) {
         None => (text, 0, 0),
@@ -69,7 +69,7 @@ fn types(definition: &MessageType) -> BTreeMap<String, Vec<Field>> {
     all
 }
 
-/// What a type is, and what it is made of.
+/// A type and the types that it references.
 fn described(
     name: &str,
     all: &BTreeMap<String, Vec<Field>>,
@@ -128,8 +128,8 @@ fn message_hashes_match_their_definitions() {
     }
 }
 
-/// A service is hashed as the type that holds a request, a response and an event; the event is made
-/// for every service alike.
+/// A service is hashed as a type of request, response and event; the event is the same for every
+/// service.
 #[test]
 fn the_service_hash_matches_its_definition() {
     let (request, response) = TRIGGER.definition.split_once("---\n").unwrap();

@@ -1,4 +1,4 @@
-//! What tests of several modules share, and the type hashes of messages.
+//! Items shared by tests of several modules, and the type hashes of messages.
 
 pub mod cdr_reader;
 mod hashes;

@@ -337,7 +337,7 @@ mod tests {
         );
         assert!(few.rms_m < middle.rms_m && many.rms_m < few.rms_m);
         assert!(many.worst_m.is_finite() && many.worst_m >= many.rms_m);
-        // It finds most edges where it looks for them.
+        // Sub-rays find most edges.
         let found = of("5x3");
         assert!(found.wrong < many.wrong + 0.15, "{found:?} {many:?}");
     }

@@ -1,5 +1,5 @@
-//! Whatever is done to it, over whichever wire, the state machine moves only as the specification
-//! allows.
+//! With arbitrary actions on every interface the state machine makes only the transitions of the
+//! specification.
 
 extern crate std;
 use std::vec;
@@ -17,7 +17,7 @@ use super::super::table::TABLE;
 use super::super::{CanServer, Node, NodeConfig, UsbServer};
 use super::{get, state};
 
-/// What makes the state machine move.
+/// Cause of a transition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum By {
     Shutdown,
@@ -26,7 +26,7 @@ enum By {
     DisableVoltage,
     Quick,
     Reset,
-    /// Something has come to its end.
+    /// A motion, a brake delay or a fault reaction has ended.
     Time,
     Error,
     /// The quick-stop input.
@@ -35,8 +35,8 @@ enum By {
 }
 use By::*;
 
-/// The legal transitions, as the Firmware Specification's figure and tables of "Device Control"
-/// have them.
+/// The legal transitions by the figure and tables of "Device Control" in the Firmware
+/// Specification.
 const LEGAL: [(DeviceState, By, DeviceState); 41] = [
     (SwitchOnDisabled, Shutdown, ReadyToSwitchOn),
     (ReadyToSwitchOn, SwitchOn, SwitchedOn),
@@ -81,8 +81,8 @@ const LEGAL: [(DeviceState, By, DeviceState); 41] = [
     (FaultReactionDisabled, PowerOn, SwitchOnDisabled),
 ];
 
-/// The command of a controlword: bits 7, 3, 2, 1, 0, as the table "Device Control Commands" masks
-/// them.
+/// The command of a controlword: bits 7, 3, 2, 1, 0, masked as in the table "Device Control
+/// Commands".
 fn command_of(word: u32) -> By {
     const MASKS: [(u32, u32, By); 6] = [
         (0x80, 0x80, Reset),
@@ -102,7 +102,7 @@ fn command_of(word: u32) -> By {
 enum Doing {
     Write(Address, u32),
     Control(u16),
-    /// The same by RPDO 1, whose factory mapping is the controlword.
+    /// The same by RPDO 1, whose default mapping is the controlword.
     ControlByPdo(u16),
     /// The same by SDO.
     ControlBySdo(u16),
@@ -116,7 +116,7 @@ enum Doing {
 }
 
 impl Doing {
-    /// What may move the state machine by it.
+    /// The transitions that it may cause.
     fn causes(&self) -> Vec<By> {
         let control = |word: u32| vec![command_of(word), Error];
         match self {
@@ -126,7 +126,7 @@ impl Doing {
             }
             Self::Network(NmtCommand::ResetNode) => vec![PowerOn],
             Self::Tick(_) => vec![Time, Error, Input],
-            // A PDO may be mapped to anything by now, so it may be any command.
+            // The PDO may have any mapping, so it may be any command.
             Self::Frame(..) => vec![
                 Shutdown,
                 SwitchOn,
@@ -194,7 +194,7 @@ fn doing() -> impl Strategy<Value = Doing> {
     ]
 }
 
-/// The unit with its wires, and who looks on.
+/// The unit with its interfaces and the checks of its transitions.
 struct World {
     node: Node,
     can: CanServer,
@@ -237,7 +237,7 @@ impl World {
             .iter()
             .find(|(to, _)| from == OperationEnabled && now == *to)
         {
-            assert!(self.expected.contains(by), "{now} was not asked for");
+            assert!(self.expected.contains(by), "{now} has no cause");
         }
         self.expected.clear();
     }
@@ -267,7 +267,7 @@ impl World {
                 .write(objects::CONTROLWORD.address, u32::from(*word))
                 .unwrap(),
             Doing::ControlByPdo(word) => {
-                // It does what it says only from the factory.
+                // The default mapping may have been changed.
                 let mapped = self.node.read(Address::new(0x1600, 1)).unwrap().raw();
                 let count = self.node.read(Address::new(0x1600, 0)).unwrap().raw();
                 let id = self.node.read(Address::new(0x1400, 1)).unwrap().raw();
@@ -307,7 +307,7 @@ impl World {
             SwitchOnDisabled | ReadyToSwitchOn | SwitchedOn | Fault
         );
         let still = get(&self.node, objects::VELOCITY_DEMAND) == 0;
-        assert!(powered || still, "demand moves without power");
+        assert!(powered || still, "the demand moves without power");
     }
 
     fn tick(&mut self, causes: &[By], what: &Doing) {
@@ -316,7 +316,7 @@ impl World {
         assert_eq!(
             self.node.segment().start,
             before,
-            "a gap in the shaft's way"
+            "the shaft's position has a gap"
         );
         self.look(causes, what);
         self.can.poll(&mut self.node, &mut |_| {});

@@ -61,9 +61,9 @@ fn a_blocked_motor_is_a_following_error() {
     assert_eq!(
         get(&node, objects::POSITION_DEMAND),
         at,
-        "without power the demand is the shaft"
+        "without power the demand follows the shaft"
     );
-    // Free again it goes on from there, with nothing lost.
+    // Released, it continues from there without an error.
     node.unblock();
     command(&mut node, control::FAULT_RESET);
     assert!(!has(&node, status::FOLLOWING_ERROR));
@@ -106,7 +106,7 @@ fn the_following_error_limit_can_be_widened() {
     assert_eq!(
         get(&node, objects::CURRENT_ACTUAL),
         25_000,
-        "6410:2 holds it"
+        "6410:2 limits the current"
     );
 }
 
@@ -151,7 +151,7 @@ fn homing_finds_the_mechanical_stops_by_current() {
                 "{method}"
             );
             assert_eq!(position(&node), 12_345);
-            // The threshold (2080) is 500 mA, seen once a millisecond at 10 qc/ms.
+            // The threshold (2080) is 500 mA, checked every millisecond at 10 qc/ms.
             assert!((500..=560).contains(&most), "{most}");
         }
     }

@@ -1,7 +1,7 @@
 //! The object dictionary against the device description (EDS) of an EPOS2 70/10, entry by entry, as
-//! a client finds it: existence, type, access, factory value, limits and mappability, each with the
-//! abort code of its refusal. `objects.txt` is the description, without names; the dictionary's own
-//! table is not looked at here.
+//! a client reads it: existence, type, access, default value, limits and mappability, each with its
+//! abort code. `objects.txt` is the description without names; the dictionary's own table is not
+//! used here.
 
 extern crate std;
 use std::collections::BTreeMap;
@@ -12,7 +12,7 @@ use protocol::epos2::objects::Address;
 use super::super::{Abort, Node};
 use super::healthy;
 
-/// An entry as described.
+/// An entry of the description.
 struct Described {
     address: Address,
     /// Bytes of a number; 0 for a text or a domain.
@@ -38,7 +38,7 @@ fn described() -> Vec<Described> {
             };
             let bits: usize = ty[1..].parse().unwrap_or(0);
             let signed = ty.starts_with('I');
-            // The description writes negative numbers as the bits that they are.
+            // The description writes negative numbers as bits.
             let number = |text: &str| {
                 (text != "-").then(|| {
                     let value = number(text);
@@ -67,7 +67,7 @@ fn described() -> Vec<Described> {
         .collect()
 }
 
-/// Decimal or hexadecimal, negative too, the node id added where it says so.
+/// Decimal or hexadecimal, possibly negative, with the node id added where stated.
 fn number(text: &str) -> i64 {
     let (text, plus) = match text.strip_prefix("$NODEID+") {
         Some(rest) => (rest, 1),
@@ -93,13 +93,13 @@ fn value(node: &Node, entry: &Described) -> i64 {
     }
 }
 
-/// Writes a number in so many bytes.
+/// Writes a number with this many bytes.
 fn write(node: &mut Node, entry: &Described, number: i64, bytes: usize) -> Result<(), Abort> {
     node.write_bytes(entry.address, &number.to_le_bytes()[..bytes])
 }
 
-/// What is refused although type, access and limits allow it: signatures, process data in use, what
-/// nothing can be stored in.
+/// Writes refused although type, access and limits allow them: signatures, enabled process data,
+/// entries without storage.
 fn needs_more(entry: &Described) -> bool {
     matches!(
         entry.address.index,
@@ -182,7 +182,7 @@ fn writes_respect_access_length_and_limits() {
             (entry.high.map(|high| high + 1), Abort::TOO_HIGH),
             (entry.low.map(|low| low - 1), Abort::TOO_LOW),
         ] {
-            // Beyond what the type holds there is nothing to refuse.
+            // Values outside the type's range cannot be written.
             let bits = 8 * bytes - usize::from(entry.signed);
             let least = if entry.signed { -(1 << bits) } else { 0 };
             let Some(outside) = outside.filter(|it| (least..1 << bits).contains(it)) else {

@@ -1,6 +1,5 @@
-//! The serial interfaces against bytes that were not made here: frames of the Communication Guide's
-//! format as a real unit and its tools exchange them, and a checksum computed the slow way, bit by
-//! bit.
+//! The serial interfaces against independent bytes: frames in the Communication Guide's format as a
+//! real unit and its tools exchange them, with a checksum computed bit by bit.
 
 extern crate std;
 use std::vec::Vec;
@@ -22,7 +21,7 @@ fn crc(bytes: &[u8]) -> u16 {
     crc
 }
 
-/// The checksum goes over words, high byte first; on the wire they stand low byte first.
+/// The checksum covers words high byte first; on the wire they are low byte first.
 fn over_words(header: [u8; 2], data: &[u8]) -> u16 {
     let swapped = data.chunks(2).flat_map(|word| [word[1], word[0]]);
     crc(&header.into_iter().chain(swapped).collect::<Vec<_>>())
@@ -41,7 +40,7 @@ fn usb_body(frame: &[u8]) -> Vec<u8> {
     }
     let (content, sum) = body.split_at(body.len() - 2);
     assert_eq!(content.len(), 2 + 2 * usize::from(content[1]));
-    // USB feeds the length first, then the opcode.
+    // On USB the checksum covers the length before the opcode.
     let expected = over_words([content[1], content[0]], &content[2..]);
     assert_eq!(sum, expected.to_le_bytes());
     content.to_vec()
@@ -58,7 +57,7 @@ fn usb(node: &mut Node, request: &[u8]) -> Vec<u8> {
 
 #[test]
 fn usb_frames_match_golden_bytes() {
-    // The frames themselves say how the checksum goes.
+    // The frames confirm the order of the checksum.
     for frame in [
         "90020004000000003702000068 00",
         "900200040000020600000000 5764",
@@ -132,7 +131,7 @@ fn rs232(node: &mut Node, request: &[u8]) -> Vec<u8> {
     assert_eq!(send(b"O", node), b"");
     let (content, sum) = out.split_at(out.len() - 2);
     assert_eq!(content.len(), 3 + 2 * usize::from(content[0]));
-    // RS232 feeds the opcode first, then the length less one.
+    // On RS232 the checksum covers the opcode, then the length minus one.
     let expected = over_words([0x00, content[0]], &content[1..]);
     assert_eq!(sum, expected.to_le_bytes());
     out
@@ -152,7 +151,7 @@ fn rs232_frames_match_golden_bytes() {
         node.read(objects::CONTROLWORD.address).unwrap().raw(),
         Some(0x0F)
     );
-    // A wrong checksum is refused and nothing is done.
+    // A wrong checksum is refused without effect.
     let mut out = Vec::new();
     let wrong = hex("11 03 4060 0001 0000 0000 52EF");
     Rs232Server::new(9).input(&mut node, &wrong, &mut |bytes: &[u8]| {

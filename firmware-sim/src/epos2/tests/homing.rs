@@ -48,7 +48,7 @@ fn with_home_switch(at: i32) -> Node {
 
 #[test]
 fn homing_methods_find_their_reference() {
-    // Method, start, world position of the reference, tolerance (the edge is seen once a
+    // Method, start, world position of the reference, tolerance (inputs are sampled every
     // millisecond).
     let cases: [(i8, i32, i64, i64); 24] = [
         (17, 0, -43_333, 2),
@@ -59,10 +59,10 @@ fn homing_methods_find_their_reference() {
         (2, 0, 42_700, 0),
         (23, 0, 4_999, 2),
         (23, 5_500, 4_999, 2),
-        (23, 20_000, 4_999, 2), // turns at the positive limit
+        (23, 20_000, 4_999, 2), // reverses at the positive limit
         (27, 20_000, 6_001, 2),
         (27, 5_500, 6_001, 2),
-        (27, 0, 6_001, 2), // turns at the negative limit
+        (27, 0, 6_001, 2), // reverses at the negative limit
         (7, 0, 4_700, 0),
         (7, 20_000, 4_700, 0),
         (7, 5_999, 4_700, 0),

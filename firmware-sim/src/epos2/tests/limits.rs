@@ -28,7 +28,7 @@ fn a_limit_switch_in_the_execution_mask_stops_the_axis_which_can_move_away() {
     assert_eq!(
         get(&node, objects::ERROR_COUNT),
         1,
-        "one switch, one error, however long the ramp"
+        "one switch gives one error, independent of the ramp"
     );
     assert_eq!(get(&node, objects::ERROR_REGISTER) & 0x80, 0x80);
     let at = position(&node);
@@ -58,12 +58,12 @@ fn input_mask_and_polarity_take_effect() {
     assert_eq!(
         get(&node, objects::INPUT_STATE),
         3,
-        "open contacts are active now"
+        "open contacts are active"
     );
     set(&mut node, objects::INPUT_MASK, 0x0001);
     node.tick();
     assert_eq!(get(&node, objects::INPUT_STATE), 1);
-    // A purpose that no input has.
+    // A function without an input.
     set(&mut node, objects::INPUT_6, 15);
     node.tick();
     assert_eq!(get(&node, objects::INPUT_STATE), 0);
@@ -99,7 +99,8 @@ fn software_limits_refuse_targets_and_stop_an_axis_that_crosses_them() {
     enable(&mut node);
     go(&mut node, 10_000, control::START_ABSOLUTE);
     arrive(&mut node);
-    // At full speed towards the limit a target right behind it needs more than there is to brake.
+    // At full speed towards the limit a target just past it needs more braking distance than
+    // available.
     go(&mut node, -10_000, control::START_ABSOLUTE);
     arrive(&mut node);
     set(&mut node, objects::MAX_POSITION, 0);
@@ -109,7 +110,7 @@ fn software_limits_refuse_targets_and_stop_an_axis_that_crosses_them() {
     go(&mut node, -100, control::START_ABSOLUTE_AT_ONCE);
     until(&mut node, 5000, |node| state(node) == DeviceState::Fault);
     assert_eq!(get(&node, objects::ERROR_HISTORY_1), 0xFF09);
-    // And back inside from outside.
+    // Back into the range from outside.
     assert!(position(&node) > 0);
     command(&mut node, control::FAULT_RESET);
     enable(&mut node);
@@ -126,7 +127,7 @@ fn the_brake_opens_before_and_closes_after() {
     assert_eq!(
         node.brake(),
         BrakeState::Absent,
-        "the output mask holds it back"
+        "the output mask disables it"
     );
     set(&mut node, objects::OUTPUT_MASK, 1 << 2);
     set(&mut node, objects::BRAKE_RISE, 50);
@@ -174,7 +175,7 @@ fn waiting_for_standstill_ends_at_its_timeout() {
     command(&mut node, control::SWITCH_ON);
     let took = until(&mut node, 1_000, |node| node.brake() == BrakeState::Closed);
     assert!((200..203).contains(&took), "{took}");
-    // A fault reaction that ramps takes the same way.
+    // A fault reaction with a ramp does the same.
     until(&mut node, 100, |node| {
         state(node) == DeviceState::SwitchedOn
     });

@@ -1,4 +1,4 @@
-//! The unit through its object dictionary alone, as a client sees it.
+//! The unit through its object dictionary, as seen by a client.
 
 mod access;
 mod anything;
@@ -53,7 +53,7 @@ fn ticks(node: &mut Node, n: usize) {
     }
 }
 
-/// Ticks until `done`, and how many it took.
+/// Ticks until `done`. Returns the number of ticks.
 fn until(node: &mut Node, most: usize, done: impl Fn(&Node) -> bool) -> usize {
     for n in 0..most {
         if done(node) {

@@ -17,7 +17,7 @@ fn the_papers_sweep_takes_its_time() {
     assert!(!has(&node, status::SETPOINT_ACKNOWLEDGE));
     let mut fastest = 0;
     let took = until(&mut node, 2000, |node| has(node, status::TARGET_REACHED));
-    // 45 deg at 56.25 deg/s and one ramp of 0.1125 s, one cycle to begin and one to notice.
+    // 45 deg at 56.25 deg/s and one ramp of 0.1125 s, one cycle to start and one to detect the end.
     assert!((913..917).contains(&took), "{took}");
     assert_eq!(position(&node), 30_000);
     go(&mut node, 0, control::START_ABSOLUTE);
@@ -52,7 +52,10 @@ fn a_setpoint_waits_for_the_move_unless_immediate() {
     go(&mut node, 10_000, control::START_ABSOLUTE);
     ticks(&mut node, 150);
     go(&mut node, 5_000, control::START_ABSOLUTE);
-    assert!(!has(&node, status::SETPOINT_ACKNOWLEDGE), "not taken yet");
+    assert!(
+        !has(&node, status::SETPOINT_ACKNOWLEDGE),
+        "not accepted yet"
+    );
     until(&mut node, 1000, |node| {
         has(node, status::SETPOINT_ACKNOWLEDGE)
     });
@@ -93,7 +96,7 @@ fn halt_stops_and_cancels_the_move() {
     assert!((100..104).contains(&took), "{took}");
     let at = position(&node);
     assert!(at < 12_000);
-    // No setpoint is taken at a halt.
+    // Setpoints are not accepted during a halt.
     command(&mut node, control::HALT_MOTION | control::NEW_SETPOINT);
     command(&mut node, control::ENABLE_OPERATION);
     ticks(&mut node, 500);

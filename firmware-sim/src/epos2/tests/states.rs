@@ -16,7 +16,7 @@ fn enabling_and_disabling_pass_through_every_state() {
     assert_eq!(
         state(&node),
         DeviceState::SwitchOnDisabled,
-        "no way up without shutdown"
+        "enabling requires a shutdown command first"
     );
     command(&mut node, control::SHUTDOWN);
     assert_eq!(state(&node), DeviceState::ReadyToSwitchOn);
@@ -63,7 +63,7 @@ fn the_fault_of_a_unit_without_can_is_cleared_by_a_rising_bit_7() {
     command(&mut node, control::FAULT_RESET);
     assert_eq!(state(&node), DeviceState::SwitchOnDisabled);
     assert_eq!(get(&node, objects::ERROR_REGISTER), 0);
-    assert_eq!(get(&node, objects::ERROR_COUNT), 1, "the history stays");
+    assert_eq!(get(&node, objects::ERROR_COUNT), 1, "the history is kept");
     // The bit is still set: no edge, no reset.
     node.inject(DeviceError::OVERVOLTAGE);
     command(&mut node, control::FAULT_RESET);
@@ -83,7 +83,7 @@ fn errors_that_ramp_and_errors_that_do_not() {
     ] {
         let mut node = enabled();
         go(&mut node, 100_000, control::START_ABSOLUTE);
-        ticks(&mut node, 300); // 1000 rpm since 100 ms
+        ticks(&mut node, 300); // 1000 rpm are reached after 100 ms
         node.inject(error);
         let at = position(&node);
         let expected = if ramps {

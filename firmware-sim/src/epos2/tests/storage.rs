@@ -1,4 +1,4 @@
-//! What outlives power-off and what does not, and the configuration of process data.
+//! Values that survive power-off and values that do not, and the configuration of process data.
 
 use protocol::canopen::nmt::NmtCommand;
 use protocol::canopen::nmt::NmtState;
@@ -38,9 +38,13 @@ fn only_saved_values_survive_power_off() {
     assert_eq!(
         get(&node, objects::PROFILE_ACCELERATION),
         10_000,
-        "was not saved"
+        "not saved"
     );
-    assert_eq!(get(&node, objects::TARGET_POSITION), 0, "is no parameter");
+    assert_eq!(
+        get(&node, objects::TARGET_POSITION),
+        0,
+        "not a stored parameter"
+    );
 }
 
 #[test]
@@ -64,7 +68,7 @@ fn a_node_id_takes_effect_at_power_on() {
     set(&mut node, objects::NODE_ID, 5);
     assert_eq!(node.node_id(), 1);
     node.power_cycle();
-    assert_eq!(node.node_id(), 1, "was not saved");
+    assert_eq!(node.node_id(), 1, "not saved");
     set(&mut node, objects::NODE_ID, 5);
     set(&mut node, objects::STORE_ALL, objects::SAVE);
     node.power_cycle();
@@ -96,10 +100,10 @@ fn a_communication_reset_leaves_other_objects_unchanged() {
 #[test]
 fn the_mapping_procedure_requires_its_order() {
     let mut node = healthy();
-    // In use, the mapping does not change.
+    // The mapping of an enabled PDO cannot be changed.
     assert_eq!(write(&mut node, 0x1A00, 0, 0), Err(Abort::STATE));
     write(&mut node, 0x1800, 1, 0xC000_0181).unwrap();
-    // Nor do entries that are in force.
+    // Entries cannot be changed while the mapping counts them.
     assert_eq!(write(&mut node, 0x1A00, 1, 0x6064_0020), Err(Abort::STATE));
     write(&mut node, 0x1A00, 0, 0).unwrap();
     write(&mut node, 0x1A00, 1, 0x6064_0020).unwrap();
@@ -111,7 +115,7 @@ fn the_mapping_procedure_requires_its_order() {
     assert_eq!(
         write(&mut node, 0x1A00, 0, 4),
         Err(Abort::PDO_MAPPING),
-        "the fourth is empty"
+        "the fourth entry is empty"
     );
     write(&mut node, 0x1A00, 0, 2).unwrap();
     write(&mut node, 0x1800, 2, 1).unwrap();
@@ -151,7 +155,7 @@ fn unmappable_objects_are_refused() {
 fn pdo_identifiers_are_validated() {
     let mut node = healthy();
     for (raw, expected) in [
-        (0x4000_0182, Err(Abort::RANGE)), // another while in use
+        (0x4000_0182, Err(Abort::RANGE)), // another identifier while enabled
         (0x2000_0181, Err(Abort::RANGE)), // 29 bits
         (0x4000_1181, Err(Abort::RANGE)), // 12 bits
         (0x0000_0181, Ok(())),

@@ -34,7 +34,7 @@ fn the_axis_ramps_to_its_speed_and_keeps_it() {
     assert!((50..53).contains(&took), "{took}");
     let from = position(&node);
     ticks(&mut node, 1000);
-    // 600 rpm are 20 qc a ms.
+    // 600 rpm are 20 qc/ms.
     assert_eq!(position(&node) - from, -20_000);
     assert_eq!(velocity(&node), -600);
 }
@@ -107,7 +107,7 @@ fn the_velocity_window_counts_its_time() {
     set(&mut node, WINDOW, 100);
     set(&mut node, WINDOW_TIME, 20);
     let took = until(&mut node, 500, |node| has(node, status::TARGET_REACHED));
-    // 900 rpm after 90 ms, then 20 more.
+    // 900 rpm after 90 ms, then 20 ms more.
     assert!((110..114).contains(&took), "{took}");
 }
 
@@ -151,7 +151,7 @@ fn a_blocked_shaft_draws_the_limit_current_without_a_following_error() {
     let held = position(&node);
     node.unblock();
     ticks(&mut node, 30);
-    // No jump: on from where it was held, 33.3 qc a ms.
+    // No jump: it continues from the blocked position at 33.3 qc/ms.
     assert!((950..1_050).contains(&(position(&node) - held)));
     assert_eq!(
         (velocity(&node), get(&node, objects::CURRENT_ACTUAL)),

@@ -12,8 +12,8 @@ fn free(points: &[DVec3], centre: DVec3) -> f64 {
     angles.fold(f64::INFINITY, f64::min)
 }
 
-/// By trying the circle through every three points, every two as its diameter's ends, and the far
-/// side of every one.
+/// Tries the circle through every three points, the circle on every two points as diameter, and the
+/// antipode of every point.
 fn slow(points: &[DVec3]) -> f64 {
     let mut largest = 0.0_f64;
     let mut attempt = |direction: DVec3| {
@@ -41,7 +41,7 @@ fn at(z: f64, turn: f64) -> DVec3 {
 
 fn largest(points: &[DVec3]) -> LargestHole {
     let largest = largest_hole(points, TOLERANCE_RAD).unwrap().unwrap();
-    // What it says of its hole is true.
+    // The reported hole is correct.
     let hole = largest.hole;
     assert!((free(points, hole.centre) - hole.radius_rad).abs() < 3e-8);
     assert!(hole.radius_rad <= largest.bound_rad);
@@ -56,7 +56,7 @@ proptest! {
     fn the_largest_hole_agrees_with_trying_all_circles(
         points in prop::collection::vec((-1.0..1.0_f64, 0.0..TAU), 1..25), squeeze in prop_oneof![Just(1.0), Just(0.3), Just(1e-3), Just(0.0)],
     ) {
-        // Squeezed, they lie near one circle or one point; at 0 on the equator.
+        // Scaled in z, the points lie near one circle or one point; at 0 on the equator.
         let points: Vec<DVec3> = points.iter().map(|&(z, turn)| at(z * squeeze, turn)).collect();
         let (found, slow) = (largest(&points), slow(&points));
         prop_assert!((found.hole.radius_rad - slow).abs() < 1.01 * TOLERANCE_RAD, "{:?} {slow}", found);
@@ -89,7 +89,7 @@ fn holes_of_zero_one_and_two_points() {
 
 #[test]
 fn holes_of_rings_are_centred_on_the_pole() {
-    // More points that touch the hole than are tried by threes.
+    // More points touch the hole than are tried in triples.
     let ring = |n: u32, z: f64| (0..n).map(move |k| at(z, TAU * f64::from(k) / f64::from(n)));
     let points: Vec<DVec3> = ring(900, 0.5).chain(ring(900, -0.9)).collect();
     let found = largest(&points);
@@ -130,7 +130,7 @@ fn removing_a_point_leaves_a_hole_in_its_place() {
         })
         .collect();
     let before = largest(&points).hole;
-    // Six points a point: 0.83 of the spacing sqrt(4 pi / n), and at the poles somewhat more.
+    // Six neighbours per point: 0.83 of the spacing sqrt(4 pi / n), and slightly more at the poles.
     assert!(before.radius_rad < 1.1 * (4.0 * PI / f64::from(n)).sqrt());
     let out = points.swap_remove(31_234);
     let after = largest(&points).hole;
@@ -148,17 +148,16 @@ fn invalid_directions_are_refused_by_index() {
     );
 }
 
-/// Deep in the belt within so many radians of the equator.
+/// Depth in the belt within this many radians of the equator.
 fn belt(half_rad: f64) -> impl Fn(DVec3) -> f64 {
     move |direction| half_rad - direction.z.clamp(-1.0, 1.0).asin().abs()
 }
 
 #[test]
 fn a_region_counts_only_holes_inside_it() {
-    // At the edge there may be as much room all along: a coarser tolerance, or it takes millions of
-    // cells.
+    // Along the edge holes may be equally large: a coarser tolerance avoids millions of cells.
     const TOLERANCE: f64 = 1e-4;
-    // Rings at 40 and -40 deg and a few points between: the poles are the largest holes, but not of
+    // Rings at 40 and -40 deg and a few points between: the largest holes are the poles, outside
     // the belt.
     let ring = |z: f64| (0..400).map(move |k| at(z, TAU * f64::from(k) / 400.0));
     let (sin, degrees) = (40_f64.to_radians().sin(), 1_f64.to_radians());
@@ -172,7 +171,7 @@ fn a_region_counts_only_holes_inside_it() {
         assert!(belt(half_rad)(found.hole.centre) > -TOLERANCE);
         assert!((free(&points, found.hole.centre) - found.hole.radius_rad).abs() < 3e-8);
         assert!(found.bound_rad - found.hole.radius_rad <= 1.01 * TOLERANCE);
-        // No place of a fine lattice in the region has more room.
+        // No centre of a fine grid in the region has a larger hole.
         let lattice = (-30..=30).flat_map(|z| (0..360).map(move |a| (z, a)));
         let most = lattice
             .map(|(z, a)| {
@@ -187,8 +186,8 @@ fn a_region_counts_only_holes_inside_it() {
         assert!(found.hole.radius_rad - most < degrees, "{most} {found:?}");
         found.hole.radius_rad
     };
-    // The widest gap between two of the few is 73.5 deg, around +-143 deg; and to where it is the
-    // poles' turn.
+    // The widest gap between two of these points is 73.5 deg, around +-143 deg, up to where the
+    // poles are the largest hole.
     assert!(within(2.0 * degrees) < within(20.0 * degrees) + TOLERANCE);
     assert!((within(85.0 * degrees) - 45.0 * degrees).abs() < 0.1 * degrees);
     let nowhere = largest_hole_within(&points, TOLERANCE_RAD, &|_| -2.0).unwrap();

@@ -1,4 +1,4 @@
-//! Cosines of edges against fractions of any length.
+//! Cosines of edges against arbitrary-precision fractions.
 
 use num_rational::BigRational;
 
@@ -23,7 +23,7 @@ fn pi() -> BigRational {
     whole(digits) / scale()
 }
 
-/// To 10^-100, all terms of the series, each cut to 119 places.
+/// All terms of the series down to 10^-100, each truncated to 119 digits.
 pub(super) fn cosine(part: u32, parts: u32) -> BigRational {
     let cut = |x: BigRational| (x * scale()).trunc() / scale();
     let x = pi() * exact(f64::from(part)) / exact(f64::from(parts));

@@ -1,5 +1,4 @@
-//! The same counts by any registers, on any number of threads, by whole scans and by the turning of
-//! their frames.
+//! Equal counts for every SIMD level and number of threads, for whole scans and for rotated frames.
 
 use std::f64::consts::PI;
 use std::num::NonZeroUsize;
@@ -13,7 +12,7 @@ use crate::k::{
     Edges, FrameRotation, KError, MOST_FRAMES, Registers, exact, exact_by, plain, turned, turned_by,
 };
 
-/// What this processor has, and less.
+/// The SIMD levels of this processor.
 pub(super) const REGISTERS: [Registers; 4] = [
     Registers::Best,
     Registers::Avx2,
@@ -57,8 +56,8 @@ fn counting_by_rotated_frames_agrees_with_counting_points() {
         .flat_map(|frame| frame[..203].to_vec())
         .collect();
     let rotation = rotation(9, PI / 9.0);
-    // 180 and 36 bins have edges at every frame's step: pairs on them go to either side by
-    // roundings.
+    // 180 and 36 bins have edges at the rotation of every frame: rounding decides the side of pairs
+    // on them.
     for bins in [1, 36, 151, 180] {
         let edges = Edges::equal(bins).unwrap();
         let one_by_one = plain(&points, &edges).unwrap();
@@ -115,8 +114,7 @@ fn frames_that_do_not_match_the_rotation_are_refused() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
-    /// Clusters of any size, here and at the antipodes, some in the same place, in any number of
-    /// bins.
+    /// Clusters of any size, also at antipodes and with coincident points, in any number of bins.
     #[test]
     fn clusters_agree_with_pair_by_pair_counting(
         sizes in prop::collection::vec((1..60_usize, 1e-9..2.0_f64, 0..1000_u64), 1..6),

@@ -1,4 +1,4 @@
-//! Faster methods against every pair: their bounds hold.
+//! The bounds of faster methods hold against counting every pair.
 
 use std::f64::consts::PI;
 
@@ -11,7 +11,7 @@ use crate::k::{
     estimate, exact, harmonics, sampled,
 };
 
-/// How often a share is farther off than its bound, and by how much it is off at most.
+/// The number of shares whose error exceeds the bound, and the largest error.
 fn against(of: &Estimate, exact: &Estimate) -> (usize, f64) {
     assert_eq!(of.shares.len(), exact.shares.len());
     let off = of
@@ -52,8 +52,8 @@ fn patterns() -> [Vec<DVec3>; 4] {
 
 #[test]
 fn sampled_estimates_are_within_their_confidence_intervals() {
-    // 4 patterns, 2 kinds of bins, 12 seeds at a risk of 1 in 20: 96 intervals, of which 4.8 may
-    // fail. Bernstein is careful: none does.
+    // 4 patterns, 2 kinds of bins, 12 seeds at a risk of 1 in 20: 4.8 of 96 intervals may fail.
+    // Bernstein's bound is conservative: none does.
     for points in patterns() {
         for bins in [12, 151] {
             let truth: Estimate = counted(&points, bins).into();
@@ -78,7 +78,7 @@ fn sampled_estimates_are_within_their_confidence_intervals() {
                 }
                 bound = bound.max(of.bound.largest());
             }
-            // Right in the mean: twelve draws' mean is nearer than the bound of one.
+            // Unbiased: the mean of twelve draws is closer than the bound of one.
             for (mean, share) in mean.iter().zip(&truth.shares) {
                 assert!((mean - share).abs() < bound / 2.0, "{mean} {share} {bound}");
             }
@@ -86,7 +86,7 @@ fn sampled_estimates_are_within_their_confidence_intervals() {
     }
 }
 
-/// Eight frames of an RMBL, and what is so of them.
+/// Eight frames of an RMBL, bin edges, and the exact estimate.
 fn counted_rmbl() -> (Vec<DVec3>, Edges, Estimate) {
     let points = rmbl(8);
     let rotation = FrameRotation {
@@ -114,8 +114,7 @@ fn a_sampled_rmbl_is_within_a_ten_thousandth() {
     assert!((of.d_min - truth.d_min).abs() <= of.d_error_bound);
 }
 
-/// No bound is claimed of harmonics: how far off they are of scans is what was measured, and their
-/// own `Estimate` says that it is not known.
+/// Harmonics have no proven bound: these errors are measured, and their `Estimate` has none.
 #[test]
 fn harmonics_are_accurate_for_smooth_point_distributions() {
     let (points, edges, truth) = counted_rmbl();
@@ -154,8 +153,8 @@ fn samples_detect_pairs_on_bin_edges() {
 #[test]
 fn harmonics_of_few_points_are_bounded() {
     let edges = Edges::equal(12).unwrap();
-    // Two points at the poles of the harmonics, alike, opposite, and anywhere: a series of a step,
-    // which is near 1/2 at the step and right away from it.
+    // Two points, coincident or opposite at the poles of the harmonics, or elsewhere: the series of
+    // a step function is near 1/2 at the step and exact away from it.
     for (a, b, at) in [
         (DVec3::Z, DVec3::Z, 0),
         (DVec3::Z, DVec3::NEG_Z, 11),
@@ -169,7 +168,7 @@ fn harmonics_of_few_points_are_bounded() {
             assert!(near || (share - step).abs() < 0.1, "{a} {b}: {bin} {share}");
         }
     }
-    // All in one place, with a clamp on what a series overshoots.
+    // Coincident points, with the overshoot of the series clamped.
     let of = harmonics(&[DVec3::NEG_Y; 70], &edges, 64).unwrap();
     assert!(
         of.shares.iter().skip(2).all(|share| *share > 0.88),
@@ -200,7 +199,7 @@ fn the_cheapest_sufficient_method_is_chosen() {
     assert_eq!(of(1_037_952, Some(&rotation), 0.0, 0.1), KMethod::Turned);
     assert_eq!(of(1_037_952, None, 1e-4, 1e-3), KMethod::Sampled);
     assert_eq!(of(1_037_952, Some(&rotation), 1e-4, 1e-3), KMethod::Sampled);
-    // Without any risk every pair is counted.
+    // With a risk of zero every pair is counted.
     assert_eq!(of(1_037_952, None, 0.1, 0.0), KMethod::Exact);
     assert_eq!(of(1_037_952, None, 1e-4, 0.0), KMethod::Exact);
     assert_eq!(of(1_037_952, None, f64::NAN, 0.1), KMethod::Exact);

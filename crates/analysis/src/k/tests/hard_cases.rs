@@ -1,4 +1,4 @@
-//! Hard cases, each by name.
+//! Hard cases, one test each.
 
 use std::f64::consts::PI;
 use std::num::NonZeroUsize;
@@ -16,8 +16,8 @@ pub(super) fn counted(points: &[DVec3], bins: usize) -> PairCounts {
     exact(points, &Edges::equal(bins).unwrap(), ONE).unwrap()
 }
 
-/// The definition in fractions: the least bin whose upper edge's cosine is not above the dot
-/// product; the last takes the rest.
+/// The definition in fractions: the first bin whose upper edge's cosine does not exceed the dot
+/// product, else the last bin.
 fn bin_by_fractions(a: DVec3, b: DVec3, edges: &[BigRational]) -> usize {
     let exact = |x: f64| BigRational::from_float(x).unwrap();
     let dot = exact(a.x) * exact(b.x) + exact(a.y) * exact(b.y) + exact(a.z) * exact(b.z);
@@ -25,7 +25,7 @@ fn bin_by_fractions(a: DVec3, b: DVec3, edges: &[BigRational]) -> usize {
     bin.unwrap_or(edges.len())
 }
 
-/// Cosines to 10^-100, those that are rational exactly.
+/// Cosines to 10^-100; rational ones are exact.
 fn edges_in_fractions(bins: u32) -> Vec<BigRational> {
     let of = |j: u32| match (2 * j == bins, 3 * j == bins, 3 * j == 2 * bins) {
         (true, _, _) => BigRational::from_float(0.0).unwrap(),
@@ -76,8 +76,8 @@ fn coincident_pairs_are_in_the_first_bin_and_antipodal_ones_in_the_last() {
 
 #[test]
 fn points_on_one_circle_are_counted_exactly() {
-    // 755 points on the equator: steps of 0.2 bins; five steps are one edge, and the pairs on it go
-    // to either side by their last bit.
+    // 755 points on the equator: steps of 0.2 bins. Five steps are one edge, where the last bit
+    // decides the side of a pair.
     let on = |i: u32| {
         let (sin, cos) = (f64::from(i) * PI / 377.5).sin_cos();
         DVec3::new(cos, sin, 0.0)
@@ -108,8 +108,7 @@ fn points_at_the_poles_are_counted_exactly() {
 
 #[test]
 fn pairs_on_an_edge_belong_to_the_bin_of_smaller_angles() {
-    // Dot products 0, 1/2, -1/2 and -1 without any rounding, scaled by nothing: 60, 90, 120 and 180
-    // degrees.
+    // Dot products 0, 1/2, -1/2 and -1 without rounding or scaling: 60, 90, 120 and 180 degrees.
     let half = 0.5;
     let points = [
         DVec3::X,
@@ -126,7 +125,7 @@ fn pairs_on_an_edge_belong_to_the_bin_of_smaller_angles() {
         }
         assert_eq!(counts.counts, expected, "{bins} bins");
     }
-    // One bit of the dot product further, on either side; far below the last bit of a rounded sum.
+    // One bit of the dot product to either side, far below the last bit of a rounded sum.
     let edges = Edges::equal(2).unwrap();
     for (z, bin) in [(1e-100, 0), (0.0, 0), (-1e-100, 1)] {
         let a = DVec3::new(1.0, 0.0, 1e-5);
@@ -148,8 +147,8 @@ fn pairs_on_edges_are_counted_separately() {
 
 #[test]
 fn f32_f64_and_exact_fractions_agree_on_a_grid() {
-    // A VLP-16 of 24 degrees a step and a second one, tilted: many pairs on edges of 180 and 150
-    // bins, and of those of 15 and 30.
+    // A VLP-16 with 24 degrees per step and a second, tilted one: many pairs on edges of 180 and
+    // 150 bins, and of 15 and 30 bins.
     let frame = vlp16(901);
     let mut grid: Vec<DVec3> = frame.chunks(16).step_by(60).flatten().copied().collect();
     let second: Vec<DVec3> = tilted(&grid, 30.0).collect();
@@ -175,8 +174,8 @@ fn f32_f64_and_exact_fractions_agree_on_a_grid() {
 
 #[test]
 fn angles_near_zero_and_pi_keep_their_precision() {
-    // Bins of 5.5e-3 degrees: the first edge's cosine is 4.6e-9 below 1, of which f32 knows
-    // nothing.
+    // Bins of 5.5e-3 degrees: the first edge's cosine is 4.6e-9 below 1, less than the resolution
+    // of f32.
     let edges = Edges::equal(32_768).unwrap();
     let fraction_of_bin = |share: f64| {
         let (sin, cos) = (share * PI / 32_768.0).sin_cos();
@@ -230,7 +229,7 @@ fn a_subset_of_an_rmbl_agrees_with_pair_by_pair_counting() {
 #[test]
 fn counters_exceed_32_bits() {
     // 92,682 points have 4,294,930,221 pairs and 92,683 have 4,295,022,903: 2^32 is between them.
-    // All in one place, and in two places a quarter turn apart.
+    // All points in one place, and in two places 90 degrees apart.
     for (points, pairs) in [(92_682, 4_294_930_221), (92_683, 4_295_022_903)] {
         let same = counted(&vec![DVec3::Y; points], 151);
         assert_eq!((same.counts[0], same.pairs()), (pairs, pairs));
@@ -240,7 +239,7 @@ fn counters_exceed_32_bits() {
         let two = counted(&two, 151);
         assert_eq!((two.counts[0], two.counts[75]), (pairs - between, between));
     }
-    // The most points there may be: the number of pairs still fits.
+    // The largest number of points: the number of pairs fits.
     let most = crate::k::counts::pairs(u32::MAX as usize);
     assert_eq!(most, (u32::MAX as u64 - 1) / 2 * u32::MAX as u64);
 }

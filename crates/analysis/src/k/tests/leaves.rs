@@ -1,5 +1,5 @@
-//! The shortcuts of leaves: outlines, loops by numbers of edges, packed notes; against every pair
-//! by itself.
+//! The fast paths of leaves (outlines, loops by number of edges, packed sign masks) against
+//! counting every pair.
 
 use std::f64::consts::PI;
 
@@ -12,7 +12,7 @@ use super::patterns::{rmbl, scattered};
 use crate::k::outline::{self, Outline, Outlines};
 use crate::k::{Edges, FrameRotation, exact_by, plain, turned_by};
 
-/// So many points as wide about a middle; as wide as 4 and more: all around.
+/// This many points of a width about a centre; with a width of 4 or more, over the whole sphere.
 fn cluster(count: usize, width: f64, seed: u64) -> Vec<DVec3> {
     let turn = DQuat::from_rotation_arc(DVec3::Z, scattered(1, seed)[0]);
     let about = |p: DVec3| (turn * (DVec3::Z + p * width)).normalize();
@@ -28,7 +28,7 @@ fn outlines_contain_every_pair() {
     {
         leaves.push(cluster(16, width, seed as u64));
         leaves.push(leaves[0].iter().map(|p| -p).collect());
-        // On a circle, at a pole, and a single one.
+        // On a circle, at a pole, and a single point.
         let on_circle = |i: u32| {
             DVec3::new(
                 (f64::from(i) * width).cos(),
@@ -79,8 +79,8 @@ fn outlines_contain_every_pair() {
 
 #[test]
 fn outlines_are_tight() {
-    // Sixteen points 0.02 radians wide, 1 apart: between them 0.04 at most, a bin more for
-    // roundings and what a slanting square is wider.
+    // Sixteen points of width 0.02 rad, 1 rad apart: at most 0.04 between them, and one bin more
+    // for rounding and the diagonal of a square.
     let square = |middle: DVec3| -> Vec<DVec3> {
         let (e, f) = middle.any_orthonormal_pair();
         let at = |i: usize, j: usize| {
@@ -126,9 +126,9 @@ fn leaves_of_any_size_agree_with_pair_by_pair_counting() {
 
 #[test]
 fn pairs_near_edges_are_counted_on_the_right_side() {
-    // Leaves of sixteen in one place but for 1e-8, others at an edge from there and up to 1e-6
-    // nearer or farther: of most pairs f32 knows nothing, of some it does, and each is on its own
-    // side. With so many edges between leaves that every loop takes part.
+    // Leaves of sixteen points within 1e-8, others at an edge from there and up to 1e-6 nearer or
+    // farther: f32 cannot decide most pairs but can decide some. Leaves have enough edges between
+    // them to use every loop.
     for (bins, edge) in [
         (151, 1),
         (151, 75),
@@ -155,7 +155,7 @@ fn pairs_near_edges_are_counted_on_the_right_side() {
                 1e-4 * f64::from(i % 3),
             ));
         }
-        // On the edge itself as far as f64 goes, and beside it by a few of its last bits.
+        // On the edge within the resolution of f64, and a few of its last bits off.
         for i in 0..32_i32 {
             points.push(at(angle + 1e-16 * f64::from(i - 16), 0.0));
         }

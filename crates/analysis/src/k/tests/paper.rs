@@ -1,12 +1,12 @@
-//! What the 2018 paper says of how evenly patterns lie, as numbers: the patterns are the
-//! simulator's, `docs/src/paper.md` puts them beside the paper's words.
+//! The 2018 paper's statements on the evenness of patterns as numbers, with the simulator's
+//! patterns; `docs/src/paper.md` compares them with the paper's text.
 
 use std::sync::LazyLock;
 
 use super::hard_cases::ONE;
 use crate::k::{Edges, KCurve, Sampling, estimate};
 
-/// How far a `D` of many points may be off; below 65,000 points every pair is counted.
+/// Tolerance of a `D` of many points; below 65,000 points every pair is counted.
 const TOLERANCE: f64 = 2e-5;
 
 fn curve(name: &str, tolerance: f64) -> KCurve {
@@ -19,7 +19,7 @@ fn curve(name: &str, tolerance: f64) -> KCurve {
         tolerance,
         ..Sampling::default()
     };
-    // Not told of their turning, so that samples are taken.
+    // Without their rotation, so that samples are taken.
     let of = estimate(&pattern.directions(), None, &edges, &sampling, ONE).unwrap();
     let curve = KCurve::of_estimate(&of, 1.0);
     assert!(curve.d_error_bound <= tolerance, "{name}");
@@ -31,8 +31,8 @@ static HDL32: LazyLock<KCurve> = LazyLock::new(|| curve("hdl32e", TOLERANCE));
 static VELOMOTION16: LazyLock<KCurve> = LazyLock::new(|| curve("velomotion16:50", TOLERANCE));
 static RMBL_120: LazyLock<KCurve> = LazyLock::new(|| curve("rmbl:120", 0.5 * TOLERANCE));
 static RMBL_50: LazyLock<KCurve> = LazyLock::new(|| curve("rmbl:50", 0.5 * TOLERANCE));
-/// With the azimuth where frames begin and end on the tilt axis, and the tilt in steps, as when its
-/// figures were found: every frame then fires twice at the pole.
+/// Frames begin and end at the azimuth of the tilt axis, with a stepped tilt, as for the paper's
+/// figures: every frame fires twice at the pole.
 static RSBL_50: LazyLock<KCurve> =
     LazyLock::new(|| curve("rsbl:50,start=0,tilt=stepped", TOLERANCE));
 
@@ -42,7 +42,7 @@ fn most(curve: &KCurve) -> f64 {
 
 #[test]
 fn extremes_match_the_recorded_values() {
-    // The last digit may be cut off and not rounded.
+    // The last digit may be truncated instead of rounded.
     for (name, largest, smallest, digit) in [
         ("vlp16", 0.094_86, -0.094_93, 1e-5),
         ("hdl32e", 0.0906, -0.0536, 1e-4),
@@ -82,7 +82,7 @@ fn an_rmbl_of_120_and_one_of_50_coincide() {
         a.d_min,
         b.d_min
     );
-    // Everywhere, by a hundredth of the largest.
+    // Everywhere within a hundredth of the largest value.
     for ((theta, a), b) in a.theta_rad.iter().zip(&a.d).zip(&b.d) {
         assert!((a - b).abs() < 2.5e-4, "{theta}: {a} {b}");
     }
@@ -94,7 +94,7 @@ fn an_rmbl_is_slightly_better_than_an_rsbl() {
     let nearer = nearer
         .filter(|(rmbl, rsbl)| rmbl.abs() < rsbl.abs())
         .count();
-    // All but the last, where both are 0.
+    // All bins but the last, where both are 0.
     assert_eq!(nearer, 150);
     let better = most(&RSBL_50) / most(&RMBL_50);
     assert!((better - 1.149).abs() < 0.003, "{better}");
@@ -107,8 +107,8 @@ fn a_vlp16_and_an_hdl32_cluster_alike_and_the_vlp16_disperses_more() {
     assert!((0.95..1.0).contains(&alike), "{alike}");
     let more = vlp.d_min / hdl.d_min;
     assert!((more - 1.77).abs() < 0.01, "{more}");
-    // The HDL-32 looks 10.67 deg up and 30.67 deg down: what clusters and what keeps apart do not
-    // mirror each other.
+    // The HDL-32 looks 10.67 deg up and 30.67 deg down: clustering and dispersion are not
+    // symmetric.
     let asymmetry = -hdl.d_max / hdl.d_min;
     assert!((asymmetry - 1.69).abs() < 0.01, "{asymmetry}");
 }
@@ -119,8 +119,8 @@ fn velomotion_is_between_a_vlp16_and_an_rmbl() {
     assert!(vlp > 1.1 * ours && ours > 3.0 * rmbl, "{vlp} {ours} {rmbl}");
 }
 
-/// Of patterns with an opposite to every point, as many pairs are farther apart than 180 deg less
-/// an angle as are within it: largest and smallest are the same but for the sign.
+/// In antipodally symmetric patterns equally many pairs are farther apart than 180 deg minus an
+/// angle as are within that angle: maximum and minimum differ only in sign.
 #[test]
 fn clustering_is_no_larger_than_dispersion_unless_the_reference_is_half_a_bin_off() {
     for (name, curve, off_by_half) in [("rmbl", &*RMBL_120, 1.38), ("rsbl", &*RSBL_50, 1.32)] {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// Firings of 16 lasers from -15 to 15 degrees, at so many azimuths 0.4 degrees apart from 0.
+/// Firings of 16 lasers from -15 to 15 degrees, at this many azimuths 0.4 degrees apart from 0.
 pub fn vlp16(azimuths: u32) -> Vec<DVec3> {
     let mut points = Vec::new();
     for azimuth in 0..azimuths {
@@ -15,7 +15,7 @@ pub fn vlp16(azimuths: u32) -> Vec<DVec3> {
     points
 }
 
-/// Turned about y by a tilt (Eq. 4-6).
+/// Rotates points about y by a tilt (Eq. 4-6).
 pub fn tilted(frame: &[DVec3], tilt_deg: f64) -> impl Iterator<Item = DVec3> {
     let (sin_g, cos_g) = tilt_deg.to_radians().sin_cos();
     let turn =
@@ -23,7 +23,7 @@ pub fn tilted(frame: &[DVec3], tilt_deg: f64) -> impl Iterator<Item = DVec3> {
     frame.iter().map(turn)
 }
 
-/// So many frames of 901 azimuths at tilts evenly from 0 to below 180 degrees, still within a
+/// This many frames of 901 azimuths at even tilts from 0 to below 180 degrees, constant within a
 /// frame.
 pub fn rmbl(frames: u32) -> Vec<DVec3> {
     let frame = vlp16(901);
@@ -34,7 +34,7 @@ pub fn rmbl(frames: u32) -> Vec<DVec3> {
         .collect()
 }
 
-/// Directions that look like chance, from a linear congruential generator.
+/// Pseudorandom directions from a linear congruential generator.
 pub fn scattered(count: usize, seed: u64) -> Vec<DVec3> {
     let mut state = seed.wrapping_mul(2) | 1;
     let mut draw = || {

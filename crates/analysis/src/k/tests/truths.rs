@@ -1,4 +1,4 @@
-//! Counts and curves of scan patterns that were known beforehand, by other programs.
+//! Counts and curves of scan patterns known from other programs.
 
 use std::f64::consts::PI;
 
@@ -42,7 +42,7 @@ fn pairs_of_900_azimuths_are_symmetric_about_90_degrees_but_for_antipodes() {
     let counts = counted(&vlp16(900), 151);
     let within = counts.cumulative();
     for bins in 1..=75 {
-        // Bins from the far end: as many as from the near end, and 14,400 / 2 antipodes.
+        // Bins from the far end hold as many pairs as from the near end, and 14,400 / 2 antipodes.
         let far = counts.pairs() - within[150 - bins];
         assert_eq!(far, within[bins - 1] + 7200, "{bins} bins");
     }
@@ -78,7 +78,7 @@ fn vlp16_clustering_and_dispersion_match_known_values() {
     assert!(curve.d[150].abs() < 1e-15);
     let area = 400.0 * PI;
     assert!((curve.max_abs_m2 - area * 0.094_93).abs() < area * 5e-6);
-    // The derivative's sum over the bins is the curve's end.
+    // The sum of the derivative over the bins is the end of the curve.
     let sum: f64 = curve.derivative_m2_rad.iter().sum::<f64>() * PI / 151.0;
     assert!(sum.abs() < 1e-9);
     assert_eq!(curve.d_error_bound, 0.0);

@@ -185,7 +185,7 @@ fn invalid_positions_are_refused_and_earlier_batches_kept() {
     assert_eq!(file.pointclouds().remove(0).records, 10);
 }
 
-/// The first error comes with one of the calls after it, at the latest with the last.
+/// The first error is returned by one of the following calls, at the latest by the last.
 #[test]
 fn a_full_disk_is_an_error_at_every_byte_and_never_a_panic() {
     let cloud = cloud_from(200, NOW_NS);
@@ -207,8 +207,7 @@ fn a_full_disk_is_an_error_at_every_byte_and_never_a_panic() {
     }
 }
 
-/// A writer that is not finished leaves what no reader takes for a cloud, and lets go of its
-/// output.
+/// An unfinished writer leaves a file that no reader accepts, and releases its output.
 #[test]
 fn a_dropped_writer_leaves_no_cloud() {
     let file = SharedOutput::default();

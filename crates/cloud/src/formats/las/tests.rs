@@ -48,7 +48,7 @@ fn las_and_laz_points_round_trip() {
             assert_eq!((got.return_number, got.number_of_returns), (1, 1));
             assert!(
                 got.is_synthetic,
-                "simulated clouds are marked point by point"
+                "every point of a simulated cloud is marked"
             );
             assert!((got.gps_time.unwrap() - gps_time::adjusted_s(expected.time)).abs() < 1e-12);
             let (ring, rest) = got.extra_bytes.split_at(1);
@@ -202,8 +202,8 @@ fn coordinates_out_of_range_are_reported() {
     }
 }
 
-/// The library panics when it cannot complete its file on drop: no byte at which the disk may fill
-/// up must get there.
+/// The library panics when it cannot complete its file on drop: a disk that fills up at any byte
+/// must not cause that.
 #[test]
 fn a_full_disk_is_an_error_at_every_byte_and_never_a_panic() {
     for make in [LasWriter::las, LasWriter::laz] {

@@ -14,7 +14,7 @@ fn at(after_ns: i64) -> Stamp<Host> {
     Stamp::from_nanos(NOW_NS + after_ns)
 }
 
-/// A point each of these nanoseconds after the start.
+/// Points at these nanoseconds after the start.
 fn points(after_ns: impl IntoIterator<Item = i64>) -> Points {
     let mut points = Points::new(Fields::FILE);
     for after in after_ns {
@@ -27,7 +27,7 @@ fn points(after_ns: impl IntoIterator<Item = i64>) -> Points {
     points
 }
 
-/// Two sweeps, 0..100 ms and 150..250 ms, and a sample a millisecond from 10 ms before to 10 ms
+/// Two sweeps, 0..100 ms and 150..250 ms, and a sample per millisecond from 10 ms before to 10 ms
 /// after.
 fn track() -> TiltTrack {
     TiltTrack {
@@ -78,7 +78,7 @@ fn clouds(messages: &[Read]) -> Vec<(i64, u32)> {
         .iter()
         .filter(|m| m.topic == "/velomotion/points")
         .map(|m| {
-            // Behind the stamp: a string, then height and width.
+            // After the stamp: a string, then height and width.
             let frame = u32::from_le_bytes(m.data[12..16].try_into().unwrap()) as usize;
             let width = (16 + frame).next_multiple_of(4) + 4;
             let width = u32::from_le_bytes(m.data[width..width + 4].try_into().unwrap());
@@ -235,8 +235,7 @@ fn metadata_yaml_counts_what_was_written() {
     }
 }
 
-/// The library has no writer that goes on after its output failed: it must neither panic nor say
-/// that all is well.
+/// The library cannot continue after its output failed: it must neither panic nor report success.
 #[test]
 fn a_full_disk_is_an_error_at_every_byte_and_never_a_panic() {
     let cloud = cloud_from(50, NOW_NS);
@@ -267,7 +266,7 @@ fn an_aborted_file_has_its_complete_chunks() {
     writer.tilt(&track()).unwrap();
     let mut before = 0;
     for i in 0..20 {
-        // Sweeps are over: each second goes into further messages after eight.
+        // After the sweeps, the cloud continues in further messages.
         let batch = points((0..20_000).map(|k| (i * 1000 + 300) * MS + k * 40_000));
         writer.points(&batch).unwrap();
         before = file.content().len();
@@ -324,7 +323,7 @@ fn times_out_of_range_are_refused_and_earlier_batches_kept() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// Whatever times points come in, each is in one cloud, and no cloud spans more than it may.
+    /// At any times, each point is in one cloud, and no cloud exceeds its time span.
     #[test]
     fn no_point_is_lost_or_duplicated(
         after in prop::collection::vec(-20_000 * MS..40_000 * MS, 0..300),

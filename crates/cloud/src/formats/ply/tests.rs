@@ -8,7 +8,7 @@ use crate::Point;
 use crate::tests::samples::{SmallDisk, cloud, metadata};
 use crate::{Sink, SinkError};
 
-/// An independent, slow reader of the PLY that the format's description asks for.
+/// An independent, slow reader of PLY by the format's description.
 struct Read {
     comments: Vec<String>,
     vertices: usize,
@@ -139,8 +139,8 @@ fn an_empty_cloud_is_a_valid_file() {
     assert_eq!((read(&pipe).vertices, read(&pipe).rest), (0, 0));
 }
 
-/// The width of an f32 step between 64 and 128 m is 2^-17 m: half of it is the bound. Measured over
-/// the whole sphere of 100 m.
+/// An f32 step between 64 and 128 m is 2^-17 m; half of it is the bound. Measured over the whole
+/// sphere of 100 m.
 #[test]
 fn f32_positions_are_within_4_um_at_100_m() {
     let mut worst: f64 = 0.0;

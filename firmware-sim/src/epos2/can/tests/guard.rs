@@ -44,10 +44,14 @@ fn nmt_commands_change_the_state() {
 fn heartbeats_report_the_state_periodically() {
     let mut bus = Bus::new();
     bus.ticks(500);
-    assert_eq!(bus.take(), [], "off from the factory");
+    assert_eq!(bus.take(), [], "heartbeats are off by default");
     bus.write(0x1017, 0, 50);
     bus.poll();
-    assert_eq!(bus.with(0x701), [[0x7F]], "at once");
+    assert_eq!(
+        bus.with(0x701),
+        [[0x7F]],
+        "the first heartbeat is immediate"
+    );
     bus.ticks(499);
     assert_eq!(bus.with(0x701), [[0x7F]; 9]);
     bus.nmt(NmtCommand::Start);
@@ -85,7 +89,7 @@ fn the_axis_stops_when_the_masters_heartbeat_ends() {
     assert_eq!(
         bus.read(0x6041, 0) & 0x417F,
         0x0137,
-        "the first heartbeat begins the watch"
+        "the first heartbeat starts the monitoring"
     );
     for _ in 0..5 {
         bus.send(0x77F, &[5]);

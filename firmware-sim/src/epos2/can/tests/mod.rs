@@ -1,4 +1,4 @@
-//! The unit as a master on its bus sees it.
+//! The unit as seen by a master on its bus.
 
 extern crate std;
 use std::vec::Vec;
@@ -32,7 +32,7 @@ fn note(received: &mut Frames, frame: &CanFrame) {
 }
 
 impl Bus {
-    /// Just switched on: the boot-up message has been received.
+    /// A unit after power-on whose boot-up message has been received.
     fn new() -> Self {
         Self::of(NodeConfig {
             fault_at_power_on: DeviceError::NONE,
@@ -109,7 +109,7 @@ impl Bus {
             .unwrap()
     }
 
-    /// TPDO 1 becomes position and time stamp, sent by `kind`.
+    /// Maps position and time stamp to TPDO 1 with transmission type `kind`.
     fn stream_angle(&mut self, kind: u32, inhibit_100us: u32) {
         for (index, sub, raw) in [
             (0x1800, 1, 0xC000_0181),
@@ -125,7 +125,7 @@ impl Bus {
         }
     }
 
-    /// Through the states, and off to a target.
+    /// Enables the drive and starts a move to a target.
     fn go(&mut self, target: i32) {
         self.write(0x607A, 0, target as u32);
         for word in [0x06, 0x0F] {

@@ -69,22 +69,18 @@ fn pdos_are_sent_on_every_third_sync_and_only_after_events() {
         bus.send(0x080, &[]);
         bus.ticks(1);
     }
-    assert_eq!(
-        bus.with(0x181).len(),
-        1,
-        "the first, then nothing has moved"
-    );
+    assert_eq!(bus.with(0x181).len(), 1, "one PDO, then no change");
 }
 
 #[test]
 fn event_pdos_respect_the_inhibit_time() {
     let mut bus = Bus::new();
-    // The factory's TPDO 1 is the statusword, by event.
+    // By default TPDO 1 is the statusword, sent on events.
     bus.nmt(NmtCommand::Start);
     assert_eq!(
         bus.with(0x181),
         [[0x40, 0x03]],
-        "at once when it becomes operational"
+        "immediately on entering operational"
     );
     bus.ticks(20);
     assert_eq!(bus.with(0x181), Vec::<Vec<u8>>::new());
@@ -111,7 +107,11 @@ fn remote_frames_are_answered_where_allowed() {
     bus.stream_angle(253, 0);
     bus.nmt(NmtCommand::Start);
     bus.send_remote(0x181);
-    assert_eq!(bus.take(), [], "bit 30 of its identifier says no");
+    assert_eq!(
+        bus.take(),
+        [],
+        "bit 30 of the identifier excludes remote frames"
+    );
     bus.nmt(NmtCommand::EnterPreOperational);
     bus.write(0x1800, 1, 0xC000_0181);
     bus.write(0x1800, 1, 0x0000_0181);
@@ -129,7 +129,11 @@ fn remote_frames_are_answered_where_allowed() {
     bus.send(0x080, &[]);
     bus.ticks(5);
     bus.send_remote(0x181);
-    assert_eq!(sample(&bus.with(0x181)[0]).1, 3_000, "as of the SYNC");
+    assert_eq!(
+        sample(&bus.with(0x181)[0]).1,
+        3_000,
+        "the value at the SYNC"
+    );
 }
 
 #[test]
@@ -139,10 +143,10 @@ fn controlword_and_target_are_received_by_pdo() {
     assert_eq!(bus.read(0x6041, 0), 0x0140, "not operational");
     bus.nmt(NmtCommand::Start);
     bus.send(0x201, &[0x06, 0]);
-    bus.send(0x301, &[0x0F, 0, 1]); // RPDO 2: with the mode
+    bus.send(0x301, &[0x0F, 0, 1]); // RPDO 2: controlword and mode
     bus.ticks(5);
     assert_eq!(bus.read(0x6041, 0), 0x0337);
-    bus.send(0x401, &[0x1F, 0, 0xE8, 3, 0, 0]); // RPDO 3: with the target, but that comes behind the controlword
+    bus.send(0x401, &[0x1F, 0, 0xE8, 3, 0, 0]); // RPDO 3: controlword, then target
     bus.send(0x401, &[0x0F, 0, 0xE8, 3, 0, 0]);
     bus.send(0x401, &[0x1F, 0, 0xE8, 3, 0, 0, 99, 99]);
     bus.ticks(200);
@@ -175,10 +179,10 @@ fn a_short_rpdo_is_error_8210() {
 fn invalid_pdo_values_are_ignored() {
     let mut bus = Bus::new();
     bus.nmt(NmtCommand::Start);
-    // Mode 42 does not exist; the controlword before it counts.
+    // Mode 42 does not exist; the controlword before it is applied.
     bus.send(0x301, &[0x06, 0, 42]);
     assert_eq!((bus.read(0x6040, 0), bus.read(0x6061, 0)), (6, 1));
-    // RPDOs out of use.
+    // Disabled RPDOs.
     bus.nmt(NmtCommand::EnterPreOperational);
     bus.write(0x1400, 1, 0x8000_0201);
     bus.nmt(NmtCommand::Start);

@@ -18,7 +18,7 @@ impl Bus {
         self.take();
         self.send(0x601, &request);
         let answers = self.with(0x581);
-        assert_eq!(answers.len(), 1, "one answer a request");
+        assert_eq!(answers.len(), 1, "one answer per request");
         answers[0].as_slice().try_into().unwrap()
     }
 
@@ -60,7 +60,7 @@ fn expedited_transfers_match_golden_bytes() {
         bus.sdo([0x2F, 0x60, 0x60, 0, 6, 0, 0, 0]),
         [0x60, 0x60, 0x60, 0, 0, 0, 0, 0]
     );
-    // Without a size the object's counts.
+    // Without a size the object's size applies.
     assert_eq!(
         bus.sdo([0x22, 0x40, 0x60, 0, 7, 0, 9, 9]),
         [0x60, 0x40, 0x60, 0, 0, 0, 0, 0]
@@ -130,13 +130,13 @@ fn refusals_have_their_abort_codes() {
         ([0x2F, 0x60, 0x60, 0, 42, 0, 0, 0], CommError::RANGE),
         ([0x21, 0x7A, 0x60, 0, 5, 0, 0, 0], CommError::TOO_LONG),
         ([0x21, 0x41, 0x60, 0, 2, 0, 0, 0], CommError::READ_ONLY),
-        // Segments of no transfer; block transfer.
+        // Segments without a transfer; block transfer.
         ([0x60, 0, 0, 0, 0, 0, 0, 0], CommError::COMMAND),
         ([0x01, 0, 0, 0, 0, 0, 0, 0], CommError::COMMAND),
         ([0xA0, 8, 0x10, 0, 0, 0, 0, 0], CommError::COMMAND),
     ] {
         assert_eq!(bus.abort_code(request), code, "{request:02X?}");
-        // Segments of no transfer name 0000:00, and so does their abort.
+        // Segments without a transfer and their aborts name 0000:00.
         assert_eq!(bus.sdo(request)[1..4], request[1..4]);
     }
 }
@@ -167,7 +167,7 @@ fn a_wrong_toggle_a_new_transfer_and_an_abort_end_a_transfer() {
         bus.abort_code([0x0B, 1, 2, 0, 0, 0, 0, 0]),
         CommError::COMMAND
     );
-    // Fewer bytes than announced, and more.
+    // Fewer and more bytes than announced.
     bus.sdo([0x21, 0x7A, 0x60, 0, 4, 0, 0, 0]);
     assert_eq!(
         bus.abort_code([0x0B, 1, 2, 0, 0, 0, 0, 0]),
@@ -207,8 +207,8 @@ fn the_node_answers_only_its_own_requests_and_none_when_stopped() {
     assert_eq!(bus.take().len(), 1);
 }
 
-/// Every entry through the client of the protocol crate, so that both sides of a segmented transfer
-/// meet.
+/// Reads every entry with the client of the protocol crate, which tests both sides of segmented
+/// transfers.
 #[test]
 fn every_entry_is_read_over_can_unchanged() {
     let mut bus = Bus::new();
