@@ -134,7 +134,7 @@ mod tests {
         std::fs::write(path("ttyUSB1"), "").unwrap();
         std::os::unix::fs::symlink("ttyUSB0", path("velomotion-epos2")).unwrap();
         std::os::unix::fs::symlink("ttyUSB1", path("other")).unwrap();
-        // Either name finds both; before the cable is plugged in only the configured one exists.
+        // Each name finds the other; without a cable only the configured one exists.
         assert_eq!(other_names(&path("ttyUSB0")), [path("velomotion-epos2")],);
         assert_eq!(other_names(&path("velomotion-epos2")), [path("ttyUSB0")]);
         std::fs::remove_file(path("ttyUSB0")).unwrap();

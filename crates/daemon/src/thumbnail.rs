@@ -300,8 +300,8 @@ mod tests {
         thumbnail
     }
 
-    /// A floor of 10 m by 10 m, 1 m below the scanner, and a wall 4 m high behind it, seen from the
-    /// eye.
+    /// A floor of 10 m by 10 m, 1 m below the scanner, and a wall 4 m high behind it, from the
+    /// viewpoint.
     fn corner() -> Vec<Point> {
         let line = || (-100..=100).map(|i| f64::from(i) * 0.05);
         let floor = line().flat_map(|x| line().map(move |y| [x, y, -1.0]));
@@ -331,7 +331,8 @@ mod tests {
             pixels.len()
         );
         assert_eq!(pixels[0][3], 0);
-        // The floor is at the map's dark end, below; the wall's top at its bright end, above.
+        // The floor has the dark end of the colour map, below; the wall's top the bright end,
+        // above.
         let rows_of = |wanted: fn(&[u8; 4]) -> bool| {
             let rows: Vec<usize> = (0..pixels.len())
                 .filter(|&place| pixels[place][3] == 255 && wanted(&pixels[place]))

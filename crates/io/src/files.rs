@@ -329,7 +329,7 @@ mod tests {
         file.write_all(b"old header").unwrap();
         file.seek(SeekFrom::Start(0)).unwrap();
         file.write_all(b"new").unwrap();
-        assert!(!path.exists(), "not before it is complete");
+        assert!(!path.exists(), "the file appears only when complete");
         file.commit().unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"new header");
         assert_eq!(names(folder.path()), ["cloud.ply"]);

@@ -209,8 +209,8 @@ mod tests {
         assert_eq!(text(false, false, 5), "2::,5:,:,:,,");
     }
 
-    /// Vectors of the xxHash project's own test program for XXH3-128 with seed 0: of nothing; and
-    /// the order of bytes.
+    /// Vectors of the xxHash project's own test program for XXH3-128 with seed 0: the empty input,
+    /// and the order of bytes.
     #[test]
     fn gids_are_xxh3_with_the_low_half_first() {
         assert_eq!(

@@ -109,7 +109,7 @@ mod tests {
     fn a_fast_clock_wraps_early() {
         let clock = clock(0, 50.0);
         let early = clock.host(HOUR_NS) - Stamp::from_nanos(START + HOUR_NS);
-        // 50 ppm of an hour is 180 ms, less 50 ppm of that.
+        // 50 ppm of an hour is 180 ms, minus 50 ppm of that.
         assert_eq!(early.as_nanos(), -179_991_000);
         assert_eq!(clock.host(0).as_nanos(), START);
     }
@@ -160,7 +160,7 @@ mod tests {
         ) {
             let start = Stamp::<Host>::from_nanos(START + day * 24 * HOUR_NS);
             let clock = LidarClock::new(start, at_start_us, drift);
-            // A receiver unwraps to the hour nearest to the host's at the start and counts on.
+            // A receiver starts at the hour nearest to the host's time and counts from there.
             let half = HOUR_NS / 2;
             let at_start = i64::from(at_start_us) * 1_000;
             let hours = (start.as_nanos() - at_start + half).div_euclid(HOUR_NS);

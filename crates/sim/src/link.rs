@@ -121,7 +121,7 @@ mod tests {
             .map(|i| 10_000_000 * i)
             .filter(|&sent| link.deliver(at(sent)).as_nanos() - sent > 1_000_000)
             .count();
-        // 2 % spikes; those too small to lift a short delay above 1 ms do not show: 2 % x (1 -
+        // 2 % spikes, without those too small to raise a short delay above 1 ms: 2 % x (1 -
         // 0.35/5).
         assert!((1_720..2_000).contains(&late), "{late}");
     }

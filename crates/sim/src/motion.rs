@@ -353,7 +353,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(256))]
 
         /// For every profile (trapezoid, triangle, no distance) the motion is continuous, its rate
-        /// is its slope, and it gets there.
+        /// is its slope, and it reaches its target.
         #[test]
         fn the_rate_is_the_slope_of_the_angle(
             from in -180.0..180.0, to in -180.0..180.0, speed in 0.01..500.0, accel in 1.0..1e5, both: bool, count in 0_u32..4,

@@ -44,7 +44,7 @@ mod tests {
             }
         }
         // Floor, both kinds of wall, ceiling, pillars, cardboard, wood, steel and the sign are all
-        // met.
+        // hit.
         assert_eq!(
             seen.into_iter().collect::<Vec<_>>(),
             [12, 22, 28, 33, 35, 40, 45, 62, 210]

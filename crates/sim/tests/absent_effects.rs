@@ -1,8 +1,7 @@
-//! A scene without effects costs as many instructions as in a build without the effects' code.
+//! A scene without effects executes as many instructions as in a build without the effects' code.
 //!
 //! valgrind's callgrind counts the instructions, which is exact; times are not.
 
-// A test that panics fails, as it should.
 #![allow(clippy::panic, clippy::unwrap_used)]
 
 use std::path::{Path, PathBuf};
@@ -19,7 +18,7 @@ fn output(command: &mut Command) -> String {
     format!("{}{errors}", String::from_utf8_lossy(&output.stdout))
 }
 
-/// The example as it is released, with these features and no others.
+/// The release build of the example with exactly these features.
 fn built(features: &[&str], into: &Path) -> PathBuf {
     output(
         Command::new(env!("CARGO"))
@@ -36,7 +35,7 @@ fn built(features: &[&str], into: &Path) -> PathBuf {
     kept
 }
 
-/// Instructions of a run, and what it printed.
+/// Instructions of a run, and its output.
 fn counted(program: &Path, into: &Path) -> (u64, String) {
     let text = output(
         Command::new("valgrind")

@@ -56,7 +56,7 @@ fn unreadable_scans_are_listed_and_left_unchanged() {
         fs::write(&path, text.replace(from, to)).unwrap();
         fs::read(&path).unwrap()
     };
-    // An option of a later version: the scan is listed with what this version knows.
+    // An option of a later version: the scan is listed with the fields of this version.
     edit(&later, "\"both_ways\": false", "\"zigzag\": 3");
     // A state that this version does not know.
     let bytes = edit(&strange, "\"whole\"", "\"superb\"");
@@ -81,7 +81,7 @@ fn unreadable_scans_are_listed_and_left_unchanged() {
     assert_eq!(again.view("linked"), None);
     assert!(
         again.unfinished().is_empty(),
-        "nothing is made over what is there"
+        "existing files are not overwritten"
     );
     // Neither overwritten nor deleted without a request.
     again

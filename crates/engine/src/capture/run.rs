@@ -462,7 +462,7 @@ mod tests {
             help.contains("--sensor") && help.contains("replay hall.pcapng"),
             "{help}"
         );
-        // Ctrl-C while the cloud is made stays what it is.
+        // Ctrl-C during the reconstruction remains an interruption.
         let stopped = Failure::new(Kind::Interrupted, "stopped");
         let failure = without_cloud(stopped, Path::new("hall.pcapng"));
         assert_eq!(failure.kind, Kind::Interrupted);

@@ -278,7 +278,7 @@ mod tests {
         }
         assert!(idle.has_lagged() && !reader.has_lagged());
         assert_eq!(next(&mut idle).unwrap_err(), RecvError::Lagged(3));
-        // It goes on with the oldest event that is left.
+        // It continues with the oldest remaining event.
         for number in 3..QUEUE + 3 {
             let event = next(&mut idle).unwrap();
             assert!(text(&event).contains(&format!("\"{number}\"")));

@@ -447,7 +447,7 @@ fn other_files_are_described() {
     let user0 = pcap(0xA1B2_C3D4, false, 147, &[]);
     assert!(
         open(&user0).ends_with("got 147"),
-        "nothing says whose use of it this is"
+        "the link type does not identify the protocol"
     );
     let mut wrong_order = section(false);
     wrong_order[8] ^= 1;

@@ -106,7 +106,7 @@ mod tests {
         };
         let clock = DriftingClock::new(&settings, 1).unwrap();
         assert_eq!(clock.host_ns(0), 0);
-        // 12 ppm of 100 s are 1.2 ms, less 12 ppm of that.
+        // 12 ppm of 100 s are 1.2 ms, minus 12 ppm of that.
         assert_eq!(clock.host_ns(100_000_000_000), 99_998_800_014);
     }
 
@@ -126,7 +126,7 @@ mod tests {
             .map(|step| clock.wander(55_296.0 * f64::from(step)) * 1e-3)
             .collect();
         let square = off_us.iter().map(|us| us * us).sum::<f64>() / off_us.len() as f64;
-        // Between two draws the mean square of a line is 2/3 of theirs.
+        // The mean square of a line between two draws is 2/3 of that of the draws.
         assert!((square.sqrt() / 250.0 / (2.0_f64 / 3.0).sqrt() - 1.0).abs() < 0.1);
         let quick = LidarClockSettings {
             wander_us: 251.0,

@@ -170,9 +170,9 @@ mod tests {
         // Light falls by 1 / 1.1^2: by 0.1736 of the threshold, 0.868 standard deviations.
         assert!((share(55.0, 10.0) - 0.1927).abs() < error);
         assert_eq!(share(25.0, 10.0), 1.0);
-        // Noise alone exceeds the threshold now and then.
+        // Noise alone occasionally exceeds the threshold.
         assert!(share(100.0, 10.0) < 0.002);
-        // The whole range of the manual, and a retroreflector beyond the range of packets.
+        // The whole range of the manual, and a retroreflector outside the range of packets.
         assert!(share(100.0, 80.0) > 0.999);
         assert_eq!(share(250.0, 255.0), 1.0);
         assert_eq!(share(1.0, 0.0), 0.0);
@@ -200,7 +200,8 @@ mod tests {
         assert_eq!(blind.seen(&slanted, DVec3::Y, || 0.5), slanted);
     }
 
-    /// A window returns little diffuse light at an angle, and dazzles head-on.
+    /// A window returns little diffuse light at an angle, and much specular light at normal
+    /// incidence.
     #[test]
     fn glass_returns_only_where_it_faces_the_sensor() {
         let reflectance = Reflectance::new(&ReflectanceSettings::default(), 1).unwrap();

@@ -49,9 +49,9 @@ mod tests {
         };
         assert_eq!(of(&[]), [f64::INFINITY; 2]);
         assert_eq!(of(&[(5.0, 1.0)]), [5.0, f64::INFINITY]);
-        // The strongest is not the last: the last, however weak.
+        // If the strongest is not the last: the last, even if weak.
         assert_eq!(of(&[(5.0, 1.0), (7.0, 0.5), (9.0, 0.1)]), [5.0, 9.0]);
-        // The strongest is the last: the second strongest.
+        // If the strongest is the last: the second strongest.
         assert_eq!(of(&[(5.0, 0.2), (7.0, 0.5), (9.0, 1.0)]), [9.0, 7.0]);
     }
 }

@@ -13,7 +13,7 @@ use crate::motion::{AxisMotion, Sweeps};
 use crate::scenes;
 use units::{Gearing, Stamp};
 
-/// A table for each effect with which it acts in the hall.
+/// For each effect a table of settings with which it acts in the hall.
 const TABLES: [(&str, &str); 18] = [
     ("limited_field_of_view", "from_deg = 30.0\nto_deg = 200.0"),
     (

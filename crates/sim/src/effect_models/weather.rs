@@ -217,7 +217,7 @@ mod tests {
             (reported - 80.0 * 0.05_f64.powf(0.2)).abs() < 0.05,
             "{reported}"
         );
-        // 80 % at 40 m sends 5e-4, of which exp(-12) is nothing.
+        // 80 % at 40 m returns 5e-4, and exp(-12) of that is negligible.
         let (wall, fog_share, _) = seen(fog(20.0), 40.0, 80);
         assert_eq!(wall, 0.0);
         assert!(fog_share > 0.3, "{fog_share}");
@@ -236,7 +236,7 @@ mod tests {
             seen(settings, 99.0, 30).0
         };
         assert_eq!(share(0.001), 1.0);
-        // Drops outshine it now and then.
+        // Drops occasionally return more light.
         let some = share(5.0);
         assert!(some > 0.5, "{some}");
         // 1.076 * 500^0.67 dB/km: 13.7 dB there and back.
@@ -274,7 +274,7 @@ mod tests {
             for range_m in [2.0, 10.0, 30.0] {
                 let left = one_way(visibility_m, rain_mm_h, range_m).powi(2);
                 assert!((weather.left(range_m) / left - 1.0).abs() < 1e-12);
-                // Where drops outshine the wall, the wall is the other return.
+                // Where drops return more light than the wall, the wall is the other return.
                 let (wall, _, reported) = seen(settings, range_m, 90);
                 assert!(wall > 0.5, "{wall}");
                 assert!((reported - 90.0 * left).abs() < 0.05, "{reported} {left}");

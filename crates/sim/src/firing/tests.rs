@@ -205,7 +205,7 @@ fn moving_objects_are_hit_by_packets_and_single_rays() {
         Some(match object {
             0 => Placement::new(turn, DVec3::new(4.0 - 3.0 * t, -3.0, 0.0)).unwrap(),
             1 => Placement::new(turn, DVec3::new(-3.0, 3.0 * t - 2.0, 0.2)).unwrap(),
-            // Around the scanner, nearer than its range: a shadow.
+            // Around the scanner, nearer than its minimum range: a shadow.
             2 => {
                 Placement::at(DMat3::from_rotation_z(3.0 * t) * DVec3::new(0.0, 0.9, 0.0)).unwrap()
             }
@@ -220,7 +220,7 @@ fn moving_objects_are_hit_by_packets_and_single_rays() {
     around.bodies_mut().extend(bodies);
     assert!(
         !around.may_move_near(DVec3::ZERO, DVec3::X, 0.1),
-        "nowhere yet"
+        "not placed yet"
     );
     let mut echoes = vec![Echoes::new(16, true); 24];
     let mut seen = [0_u32; 256];
@@ -291,7 +291,7 @@ fn absorbing_surfaces_block() {
         (ball(8.0), dark(5.0), None),
         (ball(0.5), ball(5.0), None),
         (ball(5.0), ball(0.5), None),
-        // At one position the moving surface is met.
+        // At equal distance the moving surface is hit.
         (dark(5.0), ball(5.0), Some(5.0)),
         (ball(5.0), dark(5.0), None),
     ] {

@@ -78,7 +78,7 @@ fn a_partial_last_frame_ends_the_sweep() {
     let cut = pattern("velomotion16:13");
     assert_eq!(cut.frames(), 70);
     assert!(cut.frame_rotation().is_none());
-    // 69.23 frames of 900 steps, and the firings at the seams.
+    // 69.23 frames of 900 steps, and the repeated firings at the frame boundaries.
     let steps: f64 = 900.0 * 45.0 / (13.0 / 20.0);
     let expected = 16 * (69 + (steps.floor() as usize) + 1);
     assert_eq!(cut.directions().len(), expected);
@@ -230,7 +230,7 @@ fn directions_fill_the_field_of_view() {
         let way = pattern.settings().tilt;
         let whole = (way.to_deg - way.from_deg).abs() + high - low >= 180.0;
         assert!(whole || least < 1e-3, "{text}: {least}");
-        // It changes no faster than the direction.
+        // The depth changes no faster than the direction.
         for pair in directions.windows(2).step_by(97) {
             let middle = (pair[0] + DVec3::new(0.3, -0.2, 0.1)).normalize();
             let by = (pattern.view().depth_rad(pair[0]) - pattern.view().depth_rad(middle)).abs();
@@ -241,7 +241,7 @@ fn directions_fill_the_field_of_view() {
     assert!((level.view().depth_rad(DVec3::Z) + 75_f64.to_radians()).abs() < 1e-12);
     assert!((level.view().depth_rad(DVec3::Y) - 15_f64.to_radians()).abs() < 1e-12);
     let swept = pattern("velomotion16:50");
-    // Straight up is 30 deg beyond the highest ray.
+    // The zenith is 30 deg above the highest ray.
     assert!((swept.view().depth_rad(DVec3::Z) + 30_f64.to_radians()).abs() < 1e-12);
     assert!(pattern("rmbl:50").view().depth_rad(DVec3::Z) > 0.2);
 }

@@ -95,8 +95,8 @@ mod tests {
     use super::*;
     use crate::patterns::PatternRequest;
 
-    /// All rays of a pattern are in its view, and the view ends at the outermost rays, wherever the
-    /// sensor is.
+    /// All rays of a pattern are in its view, and the view ends at the outermost rays, for any
+    /// position of the sensor.
     #[test]
     fn the_view_follows_the_position_of_the_sensor() {
         for text in [
@@ -129,7 +129,7 @@ mod tests {
                 let found = from_axis_rad(w, share);
                 assert!(found > before, "{share} {degrees}");
                 before = found;
-                // From the sensor the point is seen at w again.
+                // From the sensor the point is at elevation w.
                 let (up, out) = (found.sin() - share, found.cos());
                 if out.abs() > 1e-6 || up.abs() > 1e-6 {
                     assert!((up.atan2(out) - w).abs() < 1e-7, "{share} {degrees}");

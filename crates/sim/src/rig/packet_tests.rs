@@ -1,4 +1,4 @@
-//! Packets and truth of the rig's lidar, read as the manual describes them.
+//! Packets and truth of the rig's lidar, decoded by the manual.
 
 use glam::DVec3;
 
@@ -79,7 +79,7 @@ fn stamp_us(packet: &[u8]) -> u32 {
     u32::from_le_bytes(packet[1200..1204].try_into().unwrap())
 }
 
-/// One return, read off the packet as the manual describes it; the azimuth rate is known.
+/// A return decoded from the packet by the manual; the azimuth rate is known.
 struct Decoded {
     device_ns: i64,
     laser: usize,
@@ -124,8 +124,7 @@ fn packets_agree_with_the_truth_within_their_rounding() {
             let seen = origin + found.range_m * direction;
             let point = truth.point(found.device_ns, found.laser as u8).unwrap();
             let error = seen.distance(DVec3::from_array(point));
-            // 1 mm of range; 0.005 deg of azimuth, as far as the beam is level; 1 us at 56.25
-            // deg/s.
+            // 1 mm of range; 0.005 deg of azimuth for level beams; 1 us at 56.25 deg/s.
             let level = sensor.beams()[found.laser].elevation_deg.to_radians().cos();
             let across =
                 found.range_m * (level * 0.005_f64.to_radians() + 56.25e-6_f64.to_radians());
@@ -139,8 +138,7 @@ fn packets_agree_with_the_truth_within_their_rounding() {
             worst = worst.max(error);
         }
     }
-    // 602 packets fit 0.8 s, and the bound is reached: stamps and angles are no better than
-    // claimed.
+    // 602 packets fit into 0.8 s, and errors reach the bound: it is tight.
     assert_eq!(compared, 602 * 384);
     assert!(worst > 0.0017, "{worst}");
 }
@@ -152,7 +150,7 @@ fn stamps_count_in_the_lidars_own_time_and_wrap_at_the_hour() {
     let stamps: Vec<u32> = packets.iter().map(|p| stamp_us(&p.payload)).collect();
     // 1327.104 us per packet, rounded down to whole microseconds.
     assert_eq!(stamps, [3_599_999_000, 327, 1_654, 2_981, 4_308]);
-    // Five packets end after 6.63552 ms of lidar time, which a slow lidar reaches 265 ns later.
+    // Five packets end after 6.63552 ms of lidar time, 265 ns later for a slow lidar.
     assert_eq!(packets[0].leaves_ns, 1_327_157);
     assert_eq!(packets[4].leaves_ns, 6_635_785);
 }
@@ -211,7 +209,7 @@ fn truth_outside_the_run_or_the_lasers_is_none() {
             "{device_ns} {laser}"
         );
     }
-    // Between two firings of a laser the nearer one counts.
+    // Between two firings of a laser the nearer one applies.
     let at = |ns: i64| truth.point(ns, 0);
     assert_eq!(at(27_000), at(0));
     assert_eq!(at(28_000), at(55_296));

@@ -175,7 +175,7 @@ fn datagrams_are_sent_after_their_last_firing_sequence() {
 
 #[test]
 fn a_packet_that_ends_with_a_control_cycle_is_sent() {
-    // 3 x 1327.104 us on a clock that is slow by as much as makes them 4 ms.
+    // 3 x 1327.104 us on a clock so slow that they take 4 ms.
     let lidar = RigLidar {
         drift_ppm: -4_672.0,
         ..RigLidar::default()
@@ -278,7 +278,7 @@ fn servo_lag_affects_encoder_and_platform_alike() {
     let (answers, _, truth) = moved(config);
     let mut most_behind = 0.0_f64;
     for sent in &answers {
-        // 3000 counts below level at power-on, where its own zero is.
+        // The drive's zero is its position at power-on, 3000 counts below level.
         let (_, position) = answer(&sent.bytes);
         let angle = truth.tilt_deg_at(sent.at);
         let Some(angle) = angle else { continue };

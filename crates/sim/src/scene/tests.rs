@@ -60,7 +60,7 @@ fn turned(centre: DVec3, size: DVec3, axis: DVec3, angle: f64) -> Twice {
     let attitude = DMat3::from_axis_angle(axis, angle);
     Twice {
         object: between(-0.5 * size, 0.5 * size).placed(Placement::new(attitude, centre).unwrap()),
-        // The other way about: the own axes are measured along the columns.
+        // Inverse rotation: coordinates along the columns.
         distance: Box::new(move |p| {
             let p = p - centre;
             let own = dvec3(
@@ -266,7 +266,7 @@ fn rays_along_and_from_a_face_are_handled() {
     let diagonal = dvec3(1.0, 1.0, 0.0).normalize();
     assert!((cast(dvec3(-1.0, 0.0, 0.5), diagonal).unwrap() - 2_f64.sqrt()).abs() < 1e-15);
     assert_eq!(cast(dvec3(-1.0, 1e-15, 0.5), diagonal), None);
-    // From a face: away meets nothing, inwards the opposite one.
+    // From a face: outwards hits nothing, inwards hits the opposite face.
     assert_eq!(cast(dvec3(0.5, 0.5, 1.0), DVec3::Z), None);
     assert_eq!(cast(dvec3(0.5, 0.5, 1.0), -DVec3::Z), Some(1.0));
     let plane = scene([(plane_through(DVec3::ZERO, DVec3::Z), 0)]);
@@ -354,8 +354,8 @@ fn a_closed_room_returns_every_ray_aimed_at_its_edges_and_corners() {
 
 #[test]
 fn stacked_boxes_have_no_cracks() {
-    // 4 x 4 adjacent boxes with coordinates that no binary fraction holds: every ray at the joints
-    // from the front meets one.
+    // 4 x 4 adjacent boxes with coordinates without a finite binary representation: every ray at
+    // their joints from the front hits one.
     let edge = |i: u32| 0.1 + 0.7 * f64::from(i);
     let places = (0..4).flat_map(|i| (0..4).map(move |j| (i, j)));
     let boxes = places.map(|(i, j)| {
@@ -397,7 +397,7 @@ fn a_floor_at_a_grazing_angle_of_0_02_deg_is_hit() {
 fn a_sphere_of_one_metre_is_hit_at_a_kilometre() {
     for i in 0..1_000 {
         let miss = 0.99 * f64::from(i) / 1_000.0;
-        // Turned out of the axes, so that nothing cancels by luck.
+        // Rotated out of the axes, so that no errors cancel by chance.
         let turn = DMat3::from_axis_angle(dvec3(0.6, 0.0, 0.8), 0.3 + f64::from(i));
         let scene = scene([(ball(turn * dvec3(1_000.0, miss, 0.0), 1.0), 0)]);
         let hit = scene.cast(DVec3::ZERO, turn * DVec3::X, 0.0, FAR).unwrap();

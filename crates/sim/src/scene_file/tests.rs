@@ -97,7 +97,7 @@ fn all_keys_take_effect() {
     let _: &dyn SurfaceEffect = &**listed.effect();
 }
 
-/// Real places have the effects of a real scanner, ideal ones none; an effect that is left out is
+/// Realistic scenes have the effects of a real scanner, ideal ones none; an omitted effect is
 /// absent.
 #[test]
 fn effects_of_shipped_scenes_can_be_omitted() {

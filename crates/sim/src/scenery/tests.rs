@@ -50,7 +50,7 @@ fn every_shipped_scene_can_be_ray_cast() {
     assert!(shipped("hall").is_some() && shipped("nowhere").is_none());
 }
 
-/// The rig's hall; distances by hand.
+/// The rig's hall; distances computed by hand.
 #[test]
 fn the_rig_scene_has_the_geometry_of_the_hall() {
     let [hall, rig] = ["hall", "rig"].map(|name| placed(shipped(name).unwrap()));
@@ -202,7 +202,7 @@ fn invalid_values_are_reported_with_their_line() {
         ),
     ] {
         let message = wrong(&object(rest));
-        // The table, or, where it is one value's fault, that.
+        // The position of the table, or of the value if one value is invalid.
         let places = ["line 4, column 1: ", "line 5, column ", "line 6, column "];
         let names = |place: &&str| message.starts_with(&format!("sim: scene, {place}"));
         assert!(places.iter().any(names), "{message}");
@@ -238,12 +238,12 @@ fn invalid_values_are_reported_with_their_own_line() {
             "plane = {}\n\nvelocity_m_s = [0, nan, 0]\n",
             "line 7, column 16",
         ),
-        // Of several keys: the table that has them.
+        // For several keys: the table that has them.
         (
             "name = \"wall\"\nbox = { size_m = [1, 1, 1], from_m = [0, 0, 0] }\n",
             "line 6, column 7",
         ),
-        // Of none.
+        // For no key.
         ("name = \"nothing\"\n", "line 4, column 1"),
     ] {
         let message = wrong(&format!("{first}[[objects]]\n{second}"));
@@ -295,7 +295,7 @@ fn each_kind_of_geometry_is_placed_at_its_position() {
             None,
         ),
         ("plane = {}", [0.0, 0.0, 2.0], [0.0, 0.0, -1.0], Some(2.0)),
-        // The grid's x goes along the world's y, its y against the world's x.
+        // The grid's x points along the world's y, its y against the world's x.
         (
             "height_field = { columns = 2, spacing_m = [4, 2], heights_m = [1, 1, 1, 1] }",
             [3.5, 3.5, 9.0],
@@ -387,7 +387,7 @@ fn moving_objects_follow_their_velocity() {
             .0
     };
     assert_eq!(x(&caster, 0.0), 3.0);
-    // In two seconds it is 4 m along y, and a quarter turn on.
+    // After two seconds it has moved 4 m along y and rotated by 90 degrees.
     caster.place(1, moving.travel.at(2.0).unwrap()).unwrap();
     assert!((x(&caster, 4.0) - 4.5).abs() < 1e-12);
     assert!((x(&caster, 5.9) - 4.5).abs() < 1e-12);
@@ -420,8 +420,8 @@ fn parts_of_moving_objects_stay_together_and_copies_move_alone() {
     });
     let (mut met, mut glass) = (0, 0);
     for ray in rays {
-        // After a quarter of a revolution about its origin, a body looks the same from a scanner
-        // that went round with it.
+        // After a rotation by 90 degrees about its origin, a body looks the same from a scanner
+        // that rotated with it.
         for (moving, body) in &moves {
             let (body_caster, place) = (body.caster().unwrap(), moving.travel.at(1.0).unwrap());
             let from = moving.travel.from_m;
@@ -501,7 +501,7 @@ parked_cars = { bays = 40, share = 1, paints = ["grey"], glass = "grey", tyres =
         // Between two cars there is air.
         let gap = middle + 1.25 * DVec3::X;
         assert!(hit(&placed, &caster, gap, -DVec3::Z).is_none());
-        // Wheels reach the ground and not beyond.
+        // Wheels touch the ground.
         let up = |x: i32, y: i32| {
             let from = DVec3::new(middle.x + 0.05 * f64::from(x), 0.05 * f64::from(y), -1.0);
             hit(&placed, &caster, from, DVec3::Z).map_or(f64::MAX, |hit| hit.0)

@@ -117,7 +117,7 @@ fn points_agree_with_single_rays() {
     let simulation = hall(LidarSensor::vlp16());
     let (taken, summary) = run(&simulation, 1);
     assert_eq!(taken.points.len() as u64, summary.returned);
-    assert_eq!(summary.returned, summary.shots, "every beam meets the hall");
+    assert_eq!(summary.returned, summary.shots, "every beam hits the hall");
     let mut different = 0;
     for point in &taken.points {
         let since_s = (point.host - START).as_secs_f64();
@@ -221,7 +221,7 @@ fn the_drive_reports_its_shaft_at_the_middle_of_the_exchange() {
     }
 }
 
-/// A sensor that fires to the right alone, from 90 to 180 degrees.
+/// A sensor that fires only to the right, from 90 to 180 degrees.
 #[derive(Clone, Debug)]
 struct Window;
 
@@ -274,7 +274,7 @@ fn packets_span_the_gap_of_a_limited_field_of_view() {
     simulation.motion = AxisMotion::fixed(0.0, 0.5).unwrap();
     simulation.polls = None;
     let (taken, summary) = run_with(&simulation, &mut with(Window, (), ()));
-    // A quarter of five turns.
+    // A quarter of five revolutions.
     assert!((92..=94).contains(&summary.packets), "{summary:?}");
     let mut straddling = 0;
     for (_, packet) in taken
@@ -292,7 +292,7 @@ fn packets_span_the_gap_of_a_limited_field_of_view() {
         straddling += u32::from(!azimuths.is_sorted());
     }
     assert!((3..=5).contains(&straddling), "{straddling}");
-    // Every point is where it was seen, at its own time.
+    // Every point is at the position of its own time.
     for point in &taken.points {
         let azimuth = 200.0 + 3.6e-6 * point.device_ns as f64;
         let turned = (point.azimuth_deg - azimuth).rem_euclid(360.0);
@@ -420,14 +420,14 @@ fn the_mechanism_acts_between_encoder_and_platform() {
         assert!((ideal - ahead).abs() <= 1);
     }
     for (ideal, ahead) in ideal.points.iter().zip(&ahead.points) {
-        // Straight between steps of 250 us: 5000 deg/s2 x (250 us)^2 / 8.
+        // Linear between steps of 250 us: 5000 deg/s2 x (250 us)^2 / 8.
         let off = ahead.tilt_deg - ideal.tilt_deg - 1.0;
         assert!(off.abs() < 5e-5, "{off}");
     }
 }
 
-/// Every third message is lost, every fifth comes twice, and all are delayed by up to 4 ms, so that
-/// they overtake each other.
+/// Every third message is lost, every fifth is duplicated, and all are delayed by up to 4 ms, so
+/// that they overtake each other.
 #[derive(Debug)]
 struct Bad(crate::random::Source);
 
@@ -485,14 +485,17 @@ fn events_are_ordered_and_moves_commanded_over_bad_links() {
         .collect();
     assert!(
         !stamps.is_sorted(),
-        "nothing overtook anything: the test is blind"
+        "no message overtook another: the test checks nothing"
     );
-    // A command is repeated until it is acknowledged, and an acknowledgement may come twice.
+    // A command is repeated until it is acknowledged, and an acknowledgement may be duplicated.
     let mut commands = taken.commands.clone();
     commands.dedup();
     assert_eq!(commands.len(), 6, "{commands:?}");
-    assert!(taken.probes > 0, "nothing was given up: the test is blind");
-    // The truth does not care.
+    assert!(
+        taken.probes > 0,
+        "no probe was sent: the test checks nothing"
+    );
+    // The truth is unaffected.
     assert_eq!(taken.points.len() as u64, summary.returns);
 }
 
@@ -547,7 +550,7 @@ fn invalid_simulations_are_rejected() {
     });
     let refused = simulation.run(&mut none, threads(1), &mut Taken::default());
     assert!(matches!(refused, Err(SimulateError::Polls { .. })));
-    // Shorter than a packet: nothing, and no complaint.
+    // Shorter than a packet: no output and no error.
     simulation.polls = None;
     let (taken, summary) = run(&simulation, 5);
     assert_eq!((summary.packets, taken.times.len()), (0, 0));

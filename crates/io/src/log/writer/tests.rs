@@ -133,7 +133,11 @@ fn an_existing_log_is_refused_or_replaced() {
     };
     let error = LogWriter::create(&path, &too_long, Overwrite::Replace).unwrap_err();
     assert!(matches!(error, LogError::Metadata { got: 65_536, .. }));
-    assert_eq!(std::fs::read(&path).unwrap(), b"precious", "not even then");
+    assert_eq!(
+        std::fs::read(&path).unwrap(),
+        b"precious",
+        "a failed replacement keeps the file"
+    );
     LogWriter::create(&path, &config, Overwrite::Replace).unwrap();
     assert!(Recording::open(&path).unwrap().metadata().is_none());
     let nowhere = folder.path().join("missing/log.pcapng");

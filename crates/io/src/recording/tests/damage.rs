@@ -68,7 +68,7 @@ fn missing_and_surplus_bytes_are_skipped() {
         assert_eq!((end, counts.damaged), (End::Complete, 1));
         assert_eq!(counts.damaged_bytes, 700 + 333);
 
-        // A hole of zeros, as a file system leaves it, larger than one search window.
+        // A run of zeros as left by a file system, larger than one search window.
         for hole in [1, 5, 4096, 1_000_001] {
             let holed = [&file[..starts[4]], &vec![0; hole], &file[starts[4]..]].concat();
             let (records, end, counts) = read(&holed);

@@ -92,7 +92,7 @@ fn lidars_are_recognised_by_content_on_any_port() {
     assert_eq!(counts.datagrams.values().sum::<u64>(), 4);
     assert_eq!(counts.foreign[&(2368, 1206)], 1);
     let (all, _, again) = read(&file);
-    assert_eq!(all.len(), 7, "unless asked for");
+    assert_eq!(all.len(), 7, "unless requested");
     assert_eq!(again, *counts);
 }
 

@@ -1,5 +1,5 @@
-//! The same bits by tree or by every triangle, one ray or eight, one thread or several, narrow
-//! registers or wide.
+//! Bit-identical hits with a tree or all triangles, one ray or eight, any number of threads and any
+//! SIMD level.
 
 use fearless_simd::Level;
 use proptest::prelude::*;
@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use super::super::triangle::Sheared;
 use super::*;
 
-/// Every triangle, one after the other, and no box.
+/// Tests every triangle in sequence, without boxes.
 fn brute(ray: &Ray, vertices: &[DVec3], triangles: &[[u32; 3]]) -> Option<(f64, u32)> {
     let whole = vertices.iter().copied();
     let (low, high) = whole.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), v| {
@@ -32,7 +32,7 @@ fn bits(hit: Option<Hit>) -> Option<(u64, u32)> {
     hit.map(|hit| (hit.range_m.to_bits(), hit.primitive))
 }
 
-/// Triangles of every kind: soup, slivers, points, doubles, far away, huge.
+/// Triangles of every kind: random, slivers, points, duplicates, distant, huge.
 fn soup(numbers: &mut Numbers, count: usize) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let offset = [DVec3::ZERO, DVec3::new(5e5, 5.4e6, 120.0)][numbers.below(2)];
     let scale = [1e-3, 1.0, 50.0][numbers.below(3)];
@@ -57,7 +57,7 @@ fn soup(numbers: &mut Numbers, count: usize) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     (vertices, triangles)
 }
 
-/// A ray at something: at a vertex, along an edge, into the middle, or anywhere.
+/// A ray at a vertex, along an edge, at a centre, or anywhere.
 fn aimed(numbers: &mut Numbers, vertices: &[DVec3]) -> Option<Ray> {
     let target = vertices[numbers.below(vertices.len())];
     let other = vertices[numbers.below(vertices.len())];
@@ -102,7 +102,7 @@ proptest! {
         let caster = mesh(&(vertices.clone(), triangles.clone()));
         let turned = if tilted { numbers.rotation() } else { DMat3::IDENTITY };
         let origin = vertices[numbers.below(vertices.len())] + numbers.vector();
-        // Past the axes and the diagonals, where lanes of a packet part ways.
+        // Along the axes and the diagonals, where lanes of a packet diverge.
         let rays: Vec<Ray> = (0..35 * 4).map(|at| {
             let turn = f64::from(at / 4) * step + f64::from(at % 4) * std::f64::consts::FRAC_PI_4 - 17.0 * step;
             let along = DVec3::new(turn.sin(), turn.cos(), 0.02 * f64::from(at % 4) - 0.04);
@@ -117,7 +117,7 @@ proptest! {
     }
 }
 
-/// Many objects, some shared, some turned, and planes.
+/// Many objects, some shared, some rotated, and planes.
 fn scene() -> Caster {
     let mut numbers = Numbers(5);
     let (vertices, triangles) = ball(12, 14, 1.0, 0.2);
@@ -198,7 +198,8 @@ fn ray_count_threads_and_simd_level_do_not_change_any_bit() {
     }
 }
 
-/// Along faces, edges and axes, from inside and outside: where single rays take another branch.
+/// Rays along faces, edges and axes, from inside and outside, where single rays take another
+/// branch.
 #[test]
 fn solids_give_equal_bits_for_one_ray_and_for_eight() {
     let mut numbers = Numbers(77);
@@ -221,7 +222,7 @@ fn solids_give_equal_bits_for_one_ray_and_for_eight() {
             1 => Placement::at(numbers.vector()).unwrap(),
             _ => Placement::new(numbers.rotation(), numbers.vector()).unwrap(),
         };
-        // Something else, so that there is a tree's reach by which rays are together.
+        // Another object, so that there is a tree with bounds for packets of rays.
         let far = Sphere { radius_m: 1e4 };
         let objects = [Object::new(surface).placed(place), Object::new(far)];
         let caster = Caster::new(objects).unwrap();
@@ -296,7 +297,7 @@ fn objects_in_a_tree_agree_with_each_object_alone() {
         }
         let hit = first(&caster, &ray).map(|hit| (hit.range_m, hit.object.index(), hit.primitive));
         assert_eq!(hit, best);
-        // Any hit is the same as some hit, and a reach short of it is none.
+        // `any` agrees with the nearest hit, and a shorter range gives none.
         let range = best.unwrap().0;
         assert!(caster.any(&ray, Reach::up_to(range)));
         assert!(!caster.any(&ray, Reach::up_to(range.next_down())));

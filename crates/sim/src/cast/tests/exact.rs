@@ -1,5 +1,5 @@
-//! The slow reference: fractions of any length, nothing rounded. It knows nothing of shears and
-//! trees: Cramer's rule on `origin + t direction = a + u (b - a) + v (c - a)`.
+//! The slow reference in arbitrary-precision fractions, without shears and trees: Cramer's rule on
+//! `origin + t direction = a + u (b - a) + v (c - a)`.
 
 use num_rational::BigRational;
 
@@ -28,7 +28,7 @@ fn dot(a: &Exact, b: &Exact) -> BigRational {
 }
 
 fn rounded(of: &BigRational) -> f64 {
-    // Enough digits for any f64, then the division of whole numbers.
+    // Enough digits for any f64, then an integer division.
     let shift = BigRational::from_float(2.0_f64.powi(80)).unwrap();
     let whole = (of * shift).to_integer();
     whole.to_string().parse::<f64>().unwrap() / 2.0_f64.powi(80)

@@ -1,8 +1,8 @@
-//! Where ray casters go wrong, each against the exact reference.
+//! Known problems of ray casters, against the exact reference.
 
 use super::*;
 
-/// A flat grid of 2 x 40 x 40 triangles about `middle` with vertices off round numbers.
+/// A flat grid of 2 x 40 x 40 triangles about `middle` with irregular coordinates.
 fn sheet(middle: DVec3, cell: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let mut numbers = Numbers(3);
     let mut vertices = Vec::new();
@@ -29,7 +29,7 @@ fn no_ray_passes_through_a_shared_edge_or_vertex() {
         let origin = numbers.vector();
         let corners = triangles[numbers.below(triangles.len())];
         let [a, b] = [corners[0], corners[1]].map(|at| vertices[at as usize]);
-        // A third each: at a vertex, at the middle of an edge, anywhere on it.
+        // One third each: at a vertex, at the middle of an edge, anywhere on it.
         let target = match at % 3 {
             0 => a,
             1 => 0.5 * (a + b),
@@ -49,7 +49,7 @@ fn no_ray_passes_through_a_shared_edge_or_vertex() {
 
 #[test]
 fn rays_through_vertices_and_along_edges_agree_with_exact_fractions() {
-    // Whole numbers: every edge function is exactly zero.
+    // Integers: every edge function is exactly zero.
     let vertices: Vec<DVec3> = (0..25)
         .map(|at| DVec3::new(f64::from(at % 5) - 2.0, f64::from(at / 5) - 2.0, 3.0))
         .collect();
@@ -141,8 +141,8 @@ fn a_sphere_of_a_metre_is_hit_a_kilometre_away() {
             None => missed += 1,
             Some((ours, exact)) => {
                 met += 1;
-                // The rounding of a direction's length alone is 1e-13 of a kilometre; near the rim
-                // it grows by the root.
+                // Rounding of the direction's length alone is 1e-13 of a kilometre; near the rim
+                // its square root applies.
                 assert!((ours - exact).abs() < 1e-10, "{ours} {exact}");
             }
         }
@@ -156,7 +156,7 @@ fn triangles_without_area_are_ignored() {
     let a = DVec3::new(0.125, 0.25, 5.0);
     let (b, c) = (DVec3::new(1.25, -0.5, 5.0), DVec3::new(-1.125, -1.75, 5.0));
     let vertices = [a, b, c, 0.5 * (a + b)];
-    // A point, lines there and back, a line in three pieces, and one that is a triangle.
+    // A point, degenerate lines, a line in three pieces, and a proper triangle.
     let triangles = [
         [0, 0, 0],
         [0, 1, 0],

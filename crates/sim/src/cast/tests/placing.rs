@@ -1,4 +1,4 @@
-//! Objects elsewhere and turned.
+//! Translated and rotated objects.
 
 use super::*;
 

@@ -1,4 +1,4 @@
-//! Trees of any quality: other trees, the same hits.
+//! Trees of different quality give equal hits.
 
 use super::*;
 
@@ -59,8 +59,8 @@ fn build_quality_changes_the_size_of_the_tree() {
     let mesh = Mesh::new(&vertices, &triangles).unwrap();
     let nodes = |bins, sharing| mesh.rebuilt(Quality { bins, sharing }).nodes();
     assert_eq!(nodes(16, 1), mesh.nodes());
-    // Every node but the root is a child, and every triangle: with eight children per node there
-    // are at least an eighth as many.
+    // Every node but the root and every triangle is a child: with eight children per node there is
+    // at least one node per eight triangles.
     assert!(mesh.nodes() > mesh.triangles() / 8);
     assert!(nodes(16, 4) < mesh.nodes() && nodes(16, 8) < nodes(16, 4));
     // Out of bounds counts as the bound.

@@ -1,4 +1,4 @@
-//! Solids against meshes of themselves and against geometry done by hand.
+//! Solids against their meshes and against manual geometry.
 
 use super::*;
 
@@ -79,7 +79,7 @@ fn capped_and_open_cylinders_are_hit_correctly() {
     ));
 }
 
-/// A cylinder of many sides against the round one, over steep and flat rays alike.
+/// A many-sided prism against the cylinder, for steep and flat rays.
 #[test]
 fn a_cylinder_is_the_limit_of_its_meshes() {
     let sides = 4_000_u32;
@@ -107,7 +107,7 @@ fn a_cylinder_is_the_limit_of_its_meshes() {
         let ray = ray(numbers.vector() * 3.0, numbers.direction());
         let ranges = first(&faceted, &ray).zip(first(&round, &ray));
         if let Some((faceted, round)) = ranges {
-            // Facets are 3e-7 m off the circle; a ray that grazes it makes more of that.
+            // Facets are 3e-7 m off the circle; grazing rays amplify that.
             let apart = (faceted.range_m - round.range_m).abs();
             let through = round.range_m - ray.direction().dot(-ray.origin_m());
             if through.abs() > 0.1 && apart < 0.5 {

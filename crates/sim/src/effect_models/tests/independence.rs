@@ -1,7 +1,7 @@
 //! Effects draw independently: each effect that draws, with every other, on any number of threads.
 //!
-//! The scanner is at the centre of a sphere, so that tilt and time change no distance: whatever
-//! another effect leaves alone must be the same as without it.
+//! The scanner is at the centre of a sphere, so that tilt and time change no distance: returns that
+//! another effect does not change must be the same as without it.
 
 use crate::effect_models::testing::arrivals;
 use crate::effects::{ClockEffect, MessageKind};
@@ -112,7 +112,7 @@ fn another_effect_does_not_change_random_draws_per_shot() {
                 }
                 seen += 1;
                 let same = match (effect, *other) {
-                    // Less light: nothing is detected that was not before.
+                    // Less light: no new detections.
                     ("reflectance", "weather") | ("weather", "reflectance") => {
                         among(*both, *alone, 0)
                     }
@@ -169,7 +169,7 @@ fn another_effect_does_not_change_random_draws_per_message() {
             assert_eq!(acts, kind.is_from_lidar() || !on_lidar_only, "{effect}");
             for (other, _) in TABLES.iter().filter(|(other, _)| *other != effect) {
                 let both = delays(&[effect, other], kind);
-                // It waits for a tick, independent of the arrival.
+                // It waits for a tick, independently of the arrival.
                 if *other == "batching" && kind.is_from_lidar() {
                     for ((number, both), alone) in (0..).zip(&both).zip(&alone) {
                         let tick = |delay: &i64| {

@@ -39,7 +39,7 @@ impl SimulationSink for Taken {
 /// An upright plate along x, 2 m wide and high.
 const PLATE: &str = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 1 2 3 4\n";
 
-/// All but the objects.
+/// Everything but the objects.
 const BEFORE: &str = "[motion]\nkind = \"sweeps\"\nfrom_deg = 0\nto_deg = -20\nspeed_deg_s = 40\n[materials]\nwall = { reflectivity = 60 }\n\
                       a = { reflectivity = 1 }\nb = { reflectivity = 2 }\nc = { reflectivity = 3 }\nd = { reflectivity = 4 }\ne = { reflectivity = 5 }\n\
                       f = { reflectivity = 6 }\nplate = { reflectivity = 30 }\n[[objects]]\nmaterial = \"wall\"\nsphere = { radius_m = 20 }\n";
@@ -94,13 +94,12 @@ fn a_box_at_2_m_s_is_at_its_position_of_each_firing() {
         );
         faces[face] += 1;
     }
-    // It is in front, to the right, and the scanner sees its left as well.
+    // The box is in front and to the right, and the scanner sees its left side as well.
     assert!(
         faces[2] > 500 && faces[0] > 100 && faces[1] == 0 && faces[3] == 0,
         "{faces:?}"
     );
-    // Sheared: in one revolution, 0.1 s, its front is 0.2 m farther where the head comes to it
-    // later. Here revolution by revolution.
+    // Sheared: within one revolution, 0.1 s, the front moves by 0.2 m. Checked for each revolution.
     let front = |from_s: f64| {
         let turn = taken.points.iter().filter(|point| {
             point.reflectivity == 3 && (from_s..from_s + 0.1).contains(&fired_s(point))
@@ -159,7 +158,7 @@ fn moving_objects_and_boxes_do_not_depend_on_threads() {
     }
     let names: Vec<_> = scene.effects.lines.iter().map(|line| line.name).collect();
     assert_eq!(names, ["moving_objects", "divergence", "range_noise"]);
-    // Its own table asks for it, wherever else something moves.
+    // Its own table enables it, even without other moving objects.
     let line = text
         .lines()
         .position(|line| line == "[effects.moving_objects]")

@@ -1,4 +1,4 @@
-//! Mesh files of each kind: a box as a mesh is the box; and files that are none.
+//! Mesh files of each format: a box mesh equals the box, and invalid files are refused.
 
 use proptest::prelude::*;
 
@@ -6,7 +6,7 @@ use super::super::meshes::Soup;
 use super::*;
 use crate::cast::{Cuboid, Object};
 
-/// Corners by their bits (x, y, z) and four-cornered faces, counterclockwise from outside.
+/// Corners by their bits (x, y, z) and quadrilateral faces, counterclockwise from outside.
 const FACES: [[u32; 4]; 6] = [
     [0, 4, 6, 2],
     [1, 3, 7, 5],
@@ -71,7 +71,7 @@ fn ply_binary() -> Vec<u8> {
     bytes
 }
 
-/// Positions, then a strip of four corners a face, u16.
+/// Positions, then a strip of four corners per face, u16.
 fn gltf_buffer() -> Vec<u8> {
     let mut bytes: Vec<u8> = Vec::new();
     bytes.extend(
@@ -80,7 +80,7 @@ fn gltf_buffer() -> Vec<u8> {
             .flatten()
             .flat_map(|number| number.to_le_bytes()),
     );
-    // A strip goes to and fro.
+    // A strip zigzags.
     let strips = FACES.iter().flat_map(|&[a, b, c, d]| [a, b, d, c]);
     bytes.extend(strips.flat_map(|number| (number as u16).to_le_bytes()));
     bytes
@@ -193,7 +193,7 @@ fn units_and_up_axis_follow_the_scene() {
     };
     assert_eq!(look("obj\""), 3.0);
     assert_eq!(look("obj\", unit_m = 2"), 6.0);
-    // glTF's up is y, and its z comes to look to -y.
+    // The up axis of glTF is y, and its z becomes -y.
     assert_eq!(look("glb\""), 1.0);
     assert_eq!(look("glb\", y_up = false"), 3.0);
 }
@@ -286,8 +286,7 @@ fn malformed_meshes_are_refused() {
     );
 }
 
-/// No contents of a file make a reader panic: every file cut at any byte, and with any one byte
-/// changed.
+/// Readers do not panic on a file truncated at any byte, or with any one byte changed.
 #[test]
 fn broken_files_never_panic() {
     for (format, bytes) in [

@@ -313,8 +313,8 @@ fn worst_deg(
 mod tests {
     use super::*;
 
-    /// Worst errors of such a sweep in degrees, computed by another program (numpy) with other
-    /// phases of the polls, which affect the ramps, and another seed.
+    /// Worst errors of such a sweep in degrees, computed independently (numpy) with another seed
+    /// and other phases of the polls, which affect the ramps.
     #[test]
     fn errors_are_those_of_an_independent_computation() {
         let stiff = shaft(false);
