@@ -70,7 +70,7 @@ fn fuzz(daemon: &Daemon, folder: &Path, more: &[&str]) {
         .unwrap();
     let printed = String::from_utf8_lossy(&output.stdout);
     assert!(output.status.success(), "{printed}");
-    assert!(printed.contains("cases"), "nothing was tried: {printed}");
+    assert!(printed.contains("cases"), "no request was sent: {printed}");
 }
 
 #[test]
@@ -87,7 +87,7 @@ fn invalid_requests_are_refused_as_described_and_nothing_moves() {
         COMMANDS,
     ];
     fuzz(&daemon, folder.path(), &bad);
-    assert!(!bench.has_moved(), "a bad request moved the axis");
+    assert!(!bench.has_moved(), "an invalid request moved the axis");
     assert!(daemon.state().scans.list().is_empty());
     daemon.stop(|| true).unwrap();
 }
@@ -101,6 +101,6 @@ fn arbitrary_requests_are_answered_as_described_and_the_axis_ends_at_rest() {
     daemon.stop(|| true).unwrap();
     assert!(
         bench.is_safe(),
-        "the daemon has ended, and the axis is not at rest"
+        "the axis is not at rest after the daemon's end"
     );
 }

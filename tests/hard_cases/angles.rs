@@ -174,7 +174,7 @@ fn degenerate_motions_are_followed() {
             0.003,
         ),
         (
-            "ramps that are not alike",
+            "unequal ramps",
             Motion {
                 up_deg_s2: 300.0,
                 down_deg_s2: 900.0,
@@ -191,7 +191,7 @@ fn degenerate_motions_are_followed() {
             0.003,
         ),
         (
-            "a triangle whose ramps are not alike",
+            "a triangle with unequal ramps",
             Motion {
                 way_deg: 3.0,
                 up_deg_s2: 900.0,
@@ -202,7 +202,7 @@ fn degenerate_motions_are_followed() {
         ),
         // A ramp shorter than a poll: its start is known to half a poll.
         (
-            "an acceleration without limit",
+            "unlimited acceleration",
             Motion {
                 up_deg_s2: 1e12,
                 down_deg_s2: 1e12,
@@ -211,7 +211,7 @@ fn degenerate_motions_are_followed() {
             0.07,
         ),
         (
-            "one ramp without limit",
+            "one unlimited ramp",
             Motion {
                 up_deg_s2: 1e12,
                 ..CARD
@@ -219,7 +219,7 @@ fn degenerate_motions_are_followed() {
             0.07,
         ),
         (
-            "a speed of next to nothing",
+            "a speed near zero",
             Motion {
                 way_deg: -0.3,
                 speed_deg_s: 0.05,
@@ -228,7 +228,7 @@ fn degenerate_motions_are_followed() {
             0.002,
         ),
         (
-            "a way of one count",
+            "a distance of one count",
             Motion {
                 way_deg: -QUANTUM_DEG,
                 ..CARD
@@ -236,7 +236,7 @@ fn degenerate_motions_are_followed() {
             0.002,
         ),
         (
-            "no way",
+            "no distance",
             Motion {
                 way_deg: 0.0,
                 ..CARD
@@ -254,7 +254,7 @@ fn degenerate_motions_are_followed() {
             let bound = trajectory.bound_deg(&[(sweep.start, sweep.end)]);
             // A spline has no corners; an unlimited acceleration makes one.
             let corner = method == Some(Method::Spline) && motion.up_deg_s2 > 1e6;
-            // Over few counts a fit knows no more than the count.
+            // Over few counts a fit is limited by the resolution of the counts.
             let known = bound.max(QUANTUM_DEG);
             assert!(corner || worst <= known, "{printed}, bound {bound}");
             if method.is_none() {

@@ -224,8 +224,8 @@ fn azimuths_may_wrap_anywhere_in_a_packet() {
     }
 }
 
-/// A limited field of view: a packet continues behind the gap, 155 ms later than its place says.
-/// Interpolation over the jump would put azimuths into the unseen part of the revolution.
+/// A limited field of view: a packet continues after the gap, 155 ms later than its position
+/// implies. Interpolation over the jump would put azimuths into the unseen part of the revolution.
 #[test]
 fn blocks_after_the_gap_of_a_limited_field_of_view_are_timed_later() {
     for (dual, rpm) in [(false, 300.0), (true, 300.0), (false, 1_200.0)] {

@@ -210,7 +210,7 @@ fn run(mut rig: Rig, (cable, link): (Pty, &Path), ports: (u16, u16), hand: &Hand
         rig.drive_input(&buffer[..read.map_or(0, |(count, _)| count)]);
         while let Some(answer) = rig.drive_output() {
             if let Some(pty) = &mut cable {
-                // A client that has gone reads nothing.
+                // A disconnected client reads nothing.
                 let _ = pty.write_frame(&answer.bytes);
             }
         }

@@ -295,8 +295,8 @@ impl Captured {
                 let bytes = protocol::epos2::usb::to_bytes(&write.to_frame());
                 vec![Mark::Whole(bytes.to_vec())]
             }
-            // If the unit takes part in the dialogue the body follows; nothing else is written
-            // while the axis moves. If it does not, the body is sent without the dialogue.
+            // If the unit answers the opcode, the body follows, and nothing else is written while
+            // the axis moves. Otherwise the body is sent without waiting.
             DriveLink::Rs232 => {
                 let mut body = Vec::new();
                 rs232::encode_body(&write.to_frame(), &mut body).unwrap();

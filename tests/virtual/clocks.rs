@@ -269,7 +269,7 @@ fn clock_errors_are_within_their_limits() {
                 assert!(olson.worst < 60.0, "{link:?}: {olson:?}");
             }
             assert!(Off::mean(&row.straight).worst > 70.0);
-            // Where the hull is good the clock is no worse.
+            // Where the hull is accurate the clock is at least as accurate.
             let (hulls, clock) = (Off::mean(&row.hulls), Off::mean(&row.clock));
             assert!(
                 clock.worst < hulls.worst + 0.3,

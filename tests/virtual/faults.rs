@@ -1,5 +1,5 @@
 //! Faults during a sweep over every attachment of the drive, in virtual time, and the tables of the
-//! book.
+//! documentation.
 //!
 //! After every fault there is no hang, no panic and no lost scan, and the axis is stopped soon
 //! after the fault is detectable. `VELOMOTION_BLESS=1` writes docs/src/faults.md; without it the
@@ -25,9 +25,9 @@ enum Must {
     SurviveOrStop,
     /// The axis is stopped within this time of the fault.
     StopWithin(Span),
-    /// Nothing can be sent: the report says so.
+    /// Nothing can be sent, and the report states it.
     SayThatItCannot,
-    /// The line is unusable: the report says so, and everything before is saved.
+    /// The line is unusable; the report states it, and everything before is saved.
     End,
 }
 
@@ -190,8 +190,8 @@ const WAYS: [(Attachment, &str); 4] = [
 /// The required outcome, weaker for attachments that cannot do better.
 fn must(attached: Attachment, fault: Fault, must: Must) -> Must {
     match (attached, fault) {
-        // The dialogue of single bytes has no frame starts: bytes that are doubled or inserted for
-        // ever look like part of it.
+        // The RS232 exchange has no frame starts: permanently duplicated or inserted bytes look
+        // like part of it.
         (Attachment::Rs232, Fault::AnswersDoubled(_) | Fault::Noise(_)) => Must::End,
         // Late frames delay those behind them: meanwhile neither positions nor heartbeats arrive.
         (Attachment::Slcan | Attachment::Can, Fault::AnswersLate(_, late)) if late > ms(100) => {
@@ -250,7 +250,7 @@ fn try_out(attached: Attachment, name: &str, fault: Fault, expected: Must, at: S
         .any(|w| w.contains("angle error may reach"));
     assert!(
         worst_mm < WORST_MM || doubted,
-        "{name}: worst point {worst_mm} mm off, and no word of it"
+        "{name}: worst point {worst_mm} mm off without a warning"
     );
     let stop = captured.stop_sent(begin).map(|at| at - begin);
     match must(attached, fault, expected) {
@@ -269,7 +269,7 @@ fn try_out(attached: Attachment, name: &str, fault: Fault, expected: Must, at: S
                 "{name}: {ended:?}"
             );
             if is_received(fault) {
-                assert!(stands(&captured), "{name}: the axis still moves");
+                assert!(is_at_rest(&captured), "{name}: the axis still moves");
             }
             let stop = stop.unwrap_or_else(|| panic!("{name}: no report that the axis stopped"));
             assert!(
@@ -301,7 +301,7 @@ fn is_received(fault: Fault) -> bool {
 }
 
 /// Whether the axis rests before the end of its sweep.
-fn stands(captured: &Captured) -> bool {
+fn is_at_rest(captured: &Captured) -> bool {
     let last = captured.truth().end() - ms(1);
     let angle = |at| captured.truth().tilt_deg_at(at).unwrap();
     angle(last) == angle(last - ms(10)) && angle(last) > -44.0
@@ -329,7 +329,7 @@ fn no_fault_hangs_panics_or_loses_the_scan() {
     let written = std::fs::read_to_string(path).unwrap_or_default();
     assert!(
         written == page,
-        "docs/src/faults.md is not what happens now; VELOMOTION_BLESS=1 rewrites it:\n{page}"
+        "docs/src/faults.md differs from the result; VELOMOTION_BLESS=1 rewrites it:\n{page}"
     );
 }
 
@@ -351,7 +351,7 @@ fn no_fault_at_any_moment_hangs_or_leaves_the_axis_uncontrolled() {
     });
 }
 
-/// Checks that the axis rests after the fault, or that the report says it may move.
+/// Checks that the axis rests after the fault, or that the report warns that it may move.
 fn is_left_at_rest(attached: Attachment, name: &str, fault: Fault, after: Span) {
     let (captured, ended) = Captured::run(Setting {
         fault: Some((fault, after)),
@@ -373,7 +373,7 @@ fn is_left_at_rest(attached: Attachment, name: &str, fault: Fault, after: Span) 
         assert_eq!(
             angle(last),
             angle(last - ms(10)),
-            "{name}: still moves, {ended:?}"
+            "{name}: the axis still moves, {ended:?}"
         );
     }
 }

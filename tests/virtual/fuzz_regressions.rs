@@ -56,7 +56,7 @@ fn inputs_that_once_failed_pass() {
         .unwrap()
         .map(|target| fs::read_dir(target.unwrap().path()).unwrap().count())
         .sum();
-    assert_eq!(run, stored, "inputs of a target that is not there");
+    assert_eq!(run, stored, "inputs of an unknown target");
     assert!(run > 0);
 }
 

@@ -88,7 +88,7 @@ fn densities_match_the_recorded_values() {
     }
 }
 
-/// The book's figures equal the computed ones, rounded as the report rounds them.
+/// The documentation's figures equal the computed ones, rounded as in the report.
 #[test]
 fn the_documentation_prints_the_output_of_the_report() {
     let book = include_str!("../../docs/src/paper.md");
@@ -194,7 +194,8 @@ fn blind_rows_remain_at_any_speed() {
 
 #[test]
 fn the_poles_are_holes_at_any_speed() {
-    // No laser is level: the nearest are 1 deg off, and so is everything they see from the axis.
+    // No laser is level: the nearest are 1 deg off, and so are all points that they see from the
+    // axis.
     for text in ["rmbl:300", "rmbl:120", "rmbl:50"] {
         let pattern = pattern(text);
         let directions = pattern.directions();

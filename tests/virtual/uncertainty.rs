@@ -2,9 +2,9 @@
 //! error over sd, is 1 if `sd` is right.
 //!
 //! Errors of a fit, of a clock and of the polls' delays are common to many points of one scan, so
-//! every figure is over several seeds. `sd` leaves out what no scan can tell; it is removed first
-//! as a calibration would: per attachment one delay and one zero of the angle, over all seeds and
-//! speeds.
+//! every figure is over several seeds. `sd` omits errors that no scan can reveal. They are removed
+//! first, as by a calibration: per attachment one delay and one zero of the angle, over all seeds
+//! and speeds.
 
 use engine::reconstruct::source::Source;
 use firmware_sim::epos2::Servo;

@@ -16,7 +16,7 @@ const LOOK: Span = Span::from_millis(10);
 /// Bytes of its socket's queue; `candump` loses frames that do not fit.
 const RECEIVE_BUFFER: &str = "4194304";
 
-/// Frames without an answer. They mark in the file how far `candump` has come: at its beginning and
+/// Frames without an answer, which mark the progress of `candump` in the file: at its beginning and
 /// at its end.
 const BEGIN: u8 = b'?';
 const END: u8 = b'!';
@@ -66,7 +66,7 @@ impl Candump {
         let line = format!("{:X}#{mark:02X}\n", CobId::MAX.get());
         let end = clock::now() + bus::TIME_LIMIT;
         while !fs::read_to_string(&self.file).unwrap().contains(&line) {
-            assert!(clock::now() < end, "candump hears nothing");
+            assert!(clock::now() < end, "candump receives nothing");
             self.bus.write_frame(&probe(mark)).unwrap();
             // Received frames do not matter here: the read is a pause that traffic may shorten.
             self.bus.read(LOOK).unwrap();

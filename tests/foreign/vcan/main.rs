@@ -1,5 +1,5 @@
 //! The software EPOS2 on a CAN interface of the kernel (`velomotion firmware-sim --can vcan0`) with
-//! two CANopen masters: one made for the test and the project's client.
+//! two CANopen masters: one written for the test and the project's client.
 //!
 //! If the kernel has no CAN, `in-vm` runs this test program in an emulated machine. The logs of the
 //! client and of `candump` are then read outside, by tshark too.
@@ -90,7 +90,7 @@ fn run_inside(name: &str) -> TempDir {
     let printed = String::from_utf8_lossy(&printed);
     println!("{printed}");
     assert!(output.status.success(), "{}", output.status);
-    assert!(printed.contains("1 passed"), "no test of that name ran");
+    assert!(printed.contains("1 passed"), "no test has this name");
     out
 }
 

@@ -1,4 +1,4 @@
-//! The angle of a turning motor on SYNC, as a capture over CAN gets it: TPDO 1 with position and
+//! The angle of a rotating motor at each SYNC, as in a capture over CAN: TPDO 1 with position and
 //! time, 1000 per second.
 
 use std::fmt;
@@ -188,7 +188,7 @@ fn on_the_line(samples: &[Sample]) {
     let mut before_us = 0;
     for (number, sample) in samples.iter().enumerate() {
         let since_us = sample.time_us.wrapping_sub(first.time_us);
-        assert!(since_us >= before_us, "sample {number}: back in time");
+        assert!(since_us >= before_us, "sample {number}: time runs back");
         before_us = since_us;
         let moved_qc = f64::from(sample.position_qc.wrapping_sub(first.position_qc));
         let off_qc = moved_qc - SPEED_QC_US * f64::from(since_us);

@@ -1,4 +1,4 @@
-//! The lidar's clock: the turn of the hour, and UTC.
+//! The lidar's clock: the wrap at the hour, and UTC.
 
 use super::*;
 
@@ -49,7 +49,7 @@ fn the_hour_wraps_in_the_gap_of_a_limited_field_of_view() {
 }
 
 /// The packets around the hour are missing. Only the difference of two stamps, half a packet or
-/// many packets apart, shows the turn; it counts as loss, not as a step of the clock.
+/// many packets apart, shows the wrap; it counts as loss, not as a step of the clock.
 #[test]
 fn the_hour_wraps_while_packets_are_lost() {
     for lost in [1, 2, 7, 40, 700] {

@@ -85,8 +85,8 @@ fn foreign_packets_are_ignored() {
     assert_eq!(counts, (20, 2, 3, 1, 0));
 }
 
-/// The host's network stack delivers packets in batches of 15 ms and more: arrival says nothing
-/// about firing.
+/// The host's network stack delivers packets in batches of 15 ms and more: arrival times do not
+/// show firing times.
 #[test]
 fn packets_in_batches_keep_their_times() {
     let head = steady(600.0, BEGIN_NS - 60 * BLOCK_NS);
@@ -106,8 +106,8 @@ fn packets_in_batches_keep_their_times() {
     }
 }
 
-/// Packets are missing while the rotor turns: firings behind the gap are neither moved nor joined
-/// to those before.
+/// Packets are missing while the rotor turns: firings after the gap are neither moved nor joined to
+/// those before.
 #[test]
 fn firings_after_lost_packets_are_unaffected() {
     for lost in [1, 3, 75, 150] {

@@ -44,8 +44,8 @@ pub fn named<'a>(scans: &'a [ScanView], name: &str) -> Result<&'a ScanView, Stri
         .filter(|scan| scan.name.as_deref() == Some(name));
     match (of_that_name.next(), of_that_name.next()) {
         (Some(scan), None) => Ok(scan),
-        (None, _) => Err(format!("{name} was begun, and there is no such scan: lost")),
-        (Some(_), Some(_)) => Err(format!("{name} was begun once, and is there twice")),
+        (None, _) => Err(format!("{name} was started and is not listed: lost")),
+        (Some(_), Some(_)) => Err(format!("{name} was started once and is listed twice")),
     }
 }
 
@@ -83,7 +83,7 @@ pub fn sound(scan: &ScanView, folder: &Path, wanted: Wanted) -> Result<(), Strin
         (ScanState::Recording | ScanState::Making, _) => return wrong("never ended".to_owned()),
         (ScanState::Whole, Wanted::Less) => return wrong("whole, and it cannot be".to_owned()),
         (ScanState::Partial | ScanState::Failed, Wanted::Whole) => {
-            return wrong("not whole, and nothing was wrong".to_owned());
+            return wrong("not complete, without a fault".to_owned());
         }
         _ => {}
     }

@@ -41,7 +41,7 @@ pub enum Real {
     PacketsLost,
     /// The daemon is killed and restarted.
     Killed,
-    /// The daemon is asked to end and restarted.
+    /// The daemon is stopped with SIGTERM and restarted.
     Ended,
     /// The disk is full.
     DiskFull,

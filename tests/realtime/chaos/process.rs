@@ -124,7 +124,7 @@ pub fn wait<T>(what: &str, mut wanted: impl FnMut() -> Option<T>) -> Result<T, S
             return Ok(found);
         }
         if begin.elapsed() > LIMIT {
-            return Err(format!("in vain for {} s: {what}", LIMIT.as_secs()));
+            return Err(format!("timed out after {} s: {what}", LIMIT.as_secs()));
         }
         std::thread::sleep(Duration::from_millis(10));
     }

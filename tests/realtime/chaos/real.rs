@@ -101,7 +101,7 @@ impl World {
             let printed = log.unwrap_or_default();
             let last: Vec<&str> = printed.lines().rev().take(12).collect();
             let last: Vec<&str> = last.into_iter().rev().collect();
-            format!("{why}; the daemon said:\n    {}", last.join("\n    "))
+            format!("{why}; the daemon's log:\n    {}", last.join("\n    "))
         })
     }
 
@@ -122,7 +122,7 @@ impl World {
             .client
             .post::<ScanView>("/api/v1/captures", &request);
         if let Err(refused) = answer {
-            // The fault has not begun.
+            // The fault has not started.
             return Err(format!("refused: {refused}"));
         }
         pause(plan.after);

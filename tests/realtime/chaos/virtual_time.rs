@@ -51,7 +51,7 @@ pub fn make(plan: &Plan, what: Virtual, scans: &Scans) -> Result<Wanted, String>
         let file = File::options().write(true).open(&log);
         file.and_then(|file| file.set_len(cut))
             .map_err(|error| error.to_string())?;
-        // Its record still says that it is being recorded.
+        // Its record still has the state of a running capture.
         wanted = Wanted::Less;
     } else {
         done(scans, &id, ended)?;
@@ -150,25 +150,25 @@ fn rests(plan: &Plan, captured: &Captured, ended: &Result<(), SessionError>) -> 
     );
     if went_on > Span::ZERO && !printed {
         return Err(format!(
-            "the axis went on for {went_on:?}, and no word of it: {ended:?}"
+            "the axis moved for another {went_on:?} without a report: {ended:?}"
         ));
     }
     let heartbeat = matches!(plan.attached, sim::Attachment::Slcan | sim::Attachment::Can);
     if heartbeat && went_on > ALONE {
         return Err(format!(
-            "without a heartbeat the axis went on for {went_on:?}"
+            "without a heartbeat the axis moved for another {went_on:?}"
         ));
     }
     // Over USB and RS232 a profile move ends at its target at the latest.
     let longest = plan.sweep_request.to.0.abs() / plan.sweep_request.speed.0 + 1.0;
     if went_on.as_secs_f64() > longest.max(HOMING_S) {
         return Err(format!(
-            "the axis went on for {went_on:?}; its move takes {longest} s"
+            "the axis moved for another {went_on:?}; its move takes {longest} s"
         ));
     }
     if safe_after > SAFE {
         return Err(format!(
-            "the next client had the axis at rest after {safe_after:?} (it stood by itself: {by_itself})"
+            "the next client had the axis at rest after {safe_after:?} (it stopped on its own: {by_itself})"
         ));
     }
     Ok(())

@@ -167,7 +167,7 @@ fn a_pattern_its_clouds_and_its_log_give_the_same_analysis() {
     );
 }
 
-/// The rim that a sensor off the axis cannot see is outside the view.
+/// The rim that an off-axis sensor cannot see is outside the view.
 #[test]
 fn field_of_view_figures_follow_the_position_of_the_sensor() {
     let place = Place::new();
@@ -622,7 +622,7 @@ fn ctrl_c_ends_an_analysis_with_130_and_no_partial_report() {
         while !line.contains("velomotion16:5") {
             line.clear();
             let read = std::io::BufRead::read_line(&mut printed, &mut line).unwrap();
-            assert!(read > 0, "it ended");
+            assert!(read > 0, "the command ended early");
         }
         let kill = Command::new("kill")
             .args([signal, &analysis.id().to_string()])
@@ -633,6 +633,6 @@ fn ctrl_c_ends_an_analysis_with_130_and_no_partial_report() {
         assert_eq!(analysis.wait().unwrap().code(), Some(130), "{rest}");
         assert!(rest.contains("stopped by the user"), "{rest}");
         let written = std::fs::read_dir(place.path("page")).unwrap().count();
-        assert_eq!(written, 0, "half a report");
+        assert_eq!(written, 0, "a partial report was written");
     }
 }

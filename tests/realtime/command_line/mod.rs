@@ -1,5 +1,5 @@
-//! The program seen from other programs: exit codes, messages, JSON, and that nothing is
-//! overwritten without `--force`.
+//! The program's interface to other programs: exit codes, messages, JSON, and no overwriting
+//! without `--force`.
 
 mod analyze;
 mod frames;
@@ -110,7 +110,7 @@ fn a_simulated_capture_gives_a_log_that_reproduces_its_cloud() {
     let cruise = scan["sweeps"][0]["cruise_deg_s"].as_f64().unwrap();
     assert!((cruise.abs() - 56.25).abs() < 0.5, "{scan}");
     // On a busy machine polls may stall. Then the report has a warning; otherwise the cloud is
-    // right.
+    // correct.
     let doubted = scan["warnings"]
         .to_string()
         .contains("angle error may reach");
@@ -170,7 +170,7 @@ fn a_simulated_capture_gives_a_log_that_reproduces_its_cloud() {
     cut_off(&place);
 }
 
-/// A truncated log gives what it holds and reports where it ends.
+/// A truncated log gives its points and reports where it ends.
 fn cut_off(place: &Place) {
     let log = std::fs::read(place.path("scan.pcapng")).unwrap();
     std::fs::write(place.path("cut.pcapng"), &log[..log.len() * 2 / 3 + 5]).unwrap();

@@ -32,13 +32,13 @@ impl Deaf {
         let stream = TcpStream::connect(address).unwrap();
         stream.set_nonblocking(true).unwrap();
         let mut deaf = Self(stream);
-        // Sends until the buffers are full of requests; their answers exceed the buffers of the way
-        // back.
+        // Sends until the buffers are full of requests; the answers exceed the buffers of the other
+        // direction.
         while deaf.request(path) == Some(true) {}
         deaf
     }
 
-    /// Whether the socket took more; `None` after the daemon closed it.
+    /// Whether the socket accepted the request; `None` after the daemon closed it.
     fn request(&mut self, path: &str) -> Option<bool> {
         let request = format!("GET {path} HTTP/1.1\r\nhost: localhost\r\n\r\n").repeat(100);
         match self.0.write(request.as_bytes()) {
@@ -118,7 +118,10 @@ fn the_oldest_client_without_token_is_disconnected_first() {
     let mut late = connect();
     assert!(request_with(&mut late, ""));
     assert!(closed(&mut strangers[0]));
-    assert!(!closed(&mut strangers[1]), "one too many has left");
+    assert!(
+        !closed(&mut strangers[1]),
+        "one connection too many was closed"
+    );
     drop((strangers, late));
     let token = format!("authorization: Bearer {TOKEN}\r\n");
     let trusted: Vec<TcpStream> = (0..CONNECTIONS)
@@ -139,7 +142,7 @@ fn the_oldest_client_without_token_is_disconnected_first() {
         assert_eq!(
             end,
             Err(ErrorKind::WouldBlock),
-            "one with the token has left"
+            "a connection with the token was closed"
         );
     }
     wait("a place again", || {

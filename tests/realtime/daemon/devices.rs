@@ -69,7 +69,7 @@ fn an_unplugged_drive_is_reported_and_found_again() {
     assert_eq!(
         rig.status()["drive"]["referenced"],
         false,
-        "it was not to move"
+        "the axis must not move"
     );
 
     drop(unit);
@@ -167,7 +167,7 @@ fn a_drive_is_found_on_any_port_after_reconnecting() {
     let found = drive(&rig, "connected");
     assert_eq!(found["port"], first.display().to_string());
     for keys in [String::new(), format!("port = '{}'", first.display())] {
-        // The daemon has the port, whatever its name: no other process gets it.
+        // The daemon holds the port under every name: no other process can open it.
         configure(&keys);
         let output = run(folder, "tilt status --json");
         assert!(output.status.success(), "{keys}: {}", printed(&output));

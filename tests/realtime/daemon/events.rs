@@ -41,7 +41,7 @@ fn listen(mut socket: WebSocket<TcpStream>) -> ReceivedFrame {
                 let count = u32_at(4) as usize;
                 assert_eq!(&bytes[..4], b"VMP1");
                 assert_eq!(bytes.len(), 32 + 22 * count);
-                assert_eq!(u32_at(20), 0, "the live view left records out");
+                assert_eq!(u32_at(20), 0, "the live view omitted records");
                 received.frames.push(u32_at(16));
                 received.points += count as u64;
             }
@@ -140,7 +140,7 @@ fn clients_that_stop_reading_are_disconnected() {
     wait("its place is free", || {
         (events.clients() == 0).then_some(())
     });
-    // The client meets the end once it reads again.
+    // The client receives the end once it reads again.
     let mut read = 0;
     while idle.read().is_ok() {
         read += 1;

@@ -157,7 +157,7 @@ fn an_unread_download_is_closed() {
         let _ = stalled.read_to_end(&mut read);
         (read.len() as u64) < LARGE
     });
-    assert!(ended_early, "whose place was it?");
+    assert!(ended_early, "no download ended early");
     // A client that reads slowly gets everything.
     let (mut slow, _) = open_download(&rig, CLOUD);
     let (mut taken, mut piece) = (0_u64, vec![0; 4 << 20]);
@@ -279,7 +279,7 @@ fn a_client_that_sends_too_much_is_disconnected() {
     let mut socket = connect(rig.address, "").unwrap();
     let long = "x".repeat(daemon::limits::CLIENT_MESSAGE_BYTES + 1);
     socket.send(tungstenite::Message::text(long)).unwrap();
-    // What was on its way, then the end.
+    // Data in flight, then the end.
     while socket.read().is_ok() {}
     wait("its place", || {
         (rig.daemon().state().events().clients() == 0).then_some(())

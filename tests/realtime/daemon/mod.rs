@@ -1,4 +1,4 @@
-//! The daemon with the simulator on loopback, seen from its page, other programs and the commands.
+//! The daemon with the simulator on loopback, as used by its page, other programs and the commands.
 
 mod access;
 mod api;

@@ -17,7 +17,7 @@ fn fragile(when: AxisTask) -> (Rig, Arc<AtomicBool>) {
     let rig = Rig::with("", move |options| {
         options.environment.heartbeat = Arc::new(move |doing| {
             if doing == when && set.swap(false, Ordering::AcqRel) {
-                panic!("a defect, made up by a test");
+                panic!("a defect injected by a test");
             }
         });
     });
@@ -66,7 +66,7 @@ fn the_daemon_exits_with_an_error_when_the_device_thread_ends() {
     let (mut rig, defect) = fragile(AxisTask::Idle);
     rig.ready();
     defect.store(true, Ordering::Release);
-    wait("the keeper's end", || {
+    wait("the end of the device thread", || {
         rig.daemon().is_broken().then_some(())
     });
     // `velomotion daemon` checks the thread ten times per second and ends; its service manager

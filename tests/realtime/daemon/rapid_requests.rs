@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::rig::{Rig, machine_was_busy, post, request, wait};
 
-/// A list is not an object: its numbers in order must not begin a sweep.
+/// A list is not an object: its numbers in order must not start a sweep.
 #[test]
 fn a_list_instead_of_an_object_is_refused() {
     let rig = Rig::new();
@@ -26,7 +26,7 @@ fn a_list_instead_of_an_object_is_refused() {
     assert!(scans["scans"].as_array().unwrap().is_empty(), "{scans}");
 }
 
-/// A stop that arrives before the scan has its name stops the scan.
+/// A stop that arrives before the scan has an id stops the scan.
 #[test]
 fn a_stop_just_after_the_start_is_not_lost() {
     let rig = Rig::new();

@@ -127,7 +127,7 @@ pub fn wait<T>(what: &str, mut wanted: impl FnMut() -> Option<T>) -> T {
         if let Some(found) = wanted() {
             return found;
         }
-        assert!(begin.elapsed() < LIMIT, "in vain: {what}");
+        assert!(begin.elapsed() < LIMIT, "timed out: {what}");
         std::thread::sleep(Duration::from_millis(10));
     }
 }
@@ -291,7 +291,7 @@ pub fn place() -> tempfile::TempDir {
     folder
 }
 
-/// Begins a sweep that is long enough to be interrupted, and waits until the axis moves. Returns
+/// Starts a sweep that is long enough to be interrupted, and waits until the axis moves. Returns
 /// the scan's id.
 pub fn sweep(address: SocketAddr) -> String {
     for _ in 0..4 {
@@ -311,7 +311,7 @@ pub fn sweep(address: SocketAddr) -> String {
 
 /// Waits until the axis sweeps. Returns false if the capture ended before.
 pub fn sweeps(address: SocketAddr) -> bool {
-    // The highest angle since the sweep began: the first reported one may be older.
+    // The highest angle since the start of the sweep: the first reported one may be older.
     let mut highest = f64::NEG_INFINITY;
     wait("a sweep", || {
         let status = request(address, "GET", "/api/v1/status", "", "").json();

@@ -61,7 +61,7 @@ fn a_scan_is_listed_downloaded_like_its_replay_and_deleted() {
         assert!(run(folder, &line).status.success(), "{line}");
         assert!(
             cloud.body == std::fs::read(&file).unwrap(),
-            "{query}: not what replay makes"
+            "{query}: differs from the replay"
         );
     }
     let wrong = rig.get(&format!("/api/v1/scans/{id}/cloud?format=xyz"));
@@ -168,7 +168,7 @@ fn a_truncated_log_does_not_count_as_a_complete_scan() {
     let id = id.as_str().unwrap();
     let config = rig.daemon().state().service.config().clone();
     rig.daemon.take().unwrap().stop(|| true).unwrap();
-    // The state that a power cut leaves during the making of a cloud, on a disk that confirmed the
+    // The state after a power cut during the construction of a cloud, on a disk that confirmed the
     // log and lost it. The folder also holds other files.
     let place = rig.log(id).parent().unwrap().to_owned();
     let record = std::fs::read_to_string(place.join("scan.json")).unwrap();
@@ -448,7 +448,7 @@ fn a_download_leaves_the_space_reserved_for_a_scan() {
     // An existing cloud needs no space.
     free.store(0, Ordering::Relaxed);
     assert_eq!(rig.get(&format!("/api/v1/scans/{id}/cloud")).status, 200);
-    // The disk fills up after the making of the cloud has begun.
+    // The disk fills up after the cloud's construction has started.
     free.store(u64::MAX, Ordering::Relaxed);
     looks.store(1, Ordering::Relaxed);
     rig.get(&path(Format::Pcd)).refused(507, "filled up");

@@ -1,5 +1,5 @@
-//! A cable that is unplugged for seconds while its adapter stays: the port exists, and nothing
-//! passes.
+//! A cable that is unplugged for seconds while its adapter stays: the port exists but transfers
+//! nothing.
 
 use std::os::unix::fs::symlink;
 use std::path::Path;
@@ -113,7 +113,11 @@ fn an_unstopped_axis_is_reported_as_moving_until_it_is_at_rest() {
     );
     // The axis moves on, and the status reports it after every retry.
     let (state, was) = cable.seen();
-    assert_eq!(state, DeviceState::OperationEnabled, "nothing reached it");
+    assert_eq!(
+        state,
+        DeviceState::OperationEnabled,
+        "no request reached the drive"
+    );
     wait("it goes on", || (cable.seen().1 != was).then_some(()));
     let connecting = || rig.status()["activity"]["doing"] == "connecting";
     wait("a try to reach it", || connecting().then_some(()));
@@ -140,6 +144,6 @@ fn an_unstopped_axis_is_reported_as_moving_until_it_is_at_rest() {
     let angle = well["angle_deg"].as_f64().unwrap();
     assert!(
         angle > -39.0,
-        "it ran to its end: {angle} deg, {at}, {gearing:?}"
+        "the axis reached its target: {angle} deg, {at}, {gearing:?}"
     );
 }

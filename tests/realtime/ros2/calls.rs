@@ -29,7 +29,7 @@ fn call(router: &mut Peer, service: &str) -> (bool, String) {
     (answer["success"] == true, message)
 }
 
-/// Begins a capture and waits until the axis sweeps. Returns the scan's id.
+/// Starts a capture and waits until the axis sweeps. Returns the scan's id.
 fn begin(rig: &Rig, router: &mut Peer) -> String {
     for _ in 0..4 {
         rig.ready();
@@ -95,7 +95,7 @@ fn a_capture_is_started_and_stopped_by_service_calls() {
     );
 }
 
-/// Number of scans begun.
+/// Number of started scans.
 fn scans(rig: &Rig) -> u64 {
     figure(rig, "captures")
 }

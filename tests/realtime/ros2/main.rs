@@ -6,6 +6,6 @@ mod calls;
 mod network;
 mod peer;
 #[path = "../daemon/rig.rs"]
-#[allow(dead_code)] // all of it is for others
+#[allow(dead_code)] // other test programs use the rest
 mod rig;
 mod topics;

@@ -36,7 +36,7 @@ fn points_of(mut socket: WebSocket<TcpStream>) -> u64 {
     loop {
         match socket.read().unwrap() {
             Message::Binary(bytes) => {
-                assert_eq!(bytes[20..24], [0; 4], "the live view left records out");
+                assert_eq!(bytes[20..24], [0; 4], "the live view omitted records");
                 points += u64::from(u32::from_le_bytes(bytes[4..8].try_into().unwrap()));
             }
             Message::Text(text) => {
@@ -275,7 +275,7 @@ fn check_bytes(rig: &Rig, id: &str, peer: &Peer) {
     assert!(!recorded.is_empty());
 }
 
-/// Checks what another implementation of the format reads in the tokens.
+/// Checks the tokens with another implementation of the format.
 fn check_graph(peer: &mut Peer) {
     let printed = peer.request(&json!({ "do": "graph", "domain": 0 }));
     let graph = printed.iter().find(|value| value.get("topics").is_some());

@@ -1,4 +1,4 @@
-//! A second client connects after the one that moved the axis has gone.
+//! A second client connects after the one that moved the axis has disconnected.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use units::Span;
 
 use crate::port::VirtualPort;
 
-/// Motion of the drive after its client had gone.
+/// Motion of the drive after its client disconnected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rejoined {
     /// How long it kept moving.
@@ -30,7 +30,7 @@ const TRIES: u32 = 5;
 /// Silence after which a serial line has nothing more to deliver.
 const QUIET: Span = Span::from_millis(100);
 
-/// Leaves the drive alone for a while, then connects as a restarted program does.
+/// Leaves the drive without a client for a while, then connects as a restarted program does.
 pub(super) fn rejoin(
     port: &VirtualPort,
     (axis, link): (AxisConfig, DriveLink),
@@ -71,7 +71,7 @@ pub(super) fn rejoin(
     }
     assert!(
         !port.moves() && !port.is_powered(),
-        "connected, and not safe"
+        "connected, but the axis is not safe"
     );
     Rejoined {
         went_on,

@@ -72,12 +72,12 @@ fn frames_contain_the_whole_cloud_in_order() {
     for (a, b) in cloud.chunks(29).zip(rows.chunks(29)) {
         // x, y, z; intensity, ring, time; tilt. Frames are placed point by point, the cloud in
         // blocks: a nanometre may round a coordinate to the neighbouring f32.
-        assert_eq!(a[12..25], b[12..25], "the frames are not the cloud");
+        assert_eq!(a[12..25], b[12..25], "the frames differ from the cloud");
         for at in [0, 4, 8, 25] {
             let bits = |row: &[u8]| u32::from_le_bytes(row[at..at + 4].try_into().unwrap());
             assert!(
                 bits(a).abs_diff(bits(b)) <= 1,
-                "the frames are not the cloud"
+                "the frames differ from the cloud"
             );
             rounded += u32::from(bits(a) != bits(b));
         }

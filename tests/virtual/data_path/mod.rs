@@ -68,8 +68,8 @@ fn the_error_does_not_depend_on_the_day() {
 fn a_scan_across_the_hour_is_complete() {
     let usual = Captured::new(Setting::default());
     let mut setting = Setting::default();
-    // Homing takes some seconds: the hour turns during the sweep for some of these starts, and
-    // around it for the others.
+    // Homing takes some seconds: the hour wraps during the sweep for some of these starts, and
+    // before or after it for the others.
     let usual_points = usual.cloud().len() as i64;
     let mut turned_inside = 0;
     for before in [2_000, 3_000, 3_500, 4_000, 4_500, 5_000] {
@@ -92,7 +92,7 @@ fn a_scan_across_the_hour_is_complete() {
     }
     assert!(
         turned_inside > 0,
-        "no sweep was across the hour: the test is blind"
+        "no sweep crossed the hour: the test checks nothing"
     );
 }
 
@@ -133,8 +133,8 @@ fn one_way_sweeps_omit_the_return_move() {
     );
 }
 
-/// After Ctrl-C at any time the axis comes to rest, is disabled, and stays; a sweep that had begun
-/// becomes a cloud.
+/// After Ctrl-C at any time the axis comes to rest, is disabled, and stays; a sweep that had
+/// started becomes a cloud.
 #[test]
 fn an_interrupted_capture_stops_the_axis_and_keeps_its_points() {
     let mut clouds = 0;
@@ -154,9 +154,12 @@ fn an_interrupted_capture_stops_the_axis_and_keeps_its_points() {
         assert_eq!(
             angle(end),
             angle(end - Span::from_millis(10)),
-            "{after_ms} ms: still moves"
+            "{after_ms} ms: the axis still moves"
         );
-        assert!(captured.brake_is_set(), "{after_ms} ms: no brake");
+        assert!(
+            captured.brake_is_set(),
+            "{after_ms} ms: the brake is not set"
+        );
         if let Ok((scan, cloud)) = captured.try_scan() {
             clouds += 1;
             assert_eq!(scan.sweeps.len(), 1, "{after_ms} ms");
@@ -172,6 +175,6 @@ fn an_interrupted_capture_stops_the_axis_and_keeps_its_points() {
     }
     assert!(
         clouds > 5,
-        "no interruption fell into a sweep: the test is blind"
+        "no interruption hit a sweep: the test checks nothing"
     );
 }

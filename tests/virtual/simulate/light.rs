@@ -129,8 +129,8 @@ fn ground_at_grazing_incidence_is_not_detected() {
     assert!(five > 0.98 && three < 0.01, "{five} {three}");
 }
 
-/// A window 25 m ahead: it dazzles where it faces the sensor and is elsewhere too dark to be
-/// detected, 1.2 % of a white wall.
+/// A window 25 m ahead: it reflects strongly where it faces the sensor and is elsewhere too dark to
+/// be detected, 1.2 % of a white wall.
 #[test]
 fn glass_returns_only_where_it_faces_the_sensor() {
     let window = "[materials]\nglass = { reflectivity = 6, specular = 0.8 }\n[[objects]]\nmaterial = \"glass\"\nplane = {}\n\

@@ -55,7 +55,7 @@ fn sweeps_both_ways_without_ramps_are_recovered() {
 
 #[test]
 fn range_noise_is_as_large_as_requested() {
-    // The same room, whose scene calls for no effect.
+    // The same room in a scene without effects.
     let text = shipped("rig").to_owned() + "\n[effects.range_noise]\nsd_m = 0.03\n";
     let scene = Simulated::new(&text, |_| {});
     assert_eq!(scene.report.effects.len(), 1);
@@ -78,7 +78,7 @@ fn a_realistic_scan_of_the_hall_is_recovered() {
     };
     assert!((sweep.to_deg + 45.0).abs() < 0.01, "{sweep:?}");
     assert_eq!(scan.contents.lost_packets, 0);
-    // Frame and tripod hide a ninth.
+    // Frame and tripod block a ninth of the shots.
     assert!((200_000..220_000).contains(&cloud.len()), "{}", cloud.len());
     let mut errors = scene.errors(&cloud);
     errors.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -93,7 +93,7 @@ fn a_realistic_scan_of_the_hall_is_recovered() {
     );
 }
 
-/// One request or answer in fifty is lost. The host gives it up after 20 ms and sends a probe
+/// One request or answer in fifty is lost. The host times out after 20 ms and sends a probe
 /// request, so that no later answer is paired with the wrong request. Otherwise every later answer
 /// could belong to either of two requests and the sweep would seem to end.
 #[test]
@@ -117,7 +117,7 @@ fn lost_answers_of_the_drive_cost_only_samples() {
     }
 }
 
-/// Such a cloud would look right and be wrong.
+/// Such a cloud would look correct and be wrong.
 #[test]
 fn a_mount_that_a_log_cannot_store_gives_a_warning() {
     for (mount, reported) in [
