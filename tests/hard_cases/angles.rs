@@ -24,7 +24,7 @@ struct Motion {
     down_deg_s2: f64,
 }
 
-const CARD: Motion = Motion {
+const REFERENCE: Motion = Motion {
     way_deg: -45.0,
     speed_deg_s: 56.25,
     up_deg_s2: 500.0,
@@ -122,7 +122,7 @@ fn methods() -> impl Iterator<Item = Option<Method>> {
 }
 
 /// Checks that a fit is well conditioned or reports its regularisation.
-fn says_why(trajectory: &Trajectory) -> bool {
+fn is_regularised_or_conditioned(trajectory: &Trajectory) -> bool {
     trajectory.fits().iter().all(|fit| {
         let regularised = fit
             .remarks
@@ -142,8 +142,8 @@ fn says_why(trajectory: &Trajectory) -> bool {
 fn angles_in_2100_equal_those_of_today() {
     for method in methods() {
         let [today, then] = [TODAY, IN_2100].map(|epoch| {
-            let samples = CARD.polls(epoch, 400.0, 0.5e-3);
-            through(samples, CARD.sweep(epoch), method)
+            let samples = REFERENCE.polls(epoch, 400.0, 0.5e-3);
+            through(samples, REFERENCE.sweep(epoch), method)
         });
         for ns in (250_000_000..1_050_000_000).step_by(1_234_567) {
             let angle = |t: &Trajectory, epoch: Stamp<Host>| {
@@ -164,12 +164,12 @@ fn angles_in_2100_equal_those_of_today() {
 #[test]
 fn degenerate_motions_are_followed() {
     for (name, motion, most_deg) in [
-        ("the usual one", CARD, 0.003),
+        ("the usual one", REFERENCE, 0.003),
         (
             "reversed",
             Motion {
                 way_deg: 45.0,
-                ..CARD
+                ..REFERENCE
             },
             0.003,
         ),
@@ -178,7 +178,7 @@ fn degenerate_motions_are_followed() {
             Motion {
                 up_deg_s2: 300.0,
                 down_deg_s2: 900.0,
-                ..CARD
+                ..REFERENCE
             },
             0.003,
         ),
@@ -186,7 +186,7 @@ fn degenerate_motions_are_followed() {
             "shorter than v2/a",
             Motion {
                 way_deg: -3.0,
-                ..CARD
+                ..REFERENCE
             },
             0.003,
         ),
@@ -196,7 +196,7 @@ fn degenerate_motions_are_followed() {
                 way_deg: 3.0,
                 up_deg_s2: 900.0,
                 down_deg_s2: 300.0,
-                ..CARD
+                ..REFERENCE
             },
             0.003,
         ),
@@ -206,7 +206,7 @@ fn degenerate_motions_are_followed() {
             Motion {
                 up_deg_s2: 1e12,
                 down_deg_s2: 1e12,
-                ..CARD
+                ..REFERENCE
             },
             0.07,
         ),
@@ -214,7 +214,7 @@ fn degenerate_motions_are_followed() {
             "one unlimited ramp",
             Motion {
                 up_deg_s2: 1e12,
-                ..CARD
+                ..REFERENCE
             },
             0.07,
         ),
@@ -223,7 +223,7 @@ fn degenerate_motions_are_followed() {
             Motion {
                 way_deg: -0.3,
                 speed_deg_s: 0.05,
-                ..CARD
+                ..REFERENCE
             },
             0.002,
         ),
@@ -231,7 +231,7 @@ fn degenerate_motions_are_followed() {
             "a distance of one count",
             Motion {
                 way_deg: -QUANTUM_DEG,
-                ..CARD
+                ..REFERENCE
             },
             0.002,
         ),
@@ -239,7 +239,7 @@ fn degenerate_motions_are_followed() {
             "no distance",
             Motion {
                 way_deg: 0.0,
-                ..CARD
+                ..REFERENCE
             },
             0.002,
         ),
@@ -250,7 +250,7 @@ fn degenerate_motions_are_followed() {
             let trajectory = through(samples.clone(), sweep, method);
             let worst = motion.worst_deg(&trajectory, &sweep, TODAY);
             let printed = format!("{name}, {method:?}: {worst}, {:?}", trajectory.fits());
-            assert!(says_why(&trajectory), "{printed}");
+            assert!(is_regularised_or_conditioned(&trajectory), "{printed}");
             let bound = trajectory.bound_deg(&[(sweep.start, sweep.end)]);
             // A spline has no corners; an unlimited acceleration makes one.
             let corner = method == Some(Method::Spline) && motion.up_deg_s2 > 1e6;
@@ -281,12 +281,12 @@ fn motions_without_a_known_command_follow_the_samples() {
     ] {
         let sweep = Sweep {
             commanded,
-            ..CARD.sweep(TODAY)
+            ..REFERENCE.sweep(TODAY)
         };
-        let best = through(CARD.polls(TODAY, 400.0, 0.2e-3), sweep, None);
-        let worst = CARD.worst_deg(&best, &sweep, TODAY);
+        let best = through(REFERENCE.polls(TODAY, 400.0, 0.2e-3), sweep, None);
+        let worst = REFERENCE.worst_deg(&best, &sweep, TODAY);
         assert!(worst < 0.01, "{commanded:?}: {worst} by {:?}", best.fits());
-        assert!(says_why(&best), "{:?}", best.fits());
+        assert!(is_regularised_or_conditioned(&best), "{:?}", best.fits());
     }
 }
 
@@ -295,9 +295,9 @@ fn motions_without_a_known_command_follow_the_samples() {
 #[test]
 fn samples_that_end_in_mid_sweep_give_no_angle_after() {
     for part in [0.02, 0.06, 0.125, 0.2, 0.5, 0.88, 0.95, 0.99] {
-        let whole = CARD.sweep(TODAY);
+        let whole = REFERENCE.sweep(TODAY);
         let end = whole.start + Span::from_secs_f64((whole.end - whole.start).as_secs_f64() * part);
-        let mut samples = CARD.polls(TODAY, 400.0, 0.2e-3);
+        let mut samples = REFERENCE.polls(TODAY, 400.0, 0.2e-3);
         samples.retain(|s| s.host <= end);
         let last = *samples.last().unwrap();
         let sweep = Sweep {
@@ -307,8 +307,12 @@ fn samples_that_end_in_mid_sweep_give_no_angle_after() {
         };
         for method in methods() {
             let cut = through(samples.clone(), sweep, method);
-            assert!(says_why(&cut), "{part} {method:?}: {:?}", cut.fits());
-            let worst = CARD.worst_deg(&cut, &sweep, TODAY);
+            assert!(
+                is_regularised_or_conditioned(&cut),
+                "{part} {method:?}: {:?}",
+                cut.fits()
+            );
+            let worst = REFERENCE.worst_deg(&cut, &sweep, TODAY);
             let bound = cut.bound_deg(&[(sweep.start, sweep.end)]);
             assert!(
                 worst <= bound,
@@ -326,8 +330,8 @@ fn samples_that_end_in_mid_sweep_give_no_angle_after() {
 /// unregularised fit's condition number exceeds 1e7. With both ramps it is some tens.
 #[test]
 fn a_fit_of_the_cruise_alone_reports_its_condition() {
-    let whole = CARD.sweep(TODAY);
-    let samples = CARD.polls(TODAY, 400.0, 0.2e-3);
+    let whole = REFERENCE.sweep(TODAY);
+    let samples = REFERENCE.polls(TODAY, 400.0, 0.2e-3);
     let conditions: Vec<f64> = [Method::Profile, Method::ProfileServo, Method::ProfileSwing]
         .into_iter()
         .map(|method| {
@@ -351,8 +355,12 @@ fn a_fit_of_the_cruise_alone_reports_its_condition() {
     };
     for method in methods() {
         let trajectory = through(cruise.clone(), sweep, method);
-        let worst = CARD.worst_deg(&trajectory, &sweep, TODAY);
-        assert!(says_why(&trajectory), "{method:?}: {:?}", trajectory.fits());
+        let worst = REFERENCE.worst_deg(&trajectory, &sweep, TODAY);
+        assert!(
+            is_regularised_or_conditioned(&trajectory),
+            "{method:?}: {:?}",
+            trajectory.fits()
+        );
         let bound = trajectory.bound_deg(&[(sweep.start, sweep.end)]);
         assert!(worst <= bound, "{method:?}: {worst}, bound {bound}");
         if method.is_none() {
@@ -364,16 +372,20 @@ fn a_fit_of_the_cruise_alone_reports_its_condition() {
 /// Three samples within a sweep: fewer than a motion has parameters.
 #[test]
 fn a_sweep_of_three_samples_is_interpolated() {
-    let sweep = CARD.sweep(TODAY);
-    let samples = CARD.polls(TODAY, 3.0, 0.5e-3);
+    let sweep = REFERENCE.sweep(TODAY);
+    let samples = REFERENCE.polls(TODAY, 3.0, 0.5e-3);
     let inside = samples
         .iter()
         .filter(|s| sweep.start < s.host && s.host < sweep.end);
     assert_eq!(inside.count(), 3);
     for method in methods() {
         let trajectory = through(samples.clone(), sweep, method);
-        let worst = CARD.worst_deg(&trajectory, &sweep, TODAY);
-        assert!(says_why(&trajectory), "{method:?}: {:?}", trajectory.fits());
+        let worst = REFERENCE.worst_deg(&trajectory, &sweep, TODAY);
+        assert!(
+            is_regularised_or_conditioned(&trajectory),
+            "{method:?}: {:?}",
+            trajectory.fits()
+        );
         // At worst half of the distance between two samples.
         assert!(worst < 56.25 / 3.0, "{method:?}: {worst}");
         let bound = trajectory.bound_deg(&[(sweep.start, sweep.end)]);
@@ -385,8 +397,8 @@ fn a_sweep_of_three_samples_is_interpolated() {
 /// divisors.
 #[test]
 fn samples_of_identical_times_are_handled() {
-    let sweep = CARD.sweep(TODAY);
-    let samples = CARD.polls(TODAY, 400.0, 0.2e-3);
+    let sweep = REFERENCE.sweep(TODAY);
+    let samples = REFERENCE.polls(TODAY, 400.0, 0.2e-3);
     // In pairs whose second sample is late by a poll and disagrees.
     let mut pairs = samples.clone();
     for pair in pairs.chunks_mut(2) {
@@ -398,9 +410,13 @@ fn samples_of_identical_times_are_handled() {
     instant.iter_mut().for_each(|s| s.host = sweep.start);
     for method in methods() {
         let best = through(pairs.clone(), sweep, method);
-        let worst = CARD.worst_deg(&best, &sweep, TODAY);
+        let worst = REFERENCE.worst_deg(&best, &sweep, TODAY);
         assert!(worst < 0.3, "{method:?}: {worst}");
-        assert!(says_why(&best), "{method:?}: {:?}", best.fits());
+        assert!(
+            is_regularised_or_conditioned(&best),
+            "{method:?}: {:?}",
+            best.fits()
+        );
         let one = through(instant.clone(), sweep, method);
         assert!(one.angle(at(sweep.start)).unwrap().0.is_finite());
         assert!(one.angle(at(sweep.start + Span::from_nanos(1))).is_none());

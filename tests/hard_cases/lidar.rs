@@ -128,7 +128,7 @@ fn apart_deg(a: f64, b: f64) -> f64 {
 }
 
 /// Checks time, azimuth and range of every firing against the head.
-fn assert_true<A: Fn(f64) -> f64, S: Fn(f64) -> bool>(
+fn assert_matches_rotor<A: Fn(f64) -> f64, S: Fn(f64) -> bool>(
     head: &Head<A, S>,
     seen: &[Seen],
     truth: &[i64],
@@ -160,7 +160,7 @@ fn assert_true<A: Fn(f64) -> f64, S: Fn(f64) -> bool>(
     }
 }
 
-fn nothing_amiss(stats: &Stats) {
+fn assert_no_errors(stats: &Stats) {
     let odd = [
         stats.malformed,
         stats.other,
@@ -191,12 +191,12 @@ fn azimuth_36000_equals_0() {
     }
     assert!(replaced >= 2);
     let (seen, stats) = decode(&packets);
-    assert_true(&head, &seen, &truth, 0);
+    assert_matches_rotor(&head, &seen, &truth, 0);
     assert!(
         seen.iter()
             .all(|seen| (0.0..360.0).contains(&seen.azimuth_deg))
     );
-    nothing_amiss(&stats);
+    assert_no_errors(&stats);
 }
 
 /// The step from 359.9 to 0.1 deg is 0.2 deg, anywhere in a packet or between two.
@@ -214,13 +214,13 @@ fn azimuths_may_wrap_anywhere_in_a_packet() {
         };
         let (packets, truth) = head.packets(4);
         let (seen, stats) = decode(&packets);
-        assert_true(&head, &seen, &truth, 0);
+        assert_matches_rotor(&head, &seen, &truth, 0);
         let rpm = stats.rpm.unwrap();
         assert!(
             (rpm - 0.4 / 6.0 / (BLOCK_NS as f64 * 1e-9)).abs() < 1.0,
             "{rpm}"
         );
-        nothing_amiss(&stats);
+        assert_no_errors(&stats);
     }
 }
 
@@ -239,12 +239,12 @@ fn blocks_after_the_gap_of_a_limited_field_of_view_are_timed_later() {
         let (seen, stats) = decode(&packets);
         // The last packet may straddle a gap that no successor measures.
         let known = seen.len() - 24;
-        assert_true(&head, &seen[..known], &truth[..known], 15_000);
+        assert_matches_rotor(&head, &seen[..known], &truth[..known], 15_000);
         assert!(
             seen.iter()
                 .all(|seen| !(41.5..319.9).contains(&seen.azimuth_deg))
         );
-        nothing_amiss(&stats);
+        assert_no_errors(&stats);
     }
 }
 
@@ -312,7 +312,7 @@ fn dual_returns_may_be_missing_on_either_side() {
             (firings, stats.returns, stats.unique_returns),
             (36, 36 * 6, 36 * 5)
         );
-        nothing_amiss(stats);
+        assert_no_errors(stats);
     }
 }
 
@@ -330,7 +330,7 @@ fn a_vlp16_of_2014_that_claims_to_be_an_hdl32e_is_identified() {
         packets.drain(1..1 + lost);
         truth.drain(24..24 * (1 + lost));
         let (seen, stats) = decode(&packets);
-        assert_true(&head, &seen, &truth, 0);
+        assert_matches_rotor(&head, &seen, &truth, 0);
         assert_eq!(
             (stats.model.unwrap().name, stats.conflicts.len()),
             ("VLP-16", 1)
@@ -352,8 +352,8 @@ fn azimuths_follow_a_rotor_that_changes_its_speed() {
         };
         let (packets, truth) = head.packets(700);
         let (seen, stats) = decode(&packets);
-        assert_true(&head, &seen, &truth, 0);
-        nothing_amiss(&stats);
+        assert_matches_rotor(&head, &seen, &truth, 0);
+        assert_no_errors(&stats);
     }
 }
 
@@ -371,8 +371,8 @@ fn the_last_block_uses_the_rotation_rate_of_the_next_packet() {
     };
     let (packets, truth) = head.packets(3);
     let (seen, stats) = decode(&packets);
-    assert_true(&head, &seen, &truth, 0);
-    nothing_amiss(&stats);
+    assert_matches_rotor(&head, &seen, &truth, 0);
+    assert_no_errors(&stats);
     // Without successor it continues at the rate of the block before.
     let (alone, _) = decode(&packets[1..2]);
     let step_deg = apart_deg(alone[23].azimuth_deg, alone[22].azimuth_deg);

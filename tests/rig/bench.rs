@@ -31,7 +31,7 @@ const SLICE: Span = Span::from_millis(20);
 
 /// Faults that the test sets, and the state of the axis.
 #[derive(Default)]
-struct Hand {
+struct Controls {
     stop: AtomicBool,
     held: AtomicBool,
     unplugged: AtomicBool,
@@ -46,7 +46,7 @@ struct Hand {
 pub struct Bench {
     folder: TempDir,
     ports: (u16, u16),
-    hand: Arc<Hand>,
+    controls: Arc<Controls>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -63,15 +63,15 @@ impl Bench {
             drive: simulated::node(&devices::axis(&axis()).unwrap()),
             ..RigConfig::new(io::clock::now())
         };
-        let hand = Arc::new(Hand::default());
-        let (theirs, link) = (Arc::clone(&hand), folder.path().join("epos"));
+        let controls = Arc::new(Controls::default());
+        let (theirs, link) = (Arc::clone(&controls), folder.path().join("epos"));
         // The port exists on return.
         let cable = plug(&link);
         let thread = std::thread::spawn(move || run(Rig::new(rig), (cable, &link), ports, &theirs));
         Self {
             folder,
             ports,
-            hand,
+            controls,
             thread: Some(thread),
         }
     }
@@ -110,41 +110,41 @@ impl Bench {
 
     /// Blocks the axis, or releases it.
     pub fn hold(&self, held: bool) {
-        self.hand.held.store(held, Ordering::Release);
+        self.controls.held.store(held, Ordering::Release);
     }
 
     /// Unplugs the drive's cable, or plugs it in.
     pub fn unplug(&self, gone: bool) {
-        self.hand.unplugged.store(gone, Ordering::Release);
+        self.controls.unplugged.store(gone, Ordering::Release);
     }
 
     /// Silences the lidar, or ends its silence.
     pub fn silence(&self, silent: bool) {
-        self.hand.silent.store(silent, Ordering::Release);
+        self.controls.silent.store(silent, Ordering::Release);
     }
 
     /// Drops every n-th packet; 0 drops none.
     pub fn lose(&self, every: u64) {
-        self.hand.lose.store(every, Ordering::Release);
+        self.controls.lose.store(every, Ordering::Release);
     }
 
     /// Whether the axis is at rest with its power stage off.
     #[must_use]
     pub fn is_safe(&self) -> bool {
         let on = |flag: &AtomicBool| flag.load(Ordering::Acquire);
-        !on(&self.hand.moves) && !on(&self.hand.powered)
+        !on(&self.controls.moves) && !on(&self.controls.powered)
     }
 
     /// Whether the axis has ever moved.
     #[must_use]
     pub fn has_moved(&self) -> bool {
-        self.hand.moved.load(Ordering::Acquire)
+        self.controls.moved.load(Ordering::Acquire)
     }
 }
 
 impl Drop for Bench {
     fn drop(&mut self) {
-        self.hand.stop.store(true, Ordering::Release);
+        self.controls.stop.store(true, Ordering::Release);
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }
@@ -177,12 +177,12 @@ fn plug(link: &Path) -> Pty {
     pty
 }
 
-fn run(mut rig: Rig, (cable, link): (Pty, &Path), ports: (u16, u16), hand: &Hand) {
+fn run(mut rig: Rig, (cable, link): (Pty, &Path), ports: (u16, u16), controls: &Controls) {
     let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
     let (mut cable, mut holding) = (Some(cable), false);
     let (mut buffer, mut sent) = ([0; 512], 0);
-    while !hand.stop.load(Ordering::Acquire) {
-        match (hand.unplugged.load(Ordering::Acquire), cable.is_some()) {
+    while !controls.stop.load(Ordering::Acquire) {
+        match (controls.unplugged.load(Ordering::Acquire), cable.is_some()) {
             (true, true) => {
                 cable = None;
                 let _ = std::fs::remove_file(link);
@@ -200,7 +200,7 @@ fn run(mut rig: Rig, (cable, link): (Pty, &Path), ports: (u16, u16), hand: &Hand
             }
         };
         rig.advance(io::clock::now().min(rig.now() + SLICE));
-        if hand.held.load(Ordering::Acquire) != holding {
+        if controls.held.load(Ordering::Acquire) != holding {
             holding = !holding;
             match holding {
                 true => rig.drive_mut().block(),
@@ -214,10 +214,10 @@ fn run(mut rig: Rig, (cable, link): (Pty, &Path), ports: (u16, u16), hand: &Hand
                 let _ = pty.write_frame(&answer.bytes);
             }
         }
-        look(&mut rig, hand);
+        store_state(&mut rig, controls);
         while let Some(datagram) = rig.poll_datagram() {
             sent += 1;
-            if !is_lost(sent, hand) {
+            if !is_lost(sent, controls) {
                 let port = match datagram.port {
                     DATA_PORT => ports.0,
                     _ => ports.1,
@@ -230,15 +230,15 @@ fn run(mut rig: Rig, (cable, link): (Pty, &Path), ports: (u16, u16), hand: &Hand
     }
 }
 
-fn look(rig: &mut Rig, hand: &Hand) {
+fn store_state(rig: &mut Rig, controls: &Controls) {
     let node = rig.drive_mut();
     let now = moves(node);
-    hand.moves.store(now, Ordering::Release);
-    hand.moved.fetch_or(now, Ordering::AcqRel);
-    hand.powered.store(is_powered(node), Ordering::Release);
+    controls.moves.store(now, Ordering::Release);
+    controls.moved.fetch_or(now, Ordering::AcqRel);
+    controls.powered.store(is_powered(node), Ordering::Release);
 }
 
-fn is_lost(number: u64, hand: &Hand) -> bool {
-    let every = hand.lose.load(Ordering::Acquire);
-    hand.silent.load(Ordering::Acquire) || (every > 0 && number.is_multiple_of(every))
+fn is_lost(number: u64, controls: &Controls) -> bool {
+    let every = controls.lose.load(Ordering::Acquire);
+    controls.silent.load(Ordering::Acquire) || (every > 0 && number.is_multiple_of(every))
 }

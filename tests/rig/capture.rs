@@ -173,7 +173,7 @@ impl Captured {
         let (mut packets, truth) = port.end();
         packets.retain(|packet| packet.host <= ended_at);
         let lost_packets = setting.packets_lost.map_or((0, 0), |loss| {
-            loss.lose(&mut packets, setting.start, setting.links.seed)
+            loss.drop_packets(&mut packets, setting.start, setting.links.seed)
         });
         if let Some((after, by)) = setting.lidar_set {
             set_lidar(&mut packets, setting.start + after, by);

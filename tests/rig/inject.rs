@@ -116,7 +116,7 @@ impl FaultInjector {
     }
 
     /// Applies faults of the drive itself once, when they are due.
-    fn hurt_the_drive(&mut self) {
+    fn apply_drive_fault(&mut self) {
         if self.done || self.port.now() < self.from {
             return;
         }
@@ -141,10 +141,14 @@ impl FaultInjector {
     }
 
     /// Damages an answer. Returns its pieces with their arrival times.
-    fn hurt(&mut self, at: Stamp<Host>, mut bytes: Vec<u8>) -> Vec<(Stamp<Host>, Vec<u8>)> {
+    fn damage_answer(
+        &mut self,
+        at: Stamp<Host>,
+        mut bytes: Vec<u8>,
+    ) -> Vec<(Stamp<Host>, Vec<u8>)> {
         let before = std::mem::replace(&mut self.last_answer, bytes.clone());
         if self.bus {
-            return self.hurt_frame(at, bytes, before);
+            return self.damage_frame(at, bytes, before);
         }
         match self.fault {
             Fault::AnswersLost(span) if self.on(span) => Vec::new(),
@@ -189,7 +193,7 @@ const FOR_EVER: Span = Span::from_secs(100);
 
 impl FaultInjector {
     /// Damages a frame of a bus.
-    fn hurt_frame(
+    fn damage_frame(
         &mut self,
         at: Stamp<Host>,
         frame: Vec<u8>,
@@ -233,7 +237,7 @@ impl FaultInjector {
 
 impl Port for FaultInjector {
     fn write_frame(&mut self, frame: &[u8]) -> Result<Stamp<Host>, PortError> {
-        self.hurt_the_drive();
+        self.apply_drive_fault();
         self.unplugged()?;
         let now = self.port.now();
         match self.fault {
@@ -263,7 +267,7 @@ impl Port for FaultInjector {
         buffer: &mut [u8],
         timeout: Span,
     ) -> Result<Option<(usize, Stamp<Host>)>, PortError> {
-        self.hurt_the_drive();
+        self.apply_drive_fault();
         self.unplugged()?;
         let until = self.port.now() + timeout;
         // Everything that arrives by then, damaged, in order of arrival at the client.
@@ -280,7 +284,7 @@ impl Port for FaultInjector {
             let wait = next.map_or(left, |next| next.min(left));
             match self.port.read(buffer, wait)? {
                 Some((count, at)) => {
-                    let pieces = self.hurt(at, buffer[..count].to_vec());
+                    let pieces = self.damage_answer(at, buffer[..count].to_vec());
                     for (at, piece) in pieces {
                         // A serial line keeps its order: late bytes delay those behind them.
                         let after = self.pending.back().map_or(at, |(last, _)| at.max(*last));

@@ -81,7 +81,7 @@ fn offline(packets: &[TimedPacket]) -> (Off, LidarClock) {
     (Off::of(errors), clock)
 }
 
-fn as_it_came(packets: &[TimedPacket]) -> Off {
+fn by_arrival(packets: &[TimedPacket]) -> Off {
     Off::of(
         packets
             .iter()
@@ -219,7 +219,7 @@ impl Row {
         for seed in 0..seeds {
             for drift_ppm in DRIFTS_PPM {
                 let packets = packets(link, seconds, drift_ppm, seed);
-                row.came.push(as_it_came(&packets));
+                row.came.push(by_arrival(&packets));
                 row.straight.push(straight(&packets));
                 row.olson.push(online(&packets).0);
                 row.one_hull.push(hulls(&packets, 1e9));

@@ -17,7 +17,7 @@ use velomotion_tests::inject::Fault;
 
 /// The required outcome of a fault.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Must {
+enum Requirement {
     /// The sweep ends as planned.
     Survive,
     /// Either that, or the axis is stopped within 0.2 s: the damaged bits decide how long the
@@ -37,30 +37,38 @@ const fn ms(ms: i64) -> Span {
 
 /// A fault that the drive or its answers show at once: the next poll is at most 20 ms later, plus
 /// 100 ms.
-const SEEN: Must = Must::StopWithin(ms(120));
+const SEEN: Requirement = Requirement::StopWithin(ms(120));
 /// A blocked motor is detected when its position is 2000 qc (3 deg) behind the demand: 100 ms at 30
 /// deg/s.
-const FOLLOWING: Must = Must::StopWithin(ms(220));
+const FOLLOWING: Requirement = Requirement::StopWithin(ms(220));
 /// Silence is detected by missing answers or heartbeats.
-const SILENCE: Must = Must::StopWithin(ms(430));
+const SILENCE: Requirement = Requirement::StopWithin(ms(430));
 
-const FAULTS: [(&str, Fault, Must); 33] = [
-    ("an answer lost", Fault::AnswersLost(ms(2)), Must::Survive),
+const FAULTS: [(&str, Fault, Requirement); 33] = [
+    (
+        "an answer lost",
+        Fault::AnswersLost(ms(2)),
+        Requirement::Survive,
+    ),
     (
         "answers lost for 50 ms",
         Fault::AnswersLost(ms(50)),
-        Must::SurviveOrStop,
+        Requirement::SurviveOrStop,
     ),
     (
         "answers lost for ever",
         Fault::AnswersLost(Span::from_secs(1_000)),
         SILENCE,
     ),
-    ("a request lost", Fault::RequestsLost(ms(2)), Must::Survive),
+    (
+        "a request lost",
+        Fault::RequestsLost(ms(2)),
+        Requirement::Survive,
+    ),
     (
         "requests lost for 50 ms",
         Fault::RequestsLost(ms(50)),
-        Must::SurviveOrStop,
+        Requirement::SurviveOrStop,
     ),
     (
         "requests lost for ever",
@@ -70,27 +78,27 @@ const FAULTS: [(&str, Fault, Must); 33] = [
     (
         "an answer 30 ms late",
         Fault::AnswersLate(ms(2), ms(30)),
-        Must::Survive,
+        Requirement::Survive,
     ),
     (
         "an answer 150 ms late",
         Fault::AnswersLate(ms(2), ms(150)),
-        Must::Survive,
+        Requirement::Survive,
     ),
     (
         "every answer 30 ms late",
         Fault::AnswersLate(Span::from_secs(1_000), ms(30)),
-        Must::Survive,
+        Requirement::Survive,
     ),
     (
         "a wrong CRC in an answer",
         Fault::AnswersFlipped(ms(2)),
-        Must::Survive,
+        Requirement::Survive,
     ),
     (
         "wrong CRCs in answers for 50 ms",
         Fault::AnswersFlipped(ms(50)),
-        Must::SurviveOrStop,
+        Requirement::SurviveOrStop,
     ),
     (
         "wrong CRCs in answers for ever",
@@ -100,49 +108,53 @@ const FAULTS: [(&str, Fault, Must); 33] = [
     (
         "a wrong CRC in a request",
         Fault::RequestsFlipped(ms(2)),
-        Must::Survive,
+        Requirement::Survive,
     ),
     (
         "wrong CRCs in requests for 50 ms",
         Fault::RequestsFlipped(ms(50)),
-        Must::SurviveOrStop,
+        Requirement::SurviveOrStop,
     ),
-    ("an answer cut off", Fault::AnswersCut(ms(2)), Must::Survive),
+    (
+        "an answer cut off",
+        Fault::AnswersCut(ms(2)),
+        Requirement::Survive,
+    ),
     (
         "answers cut off for 50 ms",
         Fault::AnswersCut(ms(50)),
-        Must::SurviveOrStop,
+        Requirement::SurviveOrStop,
     ),
     (
         "answers doubled",
         Fault::AnswersDoubled(Span::from_secs(1_000)),
-        Must::Survive,
+        Requirement::Survive,
     ),
     (
         "an old answer instead of the new",
         Fault::AnswersStale(ms(2)),
-        Must::Survive,
+        Requirement::Survive,
     ),
     (
         "answers a byte at a time",
         Fault::AnswersInBytes(Span::from_secs(1_000)),
-        Must::Survive,
+        Requirement::Survive,
     ),
     (
         "noise before every answer",
         Fault::Noise(Span::from_secs(1_000)),
-        Must::Survive,
+        Requirement::Survive,
     ),
     (
         "noise with frame starts for 20 ms",
         Fault::NoiseWithFrameStarts(ms(20)),
-        Must::Survive,
+        Requirement::Survive,
     ),
-    ("unplugged", Fault::Unplugged, Must::SayThatItCannot),
+    ("unplugged", Fault::Unplugged, Requirement::SayThatItCannot),
     (
         "the port takes no bytes",
         Fault::WriteBlocked,
-        Must::SayThatItCannot,
+        Requirement::SayThatItCannot,
     ),
     (
         "the drive's supply fails for a moment",
@@ -188,14 +200,14 @@ const WAYS: [(Attachment, &str); 4] = [
 ];
 
 /// The required outcome, weaker for attachments that cannot do better.
-fn must(attached: Attachment, fault: Fault, must: Must) -> Must {
+fn must(attached: Attachment, fault: Fault, must: Requirement) -> Requirement {
     match (attached, fault) {
         // The RS232 exchange has no frame starts: permanently duplicated or inserted bytes look
         // like part of it.
-        (Attachment::Rs232, Fault::AnswersDoubled(_) | Fault::Noise(_)) => Must::End,
+        (Attachment::Rs232, Fault::AnswersDoubled(_) | Fault::Noise(_)) => Requirement::End,
         // Late frames delay those behind them: meanwhile neither positions nor heartbeats arrive.
         (Attachment::Slcan | Attachment::Can, Fault::AnswersLate(_, late)) if late > ms(100) => {
-            Must::SurviveOrStop
+            Requirement::SurviveOrStop
         }
         _ => must,
     }
@@ -221,7 +233,13 @@ struct Cell {
 /// Greatest error of a point without a warning, however the polls were damaged.
 const WORST_MM: f64 = 20.0;
 
-fn try_out(attached: Attachment, name: &str, fault: Fault, expected: Must, at: Span) -> Cell {
+fn run_fault(
+    attached: Attachment,
+    name: &str,
+    fault: Fault,
+    expected: Requirement,
+    at: Span,
+) -> Cell {
     let name = format!("{name} over {attached:?}");
     let begin = setting(attached).start + at;
     let (captured, ended) = Captured::run(Setting {
@@ -254,8 +272,8 @@ fn try_out(attached: Attachment, name: &str, fault: Fault, expected: Must, at: S
     );
     let stop = captured.stop_sent(begin).map(|at| at - begin);
     match must(attached, fault, expected) {
-        Must::Survive => assert!(ended.is_ok(), "{name}: {ended:?}"),
-        Must::SurviveOrStop => {
+        Requirement::Survive => assert!(ended.is_ok(), "{name}: {ended:?}"),
+        Requirement::SurviveOrStop => {
             let limit = ms(200);
             let stopped = matches!(ended, Err(SessionError::Drive(_))) && stop <= Some(limit);
             assert!(
@@ -263,7 +281,7 @@ fn try_out(attached: Attachment, name: &str, fault: Fault, expected: Must, at: S
                 "{name}: {ended:?}, stop after {stop:?}"
             );
         }
-        Must::StopWithin(limit) => {
+        Requirement::StopWithin(limit) => {
             assert!(
                 matches!(ended, Err(SessionError::Drive(_))),
                 "{name}: {ended:?}"
@@ -278,13 +296,13 @@ fn try_out(attached: Attachment, name: &str, fault: Fault, expected: Must, at: S
                 stop.as_secs_f64() * 1e3
             );
         }
-        Must::SayThatItCannot => {
+        Requirement::SayThatItCannot => {
             assert!(
                 matches!(ended, Err(SessionError::Port(_))),
                 "{name}: {ended:?}"
             );
         }
-        Must::End => assert!(ended.is_err(), "{name}: {ended:?}"),
+        Requirement::End => assert!(ended.is_err(), "{name}: {ended:?}"),
     }
     let failed = ended.is_err();
     Cell {
@@ -311,7 +329,7 @@ fn is_at_rest(captured: &Captured) -> bool {
 fn column(attached: Attachment) -> Vec<Cell> {
     let usual = Captured::new(setting(attached));
     let at = usual.sweep_span().0 - setting(attached).start + ms(700);
-    let cell = |(name, fault, must)| try_out(attached, name, fault, must, at);
+    let cell = |(name, fault, must)| run_fault(attached, name, fault, must, at);
     FAULTS.into_iter().map(cell).collect()
 }
 
@@ -344,7 +362,7 @@ fn no_fault_at_any_moment_hangs_or_leaves_the_axis_uncontrolled() {
                     let (attached, _) = WAYS[(first + number) % WAYS.len()];
                     let step = 937 * i64::try_from(first).unwrap();
                     let after = ms(150 + step + 29 * i64::try_from(number).unwrap());
-                    is_left_at_rest(attached, name, fault, after);
+                    assert_left_at_rest(attached, name, fault, after);
                 }
             });
         }
@@ -352,7 +370,7 @@ fn no_fault_at_any_moment_hangs_or_leaves_the_axis_uncontrolled() {
 }
 
 /// Checks that the axis rests after the fault, or that the report warns that it may move.
-fn is_left_at_rest(attached: Attachment, name: &str, fault: Fault, after: Span) {
+fn assert_left_at_rest(attached: Attachment, name: &str, fault: Fault, after: Span) {
     let (captured, ended) = Captured::run(Setting {
         fault: Some((fault, after)),
         ..setting(attached)

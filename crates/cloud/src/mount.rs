@@ -125,7 +125,7 @@ mod tests {
     }
 
     /// Eq. 4-6 by composing matrices: lift by d, then rotate about Y.
-    fn composed(position_m: [f64; 3], gamma: Degrees) -> [f64; 3] {
+    fn by_matrices(position_m: [f64; 3], gamma: Degrees) -> [f64; 3] {
         let matrix = DMat4::from_rotation_y(gamma.to_radians().0)
             * DMat4::from_translation(DVec3::new(0.0, 0.0, PAPER.d.0));
         matrix
@@ -151,7 +151,7 @@ mod tests {
                             placed,
                             printed(range_m, elevation, azimuth, gamma),
                         ))
-                        .max(distance(placed, composed(lidar, gamma)));
+                        .max(distance(placed, by_matrices(lidar, gamma)));
                 }
             }
         }

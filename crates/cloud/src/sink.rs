@@ -241,8 +241,8 @@ mod tests {
     #[test]
     fn calls_without_points_reach_both_sinks_of_a_pair() {
         #[derive(Default)]
-        struct Heard(usize);
-        impl Sink for Heard {
+        struct CallCounter(usize);
+        impl Sink for CallCounter {
             fn points(&mut self, _: &Points) -> Result<(), SinkError> {
                 Ok(())
             }
@@ -269,7 +269,7 @@ mod tests {
                 })
             }
         }
-        let (mut first, mut second) = (Heard::default(), Heard::default());
+        let (mut first, mut second) = (CallCounter::default(), CallCounter::default());
         let mut pair: Box<dyn Sink + '_> =
             Box::new((&mut first, (Points::new(Fields::NONE), &mut second)));
         assert!(pair.wants_tilt());

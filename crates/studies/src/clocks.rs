@@ -25,7 +25,7 @@ const SETTLED_S: f64 = 1.0;
 type Method = fn(&[TimedPacket]) -> Option<Vec<Stamp<Host>>>;
 
 const METHODS: [(&str, &str, Method); 4] = [
-    ("each arrival as it is", "arrival", as_it_came),
+    ("each arrival as it is", "arrival", by_arrival),
     ("a line by least squares", "line", straight),
     ("online: Olson's", "online", online),
     ("of the whole: lower envelope", "whole", whole),
@@ -173,7 +173,7 @@ fn arrivals(packets: &[TimedPacket]) -> impl Iterator<Item = Arrival> {
     })
 }
 
-fn as_it_came(packets: &[TimedPacket]) -> Option<Vec<Stamp<Host>>> {
+fn by_arrival(packets: &[TimedPacket]) -> Option<Vec<Stamp<Host>>> {
     Some(packets.iter().map(|packet| packet.arrival).collect())
 }
 

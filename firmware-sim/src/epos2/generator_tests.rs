@@ -170,7 +170,7 @@ impl DemandMotion {
 }
 
 /// A generator that has run for this many milliseconds.
-fn under_way(first: i64, m: DemandMotion, after: usize) -> Generator {
+fn running(first: i64, m: DemandMotion, after: usize) -> Generator {
     let mut generator = Generator::new(0, QC_PER_TURN);
     generator.go_to(fine(first), m.limits()).unwrap();
     for _ in 0..after {
@@ -205,7 +205,7 @@ proptest! {
         n in motion(),
         after in 0usize..400,
     ) {
-        let mut generator = under_way(first, m, after);
+        let mut generator = running(first, m, after);
         let [vmax, a, d] = n.scaled();
         let textbook = Textbook::target(qc(&generator), speed(&generator), second as f64, vmax, a, d);
         if generator.go_to(fine(second), n.limits()).is_err() {
@@ -228,7 +228,7 @@ proptest! {
         d in rate(),
         after in 0usize..400,
     ) {
-        let mut generator = under_way(first, m, after);
+        let mut generator = running(first, m, after);
         let v0 = speed(&generator);
         let textbook = Textbook::speed(qc(&generator), v0, 0.0, 1.0, f64::from(d) * PER_RPM);
         generator.stop(d);
@@ -244,7 +244,7 @@ proptest! {
         backwards in any::<bool>(),
         after in 0usize..400,
     ) {
-        let mut generator = under_way(first, m, after);
+        let mut generator = running(first, m, after);
         let rpm = if backwards { -n.speed_rpm } else { n.speed_rpm };
         let [_, a, d] = n.scaled();
         let v1 = f64::from(rpm) * PER_RPM;

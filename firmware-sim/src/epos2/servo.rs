@@ -117,7 +117,7 @@ mod tests {
     use super::super::fixed::{WORLD_END, fine, floor_qc};
     use super::*;
 
-    const CARD: Servo = Servo::SecondOrder {
+    const REFERENCE: Servo = Servo::SecondOrder {
         natural_millihertz: 15_000,
         damping_permille: 800,
     };
@@ -133,7 +133,7 @@ mod tests {
         let first = Servo::FirstOrder {
             corner_millihertz: 15_000,
         };
-        let mut second = (Follower::new(CARD, 0), 0.0_f64);
+        let mut second = (Follower::new(REFERENCE, 0), 0.0_f64);
         let mut one = (Follower::new(first, 0), 0.0_f64);
         for ms in 1..=400 {
             let demand = fine(37 * ms) + FINE_PER_QC / 2 * ms;
@@ -180,7 +180,7 @@ mod tests {
     #[test]
     fn the_ends_of_the_position_range_do_not_overflow() {
         for servo in [
-            CARD,
+            REFERENCE,
             Servo::SecondOrder {
                 natural_millihertz: u32::MAX,
                 damping_permille: u32::MAX,

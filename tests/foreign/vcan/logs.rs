@@ -22,10 +22,10 @@ type Passed = BTreeMap<[u8; 16], usize>;
 /// Checks that SYNCs have their samples, that `candump` logged the same frames, and that tshark
 /// dissects both logs as CANopen.
 pub fn check(folder: &Path) {
-    let ours = of_the_log(&folder.join(LOG));
+    let ours = frames_of_log(&folder.join(LOG));
     tshark(&folder.join(LOG), &ours);
     let candump = folder.join(CANDUMP_LOG);
-    let theirs = of_candump(&fs::read_to_string(&candump).unwrap());
+    let theirs = frames_of_candump(&fs::read_to_string(&candump).unwrap());
     compare(&ours, &theirs);
     tshark(&candump, &theirs);
 }
@@ -35,7 +35,7 @@ fn node() -> NodeId {
 }
 
 /// Reads the frames of the log. Samples may be missing only where the machine was busy.
-fn of_the_log(path: &Path) -> Passed {
+fn frames_of_log(path: &Path) -> Passed {
     let mut recording = Recording::open(path).unwrap();
     let mut passed = Passed::new();
     while let Some(record) = recording.next_record().unwrap() {
@@ -74,7 +74,7 @@ fn of(passed: &Passed, id: CobId) -> usize {
 }
 
 /// Parses lines like `(1700000000.000000) vcan0 181#0011223344556677`.
-fn of_candump(text: &str) -> Passed {
+fn frames_of_candump(text: &str) -> Passed {
     let mut passed = Passed::new();
     for line in text.lines() {
         let (id, data) = line.rsplit(' ').next().unwrap().split_once('#').unwrap();

@@ -40,7 +40,7 @@ const BUS: &str = "vcan0";
 /// Set where the bus exists.
 const INSIDE: &str = "VELOMOTION_VCAN_INSIDE";
 /// Producer period of the node's heartbeat, ms.
-const BEAT_MS: u16 = 50;
+const HEARTBEAT_MS: u16 = 50;
 /// Silence after which a node counts as lost.
 const LOST: Span = Span::from_secs(2);
 
@@ -51,7 +51,7 @@ const OUT: &str = "VELOMOTION_VCAN_OUT";
 #[ignore = "needs QEMU or the CAN interface vcan0, candump, tshark"]
 fn the_software_drive_and_a_master_communicate_on_vcan() {
     if std::env::var_os(INSIDE).is_some() {
-        meet();
+        drive_and_master();
     } else {
         run_inside("the_software_drive_and_a_master_communicate_on_vcan");
     }
@@ -125,7 +125,7 @@ impl SoftwareDrive {
     }
 }
 
-fn meet() {
+fn drive_and_master() {
     let node = NodeId::new(1).unwrap();
     let mut master = Master::open(BUS, node);
     let mut consumer = HeartbeatConsumer::new(node, LOST);
@@ -134,7 +134,7 @@ fn meet() {
     identity(&mut master);
     aborts(&mut master);
     stream::map_angle(&mut master, node);
-    master.write(objects::PRODUCER_HEARTBEAT, BEAT_MS);
+    master.write(objects::PRODUCER_HEARTBEAT, HEARTBEAT_MS);
     expect_state(&mut master, &mut consumer, NmtState::PreOperational);
     let command = NmtCommand::Start;
     let start = Nmt {
@@ -143,7 +143,7 @@ fn meet() {
     };
     master.send(&start.to_frame());
     expect_state(&mut master, &mut consumer, NmtState::Operational);
-    stream::enable_and_turn(&mut master);
+    stream::enable_and_rotate(&mut master);
     println!("{}", stream::one_second(&mut master, node));
     stream::halt(&mut master);
     emergency(&mut master, node);

@@ -50,7 +50,7 @@ pub fn map_angle(master: &mut Master, node: NodeId) {
 }
 
 /// Enables operation, then moves at constant speed.
-pub fn enable_and_turn(master: &mut Master) {
+pub fn enable_and_rotate(master: &mut Master) {
     for (word, state) in [
         (control::SHUTDOWN, DeviceState::ReadyToSwitchOn),
         (control::SWITCH_ON, DeviceState::SwitchedOn),

@@ -75,7 +75,7 @@ pub fn written(scan: &ScanView, folder: &Path) -> bool {
 }
 
 /// Checks a scan with its files.
-pub fn sound(scan: &ScanView, folder: &Path, wanted: Wanted) -> Result<(), String> {
+pub fn check_scan(scan: &ScanView, folder: &Path, wanted: Wanted) -> Result<(), String> {
     let place = folder.join(&scan.id);
     let printed = format!("{:?}, {:?}", scan.state, scan.why);
     let wrong = |what: String| Err(format!("{}: {what} ({printed})", scan.id));
@@ -133,7 +133,7 @@ pub fn sound(scan: &ScanView, folder: &Path, wanted: Wanted) -> Result<(), Strin
 }
 
 /// Checks that a failed scan's log holds no sweep.
-pub fn worth_nothing(scan: &ScanView, folder: &Path) -> Result<(), String> {
+pub fn check_without_sweep(scan: &ScanView, folder: &Path) -> Result<(), String> {
     let log = folder.join(&scan.id).join(LOG);
     let points = points_of(&log);
     match (scan.state, points) {

@@ -25,7 +25,7 @@ use check::Wanted;
 use disk::Disk;
 use plan::{Either, Plan};
 use process::{Process, wait};
-use real::{Came, Made, World};
+use real::{CaptureOutcome, CaptureResult, World};
 use table::Table;
 
 /// Number of captures without arguments.
@@ -52,7 +52,7 @@ struct Results {
 }
 
 impl Results {
-    fn put(&self, plan: &Plan, made: Result<Made, String>) {
+    fn put(&self, plan: &Plan, made: Result<CaptureResult, String>) {
         match made {
             Ok(made) => self.table.lock().unwrap().count(plan.row(), made),
             Err(why) => {
@@ -176,10 +176,10 @@ fn one_batch(batch: &[&Plan], results: &Results) -> Result<(), String> {
     check::agree(&all, &place)?;
     for (plan, want) in wanted {
         let checked = check::named(&all, &plan.name()).and_then(|scan| {
-            check::sound(scan, &place, want)?;
-            check::worth_nothing(scan, &place)?;
-            Ok(Made {
-                came: Came::Scan(scan.state),
+            check::check_scan(scan, &place, want)?;
+            check::check_without_sweep(scan, &place)?;
+            Ok(CaptureResult {
+                came: CaptureOutcome::Scan(scan.state),
                 safe_after: None,
             })
         });
@@ -206,7 +206,7 @@ fn in_real_time(plans: &[Plan], results: &Results, require_disk: bool) {
                     let Either::Real(what) = plan.fault else {
                         continue;
                     };
-                    let made = in_world(&mut world, plan, what, small);
+                    let made = capture_in_world(&mut world, plan, what, small);
                     if made.is_err() {
                         // A failed setup must not affect the next capture.
                         world = None;
@@ -218,12 +218,12 @@ fn in_real_time(plans: &[Plan], results: &Results, require_disk: bool) {
     });
 }
 
-fn in_world(
+fn capture_in_world(
     world: &mut Option<World>,
     plan: &Plan,
     what: plan::Real,
     small: bool,
-) -> Result<Made, String> {
+) -> Result<CaptureResult, String> {
     let world = match world {
         Some(world) => world,
         None => world.insert(World::start(small)?),

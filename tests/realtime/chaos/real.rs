@@ -22,7 +22,7 @@ pub const SAFE: Duration = Duration::from_secs(10);
 
 /// Outcome of a capture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Came {
+pub enum CaptureOutcome {
     /// The scan ended in this state.
     Scan(ScanState),
     /// Not possible on this machine.
@@ -31,9 +31,9 @@ pub enum Came {
 
 /// A capture, and how long the axis had no master.
 #[derive(Clone, Copy, Debug)]
-pub struct Made {
+pub struct CaptureResult {
     /// The outcome.
-    pub came: Came,
+    pub came: CaptureOutcome,
     /// Time from the next daemon's start, or the cable's return, until the axis stood with its
     /// power off.
     pub safe_after: Option<Duration>,
@@ -88,14 +88,14 @@ impl World {
     }
 
     /// Makes the capture of a plan and checks every condition.
-    pub fn capture(&mut self, plan: &Plan, what: Real) -> Result<Made, String> {
+    pub fn capture(&mut self, plan: &Plan, what: Real) -> Result<CaptureResult, String> {
         if what == Real::DiskFull && self.disk.is_none() {
-            return Ok(Made {
-                came: Came::Skipped,
+            return Ok(CaptureResult {
+                came: CaptureOutcome::Skipped,
                 safe_after: None,
             });
         }
-        let made = self.go_through(plan, what);
+        let made = self.capture_with_fault(plan, what);
         made.map_err(|why| {
             let log = std::fs::read_to_string(self.folder.path().join("daemon.log"));
             let printed = log.unwrap_or_default();
@@ -105,7 +105,7 @@ impl World {
         })
     }
 
-    fn go_through(&mut self, plan: &Plan, what: Real) -> Result<Made, String> {
+    fn capture_with_fault(&mut self, plan: &Plan, what: Real) -> Result<CaptureResult, String> {
         self.ready()?;
         let request = CaptureRequest {
             speed_deg_s: plan.sweep_request.speed.0,
@@ -126,9 +126,9 @@ impl World {
             return Err(format!("refused: {refused}"));
         }
         pause(plan.after);
-        self.hurt(plan, what)?;
+        self.inject(plan, what)?;
         pause(plan.mended_after);
-        let safe_after = self.mend(what)?;
+        let safe_after = self.repair(what)?;
         let scan = self.over(&plan.name())?;
         self.ready()?;
         if !self.bench.is_safe() {
@@ -137,22 +137,22 @@ impl World {
         let all = check::list(&self.daemon.client)?;
         check::agree(&all, &self.scans)?;
         // The scan may have ended before the fault, and a busy machine delays devices.
-        check::sound(&scan, &self.scans, Wanted::Any)?;
-        check::worth_nothing(&scan, &self.scans)?;
-        self.whole_is_whole(&scan)?;
+        check::check_scan(&scan, &self.scans, Wanted::Any)?;
+        check::check_without_sweep(&scan, &self.scans)?;
+        self.check_complete(&scan)?;
         self.daemon
             .client
             .delete(&format!("/api/v1/scans/{}", scan.id))
             .map_err(|failure| failure.to_string())?;
         check::agree(&check::list(&self.daemon.client)?, &self.scans)?;
-        Ok(Made {
-            came: Came::Scan(scan.state),
+        Ok(CaptureResult {
+            came: CaptureOutcome::Scan(scan.state),
             safe_after,
         })
     }
 
     /// Checks that a scan marked as complete has all sweeps and packets.
-    fn whole_is_whole(&self, scan: &ScanView) -> Result<(), String> {
+    fn check_complete(&self, scan: &ScanView) -> Result<(), String> {
         if scan.state != ScanState::Whole {
             return Ok(());
         }
@@ -177,7 +177,7 @@ impl World {
         }
     }
 
-    fn hurt(&mut self, plan: &Plan, what: Real) -> Result<(), String> {
+    fn inject(&mut self, plan: &Plan, what: Real) -> Result<(), String> {
         match what {
             Real::Nothing => {}
             Real::UsbGone => self.bench.unplug(true),
@@ -194,7 +194,7 @@ impl World {
     }
 
     /// Repairs the fault. Returns how long the axis then was unsafe, if it may have been.
-    fn mend(&mut self, what: Real) -> Result<Option<Duration>, String> {
+    fn repair(&mut self, what: Real) -> Result<Option<Duration>, String> {
         let begin = Instant::now();
         match what {
             Real::Nothing => return Ok(None),

@@ -6,7 +6,7 @@ use std::time::Duration;
 use engine::service::scan_record::ScanState;
 
 use crate::plan::ROWS;
-use crate::real::{Came, Made};
+use crate::real::{CaptureOutcome, CaptureResult};
 
 /// Markers around the table in the page.
 const MARKS: (&str, &str) = ("<!-- table -->\n", "<!-- end of the table -->");
@@ -32,13 +32,13 @@ impl Default for Table {
 
 impl Table {
     /// Counts one capture.
-    pub fn count(&mut self, row: usize, made: Made) {
+    pub fn count(&mut self, row: usize, made: CaptureResult) {
         let row = &mut self.0[row];
         *match made.came {
-            Came::Scan(ScanState::Whole) => &mut row.whole,
-            Came::Scan(ScanState::Partial) => &mut row.partial,
-            Came::Scan(_) => &mut row.failed,
-            Came::Skipped => &mut row.skipped,
+            CaptureOutcome::Scan(ScanState::Whole) => &mut row.whole,
+            CaptureOutcome::Scan(ScanState::Partial) => &mut row.partial,
+            CaptureOutcome::Scan(_) => &mut row.failed,
+            CaptureOutcome::Skipped => &mut row.skipped,
         } += 1;
         row.safe_after = row.safe_after.max(made.safe_after);
     }

@@ -28,7 +28,7 @@ const SAFE: Span = Span::from_secs(2);
 /// Makes the capture of a plan and stores it in `scans`. Returns the required outcome.
 pub fn make(plan: &Plan, what: Virtual, scans: &Scans) -> Result<Wanted, String> {
     let (captured, ended) = Captured::run(setting(plan, what));
-    rests(plan, &captured, &ended)?;
+    check_at_rest(plan, &captured, &ended)?;
     let request = CaptureRequest {
         speed_deg_s: plan.sweep_request.speed.0,
         name: Some(plan.name()),
@@ -42,7 +42,7 @@ pub fn make(plan: &Plan, what: Virtual, scans: &Scans) -> Result<Wanted, String>
     let log = scans.place(&id).join(LOG);
     std::fs::copy(captured.log(), &log).map_err(|error| error.to_string())?;
     let mut wanted = match ended.is_ok() {
-        true => of_packets(&captured),
+        true => required_outcome(&captured),
         false => Wanted::Less,
     };
     if let Virtual::Killed(per_mille) = what {
@@ -61,7 +61,7 @@ pub fn make(plan: &Plan, what: Virtual, scans: &Scans) -> Result<Wanted, String>
 
 /// Required outcome by the lidar's packets. Losses before the first received packet or after the
 /// sweep do not count.
-fn of_packets(captured: &Captured) -> Wanted {
+fn required_outcome(captured: &Captured) -> Wanted {
     if captured.missed_packets() > 0 {
         return Wanted::Less;
     }
@@ -130,7 +130,11 @@ fn setting(plan: &Plan, what: Virtual) -> Setting {
 }
 
 /// Checks that the axis rests, or that the report says it may not and the next client stops it.
-fn rests(plan: &Plan, captured: &Captured, ended: &Result<(), SessionError>) -> Result<(), String> {
+fn check_at_rest(
+    plan: &Plan,
+    captured: &Captured,
+    ended: &Result<(), SessionError>,
+) -> Result<(), String> {
     let Some(Rejoined {
         went_on,
         by_itself,

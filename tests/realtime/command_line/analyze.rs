@@ -56,7 +56,7 @@ fn analyze_output_matches_the_documented_contract() {
         vlp16["device"].is_null() && rmbl["device"]["range_m"].is_array(),
         "{report}"
     );
-    k_is_what_the_contract_says(&vlp16["k"]);
+    assert_k_matches_contract(&vlp16["k"]);
     let text = place.run("analyze vlp16 rmbl:1200,step=2,d=0.06");
     let text = String::from_utf8_lossy(&text.stdout).into_owned();
     assert!(
@@ -70,7 +70,7 @@ fn analyze_output_matches_the_documented_contract() {
 }
 
 /// Checks K of a level VLP-16, whose largest and smallest D are known.
-fn k_is_what_the_contract_says(k: &serde_json::Value) {
+fn assert_k_matches_contract(k: &serde_json::Value) {
     let number = |key: &str| k[key].as_f64().unwrap();
     assert_eq!(
         (k["method"].as_str(), k["bins"].as_u64()),

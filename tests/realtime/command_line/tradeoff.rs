@@ -27,7 +27,7 @@ fn the_cost_of_accuracy_is_measured_and_reported() {
         assert!(names.contains(&name), "{names:?}");
     }
     for study in studies {
-        study_is_whole(study);
+        assert_study_complete(study);
         assert!(
             printed.contains(study["title"].as_str().unwrap()),
             "{printed}"
@@ -73,7 +73,7 @@ fn the_cost_of_accuracy_is_measured_and_reported() {
 }
 
 /// Checks that every row has every column, that spreads are ordered, and that fronts name rows.
-fn study_is_whole(study: &serde_json::Value) {
+fn assert_study_complete(study: &serde_json::Value) {
     let rows = study["rows"].as_array().unwrap();
     let columns = study["columns"].as_array().unwrap();
     assert!(rows.len() > 3 && columns.len() > 1, "{study}");

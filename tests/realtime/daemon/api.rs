@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::rig::{Rig, machine_was_busy, post, request};
 
 /// Bodies of invalid captures.
-fn impossible() -> Vec<Value> {
+fn invalid_captures() -> Vec<Value> {
     vec![
         json!({}),
         json!([]),
@@ -35,7 +35,7 @@ fn impossible() -> Vec<Value> {
 fn invalid_requests_are_refused_and_nothing_moves() {
     let rig = Rig::new();
     rig.ready();
-    for body in impossible() {
+    for body in invalid_captures() {
         let what = body.to_string();
         rig.post("/api/v1/captures", &body).refused(400, &what);
     }

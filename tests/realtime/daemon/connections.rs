@@ -25,17 +25,17 @@ fn guarded(write: Duration) -> Rig {
 }
 
 /// A client that sends requests as long as the daemon accepts them and never reads.
-struct Deaf(TcpStream);
+struct NonReadingClient(TcpStream);
 
-impl Deaf {
+impl NonReadingClient {
     fn new(address: SocketAddr, path: &str) -> Self {
         let stream = TcpStream::connect(address).unwrap();
         stream.set_nonblocking(true).unwrap();
-        let mut deaf = Self(stream);
+        let mut client = Self(stream);
         // Sends until the buffers are full of requests; the answers exceed the buffers of the other
         // direction.
-        while deaf.request(path) == Some(true) {}
-        deaf
+        while client.request(path) == Some(true) {}
+        client
     }
 
     /// Whether the socket accepted the request; `None` after the daemon closed it.
@@ -71,8 +71,8 @@ fn clients_that_never_read_do_not_block_others() {
         let idle = status["activity"]["doing"] == "idle";
         (idle && status["drive"]["state"] == "connected").then_some(())
     });
-    let mut deaf: Vec<Deaf> = (0..CONNECTIONS + 2)
-        .map(|_| Deaf::new(rig.address, "/page.css"))
+    let mut clients: Vec<NonReadingClient> = (0..CONNECTIONS + 2)
+        .map(|_| NonReadingClient::new(rig.address, "/page.css"))
         .collect();
     let begin = Instant::now();
     let _: Value = client.post("/api/v1/tilt/stop", &()).unwrap();
@@ -80,24 +80,29 @@ fn clients_that_never_read_do_not_block_others() {
     assert_eq!(status(&rig), 200);
     assert!(begin.elapsed() < SOON, "{:?}", begin.elapsed());
     // The latest connections are open: only the oldest were closed.
-    let inside = deaf.iter_mut().filter_map(|deaf| deaf.request("/page.css"));
+    let inside = clients
+        .iter_mut()
+        .filter_map(|client| client.request("/page.css"));
     assert!(inside.count() > CONNECTIONS / 2);
 }
 
 #[test]
 fn clients_that_never_read_are_disconnected() {
     let rig = guarded(Duration::from_millis(200));
-    let mut deaf = Deaf::new(rig.address, "/page.css");
+    let mut client = NonReadingClient::new(rig.address, "/page.css");
     wait("its end", || {
-        deaf.request("/page.css").is_none().then_some(())
+        client.request("/page.css").is_none().then_some(())
     });
     // Without a token the time limit is that of a download.
     let rig = Rig::with("", |options| {
         options.waits.download = Duration::from_millis(200);
     });
-    let mut deaf = Deaf::new(rig.address, "/api/v1/openapi.json");
+    let mut client = NonReadingClient::new(rig.address, "/api/v1/openapi.json");
     wait("its end", || {
-        deaf.request("/api/v1/openapi.json").is_none().then_some(())
+        client
+            .request("/api/v1/openapi.json")
+            .is_none()
+            .then_some(())
     });
 }
 

@@ -11,7 +11,7 @@ use super::rig::{Rig, sweep, wait};
 
 /// A daemon whose device thread panics once, at its next heartbeat during the task `when` after the
 /// flag is set.
-fn fragile(when: AxisTask) -> (Rig, Arc<AtomicBool>) {
+fn panicking_daemon(when: AxisTask) -> (Rig, Arc<AtomicBool>) {
     let defect = Arc::new(AtomicBool::new(false));
     let set = Arc::clone(&defect);
     let rig = Rig::with("", move |options| {
@@ -26,7 +26,7 @@ fn fragile(when: AxisTask) -> (Rig, Arc<AtomicBool>) {
 
 #[test]
 fn a_panic_while_the_axis_moves_stops_it_and_the_daemon_continues() {
-    let (rig, defect) = fragile(AxisTask::Capturing);
+    let (rig, defect) = panicking_daemon(AxisTask::Capturing);
     let mut attempt = 0;
     let scan = loop {
         let id = sweep(rig.address);
@@ -63,7 +63,7 @@ fn a_panic_while_the_axis_moves_stops_it_and_the_daemon_continues() {
 
 #[test]
 fn the_daemon_exits_with_an_error_when_the_device_thread_ends() {
-    let (mut rig, defect) = fragile(AxisTask::Idle);
+    let (mut rig, defect) = panicking_daemon(AxisTask::Idle);
     rig.ready();
     defect.store(true, Ordering::Release);
     wait("the end of the device thread", || {

@@ -55,7 +55,7 @@ pub struct PacketLoss {
 impl PacketLoss {
     /// Drops the lost packets. Returns the number of dropped data packets, and of those between two
     /// received ones.
-    pub(super) fn lose(
+    pub(super) fn drop_packets(
         &self,
         packets: &mut Vec<Arrived>,
         start: Stamp<Host>,

@@ -94,7 +94,7 @@ const SEEDS: u64 = 4;
 
 /// Checks the worst error, below 0.011 deg, and the root mean square over all seeds, below 0.0028
 /// deg. The ripple, which no encoder sees, accounts for 0.0021 deg.
-fn as_true_as_its_gear(day: impl Fn(u64) -> Setting, servo: Servo) {
+fn assert_as_accurate_as_gear(day: impl Fn(u64) -> Setting, servo: Servo) {
     let mut sum = 0.0;
     for seed in 0..SEEDS {
         let setting = Setting {
@@ -125,14 +125,14 @@ fn as_true_as_its_gear(day: impl Fn(u64) -> Setting, servo: Servo) {
 #[test]
 fn a_real_drive_over_usb_is_as_accurate_as_its_gear() {
     for servo in [FIRST_ORDER, second_order(700), second_order(1_000)] {
-        as_true_as_its_gear(|day| setting(Attachment::Usb, day), servo);
+        assert_as_accurate_as_gear(|day| setting(Attachment::Usb, day), servo);
     }
 }
 
 #[test]
 fn a_real_drive_over_can_is_as_accurate_as_its_gear() {
     for servo in [FIRST_ORDER, second_order(700), second_order(1_000)] {
-        as_true_as_its_gear(|day| setting(Attachment::Can, day), servo);
+        assert_as_accurate_as_gear(|day| setting(Attachment::Can, day), servo);
     }
 }
 
@@ -144,5 +144,5 @@ fn a_real_drive_over_fast_can_is_as_accurate_as_its_gear() {
         links: Links::usual(Attachment::Can, 1_000 * day + 3),
         ..setting(Attachment::Can, day)
     };
-    as_true_as_its_gear(usual, second_order(700));
+    assert_as_accurate_as_gear(usual, second_order(700));
 }

@@ -157,7 +157,7 @@ fn empty_scans_are_drawn() {
             "{figure}"
         );
     }
-    page_is_whole(&page(&scans), &scans);
+    assert_page_complete(&page(&scans), &scans);
     scans.scans.clear();
     for figure in all_figures(&scans) {
         elements(&figure);
@@ -234,7 +234,7 @@ fn tables_print_the_exact_counts() {
     }
 }
 
-fn page_is_whole(page: &str, scans: &AnalyzedScans) {
+fn assert_page_complete(page: &str, scans: &AnalyzedScans) {
     let alone = page.replace("http://www.w3.org/2000/svg", "");
     for outside in [
         "http:", "https:", "src=", "<script", "<link", "@import", "url(",
@@ -385,7 +385,7 @@ fn each_histogram_has_its_own_scale() {
 fn the_page_is_self_contained_with_every_figure_and_table() {
     let scans = scans(3);
     let page = page(&scans);
-    page_is_whole(&page, &scans);
+    assert_page_complete(&page, &scans);
     assert!(page.contains("a,b &lt;c&gt; &amp; &quot;d&quot;"));
     let s = scans.scans[1].counts.statistics();
     assert!(page.contains(&format!(

@@ -210,7 +210,7 @@ mod tests {
         }
     }
 
-    fn fed(sink: &mut dyn Sink, batch: usize) {
+    fn feed(sink: &mut dyn Sink, batch: usize) {
         let cloud = samples::cloud_from(2000, NOW_NS);
         sink.begin(&metadata()).unwrap();
         sink.tilt(&track()).unwrap();
@@ -230,7 +230,7 @@ mod tests {
     #[test]
     fn clouds_equal_those_of_a_recording() {
         let mut writer = McapWriter::new(Cursor::new(Vec::new()));
-        fed(&mut writer, 100);
+        feed(&mut writer, 100);
         let bytes = writer.into_inner().unwrap().into_inner();
         let recorded: Vec<Vec<u8>> = MessageStream::new(&bytes)
             .unwrap()
@@ -247,7 +247,7 @@ mod tests {
                 points += cloud.points;
                 Ok(())
             });
-            fed(&mut sink, batch);
+            feed(&mut sink, batch);
             drop(sink);
             assert_eq!(sent, recorded, "{batch}");
             assert_eq!(points, 2000);

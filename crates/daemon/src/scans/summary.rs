@@ -73,10 +73,10 @@ mod tests {
     const PLACE: &str = "/data/my scans/hall";
 
     fn describe(state: ScanState, why: Failure, waits: bool, has_log: bool) -> String {
-        said_of(state, why, waits, has_log, None)
+        describe_with(state, why, waits, has_log, None)
     }
 
-    fn said_of(
+    fn describe_with(
         state: ScanState,
         why: Failure,
         waits: bool,
@@ -129,7 +129,7 @@ mod tests {
         let both = without_cloud(Some(stopped()), making);
         assert!(both.help.as_ref().unwrap().contains(PLACE), "{both:?}");
         assert_eq!(
-            said_of(ScanState::Failed, both, false, true, no_cloud),
+            describe_with(ScanState::Failed, both, false, true, no_cloud),
             "Stopped by the user. The log is kept. There is no cloud: log.pcapng: no packet."
         );
         let silent = Failure::new(Kind::NoDevice, "no lidar")

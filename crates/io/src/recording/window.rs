@@ -98,9 +98,9 @@ mod tests {
     use super::*;
 
     /// Yields one byte per read, like a slow pipe.
-    struct Dribble(Vec<u8>);
+    struct ByteReader(Vec<u8>);
 
-    impl Read for Dribble {
+    impl Read for ByteReader {
         fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
             if self.0.is_empty() {
                 return Ok(0);
@@ -112,7 +112,7 @@ mod tests {
 
     #[test]
     fn the_window_moves_grows_and_ends() {
-        let mut window = Window::new(Dribble((0..=9).collect()));
+        let mut window = Window::new(ByteReader((0..=9).collect()));
         assert_eq!(window.fill(4).unwrap(), [0, 1, 2, 3]);
         window.consume(3);
         assert_eq!((window.offset(), window.bytes()), (3, &[3][..]));

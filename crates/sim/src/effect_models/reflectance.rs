@@ -146,7 +146,7 @@ mod tests {
     use crate::effect_models::testing::{echo, firing};
     use crate::effects::Effect;
 
-    fn share_noticed(reflectance: &Reflectance, of: Echo) -> f64 {
+    fn detected_share(reflectance: &Reflectance, of: Echo) -> f64 {
         let mut firing = firing(0.0, 0.0);
         let mut noticed = 0;
         for number in 0..500 {
@@ -164,7 +164,7 @@ mod tests {
     fn targets_are_detected_as_far_as_they_return_enough_light() {
         let reflectance = Reflectance::new(&ReflectanceSettings::default(), 1).unwrap();
         let share =
-            |range_m, reflectivity| share_noticed(&reflectance, echo(range_m, reflectivity));
+            |range_m, reflectivity| detected_share(&reflectance, echo(range_m, reflectivity));
         let error = 4.0 * (0.25_f64 / 8_000.0).sqrt();
         assert!((share(50.0, 10.0) - 0.5).abs() < error);
         // Light falls by 1 / 1.1^2: by 0.1736 of the threshold, 0.868 standard deviations.

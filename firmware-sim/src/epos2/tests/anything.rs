@@ -19,7 +19,7 @@ use super::{get, state};
 
 /// Cause of a transition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum By {
+enum Cause {
     Shutdown,
     SwitchOn,
     Enable,
@@ -33,11 +33,11 @@ enum By {
     Input,
     PowerOn,
 }
-use By::*;
+use Cause::*;
 
 /// The legal transitions by the figure and tables of "Device Control" in the Firmware
 /// Specification.
-const LEGAL: [(DeviceState, By, DeviceState); 41] = [
+const LEGAL: [(DeviceState, Cause, DeviceState); 41] = [
     (SwitchOnDisabled, Shutdown, ReadyToSwitchOn),
     (ReadyToSwitchOn, SwitchOn, SwitchedOn),
     (ReadyToSwitchOn, Enable, MeasureInit),
@@ -83,8 +83,8 @@ const LEGAL: [(DeviceState, By, DeviceState); 41] = [
 
 /// The command of a controlword: bits 7, 3, 2, 1, 0, masked as in the table "Device Control
 /// Commands".
-fn command_of(word: u32) -> By {
-    const MASKS: [(u32, u32, By); 6] = [
+fn command_of(word: u32) -> Cause {
+    const MASKS: [(u32, u32, Cause); 6] = [
         (0x80, 0x80, Reset),
         (0x87, 0x06, Shutdown),
         (0x8F, 0x07, SwitchOn),
@@ -99,7 +99,7 @@ fn command_of(word: u32) -> By {
 }
 
 #[derive(Clone, Debug)]
-enum Doing {
+enum Action {
     Write(Address, u32),
     Control(u16),
     /// The same by RPDO 1, whose default mapping is the controlword.
@@ -115,9 +115,9 @@ enum Doing {
     Inject(u16),
 }
 
-impl Doing {
+impl Action {
     /// The transitions that it may cause.
-    fn causes(&self) -> Vec<By> {
+    fn causes(&self) -> Vec<Cause> {
         let control = |word: u32| vec![command_of(word), Error];
         match self {
             Self::Write(address, raw) if *address == objects::CONTROLWORD.address => control(*raw),
@@ -155,7 +155,7 @@ fn control_word() -> impl Strategy<Value = u16> {
     prop_oneof![8 => prop::sample::select(WORDS), 1 => any::<u16>()]
 }
 
-fn doing() -> impl Strategy<Value = Doing> {
+fn action() -> impl Strategy<Value = Action> {
     let any_entry =
         || prop::sample::select(TABLE.iter().map(|entry| entry.address).collect::<Vec<_>>());
     let nmt = prop::sample::select(vec![
@@ -178,19 +178,19 @@ fn doing() -> impl Strategy<Value = Doing> {
         0u16..0x800
     ];
     prop_oneof![
-        2 => (any_entry(), any::<u32>()).prop_map(|(address, raw)| Doing::Write(address, raw)),
-        2 => (any_entry(), 0u32..100).prop_map(|(address, raw)| Doing::Write(address, raw)),
-        1 => (any::<u16>(), any::<u8>(), any::<u32>()).prop_map(|(i, s, raw)| Doing::Write(Address::new(i, s), raw)),
-        6 => control_word().prop_map(Doing::Control),
-        2 => control_word().prop_map(Doing::ControlByPdo),
-        2 => control_word().prop_map(Doing::ControlBySdo),
-        1 => nmt.prop_map(Doing::Network),
-        1 => (ids, prop::collection::vec(any::<u8>(), 0..=8)).prop_map(|(id, data)| Doing::Frame(id, data)),
-        1 => prop::collection::vec(0x90u8..0x93, 0..6).prop_map(Doing::Serial),
-        1 => any::<bool>().prop_map(Doing::Block),
-        6 => (0u8..80).prop_map(Doing::Tick),
-        1 => any::<u32>().prop_map(Doing::Phase),
-        1 => any::<u16>().prop_map(Doing::Inject),
+        2 => (any_entry(), any::<u32>()).prop_map(|(address, raw)| Action::Write(address, raw)),
+        2 => (any_entry(), 0u32..100).prop_map(|(address, raw)| Action::Write(address, raw)),
+        1 => (any::<u16>(), any::<u8>(), any::<u32>()).prop_map(|(i, s, raw)| Action::Write(Address::new(i, s), raw)),
+        6 => control_word().prop_map(Action::Control),
+        2 => control_word().prop_map(Action::ControlByPdo),
+        2 => control_word().prop_map(Action::ControlBySdo),
+        1 => nmt.prop_map(Action::Network),
+        1 => (ids, prop::collection::vec(any::<u8>(), 0..=8)).prop_map(|(id, data)| Action::Frame(id, data)),
+        1 => prop::collection::vec(0x90u8..0x93, 0..6).prop_map(Action::Serial),
+        1 => any::<bool>().prop_map(Action::Block),
+        6 => (0u8..80).prop_map(Action::Tick),
+        1 => any::<u32>().prop_map(Action::Phase),
+        1 => any::<u16>().prop_map(Action::Inject),
     ]
 }
 
@@ -201,7 +201,7 @@ struct World {
     usb: UsbServer,
     last: DeviceState,
     /// Commands out of "operation enabled" since it was entered.
-    expected: Vec<By>,
+    expected: Vec<Cause>,
 }
 
 impl World {
@@ -221,7 +221,7 @@ impl World {
         }
     }
 
-    fn look(&mut self, causes: &[By], what: &Doing) {
+    fn check_transition(&mut self, causes: &[Cause], what: &Action) {
         let now = state(&self.node);
         assert_eq!(now, self.node.state());
         let from = core::mem::replace(&mut self.last, now);
@@ -247,26 +247,26 @@ impl World {
         self.can.input(&mut self.node, &frame, &mut |_| {});
     }
 
-    fn act(&mut self, what: &Doing) {
+    fn act(&mut self, what: &Action) {
         let causes = what.causes();
         if let Some(by) = causes.first().filter(|_| self.last == OperationEnabled) {
             self.expected.push(*by);
         }
-        if matches!(what, Doing::Frame(..)) {
+        if matches!(what, Action::Frame(..)) {
             self.expected.extend([Shutdown, SwitchOn]);
         }
         match what {
-            Doing::Write(address, raw) => {
+            Action::Write(address, raw) => {
                 let before = self.node.read(*address);
                 if self.node.write(*address, *raw).is_err() {
                     assert_eq!(before, self.node.read(*address));
                 }
             }
-            Doing::Control(word) => self
+            Action::Control(word) => self
                 .node
                 .write(objects::CONTROLWORD.address, u32::from(*word))
                 .unwrap(),
-            Doing::ControlByPdo(word) => {
+            Action::ControlByPdo(word) => {
                 // The default mapping may have been changed.
                 let mapped = self.node.read(Address::new(0x1600, 1)).unwrap().raw();
                 let count = self.node.read(Address::new(0x1600, 0)).unwrap().raw();
@@ -275,33 +275,33 @@ impl World {
                     self.frame(0x201, &word.to_le_bytes());
                 }
             }
-            Doing::ControlBySdo(word) => {
+            Action::ControlBySdo(word) => {
                 let request = SdoRequest::InitiateDownload {
                     address: objects::CONTROLWORD.address,
                     transfer: Initiate::Expedited(Expedited::of(*word)),
                 };
                 self.frame(0x601, &request.to_bytes());
             }
-            Doing::Network(command) => {
+            Action::Network(command) => {
                 let nmt = Nmt {
                     node: NodeId::new(1),
                     command: *command,
                 };
                 self.can.input(&mut self.node, &nmt.to_frame(), &mut |_| {});
             }
-            Doing::Frame(id, data) => self.frame(*id, data),
-            Doing::Serial(bytes) => self.usb.input(&mut self.node, bytes, &mut |_| {}),
-            Doing::Block(true) => self.node.block(),
-            Doing::Block(false) => self.node.unblock(),
-            Doing::Tick(n) => {
+            Action::Frame(id, data) => self.frame(*id, data),
+            Action::Serial(bytes) => self.usb.input(&mut self.node, bytes, &mut |_| {}),
+            Action::Block(true) => self.node.block(),
+            Action::Block(false) => self.node.unblock(),
+            Action::Tick(n) => {
                 for _ in 0..*n {
                     self.tick(&causes, what);
                 }
             }
-            Doing::Phase(phase) => self.node.set_phase_us(*phase),
-            Doing::Inject(code) => self.node.inject(DeviceError(*code)),
+            Action::Phase(phase) => self.node.set_phase_us(*phase),
+            Action::Inject(code) => self.node.inject(DeviceError(*code)),
         }
-        self.look(&causes, what);
+        self.check_transition(&causes, what);
         let powered = !matches!(
             self.last,
             SwitchOnDisabled | ReadyToSwitchOn | SwitchedOn | Fault
@@ -310,7 +310,7 @@ impl World {
         assert!(powered || still, "the demand moves without power");
     }
 
-    fn tick(&mut self, causes: &[By], what: &Doing) {
+    fn tick(&mut self, causes: &[Cause], what: &Action) {
         let before = self.node.segment().end;
         self.node.tick();
         assert_eq!(
@@ -318,9 +318,9 @@ impl World {
             before,
             "the shaft's position has a gap"
         );
-        self.look(causes, what);
+        self.check_transition(causes, what);
         self.can.poll(&mut self.node, &mut |_| {});
-        self.look(&[Error], what);
+        self.check_transition(&[Error], what);
     }
 }
 
@@ -329,7 +329,7 @@ proptest! {
 
     #[test]
     fn arbitrary_sequences_do_not_panic_or_leave_the_state_machine(
-        doings in prop::collection::vec(doing(), 1..150),
+        doings in prop::collection::vec(action(), 1..150),
         stops in prop::option::of((-20_000i32..0, 0i32..20_000)),
     ) {
         let mut world = World::new(stops.map_or([None; 2], |(low, high)| [Some(low), Some(high)]));

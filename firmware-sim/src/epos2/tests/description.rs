@@ -100,7 +100,7 @@ fn write(node: &mut Node, entry: &Described, number: i64, bytes: usize) -> Resul
 
 /// Writes refused although type, access and limits allow them: signatures, enabled process data,
 /// entries without storage.
-fn needs_more(entry: &Described) -> bool {
+fn has_other_refusals(entry: &Described) -> bool {
     matches!(
         entry.address.index,
         0x1010 | 0x1011 | 0x1600..=0x1603 | 0x1A00..=0x1A03 | 0x2FFF
@@ -191,7 +191,7 @@ fn writes_respect_access_length_and_limits() {
             let refused = write(&mut node, &entry, outside, bytes);
             assert_eq!(refused, Err(expected), "{at} = {outside}");
         }
-        if needs_more(&entry) {
+        if has_other_refusals(&entry) {
             continue;
         }
         for fits in [entry.default, entry.low, entry.high].into_iter().flatten() {

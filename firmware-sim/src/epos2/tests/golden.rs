@@ -22,7 +22,7 @@ fn crc(bytes: &[u8]) -> u16 {
 }
 
 /// The checksum covers words high byte first; on the wire they are low byte first.
-fn over_words(header: [u8; 2], data: &[u8]) -> u16 {
+fn crc_over_words(header: [u8; 2], data: &[u8]) -> u16 {
     let swapped = data.chunks(2).flat_map(|word| [word[1], word[0]]);
     crc(&header.into_iter().chain(swapped).collect::<Vec<_>>())
 }
@@ -41,7 +41,7 @@ fn usb_body(frame: &[u8]) -> Vec<u8> {
     let (content, sum) = body.split_at(body.len() - 2);
     assert_eq!(content.len(), 2 + 2 * usize::from(content[1]));
     // On USB the checksum covers the length before the opcode.
-    let expected = over_words([content[1], content[0]], &content[2..]);
+    let expected = crc_over_words([content[1], content[0]], &content[2..]);
     assert_eq!(sum, expected.to_le_bytes());
     content.to_vec()
 }
@@ -96,7 +96,7 @@ fn a_two_word_error_matches_golden_bytes() {
     // 5000:00 does not exist.
     let request = {
         let data = hex("0050 0001");
-        let sum = over_words([2, 0x10], &data).to_le_bytes();
+        let sum = crc_over_words([2, 0x10], &data).to_le_bytes();
         [hex("9002 1002"), data, sum.to_vec()].concat()
     };
     let mut seen = [0, 0];
@@ -132,7 +132,7 @@ fn rs232(node: &mut Node, request: &[u8]) -> Vec<u8> {
     let (content, sum) = out.split_at(out.len() - 2);
     assert_eq!(content.len(), 3 + 2 * usize::from(content[0]));
     // On RS232 the checksum covers the opcode, then the length minus one.
-    let expected = over_words([0x00, content[0]], &content[1..]);
+    let expected = crc_over_words([0x00, content[0]], &content[1..]);
     assert_eq!(sum, expected.to_le_bytes());
     out
 }
@@ -140,7 +140,10 @@ fn rs232(node: &mut Node, request: &[u8]) -> Vec<u8> {
 #[test]
 fn rs232_frames_match_golden_bytes() {
     let known = hex("03 00000000 37020000 1980");
-    assert_eq!(over_words([0, 3], &known[1..9]).to_le_bytes(), known[9..]);
+    assert_eq!(
+        crc_over_words([0, 3], &known[1..9]).to_le_bytes(),
+        known[9..]
+    );
     let mut node = healthy();
     command(&mut node, 0x06);
     let answer = rs232(&mut node, &hex("10 01 4160 0001 ABF0"));

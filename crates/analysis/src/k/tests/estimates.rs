@@ -12,7 +12,7 @@ use crate::k::{
 };
 
 /// The number of shares whose error exceeds the bound, and the largest error.
-fn against(of: &Estimate, exact: &Estimate) -> (usize, f64) {
+fn compared_with(of: &Estimate, exact: &Estimate) -> (usize, f64) {
     assert_eq!(of.shares.len(), exact.shares.len());
     let off = of
         .shares
@@ -71,7 +71,7 @@ fn sampled_estimates_are_within_their_confidence_intervals() {
                     ErrorBound::Confidence { risk: 0.05, .. }
                 ));
                 assert!(of.bound.largest() <= 0.01, "{}", of.bound.largest());
-                let (outside, off) = against(&of, &truth);
+                let (outside, off) = compared_with(&of, &truth);
                 assert_eq!(outside, 0, "seed {seed}, {bins} bins: {off}");
                 for (mean, share) in mean.iter_mut().zip(&of.shares) {
                     *mean += share / 12.0;
@@ -105,7 +105,7 @@ fn a_sampled_rmbl_is_within_a_ten_thousandth() {
     assert_eq!((truth.method, &truth.bound), ("turned", &ErrorBound::Exact));
     let of = sampled(&points, &edges, &Sampling::default()).unwrap();
     assert!(of.bound.largest() <= 1e-4);
-    assert_eq!(against(&of, &truth).0, 0);
+    assert_eq!(compared_with(&of, &truth).0, 0);
     let (of, truth) = (
         KCurve::of_estimate(&of, 1.0),
         KCurve::of_estimate(&truth, 1.0),
@@ -126,7 +126,7 @@ fn harmonics_are_accurate_for_smooth_point_distributions() {
             (of.bound.largest(), of.bound.of(3)),
             (f64::INFINITY, f64::INFINITY)
         );
-        let (_, off) = against(&of, &truth);
+        let (_, off) = compared_with(&of, &truth);
         assert!(off < within && off <= last, "degree {degree}: {off}");
         last = off;
     }
@@ -210,7 +210,7 @@ fn the_cheapest_sufficient_method_is_chosen() {
         let of = estimate(&points, None, &edges, &sampling(tolerance, risk), ONE).unwrap();
         assert!(of.bound.largest() <= tolerance, "{}", of.bound.largest());
         assert_eq!(of.method, method);
-        assert_eq!(against(&of, &truth).0, 0);
+        assert_eq!(compared_with(&of, &truth).0, 0);
     }
 }
 

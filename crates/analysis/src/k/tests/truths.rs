@@ -8,7 +8,7 @@ use super::hard_cases::{ONE, counted};
 use super::patterns::{rmbl, vlp16};
 use crate::k::{Edges, FrameRotation, KCurve, PairCounts, plain, turned};
 
-fn by_turning(frames: u32) -> PairCounts {
+fn by_rotation(frames: u32) -> PairCounts {
     let rotation = FrameRotation {
         axis: DVec3::Y,
         step_rad: PI / f64::from(frames),
@@ -55,7 +55,7 @@ fn rmbls_match_the_known_counts_and_curves() {
         (72, [82_933_920, 250_263_432, 83_444_544], None),
     ];
     for (frames, truth, d_max) in truths {
-        let counts = by_turning(frames);
+        let counts = by_rotation(frames);
         assert_eq!(first_two_and_last(&counts), truth, "{frames} frames");
         let curve = KCurve::of_counts(&counts, 10.0);
         if let Some(d_max) = d_max {

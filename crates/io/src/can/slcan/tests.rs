@@ -223,8 +223,8 @@ fn timeouts_hold_while_other_answers_arrive() {
     drop(can);
     adapter.stop();
     // A port that always returns another CR.
-    struct Chatter;
-    impl Port for Chatter {
+    struct RepeatingPort;
+    impl Port for RepeatingPort {
         fn write_frame(&mut self, _: &[u8]) -> Result<Stamp<Host>, PortError> {
             Ok(Stamp::from_nanos(0))
         }
@@ -238,7 +238,7 @@ fn timeouts_hold_while_other_answers_arrive() {
             Ok(Some((1, Stamp::from_nanos(0))))
         }
     }
-    let mut can = Slcan::open(Chatter, Bitrate::Kbit1000).unwrap();
+    let mut can = Slcan::open(RepeatingPort, Bitrate::Kbit1000).unwrap();
     for timeout in [Span::ZERO, Span::from_millis(20)] {
         let begin = Instant::now();
         assert_eq!(can.read(timeout).unwrap(), None);

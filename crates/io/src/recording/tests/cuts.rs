@@ -126,7 +126,7 @@ fn valid_files() -> Vec<Vec<u8>> {
 }
 
 /// Reads bytes to their end, at once and in pieces.
-fn exhaust(bytes: &[u8]) -> u64 {
+fn read_all_ways(bytes: &[u8]) -> u64 {
     let pieces = exhaust_from(Pieces(bytes));
     let whole = exhaust_from(bytes);
     assert_eq!(whole, pieces);
@@ -158,7 +158,7 @@ fn exhaust_from(reader: impl Read) -> Option<(RecordingCounts, End)> {
 #[test]
 fn the_valid_files_have_records() {
     for (n, file) in valid_files().iter().enumerate() {
-        assert!(exhaust(file) > 0, "file {n}");
+        assert!(read_all_ways(file) > 0, "file {n}");
     }
 }
 
@@ -167,10 +167,10 @@ proptest! {
 
     #[test]
     fn random_bytes_do_not_panic(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
-        exhaust(&bytes);
+        read_all_ways(&bytes);
         for file in valid_files() {
             // After a valid header.
-            exhaust(&[&file[..24.min(file.len())], &bytes].concat());
+            read_all_ways(&[&file[..24.min(file.len())], &bytes].concat());
         }
     }
 
@@ -186,7 +186,7 @@ proptest! {
             let at = at.index(file.len());
             file[at] = value;
         }
-        exhaust(&file);
-        exhaust(&file[..cut.index(file.len())]);
+        read_all_ways(&file);
+        read_all_ways(&file[..cut.index(file.len())]);
     }
 }

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use super::*;
 
 /// A file of `n` data packets, and the start of each block.
-fn sound(big: bool, n: u8) -> (Vec<u8>, Vec<usize>) {
+fn valid_file(big: bool, n: u8) -> (Vec<u8>, Vec<usize>) {
     let mut file = section(big);
     let mut starts = vec![0, file.len()];
     file.extend(interface(big, 1, &[(2, b"lidar"), (9, &[9])]));
@@ -27,7 +27,7 @@ fn expected(n: u8, without: &[u8]) -> Vec<OwnedRecord> {
 #[test]
 fn one_damaged_block_costs_one_packet() {
     for big in [false, true] {
-        let (file, starts) = sound(big, 6);
+        let (file, starts) = valid_file(big, 6);
         let start = starts[4]; // packet 2
         let length = starts[5] - start;
         // First the length at the start: too small, odd, larger than the block, the file, or the
@@ -59,7 +59,7 @@ fn one_damaged_block_costs_one_packet() {
 #[test]
 fn missing_and_surplus_bytes_are_skipped() {
     for big in [false, true] {
-        let (file, starts) = sound(big, 6);
+        let (file, starts) = valid_file(big, 6);
         let (cut, next) = (starts[4] + 700, starts[6]);
         // A gap from packet 2 into packet 3 that is no multiple of four.
         let missing = [&file[..cut], &file[next - 333..]].concat();
@@ -102,8 +102,8 @@ fn a_damaged_description_keeps_its_number() {
 #[test]
 fn a_damaged_section_header_of_the_other_byte_order_is_skipped() {
     for big in [false, true] {
-        let (one, _) = sound(big, 2);
-        let (mut two, starts) = sound(!big, 3);
+        let (one, _) = valid_file(big, 2);
+        let (mut two, starts) = valid_file(!big, 3);
         for at in [4, 8, starts[1] - 1] {
             two[at] ^= 0x5A;
             let (records, end, counts) = read(&[one.clone(), two.clone()].concat());
@@ -117,7 +117,7 @@ fn a_damaged_section_header_of_the_other_byte_order_is_skipped() {
 
 #[test]
 fn damage_without_later_valid_blocks_ends_the_reading() {
-    let (file, starts) = sound(false, 3);
+    let (file, starts) = valid_file(false, 3);
     let garbage = [&file[..starts[4]], &[0xA5; 300_000]].concat();
     let (records, end, counts) = read(&garbage);
     assert!(records == expected(2, &[]));
@@ -198,7 +198,7 @@ fn false_lengths_cost_neither_memory_nor_time() {
     let liar = body.len();
     body.extend(packet(false, 0, 1, &ethernet(&[], &ip(7, b"")), None));
     let blocks = 500_000;
-    let (head, _) = sound(false, 1);
+    let (head, _) = valid_file(false, 1);
     let len = head.len() as u64 + (body.len() as u64) * blocks;
     let reader = Repeat {
         body,
@@ -229,7 +229,7 @@ proptest! {
         which in 1_usize..7,
         damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..60),
     ) {
-        let (mut file, starts) = sound(big, 8);
+        let (mut file, starts) = valid_file(big, 8);
         let (start, end) = (starts[which + 2], starts[which + 3]);
         for (at, value) in damage {
             file[start + at.index(end - start)] = value;

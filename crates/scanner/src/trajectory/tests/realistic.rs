@@ -35,7 +35,7 @@ pub struct Drive {
     pub seed: u64,
 }
 
-pub const CARD: Drive = Drive {
+pub const REFERENCE: Drive = Drive {
     speed: 56.25,
     acceleration: 500.0,
     way: -45.0,
@@ -204,7 +204,7 @@ fn the_best_curve_through_real_polls_is_as_accurate_as_the_gear() {
                 let run = Drive {
                     seed,
                     servo: Some((15.0, damping)),
-                    ..CARD
+                    ..REFERENCE
                 }
                 .run();
                 let best = run.trajectory(None);
@@ -246,7 +246,7 @@ fn accurate_samples_are_followed() {
         round_trip_s: (0.1e-3, 0.14e-3),
         spikes: 0.0,
         hertz: 1_000.0,
-        ..CARD
+        ..REFERENCE
     }
     .run();
     let best = run.trajectory(None);
@@ -257,7 +257,7 @@ fn accurate_samples_are_followed() {
 /// On the motion it is made for, a method is never worse than the cheaper one before it.
 #[test]
 fn each_method_is_best_for_its_kind_of_motion() {
-    let run = CARD.run();
+    let run = REFERENCE.run();
     let rms = |method| run.error(&run.trajectory(Some(method))).1;
     let [nearest, linear, profile, servo] = [
         Method::Nearest,
@@ -275,7 +275,7 @@ fn each_method_is_best_for_its_kind_of_motion() {
 /// For a tenth of a second the shaft is held back by up to a degree.
 #[test]
 fn motion_without_command_is_followed_and_reported() {
-    let mut run = CARD.run();
+    let mut run = REFERENCE.run();
     for sample in &mut run.samples {
         let t = (sample.host - Stamp::from_nanos(EPOCH)).as_secs_f64();
         if (0.5..0.6).contains(&t) {
@@ -303,7 +303,11 @@ fn motion_without_command_is_followed_and_reported() {
 /// A limit switch ends the sweep half way: later samples are at rest elsewhere.
 #[test]
 fn an_interrupted_sweep_keeps_its_angles() {
-    let run = Drive { way: -20.0, ..CARD }.run();
+    let run = Drive {
+        way: -20.0,
+        ..REFERENCE
+    }
+    .run();
     let mut sweep = run.sweep;
     sweep.commanded.speed = DegPerS(56.25);
     let stopped = Run {
@@ -324,7 +328,7 @@ fn triangular_profiles_are_fitted() {
         let run = Drive {
             way,
             servo: Some((15.0, 1.0)),
-            ..CARD
+            ..REFERENCE
         }
         .run();
         let best = run.trajectory(None);
@@ -339,7 +343,7 @@ fn degenerate_profiles_are_fitted_or_joined() {
     let still = Drive {
         servo: None,
         ripple_deg: 0.0,
-        ..CARD
+        ..REFERENCE
     };
     for (name, drive, allowed) in [
         (
@@ -401,7 +405,7 @@ fn polls_of_equal_round_trip_are_fitted() {
     let run = Drive {
         round_trip_s: (1e-3, 1e-3),
         spikes: 0.0,
-        ..CARD
+        ..REFERENCE
     }
     .run();
     let (worst, ..) = run.error(&run.trajectory(None));
@@ -410,7 +414,7 @@ fn polls_of_equal_round_trip_are_fitted() {
 
 #[test]
 fn two_or_three_samples_are_connected_by_lines() {
-    let run = CARD.run();
+    let run = REFERENCE.run();
     for count in [1, 2, 3, 5] {
         let step = run.samples.len() / count;
         let few: Vec<_> = run
@@ -440,7 +444,7 @@ fn two_or_three_samples_are_connected_by_lines() {
 fn several_sweeps_have_a_fit_each() {
     let one = Drive {
         servo: Some((15.0, 1.0)),
-        ..CARD
+        ..REFERENCE
     };
     let (there, back) = (
         one.run(),

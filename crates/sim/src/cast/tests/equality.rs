@@ -8,7 +8,11 @@ use super::super::triangle::Sheared;
 use super::*;
 
 /// Tests every triangle in sequence, without boxes.
-fn brute(ray: &Ray, vertices: &[DVec3], triangles: &[[u32; 3]]) -> Option<(f64, u32)> {
+fn nearest_by_brute_force(
+    ray: &Ray,
+    vertices: &[DVec3],
+    triangles: &[[u32; 3]],
+) -> Option<(f64, u32)> {
     let whole = vertices.iter().copied();
     let (low, high) = whole.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), v| {
         (low.min(v), high.max(v))
@@ -33,7 +37,7 @@ fn bits(hit: Option<Hit>) -> Option<(u64, u32)> {
 }
 
 /// Triangles of every kind: random, slivers, points, duplicates, distant, huge.
-fn soup(numbers: &mut Numbers, count: usize) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+fn random_triangles(numbers: &mut Numbers, count: usize) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let offset = [DVec3::ZERO, DVec3::new(5e5, 5.4e6, 120.0)][numbers.below(2)];
     let scale = [1e-3, 1.0, 50.0][numbers.below(3)];
     let mut vertices = Vec::new();
@@ -58,7 +62,7 @@ fn soup(numbers: &mut Numbers, count: usize) -> (Vec<DVec3>, Vec<[u32; 3]>) {
 }
 
 /// A ray at a vertex, along an edge, at a centre, or anywhere.
-fn aimed(numbers: &mut Numbers, vertices: &[DVec3]) -> Option<Ray> {
+fn aimed_ray(numbers: &mut Numbers, vertices: &[DVec3]) -> Option<Ray> {
     let target = vertices[numbers.below(vertices.len())];
     let other = vertices[numbers.below(vertices.len())];
     let origin = match numbers.below(4) {
@@ -80,13 +84,13 @@ proptest! {
     #[test]
     fn the_tree_agrees_with_all_triangles_bit_for_bit(seed: u64, count in 1_usize..400) {
         let mut numbers = Numbers(seed);
-        let (vertices, triangles) = soup(&mut numbers, count);
+        let (vertices, triangles) = random_triangles(&mut numbers, count);
         let caster = mesh(&(vertices.clone(), triangles.clone()));
-        let rays: Vec<Ray> = (0..64).filter_map(|_| aimed(&mut numbers, &vertices)).collect();
+        let rays: Vec<Ray> = (0..64).filter_map(|_| aimed_ray(&mut numbers, &vertices)).collect();
         let mut together = vec![None; rays.len()];
         caster.nearest_of(&Rays::new(&rays, 1), Reach::default(), &Threads::ONE, &mut together);
         for (ray, together) in rays.iter().zip(together) {
-            let slow = brute(ray, &vertices, &triangles).map(|(at, id)| (at.to_bits(), id));
+            let slow = nearest_by_brute_force(ray, &vertices, &triangles).map(|(at, id)| (at.to_bits(), id));
             prop_assert_eq!(bits(first(&caster, ray)), slow);
             prop_assert_eq!(bits(together), slow);
             prop_assert_eq!(caster.any(ray, Reach::default()), slow.is_some());
@@ -98,7 +102,7 @@ proptest! {
         seed: u64, step in 1e-5_f64..2e-2, tilted: bool,
     ) {
         let mut numbers = Numbers(seed);
-        let (vertices, triangles) = soup(&mut numbers, 200);
+        let (vertices, triangles) = random_triangles(&mut numbers, 200);
         let caster = mesh(&(vertices.clone(), triangles.clone()));
         let turned = if tilted { numbers.rotation() } else { DMat3::IDENTITY };
         let origin = vertices[numbers.below(vertices.len())] + numbers.vector();
@@ -111,7 +115,7 @@ proptest! {
         let mut together = vec![None; rays.len()];
         caster.nearest_of(&Rays::new(&rays, 4), Reach::default(), &Threads::ONE, &mut together);
         for (ray, together) in rays.iter().zip(together) {
-            let slow = brute(ray, &vertices, &triangles).map(|(at, id)| (at.to_bits(), id));
+            let slow = nearest_by_brute_force(ray, &vertices, &triangles).map(|(at, id)| (at.to_bits(), id));
             prop_assert_eq!(bits(together), slow);
         }
     }

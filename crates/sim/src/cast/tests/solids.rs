@@ -7,7 +7,7 @@ fn alone(surface: impl Into<Surface>) -> Caster {
 }
 
 /// Range and normal.
-fn met(caster: &Caster, origin: [f64; 3], along: [f64; 3]) -> Option<(f64, [f64; 3])> {
+fn first_hit(caster: &Caster, origin: [f64; 3], along: [f64; 3]) -> Option<(f64, [f64; 3])> {
     let ray = ray(origin.into(), along.into());
     let hit: Option<Hit<DVec3>> = caster.nearest(&ray, Reach::default());
     hit.map(|hit| (hit.range_m, hit.normal.to_array()))
@@ -17,15 +17,15 @@ fn met(caster: &Caster, origin: [f64; 3], along: [f64; 3]) -> Option<(f64, [f64;
 fn spheres_are_hit_from_outside_and_inside() {
     let sphere = alone(Sphere { radius_m: -2.0 });
     assert_eq!(
-        met(&sphere, [5.0, 0.0, 0.0], [-1.0, 0.0, 0.0]),
+        first_hit(&sphere, [5.0, 0.0, 0.0], [-1.0, 0.0, 0.0]),
         Some((3.0, [1.0, 0.0, 0.0]))
     );
     assert_eq!(
-        met(&sphere, [1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]),
+        first_hit(&sphere, [1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]),
         Some((3.0, [-1.0, 0.0, 0.0]))
     );
-    assert_eq!(met(&sphere, [5.0, 0.0, 0.0], [1.0, 0.0, 0.0]), None);
-    assert_eq!(met(&sphere, [5.0, 2.1, 0.0], [-1.0, 0.0, 0.0]), None);
+    assert_eq!(first_hit(&sphere, [5.0, 0.0, 0.0], [1.0, 0.0, 0.0]), None);
+    assert_eq!(first_hit(&sphere, [5.0, 2.1, 0.0], [-1.0, 0.0, 0.0]), None);
 }
 
 #[test]
@@ -44,29 +44,29 @@ fn capped_and_open_cylinders_are_hit_correctly() {
         }),
     );
     assert_eq!(
-        met(&drum, [0.2, 0.0, 5.0], [0.0, 0.0, -1.0]),
+        first_hit(&drum, [0.2, 0.0, 5.0], [0.0, 0.0, -1.0]),
         Some((2.0, [0.0, 0.0, 1.0]))
     );
-    assert_eq!(met(&pipe, [0.2, 0.0, 5.0], [0.0, 0.0, -1.0]), None);
+    assert_eq!(first_hit(&pipe, [0.2, 0.0, 5.0], [0.0, 0.0, -1.0]), None);
     assert_eq!(
-        met(&drum, [0.2, 0.0, -1.0], [0.0, 0.0, 1.0]),
+        first_hit(&drum, [0.2, 0.0, -1.0], [0.0, 0.0, 1.0]),
         Some((1.0, [0.0, 0.0, -1.0]))
     );
     for caster in [&drum, &pipe] {
         assert_eq!(
-            met(caster, [4.0, 0.0, 1.0], [-1.0, 0.0, 0.0]),
+            first_hit(caster, [4.0, 0.0, 1.0], [-1.0, 0.0, 0.0]),
             Some((3.0, [1.0, 0.0, 0.0]))
         );
         assert_eq!(
-            met(caster, [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]),
+            first_hit(caster, [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]),
             Some((1.0, [0.0, -1.0, 0.0]))
         );
-        assert_eq!(met(caster, [4.0, 0.0, 3.1], [-1.0, 0.0, 0.0]), None);
+        assert_eq!(first_hit(caster, [4.0, 0.0, 3.1], [-1.0, 0.0, 0.0]), None);
     }
     // In through the open end and onto the wall from inside.
-    let (range, normal) = met(&pipe, [0.0, 0.0, 4.0], [0.6, 0.0, -0.8]).unwrap();
+    let (range, normal) = first_hit(&pipe, [0.0, 0.0, 4.0], [0.6, 0.0, -0.8]).unwrap();
     assert!((range - 1.0 / 0.6).abs() < 1e-15 && normal == [1.0, 0.0, 0.0]);
-    let (range, normal) = met(&drum, [0.0, 0.0, 4.0], [0.6, 0.0, -0.8]).unwrap();
+    let (range, normal) = first_hit(&drum, [0.0, 0.0, 4.0], [0.6, 0.0, -0.8]).unwrap();
     assert!((range - 1.25).abs() < 1e-15 && normal == [0.0, 0.0, 1.0]);
     let flipped = Cylinder {
         bottom_m: 1.0,

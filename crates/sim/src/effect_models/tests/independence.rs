@@ -15,9 +15,9 @@ use crate::cast::{Object, Sphere};
 use crate::scene::Scene;
 
 /// Effects that draw per firing.
-const ON_SHOTS: [&str; 3] = ["weather", "reflectance", "range_noise"];
+const PER_FIRING: [&str; 3] = ["weather", "reflectance", "range_noise"];
 /// Effects that draw per message.
-const ON_PARCELS: [&str; 4] = ["duplicate", "loss", "link_jitter", "reorder"];
+const PER_MESSAGE: [&str; 4] = ["duplicate", "loss", "link_jitter", "reorder"];
 /// The largest normal draw of `range_noise` (2 cm), in steps of 2 mm.
 const NOISE: u16 = 90;
 
@@ -77,7 +77,7 @@ fn near(a: u16, b: u16, within: u16) -> bool {
 }
 
 /// Whether all returns of a shot are among those of another.
-fn among(returns: [u16; 2], others: [u16; 2], within: u16) -> bool {
+fn is_subset(returns: [u16; 2], others: [u16; 2], within: u16) -> bool {
     returns
         .iter()
         .all(|a| *a == 0 || others.iter().any(|b| *b > 0 && near(*a, *b, within)))
@@ -90,7 +90,7 @@ fn another_effect_does_not_change_random_draws_per_shot() {
     let nothing = shots(&[], thin, 1);
     assert!(nothing.len() > 4_000);
     let others = TABLES.map(|(name, _)| (name, shots(&[name], thin, 2)));
-    for effect in ON_SHOTS {
+    for effect in PER_FIRING {
         let weather = if effect == "weather" { dense } else { thin };
         let alone = shots(&[effect], weather, 1);
         assert_ne!(alone, nothing, "{effect}");
@@ -114,11 +114,11 @@ fn another_effect_does_not_change_random_draws_per_shot() {
                 let same = match (effect, *other) {
                     // Less light: no new detections.
                     ("reflectance", "weather") | ("weather", "reflectance") => {
-                        among(*both, *alone, 0)
+                        is_subset(*both, *alone, 0)
                     }
                     _ => {
                         let there = |returns: &[u16; 2]| returns.map(|distance| distance > 0);
-                        among(*both, *alone, within) && there(both) == there(alone)
+                        is_subset(*both, *alone, within) && there(both) == there(alone)
                     }
                 };
                 assert!(same, "{effect} beside {other}: {key:?} {alone:?} {both:?}");
@@ -162,7 +162,7 @@ fn another_effect_does_not_change_random_draws_per_message() {
         MessageKind::Position,
         MessageKind::Answer,
     ] {
-        for effect in ON_PARCELS {
+        for effect in PER_MESSAGE {
             let alone = delays(&[effect], kind);
             let acts = alone.iter().any(|delays| delays[..] != [0]);
             let on_lidar_only = ["duplicate", "reorder"].contains(&effect);

@@ -124,7 +124,7 @@ proptest! {
 
     #[test]
     fn scalars_of_every_type_round_trip(value in any::<i32>()) {
-        fn trip<T: Scalar + PartialEq + core::fmt::Debug>(value: T) {
+        fn round_trip<T: Scalar + PartialEq + core::fmt::Debug>(value: T) {
             let mut client = client();
             client.write_scalar(NAME, value).unwrap();
             let mut server = Server::new(&[], true, true);
@@ -133,12 +133,12 @@ proptest! {
             client.read(NAME).unwrap();
             assert_eq!(server.serve(&mut client).result.unwrap().scalar::<T>(), Ok(value));
         }
-        trip(value);
-        trip(value as i16);
-        trip(value as i8);
-        trip(value as u32);
-        trip(value as u16);
-        trip(value as u8);
+        round_trip(value);
+        round_trip(value as i16);
+        round_trip(value as i8);
+        round_trip(value as u32);
+        round_trip(value as u16);
+        round_trip(value as u8);
     }
 
     #[test]
