@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use sim::cast::{Caster, Hit, Mesh, Object, Ray, Rays, Reach, Threads};
+use sim::cast::{Caster, Hit, Mesh, Object, Ray, Reach};
 
 /// Rounds to f32, so that both cast at the same mesh.
 fn short(value: f64) -> f64 {
@@ -68,8 +68,7 @@ fn open3d_hits_a_mesh_of_100_000_triangles_at_the_same_ranges() {
     let caster = Caster::new([Object::new(mesh)]).unwrap();
     let rays = firings();
     let mut hits: Vec<Option<Hit>> = vec![None; rays.len()];
-    let threads = Threads::all_cores().unwrap();
-    caster.nearest_of(&Rays::new(&rays, 16), Reach::default(), &threads, &mut hits);
+    caster.nearest_of(&rays, 16, Reach::default(), &mut hits);
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
     let files = [

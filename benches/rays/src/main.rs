@@ -9,7 +9,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use nix::time::{ClockId, clock_gettime};
-use sim::cast::{Caster, Cuboid, Hit, Mesh, Object, Ray, Rays, Reach, Threads};
+use sim::cast::{Caster, Cuboid, Hit, Mesh, Object, Ray, Reach};
 
 mod crates;
 mod scene;
@@ -62,15 +62,22 @@ fn publish(folder: &Path, name: &str, of: &Triangles) -> std::io::Result<()> {
     write(&folder.join(format!("{name}.triangles.f64")), triangles)
 }
 
-fn together(caster: &Caster, rays: &[Ray], threads: &Threads) -> String {
+/// Casts rays on so many threads.
+fn together(caster: &Caster, rays: &[Ray], threads: usize) -> String {
     let mut hits: Vec<Option<Hit>> = vec![None; rays.len()];
+    let firings = rays.len().div_ceil(scene::BEAMS).div_ceil(threads);
     timed(rays.len(), || {
-        caster.nearest_of(
-            &Rays::new(rays, scene::BEAMS),
-            Reach::default(),
-            threads,
-            &mut hits,
-        )
+        std::thread::scope(|scope| {
+            let parts = rays.chunks(firings * scene::BEAMS);
+            let mut parts = parts.zip(hits.chunks_mut(firings * scene::BEAMS));
+            let own = parts.next();
+            for (rays, hits) in parts {
+                scope.spawn(move || caster.nearest_of(rays, scene::BEAMS, Reach::default(), hits));
+            }
+            if let Some((rays, hits)) = own {
+                caster.nearest_of(rays, scene::BEAMS, Reach::default(), hits);
+            }
+        });
     })
 }
 
@@ -100,12 +107,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         publish(folder, name, of)?;
         let caster = Caster::new([Object::new(Mesh::new(&of.vertices, &of.triangles)?)])?;
         let mut hits: Vec<Option<Hit>> = vec![None; rays.len()];
-        caster.nearest_of(
-            &Rays::new(&rays, scene::BEAMS),
-            Reach::default(),
-            &Threads::ONE,
-            &mut hits,
-        );
+        caster.nearest_of(&rays, scene::BEAMS, Reach::default(), &mut hits);
         write(
             &folder.join(format!("{name}.ranges.f64")),
             hits.iter()
@@ -117,7 +119,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         glam::DVec3::new(-10.0, -10.0, -2.0),
         glam::DVec3::new(10.0, 10.0, 3.0),
     ))])?;
-    let cores = Threads::all_cores()?;
+    let cores = std::thread::available_parallelism()?.get();
     println!(
         r#"{{"rays": {}, "triangles": {}}}"#,
         rays.len(),
@@ -131,10 +133,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         println!(
             "{}",
             match how {
-                "together" => together(caster, &rays, &Threads::ONE),
+                "together" => together(caster, &rays, 1),
                 "one" => one_by_one(caster, &rays),
-                "cores" => together(caster, &rays, &cores),
-                "solid" => together(&solid, &rays, &Threads::ONE),
+                "cores" => together(caster, &rays, cores),
+                "solid" => together(&solid, &rays, 1),
                 "build" => timed(of.triangles.len(), || drop(Mesh::new(
                     &of.vertices,
                     &of.triangles

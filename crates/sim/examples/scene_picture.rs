@@ -147,21 +147,22 @@ struct Seen<'a> {
 }
 
 impl Seen<'_> {
-    /// What is met, the outsides of what encloses the scanner being cut away.
-    fn meet(&self, from: DVec3, direction: DVec3) -> Option<Hit<DVec3>> {
+    /// What is met and the normal there, the outsides of what encloses the scanner being cut away.
+    fn meet(&self, from: DVec3, direction: DVec3) -> Option<(Hit, DVec3)> {
         let ray = Ray::new(from, direction).ok()?;
         let mut reach = Reach::up_to(1e4);
         loop {
-            let hit = self.with_scanner.nearest::<DVec3>(&ray, reach)?;
-            let outside = hit.normal.dot(direction) < 0.0;
+            let hit = self.with_scanner.nearest(&ray, reach)?;
+            let normal = self.with_scanner.normal(&hit, ray.at(hit.range_m));
+            let outside = normal.dot(direction) < 0.0;
             if !(outside && self.enclosing.get(hit.object.index()) == Some(&true)) {
-                return Some(hit);
+                return Some((hit, normal));
             }
             reach.above_m = hit.range_m;
         }
     }
 
-    fn colour(&self, hit: &Hit<DVec3>) -> DVec3 {
+    fn colour(&self, hit: &Hit) -> DVec3 {
         let material = self.placed.material(hit.object.index(), hit.primitive);
         let Some(material) = material else {
             return dvec3(0.02, 0.1, 0.45);
@@ -184,15 +185,15 @@ impl Seen<'_> {
 
     /// A ray's colour in the sun.
     fn lit(&self, from: DVec3, direction: DVec3) -> DVec3 {
-        let Some(hit) = self.meet(from, direction) else {
+        let Some((hit, normal)) = self.meet(from, direction) else {
             return dvec3(0.62, 0.75, 0.9)
                 .lerp(dvec3(0.9, 0.93, 0.96), (1.0 - direction.z.abs()).powi(3));
         };
         let point = from + hit.range_m * direction;
-        let normal = if hit.normal.dot(direction) > 0.0 {
-            -hit.normal
+        let normal = if normal.dot(direction) > 0.0 {
+            -normal
         } else {
-            hit.normal
+            normal
         };
         let sun = SUN.normalize();
         // Within something closed there is light all the same.
@@ -218,7 +219,7 @@ impl Seen<'_> {
                 let (from, direction) = sensor.ray(laser, azimuth, 0.0, &mount).ok_or("laser")?;
                 let hit = self
                     .caster
-                    .nearest::<()>(&Ray::new(from, direction)?, Reach::up_to(100.0));
+                    .nearest(&Ray::new(from, direction)?, Reach::up_to(100.0));
                 if let Some(hit) = hit {
                     self.dot(camera, image, from + hit.range_m * direction);
                 }
@@ -233,8 +234,9 @@ impl Seen<'_> {
             return;
         };
         let seen = self.meet(camera.at_m, off.normalize_or_zero());
-        let visible =
-            seen.is_some_and(|hit| (hit.range_m - off.length()).abs() < 0.03 + 2e-3 * off.length());
+        let visible = seen.is_some_and(|(hit, _)| {
+            (hit.range_m - off.length()).abs() < 0.03 + 2e-3 * off.length()
+        });
         let within = at.x >= 0.0 && at.y >= 0.0 && at.x < WIDTH as f64 && at.y < VIEW as f64;
         if visible
             && within
@@ -254,10 +256,11 @@ impl Seen<'_> {
             let Ok(ray) = Ray::new(DVec3::ZERO, direction) else {
                 return DVec3::ZERO;
             };
-            let Some(hit) = self.caster.nearest::<DVec3>(&ray, Reach::up_to(100.0)) else {
+            let Some(hit) = self.caster.nearest(&ray, Reach::up_to(100.0)) else {
                 return dvec3(0.01, 0.01, 0.02);
             };
-            let facing = hit.normal.dot(direction).abs();
+            let normal = self.caster.normal(&hit, ray.at(hit.range_m));
+            let facing = normal.dot(direction).abs();
             warmth((hit.range_m / 1.2).ln() / (100.0_f64 / 1.2).ln()) * (0.25 + 0.75 * facing)
         })
     }

@@ -1,7 +1,7 @@
 //! Ray casting: the first surface along a ray, its distance, and on request the normal there.
 //!
 //! A [`Caster`] holds objects: surfaces, each at its [`Placement`]. It casts one ray
-//! ([`Caster::nearest`], [`Caster::any`]) or many ([`Caster::nearest_of`]), in f64 and without gaps
+//! ([`Caster::nearest`]) or many ([`Caster::nearest_of`]), in f64 and without gaps
 //! between triangles. Every result is a function of its ray and the objects alone: the same bits
 //! for one ray or many, in any order, on any number of threads, with any registers.
 //!
@@ -22,21 +22,18 @@ mod ray;
 mod solids;
 mod solids8;
 mod surface;
-mod threads;
 mod triangle;
 
 pub(crate) use batch::Packets;
-pub use batch::Rays;
 pub use build::Quality;
 pub use caster::{CastError, Caster};
 pub use height_field::{HeightField, HeightFieldError};
 pub use mesh::{Mesh, MeshError};
 pub(crate) use packet::{LANES, Lanes, Nearest};
 pub use placement::{Placement, PlacementError};
-pub use ray::{Hit, Normal, ObjectId, Ray, RayError, Reach};
+pub use ray::{Hit, ObjectId, Ray, RayError, Reach};
 pub use solids::{Cuboid, Cylinder, Plane, Sphere};
 pub use surface::{Object, Surface};
-pub use threads::{Threads, ThreadsError};
 pub use triangle::Sheared8;
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use crate::cast::{CastError, Caster, Hit as CastHit, Normal, Object, Ray, Reach};
+use crate::cast::{CastError, Caster, Hit as CastHit, Object, Ray, Reach};
 use crate::scenery::{Material, MaterialAssignment, Placed};
 
 /// Objects and materials.
@@ -73,21 +73,20 @@ impl Scene {
 
     /// The material at a hit of the caster.
     #[inline]
-    pub(crate) fn material<N>(&self, hit: &CastHit<N>) -> Option<&Material> {
+    pub(crate) fn material(&self, hit: &CastHit) -> Option<&Material> {
         self.placed.material(hit.object.index(), hit.primitive)
     }
 
     /// The nearest surface ahead of `origin_m` in `direction` no farther than `up_to_m`, of any
     /// material. `None` for an invalid ray.
-    pub(crate) fn nearest<N: Normal>(
+    pub(crate) fn nearest(
         &self,
         origin_m: DVec3,
         direction: DVec3,
         up_to_m: f64,
-    ) -> Option<(CastHit<N>, &Material)> {
+    ) -> Option<CastHit> {
         let ray = Ray::new(origin_m, direction).ok()?;
-        let hit = self.caster.nearest(&ray, Reach::up_to(up_to_m))?;
-        Some((hit, self.material(&hit)?))
+        self.caster.nearest(&ray, Reach::up_to(up_to_m))
     }
 
     /// The nearest surface ahead of `origin_m` in `direction` (length 1), if it is within
@@ -97,7 +96,8 @@ impl Scene {
     /// that starts on a surface does not meet it there. `None` for numbers that are not finite.
     #[must_use]
     pub fn cast(&self, origin_m: DVec3, direction: DVec3, min_m: f64, max_m: f64) -> Option<Hit> {
-        let (hit, material) = self.nearest::<()>(origin_m, direction, max_m)?;
+        let hit = self.nearest(origin_m, direction, max_m)?;
+        let material = self.material(&hit)?;
         let seen = Hit {
             range_m: hit.range_m,
             reflectivity: material.reflectivity,

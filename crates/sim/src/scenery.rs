@@ -17,12 +17,12 @@ mod shipped;
 pub(crate) use error::line_of_value;
 pub use error::{FilePosition, SceneryError};
 pub use generators::{ParkedCars, Quarry, Trees};
-pub use materials::{Material, MaterialAssignment, Placed};
+pub use materials::{Material, MaterialAssignment, MaterialTable, Placed};
 pub use meshes::{MeshFileError, MeshFormat};
 pub use moving::{Moving, Travel};
 pub use objects::{
-    BoxShape, Copies, CylinderShape, Facade, HeightFieldShape, MaterialTable, MeshShape,
-    ObjectTable, PlaneShape, SphereShape,
+    BoxShape, Copies, CylinderShape, Facade, HeightFieldShape, MeshShape, ObjectTable, PlaneShape,
+    SphereShape,
 };
 pub(crate) use place::rotation;
 pub use shipped::{SHIPPED, shipped};

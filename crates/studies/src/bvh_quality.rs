@@ -9,7 +9,7 @@ use analysis::tradeoff::{
     Trade, Work, in_rounds,
 };
 use glam::DVec3;
-use sim::cast::{Caster, Hit, Mesh, Object, Quality, Ray, Rays, Reach, Surface, Threads};
+use sim::cast::{Caster, Hit, Mesh, Object, Quality, Ray, Reach, Surface};
 use sim::scenery::{Scenery, no_files, shipped};
 
 use crate::ball::BallMesh;
@@ -218,8 +218,7 @@ fn hits(caster: &Caster, rays: &[Ray]) -> Vec<Option<Hit>> {
 }
 
 fn cast(caster: &Caster, rays: &[Ray], hits: &mut [Option<Hit>]) {
-    let batch = Rays::new(rays, BEAMS);
-    caster.nearest_of(&batch, Reach::default(), &Threads::ONE, hits);
+    caster.nearest_of(rays, BEAMS, Reach::default(), hits);
 }
 
 /// The rays of all lasers, firing after firing.

@@ -1,38 +1,15 @@
-//! Many rays: eight of one beam together, from any storage, on one thread or several.
+//! Many rays: eight of one beam together, from any storage.
 //!
 //! [`Caster`] casts the eight rays.
 
 use fearless_simd::{Simd, dispatch};
-use rayon::prelude::*;
 
 use super::caster::{Caster, Stacks};
 use super::packet::{LANES, Lanes, Nearest};
-use super::ray::{Hit, Normal, Ray, Reach};
-use super::threads::Threads;
+use super::ray::{Hit, Ray, Reach};
 
-/// Packets of each beam that one thread takes at a time.
+/// Packets of each beam that are cast before those of the next beam.
 const PACKETS_AT_A_TIME: usize = 8;
-
-/// Rays in firing order: `beams` of them per firing, firing after firing.
-///
-/// Rays of one beam in consecutive firings are cast together. Rays without such an order are one
-/// beam.
-#[derive(Clone, Copy, Debug)]
-pub struct Rays<'a> {
-    rays: &'a [Ray],
-    beams: usize,
-}
-
-impl<'a> Rays<'a> {
-    /// Rays of firings with this number of beams; zero counts as one. The last firing may be
-    /// partial.
-    #[must_use]
-    pub fn new(rays: &'a [Ray], beams: usize) -> Self {
-        // More beams than rays: one firing, of which there are these.
-        let beams = beams.clamp(1, rays.len().max(1));
-        Self { rays, beams }
-    }
-}
 
 /// A source of packets of up to eight rays and a destination of their hits, without copies of the
 /// rays.
@@ -46,28 +23,27 @@ pub(crate) trait Packets {
 }
 
 /// Rays of a list, and their hits in another.
-struct Piece<'a, N> {
-    caster: &'a Caster,
+struct Piece<'a> {
     rays: &'a [Ray],
     beams: usize,
-    hits: &'a mut [Option<Hit<N>>],
+    hits: &'a mut [Option<Hit>],
 }
 
-impl<N> Piece<'_, N> {
+impl Piece<'_> {
     /// Packets of each beam.
     const fn per_beam(&self) -> usize {
         self.rays.len().div_ceil(self.beams).div_ceil(LANES)
     }
 
     /// Places of a packet's rays in the list.
-    fn places(&self, packet: usize) -> impl Iterator<Item = (usize, usize)> + use<N> {
+    fn places(&self, packet: usize) -> impl Iterator<Item = (usize, usize)> + use<> {
         let (beams, per_beam) = (self.beams, self.per_beam().max(1));
         let (beam, first) = (packet / per_beam, packet % per_beam * LANES);
         (0..LANES).map(move |lane| (lane, (first + lane) * beams + beam))
     }
 }
 
-impl<N: Normal> Packets for Piece<'_, N> {
+impl Packets for Piece<'_> {
     fn load(&self, packet: usize, lanes: &mut Lanes) -> u64 {
         let mut loaded = 0;
         for (lane, place) in self.places(packet) {
@@ -81,46 +57,29 @@ impl<N: Normal> Packets for Piece<'_, N> {
 
     fn take(&mut self, packet: usize, _: u64, nearest: &Nearest) {
         for (lane, place) in self.places(packet) {
-            if let Some((ray, hit)) = self.rays.get(place).zip(self.hits.get_mut(place)) {
-                *hit = self.caster.finish(ray, nearest.best(lane).hit());
+            if let Some(hit) = self.hits.get_mut(place) {
+                *hit = nearest.best(lane).hit();
             }
         }
     }
 }
 
 impl Caster {
-    /// As [`Caster::nearest`] for every ray in order, up to the length of the shorter list.
-    pub fn nearest_of<N: Normal>(
-        &self,
-        rays: &Rays<'_>,
-        reach: Reach,
-        threads: &Threads,
-        hits: &mut [Option<Hit<N>>],
-    ) {
-        let Rays { rays, beams } = *rays;
+    /// As [`Caster::nearest`] for every ray, up to the length of the shorter list.
+    ///
+    /// Rays are in firing order, `beams` of them per firing (zero counts as one); the last firing
+    /// may be partial. Rays of one beam in consecutive firings are cast together.
+    pub fn nearest_of(&self, rays: &[Ray], beams: usize, reach: Reach, hits: &mut [Option<Hit>]) {
+        // More beams than rays: one firing, of which there are these.
+        let beams = beams.clamp(1, rays.len().max(1));
         let piece = beams.saturating_mul(LANES * PACKETS_AT_A_TIME);
-        let work = |(rays, hits): (&[Ray], &mut [Option<Hit<N>>])| {
-            let mut piece = Piece {
-                caster: self,
-                rays,
-                beams,
-                hits,
-            };
+        for (rays, hits) in rays.chunks(piece).zip(hits.chunks_mut(piece)) {
+            let mut piece = Piece { rays, beams, hits };
             self.nearest_in(beams * piece.per_beam(), reach, &mut piece);
-        };
-        match threads.pool() {
-            None => rays
-                .chunks(piece)
-                .zip(hits.chunks_mut(piece))
-                .for_each(work),
-            Some(pool) => pool.install(|| {
-                let pieces = rays.par_chunks(piece);
-                pieces.zip(hits.par_chunks_mut(piece)).for_each(work);
-            }),
         }
     }
 
-    /// Casts packets of rays on the caller's thread.
+    /// Casts packets of rays.
     // Not generic over where they come from, so that it is compiled once.
     pub(crate) fn nearest_in(&self, packets: usize, reach: Reach, of: &mut dyn Packets) {
         let reach = reach.clean();

@@ -150,8 +150,7 @@ impl Bvh {
     }
 
     /// Calls `visit` for every item whose box the beam may enter no farther than `up_to`, roughly
-    /// the nearest first; it answers how far is of interest from then on, and anything negative
-    /// ends the walk.
+    /// the nearest first; it answers how far is of interest from then on.
     #[inline(always)]
     pub(super) fn walk<S: Simd, const THICK: bool>(
         &self,
@@ -179,7 +178,7 @@ impl Bvh {
                         let (mut item, last) = items(child);
                         loop {
                             up_to = visit(item);
-                            if item >= last || up_to < 0.0 {
+                            if item >= last {
                                 break;
                             }
                             item += 1;

@@ -14,7 +14,7 @@ use super::bvh::{Bounds, Bvh, MOST_ITEMS, Stack};
 use super::mesh::short_middle;
 use super::packet::{Ask, Best, Lanes, Nearest, loaded, spread};
 use super::placement::Placement;
-use super::ray::{Hit, Normal, Ray, Reach};
+use super::ray::{Hit, Ray, Reach};
 use super::surface::Object;
 
 /// Up to this number, objects are tested one after the other.
@@ -177,38 +177,19 @@ impl Caster {
         Ok(())
     }
 
-    /// The first hit of a ray within its reach; [`Hit`] defines the order of equal distances. `N`
-    /// is `()` or, for normals, [`DVec3`].
+    /// The first hit of a ray within its reach; [`Hit`] defines the order of equal distances.
     #[must_use]
-    pub fn nearest<N: Normal>(&self, ray: &Ray, reach: Reach) -> Option<Hit<N>> {
-        self.finish(ray, self.best::<false>(ray, reach).hit())
-    }
-
-    /// Whether a ray hits anything within its reach.
-    #[must_use]
-    pub fn any(&self, ray: &Ray, reach: Reach) -> bool {
-        self.best::<true>(ray, reach).has_hit()
-    }
-
-    /// Not generic over the normal, so that it is compiled once.
-    fn best<const ANY: bool>(&self, ray: &Ray, reach: Reach) -> Best {
+    pub fn nearest(&self, ray: &Ray, reach: Reach) -> Option<Hit> {
         let (ray, reach) = (arrays(ray), reach.clean());
-        dispatch!(self.level, simd => self.one::<_, ANY>(simd, &mut Stacks::new(), ray, reach))
+        let best = dispatch!(self.level, simd => self.one(simd, &mut Stacks::new(), ray, reach));
+        best.hit()
     }
 
-    /// Adds the normal if it is wanted.
-    #[inline(always)]
-    pub(super) fn finish<N: Normal>(&self, ray: &Ray, hit: Option<Hit>) -> Option<Hit<N>> {
-        hit.map(|hit| Hit {
-            range_m: hit.range_m,
-            object: hit.object,
-            primitive: hit.primitive,
-            normal: N::wanted(|| self.normal(&hit, ray.at(hit.range_m))),
-        })
-    }
-
-    /// The normal of what a ray hit, at the point where it did.
-    pub(crate) fn normal(&self, hit: &Hit, point: DVec3) -> DVec3 {
+    /// The normal of what a ray hit, at the point where it did: length 1, in the frame of the rays.
+    /// It points out of solids, up from planes and height fields, and to the side from which a
+    /// triangle is counterclockwise; it is zero for a triangle without an area.
+    #[must_use]
+    pub fn normal(&self, hit: &Hit, point: DVec3) -> DVec3 {
         let object = self.objects.get(hit.object.index());
         object.map_or(DVec3::ZERO, |object| object.normal(hit.primitive, point))
     }
@@ -229,9 +210,9 @@ impl Caster {
         Some((middle_m, radius_m))
     }
 
-    /// The hit of one ray; if `ANY`, the first one found.
+    /// The hit of one ray.
     #[inline(always)]
-    fn one<S: Simd, const ANY: bool>(
+    fn one<S: Simd>(
         &self,
         simd: S,
         stacks: &mut Stacks,
@@ -243,10 +224,7 @@ impl Caster {
         let above_m = reach.above_m;
         for &object in &self.each {
             let ask = Ask { above_m, object };
-            self.ask::<S, ANY>(simd, inner, ray, ask, &mut best);
-            if ANY && best.has_hit() {
-                return best;
-            }
+            self.ask(simd, inner, ray, ask, &mut best);
         }
         if self.leaves.is_empty() {
             return best;
@@ -264,10 +242,7 @@ impl Caster {
             |leaf| {
                 if let Some(&object) = self.leaves.get(leaf as usize) {
                     let ask = Ask { above_m, object };
-                    self.ask::<S, ANY>(simd, inner, ray, ask, &mut best);
-                    if ANY && best.has_hit() {
-                        return -1.0;
-                    }
+                    self.ask(simd, inner, ray, ask, &mut best);
                 }
                 up_to(best.range_m)
             },
@@ -277,7 +252,7 @@ impl Caster {
 
     /// One ray and one object.
     #[inline(always)]
-    fn ask<S: Simd, const ANY: bool>(
+    fn ask<S: Simd>(
         &self,
         simd: S,
         stack: &mut Stack,
@@ -286,7 +261,7 @@ impl Caster {
         best: &mut Best,
     ) {
         if let Some(object) = self.objects.get(ask.object as usize) {
-            object.one::<S, ANY>(simd, stack, ray, ask, best);
+            object.one(simd, stack, ray, ask, best);
         }
     }
 
@@ -306,7 +281,7 @@ impl Caster {
             while wanted != 0 {
                 let lane = wanted.trailing_zeros() as usize;
                 wanted &= wanted - 1;
-                let best = self.one::<S, false>(simd, stacks, lanes.ray(lane), reach);
+                let best = self.one(simd, stacks, lanes.ray(lane), reach);
                 nearest.put(lane, best);
             }
             return nearest;

@@ -209,9 +209,9 @@ impl Mesh {
         ))
     }
 
-    /// Offers what one ray hits; stops at the first hit if `ANY`.
+    /// Offers what one ray hits.
     #[inline(always)]
-    pub(super) fn one<S: Simd, const ANY: bool>(
+    pub(super) fn one<S: Simd>(
         &self,
         simd: S,
         stack: &mut Stack,
@@ -222,12 +222,12 @@ impl Mesh {
         // A function of its own in machine code: it is called from several places.
         simd.vectorize(
             #[inline(always)]
-            || self.walk_one::<S, ANY>(simd, stack, (origin, direction), ask, best),
+            || self.walk_one(simd, stack, (origin, direction), ask, best),
         );
     }
 
     #[inline(always)]
-    fn walk_one<S: Simd, const ANY: bool>(
+    fn walk_one<S: Simd>(
         &self,
         simd: S,
         stack: &mut Stack,
@@ -247,8 +247,8 @@ impl Mesh {
             |leaf| {
                 if let Some((id, corners)) = self.face(leaf) {
                     let range_m = ray.meet(&corners);
-                    if range_m > ask.above_m && best.offer(range_m, ask.object, id) && ANY {
-                        return -1.0;
+                    if range_m > ask.above_m {
+                        best.offer(range_m, ask.object, id);
                     }
                 }
                 up_to(best.range_m)
@@ -282,7 +282,7 @@ impl Mesh {
                 let lane = alone.trailing_zeros() as usize;
                 alone &= alone - 1;
                 let mut best = nearest.best(lane);
-                self.one::<S, false>(simd, stack, lanes.ray(lane), ask, &mut best);
+                self.one(simd, stack, lanes.ray(lane), ask, &mut best);
                 nearest.put(lane, best);
             }
         }

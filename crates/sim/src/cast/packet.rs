@@ -147,31 +147,20 @@ impl Best {
 
     /// Takes a hit if it is nearer than the present one; the caller checks the lower limit.
     #[inline(always)]
-    pub(super) fn offer(&mut self, range_m: f64, object: u32, primitive: u32) -> bool {
+    pub(super) fn offer(&mut self, range_m: f64, object: u32, primitive: u32) {
         let what = u64::from(object) << 32 | u64::from(primitive);
-        let nearer = range_m < self.range_m || range_m == self.range_m && what < self.what;
-        if nearer {
+        if range_m < self.range_m || range_m == self.range_m && what < self.what {
             *self = Self { range_m, what };
         }
-        nearer
-    }
-
-    #[inline(always)]
-    pub(super) const fn has_hit(&self) -> bool {
-        self.what != NONE
     }
 
     /// The hit.
     #[inline(always)]
     pub(crate) fn hit(self) -> Option<Hit> {
-        if !self.has_hit() {
-            return None;
-        }
-        Some(Hit {
+        (self.what != NONE).then(|| Hit {
             range_m: self.range_m,
             object: ObjectId::new((self.what >> 32) as u32),
             primitive: self.what as u32,
-            normal: (),
         })
     }
 }

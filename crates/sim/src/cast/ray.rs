@@ -2,7 +2,6 @@
 //!
 //! Object and primitive of a hit identify its material.
 
-use std::fmt::Debug;
 use std::num::NonZeroU32;
 
 use glam::DVec3;
@@ -139,7 +138,7 @@ impl ObjectId {
 
 /// The first hit of a ray. At equal distances the lowest object counts, then the lowest primitive.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hit<N = ()> {
+pub struct Hit {
     /// Distance along the ray, metres.
     pub range_m: f64,
     /// Which object.
@@ -147,46 +146,4 @@ pub struct Hit<N = ()> {
     /// Part of the object: the triangle of a mesh by its number, the face of a box (-x, +x, -y, +y,
     /// -z, +z), of a cylinder 0 for the mantle, 1 for the bottom, 2 for the top; else 0.
     pub primitive: u32,
-    /// The surface's normal, if it is wanted.
-    pub normal: N,
-}
-
-impl Hit {
-    /// The same with a normal.
-    pub(crate) const fn with_normal(self, normal: DVec3) -> Hit<DVec3> {
-        Hit {
-            range_m: self.range_m,
-            object: self.object,
-            primitive: self.primitive,
-            normal,
-        }
-    }
-}
-
-mod sealed {
-    pub trait Sealed {}
-    impl Sealed for () {}
-    impl Sealed for glam::DVec3 {}
-}
-
-/// Whether hits come with normals: `()` is no, and costs nothing; [`DVec3`] is yes.
-pub trait Normal: sealed::Sealed + Copy + Debug + Send + Sync {
-    /// The normal, if it is wanted.
-    #[doc(hidden)]
-    fn wanted(normal: impl FnOnce() -> DVec3) -> Self;
-}
-
-impl Normal for () {
-    #[inline(always)]
-    fn wanted(_: impl FnOnce() -> DVec3) -> Self {}
-}
-
-/// Length 1, in the frame of the rays. It points out of solids, up from planes and height fields,
-/// and to the side from which a triangle is counterclockwise; it is zero for a triangle without an
-/// area.
-impl Normal for DVec3 {
-    #[inline(always)]
-    fn wanted(normal: impl FnOnce() -> DVec3) -> Self {
-        normal()
-    }
 }

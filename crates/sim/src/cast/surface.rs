@@ -171,9 +171,9 @@ impl Object {
         }
     }
 
-    /// Offers what one ray hits; if `ANY`, the first hit found will do.
+    /// Offers what one ray hits.
     #[inline(always)]
-    pub(super) fn one<S: Simd, const ANY: bool>(
+    pub(super) fn one<S: Simd>(
         &self,
         simd: S,
         stack: &mut Stack,
@@ -184,7 +184,7 @@ impl Object {
         let (origin, direction) = self.own_ray(ray);
         if let Surface::Mesh(mesh) = &self.surface {
             let own = (origin.to_array(), direction.to_array());
-            mesh.one::<S, ANY>(simd, stack, own, ask, best);
+            mesh.one(simd, stack, own, ask, best);
         } else if let Some((range_m, primitive)) =
             first_above(self.crossings(origin, direction), ask.above_m)
         {

@@ -1,4 +1,3 @@
-use std::num::NonZeroUsize;
 use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
@@ -107,4 +106,10 @@ pub(super) fn mesh((vertices, triangles): &(Vec<DVec3>, Vec<[u32; 3]>)) -> Caste
 
 pub(super) fn first(caster: &Caster, ray: &Ray) -> Option<Hit> {
     caster.nearest(ray, Reach::default())
+}
+
+/// The first hit and the normal there.
+pub(super) fn first_with_normal(caster: &Caster, ray: &Ray) -> Option<(Hit, DVec3)> {
+    let hit = first(caster, ray)?;
+    Some((hit, caster.normal(&hit, ray.at(hit.range_m))))
 }

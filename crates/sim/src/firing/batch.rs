@@ -142,14 +142,6 @@ impl Surroundings {
         lane: usize,
     ) -> Option<FirstSurface> {
         let hit = nearest.best(lane).hit()?;
-        let material = self.scene.material(&hit)?;
-        let normal = match self.normals {
-            true => {
-                let point = origin_m + hit.range_m * direction;
-                self.scene.caster().normal(&hit, point)
-            }
-            false => DVec3::ZERO,
-        };
-        Some(FirstSurface::new(&hit.with_normal(normal), material))
+        FirstSurface::new(&self.scene, &hit, origin_m, direction, self.normals)
     }
 }

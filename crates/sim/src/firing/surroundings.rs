@@ -14,7 +14,6 @@ use super::echo::{Echo, Echoes};
 use super::{Firing, batch};
 use crate::cast::Hit;
 use crate::scene::Scene;
-use crate::scenery::Material;
 use crate::sensor::DetectionRange;
 
 /// The scene around the scanner at the moment.
@@ -50,17 +49,29 @@ pub(super) struct FirstSurface {
 }
 
 impl FirstSurface {
+    /// What a ray hit, with its normal if that is wanted.
     #[inline]
-    pub fn new(hit: &Hit<DVec3>, material: &Material) -> Self {
-        Self {
+    pub fn new(
+        scene: &Scene,
+        hit: &Hit,
+        origin_m: DVec3,
+        direction: DVec3,
+        normals: bool,
+    ) -> Option<Self> {
+        let material = scene.material(hit)?;
+        let range_m = hit.range_m;
+        Some(Self {
             met: Met {
-                range_m: hit.range_m,
+                range_m,
                 reflectivity: f64::from(material.reflectivity),
-                normal: hit.normal,
+                normal: match normals {
+                    true => (scene.caster()).normal(hit, origin_m + range_m * direction),
+                    false => DVec3::ZERO,
+                },
                 specular: material.specular,
             },
             absorbing: material.absorbing,
-        }
+        })
     }
 
     /// The first surface of a scene no farther than `max_m`.
@@ -71,12 +82,8 @@ impl FirstSurface {
         max_m: f64,
         normals: bool,
     ) -> Option<Self> {
-        if normals {
-            let (hit, material) = scene.nearest::<DVec3>(origin_m, direction, max_m)?;
-            return Some(Self::new(&hit, material));
-        }
-        let (hit, material) = scene.nearest::<()>(origin_m, direction, max_m)?;
-        Some(Self::new(&hit.with_normal(DVec3::ZERO), material))
+        let hit = scene.nearest(origin_m, direction, max_m)?;
+        Self::new(scene, &hit, origin_m, direction, normals)
     }
 }
 

@@ -1,9 +1,22 @@
-//! Materials, and their assignment to objects.
+//! `[materials.NAME]`, and the assignment of materials to objects.
+
+use serde::Deserialize;
 
 use super::error::{InvalidField, invalid, within};
 use super::moving::Moving;
-use super::objects::MaterialTable;
 use crate::cast::{CastError, Caster, Object};
+
+/// `[materials.NAME]`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct MaterialTable {
+    /// Calibrated: 0 to 100 percent of diffuse, 101 to 255 retroreflecting.
+    pub reflectivity: Option<u8>,
+    /// Share of light that goes off as from a mirror, 0 to 1.
+    pub specular: f64,
+    /// Whether beams are lost in it.
+    pub absorbing: bool,
+}
 
 /// A material.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,22 +1,10 @@
-//! `[materials.NAME]` and `[[objects]]`.
+//! `[[objects]]`.
 
 use serde::Deserialize;
 
 use super::error::{InvalidField, above_0, finite, invalid};
 use super::generators::{ParkedCars, Quarry, Trees};
 use super::materials::Material;
-
-/// `[materials.NAME]`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct MaterialTable {
-    /// Calibrated: 0 to 100 percent of diffuse, 101 to 255 retroreflecting.
-    pub reflectivity: Option<u8>,
-    /// Share of light that goes off as from a mirror, 0 to 1.
-    pub specular: f64,
-    /// Whether beams are lost in it.
-    pub absorbing: bool,
-}
 
 /// One of `[[objects]]`: exactly one shape, and its placement. The rotation comes first, then the
 /// translation.

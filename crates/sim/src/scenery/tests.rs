@@ -23,9 +23,10 @@ fn wrong(text: &str) -> String {
 /// Distance, reflectivity and normal of a ray's hit.
 fn hit(placed: &Placed, caster: &Caster, from: DVec3, to: DVec3) -> Option<(f64, u8, DVec3)> {
     let ray = Ray::new(from, to.normalize()).unwrap();
-    let hit = caster.nearest::<DVec3>(&ray, Reach::default())?;
+    let hit = caster.nearest(&ray, Reach::default())?;
     let material = placed.material(hit.object.index(), hit.primitive).unwrap();
-    Some((hit.range_m, material.reflectivity, hit.normal))
+    let normal = caster.normal(&hit, ray.at(hit.range_m));
+    Some((hit.range_m, material.reflectivity, normal))
 }
 
 fn range(text: &str, from: [f64; 3], to: [f64; 3]) -> Option<f64> {
@@ -360,7 +361,7 @@ sphere = { radius_m = 0.5 }
     );
     assert_eq!(of([3.0, -5.0, 4.0]), 90);
     assert_eq!(of([2.0, -5.0, 4.0]), 10);
-    let ahead = caster.nearest::<()>(&Ray::new(DVec3::ZERO, DVec3::Y).unwrap(), Reach::default());
+    let ahead = caster.nearest(&Ray::new(DVec3::ZERO, DVec3::Y).unwrap(), Reach::default());
     let ahead = ahead.unwrap();
     assert!(
         placed
@@ -432,18 +433,18 @@ fn parts_of_moving_objects_stay_together_and_copies_move_alone() {
             assert!(back(turned).distance(ray.direction()) < 1e-15);
             let own = |origin, along| {
                 let ray = Ray::new(place.own_point(origin), place.own_direction(along)).unwrap();
-                body_caster.nearest::<()>(&ray, Reach::default())
+                body_caster.nearest(&ray, Reach::default())
             };
             let then = own(turned_origin, turned);
             let now = Ray::new(origin, ray.direction()).unwrap();
-            let now = body_caster.nearest::<()>(&now, Reach::default());
+            let now = body_caster.nearest(&now, Reach::default());
             assert_eq!(then.map(|hit| hit.primitive), now.map(|hit| hit.primitive));
             let off = then
                 .zip(now)
                 .map_or(0.0, |(a, b)| (a.range_m - b.range_m).abs());
             assert!(off < 1e-9, "{off}");
             // At the start it is where it was placed.
-            if let (Some(first), Some(own)) = (start.nearest::<()>(&ray, Reach::default()), now)
+            if let (Some(first), Some(own)) = (start.nearest(&ray, Reach::default()), now)
                 && moving.objects.contains(&first.object.index())
             {
                 assert_eq!(

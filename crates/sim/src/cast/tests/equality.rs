@@ -88,12 +88,11 @@ proptest! {
         let caster = mesh(&(vertices.clone(), triangles.clone()));
         let rays: Vec<Ray> = (0..64).filter_map(|_| aimed_ray(&mut numbers, &vertices)).collect();
         let mut together = vec![None; rays.len()];
-        caster.nearest_of(&Rays::new(&rays, 1), Reach::default(), &Threads::ONE, &mut together);
+        caster.nearest_of(&rays, 1, Reach::default(), &mut together);
         for (ray, together) in rays.iter().zip(together) {
             let slow = nearest_by_brute_force(ray, &vertices, &triangles).map(|(at, id)| (at.to_bits(), id));
             prop_assert_eq!(bits(first(&caster, ray)), slow);
             prop_assert_eq!(bits(together), slow);
-            prop_assert_eq!(caster.any(ray, Reach::default()), slow.is_some());
         }
     }
 
@@ -113,7 +112,7 @@ proptest! {
             ray(origin + 1e-4 * f64::from(at) * DVec3::Z, (turned * along).normalize())
         }).collect();
         let mut together = vec![None; rays.len()];
-        caster.nearest_of(&Rays::new(&rays, 4), Reach::default(), &Threads::ONE, &mut together);
+        caster.nearest_of(&rays, 4, Reach::default(), &mut together);
         for (ray, together) in rays.iter().zip(together) {
             let slow = nearest_by_brute_force(ray, &vertices, &triangles).map(|(at, id)| (at.to_bits(), id));
             prop_assert_eq!(bits(together), slow);
@@ -166,10 +165,10 @@ fn firings(count: usize) -> Vec<Ray> {
 }
 
 #[test]
-fn ray_count_threads_and_simd_level_do_not_change_any_bit() {
+fn ray_count_and_simd_level_do_not_change_any_bit() {
     let caster = scene();
     let rays = firings(1800);
-    let alone: Vec<Option<Hit<DVec3>>> = rays
+    let alone: Vec<Option<Hit>> = rays
         .iter()
         .map(|ray| caster.nearest(ray, Reach::default()))
         .collect();
@@ -177,28 +176,20 @@ fn ray_count_threads_and_simd_level_do_not_change_any_bit() {
     assert!(alone.iter().flatten().any(|hit| hit.object.index() > 2));
     let mut plain = caster.clone();
     plain.level = Level::baseline();
-    for threads in [1, 2, 3, 7] {
-        let threads = Threads::new(NonZeroUsize::new(threads).unwrap()).unwrap();
-        for (caster, beams) in [
-            (&caster, 16),
-            (&caster, 1),
-            (&plain, 16),
-            (&caster, 0),
-            (&caster, usize::MAX),
-        ] {
-            let mut hits = vec![None; rays.len()];
-            caster.nearest_of(
-                &Rays::new(&rays, beams),
-                Reach::default(),
-                &threads,
-                &mut hits,
-            );
-            assert!(hits == alone, "{threads:?} {beams}");
-        }
+    for (caster, beams) in [
+        (&caster, 16),
+        (&caster, 1),
+        (&plain, 16),
+        (&caster, 0),
+        (&caster, usize::MAX),
+    ] {
+        let mut hits = vec![None; rays.len()];
+        caster.nearest_of(&rays, beams, Reach::default(), &mut hits);
+        assert!(hits == alone, "{beams}");
     }
     for ray in rays.iter().step_by(37) {
         let hit = plain.nearest(ray, Reach::default());
-        assert_eq!(hit, caster.nearest::<()>(ray, Reach::default()));
+        assert_eq!(hit, caster.nearest(ray, Reach::default()));
     }
 }
 
@@ -259,12 +250,7 @@ fn solids_give_equal_bits_for_one_ray_and_for_eight() {
             .collect();
         for caster in [&caster, &plain] {
             let mut together = vec![None; rays.len()];
-            caster.nearest_of(
-                &Rays::new(&rays, 1),
-                Reach::default(),
-                &Threads::ONE,
-                &mut together,
-            );
+            caster.nearest_of(&rays, 1, Reach::default(), &mut together);
             for (ray, together) in rays.iter().zip(together) {
                 let one = first(caster, ray);
                 let exactly =
@@ -301,13 +287,10 @@ fn objects_in_a_tree_agree_with_each_object_alone() {
         }
         let hit = first(&caster, &ray).map(|hit| (hit.range_m, hit.object.index(), hit.primitive));
         assert_eq!(hit, best);
-        // `any` agrees with the nearest hit, and a shorter range gives none.
+        // A shorter range gives none.
         let range = best.unwrap().0;
-        assert!(caster.any(&ray, Reach::up_to(range)));
-        assert!(!caster.any(&ray, Reach::up_to(range.next_down())));
-        assert_eq!(
-            caster.nearest::<()>(&ray, Reach::up_to(range.next_down())),
-            None
-        );
+        assert!(caster.nearest(&ray, Reach::up_to(range)).is_some());
+        let short = Reach::up_to(range.next_down());
+        assert_eq!(caster.nearest(&ray, short), None);
     }
 }

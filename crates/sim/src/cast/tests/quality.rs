@@ -19,14 +19,13 @@ fn hits_do_not_depend_on_the_tree() {
         .collect();
     let cast = |mesh: Mesh| {
         let caster = Caster::new([Object::new(mesh)]).unwrap();
-        let mut hits: Vec<Option<Hit<DVec3>>> = vec![None; rays.len()];
-        let batch = Rays::new(&rays, 1);
-        caster.nearest_of(&batch, Reach::default(), &Threads::ONE, &mut hits);
-        for (ray, hit) in rays.iter().zip(&hits) {
-            assert_eq!(caster.nearest::<DVec3>(ray, Reach::default()), *hit);
-            assert_eq!(caster.any(ray, Reach::default()), hit.is_some());
-        }
-        hits
+        let mut hits: Vec<Option<Hit>> = vec![None; rays.len()];
+        caster.nearest_of(&rays, 1, Reach::default(), &mut hits);
+        let with_normals = rays.iter().zip(&hits).map(|(ray, hit)| {
+            assert_eq!(first(&caster, ray), *hit);
+            first_with_normal(&caster, ray)
+        });
+        with_normals.collect::<Vec<_>>()
     };
     let expected = cast(mesh.clone());
     assert!(expected.iter().flatten().count() > 100);

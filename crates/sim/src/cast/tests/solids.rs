@@ -9,8 +9,8 @@ fn alone(surface: impl Into<Surface>) -> Caster {
 /// Range and normal.
 fn first_hit(caster: &Caster, origin: [f64; 3], along: [f64; 3]) -> Option<(f64, [f64; 3])> {
     let ray = ray(origin.into(), along.into());
-    let hit: Option<Hit<DVec3>> = caster.nearest(&ray, Reach::default());
-    hit.map(|hit| (hit.range_m, hit.normal.to_array()))
+    let (hit, normal) = first_with_normal(caster, &ray)?;
+    Some((hit.range_m, normal.to_array()))
 }
 
 #[test]
@@ -136,9 +136,9 @@ fn height_fields_are_hit_on_their_planes() {
             10.0 + 9.9 * numbers.signed(),
         );
         let down = ray(DVec3::new(x, y, 40.0), DVec3::NEG_Z);
-        let hit: Hit<DVec3> = caster.nearest(&down, Reach::default()).unwrap();
+        let (hit, normal) = first_with_normal(&caster, &down).unwrap();
         assert!((hit.range_m - (40.0 - height(x, y))).abs() < 1e-12);
-        assert!((hit.normal - DVec3::new(-0.5, 0.25, 1.0).normalize()).length() < 1e-12);
+        assert!((normal - DVec3::new(-0.5, 0.25, 1.0).normalize()).length() < 1e-12);
         let cell = (y / 0.5).floor() as u32 * 60 + (x / 0.5).floor() as u32;
         assert_eq!(hit.primitive / 2, cell);
     }
