@@ -7,5 +7,6 @@ pub mod bench;
 pub mod capture;
 pub mod drive;
 pub mod inject;
+pub mod link;
 pub mod port;
 pub mod random;

@@ -9,9 +9,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use io::port::{Port, PortError};
-use sim::link::{Link, LinkModel};
 use sim::{Attachment, Datagram, Rig};
 use units::{Host, Span, Stamp};
+
+use crate::link::{Link, LinkModel};
 
 /// Attachment of the drive, and delays of the three links.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -58,7 +58,7 @@ mod link_jitter;
 mod loss;
 mod moving_objects;
 mod own_shadow;
-mod range_noise;
+pub(crate) mod range_noise;
 mod reflectance;
 mod reorder;
 mod returns;
@@ -75,28 +75,10 @@ use serde::Deserialize;
 use crate::effects::{ConfiguredEffects, Stopwatch};
 use settings::EffectSettings;
 
-pub use self::{
-    backlash::{Backlash, BacklashSettings},
-    batching::{Batching, BatchingSettings},
-    divergence::{Divergence, DivergenceSettings},
-    duplicate::{Duplicate, DuplicateSettings},
-    encoder_quantisation::{EncoderQuantisation, EncoderQuantisationSettings},
-    explain::{EffectExplanation, Explanation},
-    gear_ripple::{GearRippleSettings, UnevenGear},
-    lidar_clock::{DriftingClock, LidarClockSettings},
-    limited_field_of_view::{LimitedFieldOfView, LimitedFieldOfViewSettings},
-    link_jitter::{LinkJitter, LinkJitterSettings},
-    loss::{Loss, LossSettings},
-    moving_objects::{Mover, MovingBox, MovingObjects, MovingObjectsSettings},
-    own_shadow::{OwnShadow, OwnShadowSettings, ShadowSector},
-    range_noise::{RangeNoise, RangeNoiseSettings},
-    reflectance::{Reflectance, ReflectanceSettings},
-    reorder::{Reorder, ReorderSettings},
-    servo_lag::{ServoLag, ServoLagSettings},
-    settings::InvalidSetting,
-    tilt_limits::{TiltLimits, TiltLimitsSettings},
-    weather::{Weather, WeatherSettings},
-};
+pub use divergence::{Divergence, DivergenceSettings};
+pub use explain::{EffectExplanation, Explanation};
+pub use moving_objects::{Mover, MovingObjects};
+pub use settings::InvalidSetting;
 
 macro_rules! effects_config {
     ($($name:ident: $settings:ty,)*) => {
@@ -139,24 +121,24 @@ macro_rules! effects_config {
 }
 
 effects_config! {
-    limited_field_of_view: LimitedFieldOfViewSettings,
-    own_shadow: OwnShadowSettings,
-    moving_objects: MovingObjectsSettings,
-    divergence: DivergenceSettings,
-    weather: WeatherSettings,
-    reflectance: ReflectanceSettings,
-    range_noise: RangeNoiseSettings,
-    lidar_clock: LidarClockSettings,
-    servo_lag: ServoLagSettings,
-    tilt_limits: TiltLimitsSettings,
-    gear_ripple: GearRippleSettings,
-    backlash: BacklashSettings,
-    encoder_quantisation: EncoderQuantisationSettings,
-    duplicate: DuplicateSettings,
-    loss: LossSettings,
-    link_jitter: LinkJitterSettings,
-    reorder: ReorderSettings,
-    batching: BatchingSettings,
+    limited_field_of_view: limited_field_of_view::LimitedFieldOfViewSettings,
+    own_shadow: own_shadow::OwnShadowSettings,
+    moving_objects: moving_objects::MovingObjectsSettings,
+    divergence: divergence::DivergenceSettings,
+    weather: weather::WeatherSettings,
+    reflectance: reflectance::ReflectanceSettings,
+    range_noise: range_noise::RangeNoiseSettings,
+    lidar_clock: lidar_clock::LidarClockSettings,
+    servo_lag: servo_lag::ServoLagSettings,
+    tilt_limits: tilt_limits::TiltLimitsSettings,
+    gear_ripple: gear_ripple::GearRippleSettings,
+    backlash: backlash::BacklashSettings,
+    encoder_quantisation: encoder_quantisation::EncoderQuantisationSettings,
+    duplicate: duplicate::DuplicateSettings,
+    loss: loss::LossSettings,
+    link_jitter: link_jitter::LinkJitterSettings,
+    reorder: reorder::ReorderSettings,
+    batching: batching::BatchingSettings,
 }
 
 #[cfg(test)]

@@ -31,7 +31,6 @@ pub mod effects;
 pub mod firing;
 mod gear_ripple;
 mod lidar_clock;
-pub mod link;
 pub mod motion;
 pub mod packet_clock;
 mod packet_maker;

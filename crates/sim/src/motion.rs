@@ -61,25 +61,13 @@ pub struct AxisMotion {
 }
 
 /// An invalid motion.
-#[derive(Clone, Copy, Debug, Error, PartialEq)]
-#[non_exhaustive]
-pub enum MotionError {
-    /// A number that is not finite or out of range.
-    #[error("sim: motion: {key}: expected {what}, got {got}")]
-    Number {
-        /// Its name in [`Sweeps`] or [`AxisMotion::fixed`].
-        key: &'static str,
-        /// The expected value.
-        what: &'static str,
-        /// The value.
-        got: f64,
-    },
-    /// Too many sweeps.
-    #[error("sim: motion: expected at most {MAX_SWEEPS} sweeps, got {got}")]
-    TooManySweeps {
-        /// Their number.
-        got: u32,
-    },
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error("sim: motion: {what}")]
+pub struct MotionError {
+    /// The invalid number's name in [`Sweeps`] or [`AxisMotion::fixed`].
+    pub key: &'static str,
+    /// The expected value and the value.
+    pub what: String,
 }
 
 /// The most sweeps of a motion.
@@ -89,7 +77,7 @@ impl AxisMotion {
     /// An axis at rest.
     ///
     /// # Errors
-    /// [`MotionError::Number`] for an angle that is not finite or a duration that is not above 0.
+    /// [`MotionError`] for an angle that is not finite or a duration that is not above 0.
     pub fn fixed(angle_deg: f64, duration_s: f64) -> Result<Self, MotionError> {
         finite("angle_deg", "an angle in degrees", angle_deg)?;
         above_0("duration_s", "a duration above 0 s", duration_s)?;
@@ -116,7 +104,11 @@ impl AxisMotion {
         let valid_rest = rest_s >= 0.0 && rest_s.is_finite();
         number("rest_s", "a rest of 0 s or more", rest_s, valid_rest)?;
         if sweeps.count > MAX_SWEEPS {
-            return Err(MotionError::TooManySweeps { got: sweeps.count });
+            let got = sweeps.count;
+            return Err(MotionError {
+                key: "count",
+                what: format!("expected at most {MAX_SWEEPS} sweeps, got {got}"),
+            });
         }
         let mut motion = Self {
             start_deg: sweeps.from_deg,
@@ -246,7 +238,10 @@ fn number(
 ) -> Result<(), MotionError> {
     match is_valid {
         true => Ok(()),
-        false => Err(MotionError::Number { key, what, got }),
+        false => Err(MotionError {
+            key,
+            what: format!("{key}: expected {what}, got {got}"),
+        }),
     }
 }
 

@@ -144,7 +144,7 @@ impl Lidar {
     /// Beginning of a firing in lidar time since the start.
     pub fn device_ns(&self, firing: u64) -> i64 {
         let firing = i64::try_from(firing).unwrap_or(i64::MAX);
-        firing.saturating_mul(self.sensor.model().firing_period_ns())
+        firing.saturating_mul(self.sensor.model.firing_period_ns())
     }
 
     /// A firing before any is aimed.
@@ -166,7 +166,7 @@ impl Lidar {
         firing.number = number;
         firing.time_s = host_ns as f64 * 1e-9;
         firing.azimuth_deg = self.rotation.azimuth_deg(device_ns);
-        firing.alive = self.sensor.used();
+        firing.alive = self.sensor.used;
         match platform.state(host_ns) {
             Some(state) => firing.tilt = state,
             None => firing.alive = 0,
@@ -179,7 +179,7 @@ impl<F: FiringEffects> PacketMaker<F> {
     pub fn new(lidar: &Lidar, effects: F, surroundings: Surroundings) -> Self {
         let needs = effects.needs();
         let two = lidar.returns != ReturnMode::Strongest;
-        let model = lidar.sensor.model();
+        let model = lidar.sensor.model;
         let firings = firing_blocks(lidar.returns) * model.firings_per_block();
         Self {
             surroundings: surroundings.with_normals(needs.normals),
@@ -211,7 +211,7 @@ impl<F: FiringEffects> PacketMaker<F> {
         let effects = self.effects.parts();
         let mut counts = ShotCounts::default();
         let points_before = points.as_ref().map_or(0, |points| points.len());
-        let per_block = lidar.sensor.model().firings_per_block() as u64;
+        let per_block = lidar.sensor.model.firings_per_block() as u64;
         let numbers = blocks.flat_map(|block| (0..per_block).map(move |n| block * per_block + n));
         for (firing, number) in self.firings.iter_mut().zip(numbers) {
             lidar.aim(firing, number, effects.clock, platform);
@@ -241,7 +241,7 @@ impl<F: FiringEffects> PacketMaker<F> {
         let device_ns = |firing: &Firing| lidar.device_ns(firing.number);
         let first_ns = self.firings.first().map_or(0, device_ns);
         let last_ns = self.firings.last().map_or(0, device_ns);
-        let end_ns = last_ns.saturating_add(lidar.sensor.model().firing_period_ns());
+        let end_ns = last_ns.saturating_add(lidar.sensor.model.firing_period_ns());
         DataPacket {
             payload: self.packet.finish(lidar.clock.stamp_us(first_ns)),
             leaves_ns: effects.clock.host_ns(end_ns),
@@ -270,7 +270,7 @@ impl<C: ClockEffect> FiringReport<'_, C> {
     ) {
         let lidar = self.lidar;
         let device_ns = lidar.device_ns(self.firing.number);
-        let units_per_m = 1e3 / f64::from(lidar.sensor.model().distance_unit_mm());
+        let units_per_m = 1e3 / f64::from(lidar.sensor.model.distance_unit_mm());
         let azimuth_cdeg = lidar.rotation.azimuth_cdeg(device_ns);
         let lasers = self.firing.lasers;
         let by_range = match lidar.returns {
@@ -321,7 +321,7 @@ impl<C: ClockEffect> FiringReport<'_, C> {
         reflectivity: u8,
         device_ns: i64,
     ) -> Option<TruePoint> {
-        let beam = self.lidar.sensor.beams().get(laser)?;
+        let beam = self.lidar.sensor.beams.get(laser)?;
         let (origin_m, direction) = self.firing.ray(laser)?;
         if !echo.true_range_m.is_finite() {
             return None;

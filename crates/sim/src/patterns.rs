@@ -191,7 +191,7 @@ impl Pattern {
             None if by_deg > 0.0 => (way_deg.abs() / by_deg * (1.0 - WHOLE)).ceil().max(1.0),
             None => 1.0,
         };
-        let got = frames * firings * f64::from(sensor.used().count_ones());
+        let got = frames * firings * f64::from(sensor.used.count_ones());
         if got > MOST_POINTS as f64 {
             let name = name.to_owned();
             return Err(PatternError::TooMany { name, got });
@@ -254,14 +254,14 @@ impl Pattern {
     /// Number of lasers.
     #[must_use]
     pub fn lasers(&self) -> u32 {
-        self.sensor.used().count_ones()
+        self.sensor.used.count_ones()
     }
 
     /// The lowest and highest elevation of its lasers in the sensor's frame, degrees.
     #[must_use]
     pub fn elevations_deg(&self) -> [f64; 2] {
-        let used = self.sensor.beams().iter().enumerate();
-        let used = used.filter(|(laser, _)| self.sensor.used() >> laser & 1 == 1);
+        let used = self.sensor.beams.iter().enumerate();
+        let used = used.filter(|(laser, _)| self.sensor.used >> laser & 1 == 1);
         used.fold(
             [f64::INFINITY, f64::NEG_INFINITY],
             |[low, high], (_, beam)| [low.min(beam.elevation_deg), high.max(beam.elevation_deg)],
@@ -333,7 +333,7 @@ impl Pattern {
     pub fn directions(&self) -> Vec<DVec3> {
         let shots = u64::from(self.frames)
             * u64::from(self.firings)
-            * u64::from(self.sensor.used().count_ones());
+            * u64::from(self.sensor.used.count_ones());
         let mut directions = Vec::with_capacity(shots.min(MOST_POINTS) as usize);
         for frame in 0..self.frames {
             self.append(frame, &mut directions);
@@ -352,7 +352,7 @@ impl Pattern {
         let rays = RayTable::new(&self.sensor, 0.0);
         let mount = LidarMount::above(d_m);
         let mut firing = Firing::new(rays.count);
-        firing.alive = self.sensor.used();
+        firing.alive = self.sensor.used;
         for number in 0..self.firings {
             let Some(angle_deg) = self.tilt_deg(f64::from(frame), number) else {
                 break;

@@ -4,7 +4,7 @@
 //! until the next. A lidar packet is made when its last firing ends, by the same
 //! [`packet_maker`](crate::packet_maker) as in [`crate::simulate`]. The output depends on the
 //! configuration and on the input bytes and their times, not on the steps of [`Rig::advance`].
-//! Delays of the transports are not included; [`crate::link`] has them.
+//! Delays of the transports are not included.
 
 mod attachment;
 mod shaft;
@@ -127,16 +127,6 @@ pub struct DriveOutput {
 /// The effects of the rig: the lidar's clock alone.
 type RigEffects = FiringEffectSet<(), (), (), (), LidarClock>;
 
-const fn clock_effect(clock: LidarClock) -> RigEffects {
-    FiringEffectSet {
-        objects: (),
-        view: (),
-        beam: (),
-        surface: (),
-        clock,
-    }
-}
-
 /// The two devices and the world around them.
 ///
 /// The caller calls [`Rig::advance`] with the time, passes on the host's bytes and takes the
@@ -174,7 +164,13 @@ impl Rig {
             clock.clone(),
         );
         let surroundings = Surroundings::new(config.scene, lidar.sensor.range(), true);
-        let effects = clock_effect(clock);
+        let effects = FiringEffectSet {
+            objects: (),
+            view: (),
+            beam: (),
+            surface: (),
+            clock,
+        };
         let node = Node::new(config.drive);
         let mut rig = Self {
             maker: PacketMaker::new(&lidar, effects, surroundings.clone()),
@@ -221,11 +217,13 @@ impl Rig {
         self.node
             .set_phase_us(u32::try_from(phase_us).unwrap_or_default());
         let (at, sent) = (self.now, &mut self.sent);
-        self.server
-            .input(&mut self.node, bytes, &mut |bytes: &[u8]| {
-                let bytes = bytes.to_vec();
-                sent.push_back(DriveOutput { at, bytes });
-            });
+        let mut send = |bytes: &[u8]| {
+            sent.push_back(DriveOutput {
+                at,
+                bytes: bytes.to_vec(),
+            })
+        };
+        self.server.input(&mut self.node, bytes, &mut send);
     }
 
     /// The next bytes from the drive, if any: answers, and on a CAN bus unsolicited frames.
@@ -295,10 +293,13 @@ impl Rig {
         self.node.tick();
         self.shaft.push(self.node.segment().end);
         let (at, sent) = (self.now, &mut self.sent);
-        self.server.poll(&mut self.node, &mut |bytes: &[u8]| {
-            let bytes = bytes.to_vec();
-            sent.push_back(DriveOutput { at, bytes });
-        });
+        let mut send = |bytes: &[u8]| {
+            sent.push_back(DriveOutput {
+                at,
+                bytes: bytes.to_vec(),
+            })
+        };
+        self.server.poll(&mut self.node, &mut send);
     }
 
     fn send_packets(&mut self) {

@@ -17,9 +17,9 @@ use units::{Host, Stamp};
 
 use crate::effect_models::{EffectsConfig, MovingObjects};
 use crate::effects::{ConfiguredEffects, Listed, Stopwatch};
-use crate::scenery::{MaterialTable, ObjectTable, line_of_value, no_files};
+use crate::scenery::{InvalidValue, MaterialTable, ObjectTable, line_of_value, no_files};
 use crate::simulate::Simulation;
-use sections::{DriveSection, InvalidValue, MotionSection, MountSection, SensorSection, invalid};
+use sections::{DriveSection, MotionSection, MountSection, SensorSection, invalid};
 
 pub use crate::scenery::SHIPPED;
 

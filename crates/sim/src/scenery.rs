@@ -14,16 +14,12 @@ mod objects;
 mod place;
 mod shipped;
 
-pub(crate) use error::line_of_value;
 pub use error::{FilePosition, SceneryError};
-pub use generators::{ParkedCars, Quarry, Trees};
+pub(crate) use error::{InvalidValue, line_of_value};
 pub use materials::{Material, MaterialAssignment, MaterialTable, Placed};
 pub use meshes::{MeshFileError, MeshFormat};
 pub use moving::{Moving, Travel};
-pub use objects::{
-    BoxShape, Copies, CylinderShape, Facade, HeightFieldShape, MeshShape, ObjectTable, PlaneShape,
-    SphereShape,
-};
+pub use objects::ObjectTable;
 pub(crate) use place::rotation;
 pub use shipped::{SHIPPED, shipped};
 

@@ -36,10 +36,12 @@ pub struct DetectionRange {
 /// A lidar model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LidarSensor {
-    model: PacketModel,
-    beams: Vec<LaserBeam>,
-    /// Active lasers, one bit each.
-    used: u32,
+    /// The packet format.
+    pub model: PacketModel,
+    /// The lasers in firing order.
+    pub beams: Vec<LaserBeam>,
+    /// The active lasers, one bit each, bit 0 for the first.
+    pub used: u32,
     range: DetectionRange,
 }
 
@@ -136,24 +138,6 @@ impl LidarSensor {
     #[must_use]
     pub fn with_range(self, range: DetectionRange) -> Self {
         Self { range, ..self }
-    }
-
-    /// The packet format.
-    #[must_use]
-    pub const fn model(&self) -> PacketModel {
-        self.model
-    }
-
-    /// The lasers in firing order.
-    #[must_use]
-    pub fn beams(&self) -> &[LaserBeam] {
-        &self.beams
-    }
-
-    /// The active lasers, one bit each, bit 0 for the first.
-    #[must_use]
-    pub const fn used(&self) -> u32 {
-        self.used
     }
 
     /// The range of detection, at most the largest distance of the packets.

@@ -9,9 +9,9 @@ use cloud::Points;
 use firmware_sim::epos2::Servo;
 use sim::Attachment;
 use sim::GearRipple;
-use sim::link::LinkModel;
 use units::{DegPerS2, Degrees, Span};
 use velomotion_tests::capture::{Captured, Setting};
+use velomotion_tests::link::LinkModel;
 use velomotion_tests::port::Links;
 
 /// One direction of a poll.

@@ -83,7 +83,7 @@ impl Simulated {
         let effects = &mut scene.effects.effects;
         let one = NonZeroUsize::MIN;
         scene.simulation.run(effects, one, &mut truth).unwrap();
-        let model = scene.simulation.sensor.model();
+        let model = scene.simulation.sensor.model;
         let mut found = Self {
             folder,
             report,

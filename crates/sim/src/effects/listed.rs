@@ -104,7 +104,14 @@ impl ConfiguredEffects {
 /// An effect in a list. `P` is an `Arc` or a `Box` of it.
 #[derive(Debug)]
 pub struct Listed<P> {
-    effect: P,
+    /// The effect.
+    pub effect: P,
+    meter: Meter,
+}
+
+/// Counts and cost of an effect's calls.
+#[derive(Debug)]
+struct Meter {
     counts: Cell<UsageCounts>,
     stopwatch: Stopwatch,
 }
@@ -112,7 +119,7 @@ pub struct Listed<P> {
 impl<P: Clone> Clone for Listed<P> {
     /// A copy starts with counts of zero, so that they can be added to those of the original.
     fn clone(&self) -> Self {
-        Self::new(self.effect.clone(), self.stopwatch)
+        Self::new(self.effect.clone(), self.meter.stopwatch)
     }
 }
 
@@ -120,48 +127,27 @@ impl<P> Listed<P> {
     /// An effect without any calls.
     #[must_use]
     pub fn new(effect: P, stopwatch: Stopwatch) -> Self {
+        let counts = Cell::default();
         Self {
             effect,
-            counts: Cell::default(),
-            stopwatch,
+            meter: Meter { counts, stopwatch },
         }
-    }
-
-    /// The effect.
-    pub const fn effect(&self) -> &P {
-        &self.effect
     }
 
     /// Its counts so far.
     #[must_use]
     pub fn counts(&self) -> UsageCounts {
-        self.counts.get()
+        self.meter.counts.get()
     }
+}
 
-    /// Calls the effect and counts; `changed` gives the number of changes of a result.
+impl Meter {
+    /// Makes a call and counts it; `changed` gives the number of changes of a result.
     #[inline]
-    fn call<T>(&self, call: impl FnOnce(&P) -> T, changed: impl FnOnce(&T) -> u32) -> T {
+    fn call<T>(&self, call: impl FnOnce() -> T, changed: impl FnOnce(&T) -> u32) -> T {
         let begun = self.stopwatch.map(|now| now());
-        let result = call(&self.effect);
-        self.count(begun, changed(&result));
-        result
-    }
-
-    /// As [`Listed::call`] for an effect with state.
-    #[inline]
-    fn call_mut<T>(
-        &mut self,
-        call: impl FnOnce(&mut P) -> T,
-        changed: impl FnOnce(&T) -> u32,
-    ) -> T {
-        let begun = self.stopwatch.map(|now| now());
-        let result = call(&mut self.effect);
-        self.count(begun, changed(&result));
-        result
-    }
-
-    #[inline]
-    fn count(&self, begun: Option<u64>, changed: u32) {
+        let result = call();
+        let changed = changed(&result);
         let ended = self.stopwatch.map(|now| now());
         let spent_ns = begun.zip(ended).map_or(0, |(a, b)| b.saturating_sub(a));
         self.add(UsageCounts {
@@ -170,6 +156,7 @@ impl<P> Listed<P> {
             changed: u64::from(changed),
             spent_ns,
         });
+        result
     }
 
     #[inline]
@@ -222,7 +209,7 @@ impl<P: Deref<Target: Effect> + std::fmt::Debug> Effect for Vec<Listed<P>> {
 
     fn absorb(&mut self, copy: &Self) {
         for (mine, theirs) in self.iter().zip(copy) {
-            mine.add(theirs.counts());
+            mine.meter.add(theirs.counts());
         }
     }
 }
@@ -230,7 +217,9 @@ impl<P: Deref<Target: Effect> + std::fmt::Debug> Effect for Vec<Listed<P>> {
 impl<T: ObjectsEffect + ?Sized> ObjectsEffect for Shared<T> {
     fn place(&self, time_s: f64, surroundings: &mut Surroundings) -> u32 {
         self.iter()
-            .map(|listed| listed.call(|effect| effect.place(time_s, surroundings), count))
+            .map(|Listed { effect, meter }| {
+                meter.call(|| effect.place(time_s, surroundings), count)
+            })
             .sum()
     }
 }
@@ -238,11 +227,8 @@ impl<T: ObjectsEffect + ?Sized> ObjectsEffect for Shared<T> {
 impl<T: ViewEffect + ?Sized> ViewEffect for Shared<T> {
     fn fires(&self, azimuth_deg: f64) -> bool {
         let mut views = self.iter().filter(|listed| listed.effect.needs().azimuths);
-        views.all(|listed| {
-            listed.call(
-                |effect| effect.fires(azimuth_deg),
-                |fires| u32::from(!fires),
-            )
+        views.all(|Listed { effect, meter }| {
+            meter.call(|| effect.fires(azimuth_deg), |fires| u32::from(!fires))
         })
     }
 
@@ -250,7 +236,7 @@ impl<T: ViewEffect + ?Sized> ViewEffect for Shared<T> {
         // Effects that choose azimuths have chosen for the whole run beforehand.
         self.iter()
             .filter(|listed| !listed.effect.needs().azimuths)
-            .map(|listed| listed.call(|effect| effect.hide(firing), count))
+            .map(|Listed { effect, meter }| meter.call(|| effect.hide(firing), count))
             .sum()
     }
 }
@@ -258,7 +244,9 @@ impl<T: ViewEffect + ?Sized> ViewEffect for Shared<T> {
 impl<T: BeamEffect + ?Sized> BeamEffect for Shared<T> {
     fn receive(&self, firing: &Firing, surroundings: &Surroundings, echoes: &mut Echoes) -> u32 {
         self.iter()
-            .map(|listed| listed.call(|effect| effect.receive(firing, surroundings, echoes), count))
+            .map(|Listed { effect, meter }| {
+                meter.call(|| effect.receive(firing, surroundings, echoes), count)
+            })
             .sum()
     }
 }
@@ -266,15 +254,15 @@ impl<T: BeamEffect + ?Sized> BeamEffect for Shared<T> {
 impl<T: SurfaceEffect + ?Sized> SurfaceEffect for Shared<T> {
     fn reflect(&self, firing: &Firing, echoes: &mut Echoes) -> u32 {
         self.iter()
-            .map(|listed| listed.call(|effect| effect.reflect(firing, echoes), count))
+            .map(|Listed { effect, meter }| meter.call(|| effect.reflect(firing, echoes), count))
             .sum()
     }
 }
 
 impl<T: ClockEffect + ?Sized> ClockEffect for Shared<T> {
     fn host_ns(&self, device_ns: i64) -> i64 {
-        self.iter().fold(device_ns, |ns, listed| {
-            listed.call(|effect| effect.host_ns(ns), differs(ns))
+        self.iter().fold(device_ns, |ns, Listed { effect, meter }| {
+            meter.call(|| effect.host_ns(ns), differs(ns))
         })
     }
 }
@@ -286,11 +274,8 @@ impl<T: MechanismEffect + ?Sized> MechanismEffect for Owned<T> {
 
     fn step(&mut self, time_s: f64, axis: &mut AxisAngles) -> bool {
         let mut any = false;
-        for listed in self {
-            any |= listed.call_mut(
-                |effect| effect.step(time_s, axis),
-                |acted| u32::from(*acted),
-            );
+        for Listed { effect, meter } in self {
+            any |= meter.call(|| effect.step(time_s, axis), |acted| u32::from(*acted));
         }
         any
     }
@@ -299,7 +284,8 @@ impl<T: MechanismEffect + ?Sized> MechanismEffect for Owned<T> {
 impl<T: EncoderEffect + ?Sized> EncoderEffect for Owned<T> {
     fn read(&mut self, poll: u64, shaft: Degrees) -> Degrees {
         self.iter_mut().fold(shaft, |shaft, listed| {
-            listed.call_mut(|effect| effect.read(poll, shaft), differs(shaft))
+            let Listed { effect, meter } = listed;
+            meter.call(|| effect.read(poll, shaft), differs(shaft))
         })
     }
 
@@ -320,16 +306,14 @@ fn deliver_through<T: LinkEffect + ?Sized>(
     message: LinkMessage,
     arrive: &mut dyn FnMut(LinkMessage),
 ) -> u32 {
-    let Some((first, rest)) = links.split_first_mut() else {
+    let Some((Listed { effect, meter }, rest)) = links.split_first_mut() else {
         arrive(message);
         return 0;
     };
     // Collected first, so that the measured time is that of this link alone.
     let mut delivered = Vec::new();
-    let acted = first.call_mut(
-        |effect| effect.deliver(message, &mut |message| delivered.push(message)),
-        count,
-    );
+    let mut collect = |message| delivered.push(message);
+    let acted = meter.call(|| effect.deliver(message, &mut collect), count);
     delivered
         .into_iter()
         .map(|message| deliver_through(rest, message, arrive))

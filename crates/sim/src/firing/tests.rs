@@ -27,8 +27,8 @@ fn firings(sensor: &LidarSensor, count: usize, first: u32) -> Vec<Firing> {
             rate_deg_s: -200.0,
         };
         firing.alive = match at % 3 {
-            0 => sensor.used() & 0x5a5a_1234,
-            _ => sensor.used(),
+            0 => sensor.used & 0x5a5a_1234,
+            _ => sensor.used,
         };
         firing.aim(&rays, &LidarMount::above(0.06));
         firing
@@ -77,7 +77,7 @@ fn ray_packets_agree_with_single_rays() {
             (LidarSensor::single_beam(), near, false, 3),
         ] {
             let around = Surroundings::new(scene.clone(), reach, true).with_normals(normals);
-            let mut echoes = vec![Echoes::new(sensor.beams().len(), true); count];
+            let mut echoes = vec![Echoes::new(sensor.beams.len(), true); count];
             for packet in 0..75 {
                 let firings = firings(&sensor, count, 24 * packet);
                 around.meet_all(&firings, &mut echoes);

@@ -1,6 +1,6 @@
 //! The interface of the drive that the host uses.
 //!
-//! Transmission times and delays are not included; [`crate::link`] has them.
+//! Transmission times and delays are not included.
 
 use firmware_sim::epos2::{
     CanFrame, CanServer, Node, Rs232Server, SOCKETCAN_LEN, SlcanServer, UsbServer,

@@ -36,7 +36,13 @@ struct Device {
 impl Device {
     fn new(scene: Scene, lidar: Lidar, shaft: ShaftCourse) -> Self {
         let surroundings = Surroundings::new(Arc::new(scene), lidar.sensor.range(), true);
-        let effects = clock_effect(lidar.clock.clone());
+        let effects = FiringEffectSet {
+            objects: (),
+            view: (),
+            beam: (),
+            surface: (),
+            clock: lidar.clock.clone(),
+        };
         Self {
             maker: PacketMaker::new(&lidar, effects, surroundings.clone()),
             lidar,
@@ -125,7 +131,7 @@ fn packets_agree_with_the_truth_within_their_rounding() {
             let point = truth.point(found.device_ns, found.laser as u8).unwrap();
             let error = seen.distance(DVec3::from_array(point));
             // 1 mm of range; 0.005 deg of azimuth for level beams; 1 us at 56.25 deg/s.
-            let level = sensor.beams()[found.laser].elevation_deg.to_radians().cos();
+            let level = sensor.beams[found.laser].elevation_deg.to_radians().cos();
             let across =
                 found.range_m * (level * 0.005_f64.to_radians() + 56.25e-6_f64.to_radians());
             let bound = 0.001_f64.hypot(across) + 1e-9;

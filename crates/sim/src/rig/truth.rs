@@ -41,7 +41,7 @@ impl Truth {
     #[must_use]
     pub fn point(&self, device_ns: i64, laser: u8) -> Option<[f64; 3]> {
         let laser = usize::from(laser);
-        let delay_ns = self.lidar.sensor.beams().get(laser)?.delay_ns;
+        let delay_ns = self.lidar.sensor.beams.get(laser)?.delay_ns;
         let elapsed_ns = self.elapsed_ns(device_ns.saturating_sub(delay_ns));
         let sequence = (elapsed_ns + SEQUENCE_PERIOD_NS / 2).div_euclid(SEQUENCE_PERIOD_NS);
         let mut firing = self.lidar.firing();

@@ -8,18 +8,9 @@ use units::Gearing;
 
 use crate::motion::{AxisMotion, MotionError, Sweeps};
 use crate::packet_maker::HeadRotation;
-use crate::scenery::rotation;
+use crate::scenery::{InvalidValue, rotation};
 use crate::sensor::{DetectionRange, LidarMount, LidarSensor, ReturnMode};
 use crate::simulate::Polls;
-
-/// An invalid value.
-#[derive(Debug)]
-pub(super) struct InvalidValue {
-    /// Its keys, joined by dots.
-    pub path: String,
-    /// What is wrong with it.
-    pub what: String,
-}
 
 pub(super) fn invalid(path: impl Into<String>, what: impl Into<String>) -> InvalidValue {
     InvalidValue {
@@ -94,7 +85,7 @@ impl SensorSection {
         };
         if let Some(laser) = self.only_laser {
             sensor = sensor.only(laser);
-            if sensor.used() == 0 {
+            if sensor.used == 0 {
                 let what = format!("expected a laser of this sensor, got {laser}");
                 return Err(invalid("sensor.only_laser", what));
             }
@@ -161,20 +152,13 @@ const REST_S: f64 = 0.1;
 
 impl MotionSection {
     pub fn build(&self) -> Result<AxisMotion, InvalidValue> {
-        let motion = match self.kind {
-            MotionKind::Fixed => self.fixed()?,
-            MotionKind::Sweeps => self.sweeps()?,
-        };
-        motion.map_err(|error| {
-            let key = match error {
-                MotionError::TooManySweeps { .. } => "count",
-                MotionError::Number { key, .. } => key,
-            };
-            invalid(format!("motion.{key}"), error.to_string())
-        })
+        match self.kind {
+            MotionKind::Fixed => self.fixed(),
+            MotionKind::Sweeps => self.sweeps(),
+        }
     }
 
-    fn fixed(&self) -> Result<Result<AxisMotion, MotionError>, InvalidValue> {
+    fn fixed(&self) -> Result<AxisMotion, InvalidValue> {
         reject(
             "an axis that stands has no such key",
             &[
@@ -189,10 +173,10 @@ impl MotionSection {
         )?;
         let duration_s = required(self.duration_s, "duration_s")?;
         let angle_deg = self.angle_deg.unwrap_or(0.0);
-        Ok(AxisMotion::fixed(angle_deg, duration_s))
+        Ok(AxisMotion::fixed(angle_deg, duration_s)?)
     }
 
-    fn sweeps(&self) -> Result<Result<AxisMotion, MotionError>, InvalidValue> {
+    fn sweeps(&self) -> Result<AxisMotion, InvalidValue> {
         reject(
             "sweeps have no such key: their duration follows from the speed",
             &[
@@ -214,7 +198,13 @@ impl MotionSection {
             let what = "count: expected one sweep or more, got 0";
             return Err(invalid("motion.count", what));
         }
-        Ok(AxisMotion::sweeps(&sweeps))
+        Ok(AxisMotion::sweeps(&sweeps)?)
+    }
+}
+
+impl From<MotionError> for InvalidValue {
+    fn from(error: MotionError) -> Self {
+        invalid(format!("motion.{}", error.key), error.to_string())
     }
 }
 

@@ -48,7 +48,11 @@ pub(super) fn build(
     };
     let placed = scenery
         .and_then(|scenery| scenery.place(seed, files))
-        .map_err(|invalid| error(invalid.at().line, invalid.what()))?;
+        .map_err(|invalid| {
+            let reason = invalid.source.map(|source| format!(": {source}"));
+            let what = invalid.what + &reason.unwrap_or_default();
+            error(invalid.at.line, what)
+        })?;
     let (fixed, moving) = (placed.divided()).map_err(|invalid| error(line, invalid.to_string()))?;
     let scene = Scene::of(fixed).map_err(|invalid| error(line, invalid.to_string()))?;
     let mut objects = SceneObjects {

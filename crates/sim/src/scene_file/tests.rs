@@ -15,7 +15,7 @@ fn error(text: &str) -> (usize, String) {
 fn the_minimal_scene_is_a_static_vlp16_without_effects() {
     let scene = SceneFile::parse(LEAST, None, None).unwrap();
     let simulation = &scene.simulation;
-    assert_eq!(simulation.sensor.model(), PacketModel::Vlp16);
+    assert_eq!(simulation.sensor.model, PacketModel::Vlp16);
     assert_eq!(simulation.returns, ReturnMode::Strongest);
     assert_eq!(simulation.rotation.rpm, 600);
     assert!(simulation.polls.is_none());
@@ -78,7 +78,7 @@ fn all_keys_take_effect() {
     let scene = SceneFile::parse(&text, Some(9), None).unwrap();
     assert_eq!(scene.seed, 9);
     let simulation = &scene.simulation;
-    assert_eq!(simulation.sensor.used(), 1 << 15);
+    assert_eq!(simulation.sensor.used, 1 << 15);
     assert_eq!(simulation.returns, ReturnMode::Dual);
     assert_eq!(simulation.rotation.rpm, 1_200);
     assert_eq!(simulation.mount, LidarMount::above(0.25));
@@ -93,8 +93,8 @@ fn all_keys_take_effect() {
     let [listed] = &scene.effects.effects.firings.surface[..] else {
         panic!()
     };
-    assert_eq!(listed.effect().name(), name);
-    let _: &dyn SurfaceEffect = &**listed.effect();
+    assert_eq!(listed.effect.name(), name);
+    let _: &dyn SurfaceEffect = &*listed.effect;
 }
 
 /// Realistic scenes have the effects of a real scanner, ideal ones none; an omitted effect is
@@ -197,7 +197,7 @@ fn sensor_range_and_mount_settings_take_effect() {
          rotation_deg = [0, 0, 90]\n"
     );
     let simulation = SceneFile::parse(&text, None, None).unwrap().simulation;
-    let beams = simulation.sensor.beams();
+    let beams = &simulation.sensor.beams;
     assert!(
         beams
             .iter()

@@ -38,88 +38,49 @@ impl fmt::Display for FilePosition {
 
 /// An invalid scene.
 #[derive(Clone, Debug, Error, PartialEq)]
-#[non_exhaustive]
-pub enum SceneryError {
-    /// No TOML, an unknown key or a value of another type.
-    #[error("sim: scene, {at}: {message}")]
-    Toml {
-        /// The position.
-        at: FilePosition,
-        /// What is wrong, and what was expected.
-        message: String,
-    },
-    /// An invalid value.
-    #[error("sim: scene, {at}: {what}")]
-    Value {
-        /// The position of the value, or of its table where several values are involved.
-        at: FilePosition,
-        /// Which value, what was expected, and the value.
-        what: String,
-    },
-    /// A mesh that cannot be read.
-    #[error("sim: scene, {at}: mesh {file}")]
-    Mesh {
-        /// The position of the object.
-        at: FilePosition,
-        /// Name of the file in the scene.
-        file: String,
-        /// The reason.
-        source: MeshFileError,
-    },
+#[error("sim: scene, {at}: {what}")]
+pub struct SceneryError {
+    /// The position of the value or object, or of its table where several values are involved.
+    pub at: FilePosition,
+    /// Which value, what was expected, and the value.
+    pub what: String,
+    /// Why a mesh cannot be read.
+    pub source: Option<MeshFileError>,
 }
 
 impl SceneryError {
-    /// The position of the error.
-    #[must_use]
-    pub const fn at(&self) -> FilePosition {
-        match self {
-            Self::Toml { at, .. } | Self::Value { at, .. } | Self::Mesh { at, .. } => *at,
-        }
-    }
-
-    /// What is wrong, without the position.
-    #[must_use]
-    pub fn what(&self) -> String {
-        match self {
-            Self::Toml { message, .. } => message.clone(),
-            Self::Value { what, .. } => what.clone(),
-            Self::Mesh { file, source, .. } => format!("mesh {file}: {source}"),
-        }
+    /// An error at a position.
+    pub(super) const fn new(at: FilePosition, what: String) -> Self {
+        let source = None;
+        Self { at, what, source }
     }
 
     pub(super) fn toml(text: &str, error: &toml::de::Error) -> Self {
-        Self::Toml {
-            at: FilePosition::of(text, error.span().map_or(0, |span| span.start)),
-            message: error.message().trim().replace('\n', ", "),
-        }
+        let offset = error.span().map_or(0, |span| span.start);
+        let what = error.message().trim().replace('\n', ", ");
+        Self::new(FilePosition::of(text, offset), what)
     }
 }
 
-/// An invalid value of an object or material, before its position is known.
+/// An invalid value, before its position is known.
 #[derive(Debug)]
-pub(super) struct InvalidField {
-    /// Its keys within the table, joined by dots.
-    field: String,
-    expected: String,
-    got: String,
+pub(crate) struct InvalidValue {
+    /// Its keys, joined by dots: in the file, or in the table of an object or material.
+    pub path: String,
+    /// What is wrong with it.
+    pub what: String,
 }
 
-impl InvalidField {
+impl InvalidValue {
     /// The error at a position.
-    pub fn at(self, at: FilePosition) -> SceneryError {
-        SceneryError::Value {
-            at,
-            what: format!(
-                "{}: expected {}, got {}",
-                self.field, self.expected, self.got
-            ),
-        }
+    pub(super) fn at(self, at: FilePosition) -> SceneryError {
+        SceneryError::new(at, self.what)
     }
 
     /// The error at the value in the material or object that begins at a byte of the text, else at
     /// that byte.
-    pub fn in_text(self, text: &str, begin: usize) -> SceneryError {
-        let offset = offset_of_field(text, begin, &self.field).unwrap_or(begin);
+    pub(super) fn in_text(self, text: &str, begin: usize) -> SceneryError {
+        let offset = offset_of_field(text, begin, &self.path).unwrap_or(begin);
         self.at(FilePosition::of(text, offset))
     }
 }
@@ -164,20 +125,16 @@ pub(crate) fn line_of_value(text: &str, path: &str) -> usize {
     FilePosition::of(text, offset.unwrap_or(0)).line
 }
 
-pub(super) fn invalid(
-    field: impl Into<String>,
-    expected: impl Into<String>,
-    got: impl fmt::Debug,
-) -> InvalidField {
-    InvalidField {
-        field: field.into(),
-        expected: expected.into(),
-        got: format!("{got:?}"),
+/// An invalid value of an object or material.
+pub(super) fn invalid(field: &str, expected: &str, got: impl fmt::Debug) -> InvalidValue {
+    InvalidValue {
+        path: field.to_owned(),
+        what: format!("{field}: expected {expected}, got {got:?}"),
     }
 }
 
 /// Checks that all values are finite.
-pub(super) fn finite(field: &str, values: &[f64]) -> Result<(), InvalidField> {
+pub(super) fn finite(field: &str, values: &[f64]) -> Result<(), InvalidValue> {
     match values.iter().all(|value| value.is_finite()) {
         true => Ok(()),
         false => Err(invalid(field, "finite numbers", values)),
@@ -185,7 +142,7 @@ pub(super) fn finite(field: &str, values: &[f64]) -> Result<(), InvalidField> {
 }
 
 /// Checks that a value is finite and above zero.
-pub(super) fn above_0(field: &str, value: f64) -> Result<(), InvalidField> {
+pub(super) fn above_0(field: &str, value: f64) -> Result<(), InvalidValue> {
     match value > 0.0 && value.is_finite() {
         true => Ok(()),
         false => Err(invalid(field, "a number above 0", value)),
@@ -197,12 +154,12 @@ pub(super) fn within(
     field: &str,
     value: f64,
     range: RangeInclusive<f64>,
-) -> Result<(), InvalidField> {
+) -> Result<(), InvalidValue> {
     match range.contains(&value) {
         true => Ok(()),
         false => {
             let expected = format!("{} to {}", range.start(), range.end());
-            Err(invalid(field, expected, value))
+            Err(invalid(field, &expected, value))
         }
     }
 }

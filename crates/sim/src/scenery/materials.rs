@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::error::{InvalidField, invalid, within};
+use super::error::{InvalidValue, invalid, within};
 use super::moving::Moving;
 use crate::cast::{CastError, Caster, Object};
 
@@ -44,12 +44,12 @@ impl Material {
         }
     }
 
-    pub(super) fn new(name: String, table: &MaterialTable) -> Result<Self, InvalidField> {
+    pub(super) fn new(name: String, table: &MaterialTable) -> Result<Self, InvalidValue> {
         within("specular", table.specular, 0.0..=1.0)?;
         if table.reflectivity.is_none() && !table.absorbing {
             let field = format!("materials.{name}");
             let expected = "reflectivity, or absorbing = true";
-            return Err(invalid(field, expected, "neither"));
+            return Err(invalid(&field, expected, "neither"));
         }
         Ok(Self {
             reflectivity: table.reflectivity.unwrap_or(0),

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::error::{InvalidField, above_0, finite, invalid};
+use super::error::{InvalidValue, above_0, finite, invalid};
 use super::generators::{ParkedCars, Quarry, Trees};
 use super::materials::Material;
 
@@ -188,7 +188,7 @@ impl ObjectTable {
         .collect()
     }
 
-    pub(super) fn check(&self, materials: &[Material]) -> Result<(), InvalidField> {
+    pub(super) fn check(&self, materials: &[Material]) -> Result<(), InvalidValue> {
         let shapes = self.shapes();
         if shapes.len() != 1 {
             let expected = "exactly one of sphere, plane, box, cylinder, mesh, height_field, facade, \
@@ -202,7 +202,7 @@ impl ObjectTable {
                     [] => "a name of [materials], where none is".to_owned(),
                     names => format!("one of {}", names.join(", ")),
                 };
-                return Err(invalid("material", expected, name));
+                return Err(invalid("material", &expected, name));
             }
         }
         finite("position_m", &self.position_m)?;
@@ -227,7 +227,7 @@ impl ObjectTable {
             .chain(self.trees.iter().map(|trees| &trees.foliage))
     }
 
-    fn check_shape(&self) -> Result<(), InvalidField> {
+    fn check_shape(&self) -> Result<(), InvalidValue> {
         if let Some(sphere) = &self.sphere {
             above_0("sphere.radius_m", sphere.radius_m)?;
         }
@@ -266,7 +266,7 @@ impl Copies {
     /// The most that one object may be copied.
     const MOST: u64 = 100_000;
 
-    fn check(&self) -> Result<(), InvalidField> {
+    fn check(&self) -> Result<(), InvalidValue> {
         finite("copies.at_m", self.at_m.as_flattened())?;
         finite("copies.step_m", &self.step_m)?;
         let counts = self.counts.unwrap_or([1; 3]).map(u64::from);
@@ -276,7 +276,7 @@ impl Copies {
         let all = all.saturating_mul(self.at_m.len().max(1) as u64);
         match (1..=Self::MOST).contains(&all) {
             true => Ok(()),
-            false => Err(invalid("copies", format!("1 to {}", Self::MOST), all)),
+            false => Err(invalid("copies", &format!("1 to {}", Self::MOST), all)),
         }
     }
 
@@ -305,7 +305,7 @@ impl Copies {
 
 impl BoxShape {
     /// Its two corners, metres.
-    pub(super) fn corners(&self) -> Result<[[f64; 3]; 2], InvalidField> {
+    pub(super) fn corners(&self) -> Result<[[f64; 3]; 2], InvalidValue> {
         let corners = match (self.size_m, self.from_m, self.to_m) {
             (Some(size), None, None) => [size.map(|edge| -0.5 * edge), size.map(|edge| 0.5 * edge)],
             (None, Some(from), Some(to)) => [from, to],
@@ -338,7 +338,7 @@ impl HeightFieldShape {
 }
 
 impl Facade {
-    fn check(&self) -> Result<(), InvalidField> {
+    fn check(&self) -> Result<(), InvalidValue> {
         above_0("facade.width_m", self.width_m)?;
         above_0("facade.height_m", self.height_m)?;
         above_0("facade.depth_m", self.depth_m)?;

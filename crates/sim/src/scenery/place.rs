@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::{DMat3, DVec3};
 
 use super::Scenery;
-use super::error::{FilePosition, InvalidField, SceneryError, invalid};
+use super::error::{FilePosition, InvalidValue, SceneryError, invalid};
 use super::generators::{self, ObjectPart};
 use super::materials::{Material, MaterialAssignment, Placed};
 use super::meshes::{self, MeshFileError, MeshFormat};
@@ -180,10 +180,10 @@ impl Builder<'_> {
                 .scaled(shape.unit_m, y_up)
                 .mesh()
         };
-        let mesh = read().map_err(|source| SceneryError::Mesh {
+        let mesh = read().map_err(|source| SceneryError {
             at,
-            file: shape.file.clone(),
-            source,
+            what: format!("mesh {}", shape.file),
+            source: Some(source),
         })?;
         let mesh = Arc::new(mesh);
         self.meshes.insert(key, Arc::clone(&mesh));
@@ -206,7 +206,7 @@ fn material(materials: &[Material], name: &str) -> u32 {
 }
 
 /// A grid of heights that the scene itself gives.
-fn height_field(shape: &HeightFieldShape) -> Result<Surface, InvalidField> {
+fn height_field(shape: &HeightFieldShape) -> Result<Surface, InvalidValue> {
     match (shape.columns, shape.spacing_m, &shape.heights_m) {
         (Some(columns), Some(spacing_m), Some(heights_m)) => {
             let field = HeightField::new(columns, heights_m.clone(), spacing_m);
@@ -220,7 +220,7 @@ fn height_field(shape: &HeightFieldShape) -> Result<Surface, InvalidField> {
     }
 }
 
-fn no_heights(error: &HeightFieldError) -> InvalidField {
+fn no_heights(error: &HeightFieldError) -> InvalidValue {
     let got =
         std::error::Error::source(error).map_or_else(|| error.to_string(), ToString::to_string);
     invalid("height_field", "a grid of finite heights", got)

@@ -9,7 +9,7 @@ fn tables_agree_with_the_manuals() {
     let origins = [
         11.2, -0.7, 9.7, -2.2, 8.1, -3.7, 6.6, -5.1, 5.1, -6.6, 3.7, -8.1, 2.2, -9.7, 0.7, -11.2,
     ];
-    for (i, (beam, origin)) in LidarSensor::vlp16().beams().iter().zip(origins).enumerate() {
+    for (i, (beam, origin)) in LidarSensor::vlp16().beams.iter().zip(origins).enumerate() {
         let elevation = i as f64 - if i % 2 == 0 { 15.0 } else { 0.0 };
         assert!(near(row(beam), (elevation, origin)), "{beam:?}");
         assert_eq!(beam.delay_ns, 2_304 * i as i64);
@@ -22,7 +22,7 @@ fn tables_agree_with_the_manuals() {
         (14, (-0.67, 0.9)),
         (15, (10.0, -7.4)),
     ] {
-        assert!(near(row(&hi_res.beams()[i]), expected), "{i}");
+        assert!(near(row(&hi_res.beams[i]), expected), "{i}");
     }
     let hdl = LidarSensor::hdl32e();
     for (i, expected) in [
@@ -33,13 +33,13 @@ fn tables_agree_with_the_manuals() {
         (30, (-10.67, 5.45)),
         (31, (10.67, -5.45)),
     ] {
-        assert!(near(row(&hdl.beams()[i]), expected), "{i}");
+        assert!(near(row(&hdl.beams[i]), expected), "{i}");
     }
-    assert_eq!(hdl.beams()[31].delay_ns, 35_712);
+    assert_eq!(hdl.beams[31].delay_ns, 35_712);
     let vlp32c = LidarSensor::vlp32c();
-    assert_eq!(vlp32c.beams()[31].delay_ns, 34_560);
-    assert_eq!(vlp32c.beams()[29].elevation_deg, 15.0);
-    assert_eq!(vlp32c.beams()[1].azimuth_deg, -4.2);
+    assert_eq!(vlp32c.beams[31].delay_ns, 34_560);
+    assert_eq!(vlp32c.beams[29].elevation_deg, 15.0);
+    assert_eq!(vlp32c.beams[1].azimuth_deg, -4.2);
 }
 
 #[test]
@@ -51,25 +51,20 @@ fn tables_are_as_long_as_their_packets() {
         LidarSensor::vlp32c(),
         LidarSensor::single_beam(),
     ] {
-        let model = sensor.model();
-        assert_eq!(sensor.beams().len(), model.lasers(), "{model:?}");
-        let last = sensor
-            .beams()
-            .iter()
-            .map(|beam| beam.delay_ns)
-            .max()
-            .unwrap();
+        let model = sensor.model;
+        assert_eq!(sensor.beams.len(), model.lasers(), "{model:?}");
+        let last = sensor.beams.iter().map(|beam| beam.delay_ns).max().unwrap();
         assert!(last < model.firing_period_ns());
-        let used = sensor.used().count_ones() as usize;
-        assert!(used == model.lasers() || (used == 1 && sensor.used() == 1 << 14));
+        let used = sensor.used.count_ones() as usize;
+        assert!(used == model.lasers() || (used == 1 && sensor.used == 1 << 14));
     }
 }
 
 #[test]
 fn a_single_laser_can_be_selected() {
-    assert_eq!(LidarSensor::hdl32e().only(15).used(), 1 << 15);
-    assert_eq!(LidarSensor::vlp16().only(16).used(), 0);
-    assert_eq!(LidarSensor::vlp16().only(usize::MAX).used(), 0);
+    assert_eq!(LidarSensor::hdl32e().only(15).used, 1 << 15);
+    assert_eq!(LidarSensor::vlp16().only(16).used, 0);
+    assert_eq!(LidarSensor::vlp16().only(usize::MAX).used, 0);
 }
 
 #[test]
@@ -87,7 +82,7 @@ fn the_range_is_limited_by_the_wire_format() {
 fn rays_include_the_rotation_during_a_firing_sequence() {
     let sensor = LidarSensor::vlp32c();
     let rays = RayTable::new(&sensor, 3_600.0);
-    for (beam, aim) in sensor.beams().iter().zip(rays.directions) {
+    for (beam, aim) in sensor.beams.iter().zip(rays.directions) {
         let azimuth_deg = beam.azimuth_deg + 3.6e-6 * beam.delay_ns as f64;
         let (sin, cos) = azimuth_deg.to_radians().sin_cos();
         let (up, level) = beam.elevation_deg.to_radians().sin_cos();
@@ -115,7 +110,7 @@ fn origins_of_the_vlp16_follow_from_one_crossing() {
     let sensor = LidarSensor::vlp16();
     // The beams cross close to one point, 41.91 mm from the axis: origin = -41.91 mm x
     // tan(elevation), printed to 0.1 mm; they mirror about the middle of the stack.
-    for (beam, mirrored) in sensor.beams().iter().zip(sensor.beams().iter().rev()) {
+    for (beam, mirrored) in sensor.beams.iter().zip(sensor.beams.iter().rev()) {
         let crossing = -0.041_91 * beam.elevation_deg.to_radians().tan();
         assert!((beam.origin_m - crossing).abs() < 0.6e-4, "{beam:?}");
         assert_eq!(beam.elevation_deg, -mirrored.elevation_deg);
@@ -151,7 +146,7 @@ proptest! {
         let (origin, direction) = ray.unwrap();
         prop_assert!((direction.length() - 1.0).abs() < 1e-15);
         let point = origin + range_m * direction;
-        let expected = printed(range_m, &sensor.beams()[laser], azimuth, tilt, d);
+        let expected = printed(range_m, &sensor.beams[laser], azimuth, tilt, d);
         prop_assert!(point.distance(expected) < 1e-13, "{point} {expected}");
     }
 }

@@ -3,7 +3,7 @@ use super::{
     DriveRequest, Polls, SimulateError, Simulation, SimulationEvent, SimulationSink,
     SimulationSummary,
 };
-use crate::effect_models::RangeNoise;
+use crate::effect_models::range_noise::RangeNoise;
 use crate::effects::{
     AxisAngles, ClockEffect, ConfiguredEffects, Effect, Effects, FiringEffectSet, FiringEffects,
     LinkEffect, LinkMessage, Listed, MechanismEffect, Needs, SurfaceEffect, ViewEffect,

@@ -1,4 +1,4 @@
-use super::super::{MovingBox, MovingObjects, MovingObjectsSettings};
+use super::super::moving_objects::{MovingBox, MovingObjects, MovingObjectsSettings};
 use super::*;
 use crate::cast::{Cuboid, Object, Placement, Plane, Sphere};
 use crate::effect_models::testing::{around, cast, firing};

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3, dvec3};
 use serde::Deserialize;
 
-use super::super::error::{InvalidField, above_0, invalid, within};
+use super::super::error::{InvalidValue, above_0, invalid, within};
 use super::super::materials::MaterialAssignment;
 use super::{Draws, ObjectPart};
 use crate::cast::Cylinder;
@@ -40,7 +40,7 @@ impl ParkedCars {
         self.paints.iter().chain(others)
     }
 
-    pub(in super::super) fn check(&self) -> Result<(), InvalidField> {
+    pub(in super::super) fn check(&self) -> Result<(), InvalidValue> {
         above_0("parked_cars.pitch_m", self.pitch_m)?;
         within("parked_cars.share", self.share, 0.0..=1.0)?;
         within("parked_cars.bays", f64::from(self.bays), 1.0..=1_000.0)?;

@@ -3,7 +3,7 @@
 use glam::{DVec2, dvec2};
 use serde::Deserialize;
 
-use super::super::error::{InvalidField, above_0, finite, invalid, within};
+use super::super::error::{InvalidValue, above_0, finite, invalid, within};
 use super::Draws;
 use super::draws::{noise, rough};
 use crate::cast::{HeightField, HeightFieldError};
@@ -69,7 +69,7 @@ struct Heap {
 }
 
 impl Quarry {
-    pub(in super::super) fn check(&self) -> Result<(), InvalidField> {
+    pub(in super::super) fn check(&self) -> Result<(), InvalidValue> {
         above_0("quarry.size_m", self.size_m)?;
         above_0("quarry.spacing_m", self.spacing_m)?;
         above_0("quarry.floor_m", self.floor_m)?;

@@ -3,7 +3,7 @@
 use glam::dvec3;
 use serde::Deserialize;
 
-use super::super::error::{InvalidField, finite, invalid, within};
+use super::super::error::{InvalidValue, finite, invalid, within};
 use super::super::materials::MaterialAssignment;
 use super::{Draws, ObjectPart};
 use crate::cast::{Cylinder, Sphere};
@@ -33,7 +33,7 @@ const fn usual_spread() -> f64 {
 }
 
 impl Trees {
-    pub(in super::super) fn check(&self) -> Result<(), InvalidField> {
+    pub(in super::super) fn check(&self) -> Result<(), InvalidValue> {
         finite("trees.from_m", &self.from_m)?;
         finite("trees.to_m", &self.to_m)?;
         within("trees.count", f64::from(self.count), 1.0..=10_000.0)?;

@@ -221,9 +221,9 @@ fn refused(name: &str, bytes: &[u8]) -> MeshFileError {
     let text = format!("\n[[objects]]\nmesh = {{ file = \"{name}\" }}\n");
     let mut file = |_: &str| Ok(bytes.to_vec());
     match Scenery::parse(&text).unwrap().place(0, &mut file) {
-        Err(SceneryError::Mesh { at, source, .. }) => {
-            assert_eq!(at.line, 2);
-            source
+        Err(error) => {
+            assert_eq!(error.at.line, 2);
+            error.source.unwrap()
         }
         other => panic!("{other:?}"),
     }

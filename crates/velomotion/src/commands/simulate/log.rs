@@ -218,7 +218,7 @@ impl SimulationSink for Log<'_> {
 
 /// Ring of each laser by elevation; 0 is the lowest.
 fn rings(simulation: &Simulation) -> Vec<u8> {
-    let beams = simulation.sensor.beams();
+    let beams = &simulation.sensor.beams;
     let below = |elevation_deg: f64| {
         beams
             .iter()
@@ -284,7 +284,7 @@ const AT_ONCE: u16 = 0x0020;
 /// Configuration stored in the log.
 pub(super) fn scan_config(scene: &SceneFile, gearing: Option<Gearing>) -> ScanConfig {
     let simulation = &scene.simulation;
-    let step_m = f64::from(simulation.sensor.model().distance_unit_mm()) * 1e-3;
+    let step_m = f64::from(simulation.sensor.model.distance_unit_mm()) * 1e-3;
     let axis = gearing.map_or_else(TiltAxisConfig::default, |gearing| TiltAxisConfig {
         node: NODE,
         encoder_lines: gearing.qc_per_motor_turn() / 4,

@@ -9,7 +9,7 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::sync::atomic::AtomicBool;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use cloud::{Fields, Metadata, TiltTrack};
 use glam::{DMat3, DVec2};
@@ -19,7 +19,7 @@ use serde::Serialize;
 use sim::effect_models::Explanation;
 use sim::effects::{Effects, FiringEffectSet, Stopwatch};
 use sim::scene_file::{SHIPPED, SceneFile};
-use sim::simulate::{SimulateError, SimulationSummary};
+use sim::simulate::SimulateError;
 use units::Metres;
 
 use super::CommandOutput;
@@ -107,10 +107,7 @@ pub struct Request<'a> {
 pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, Failure> {
     let interrupt = signals::interrupt_flag()?;
     let (name, text) = find(&arguments.scene)?;
-    let clock: Stopwatch = match arguments.explain {
-        true => Some(nanoseconds),
-        false => None,
-    };
+    let clock: Stopwatch = arguments.explain.then_some(nanoseconds as fn() -> u64);
     let mut scene = read(&name, &text, arguments.seed, clock)?;
     let out = &arguments.without;
     scene
@@ -298,69 +295,36 @@ pub fn make(
         let busy_ns = u64::try_from(busy_ns).unwrap_or(u64::MAX);
         Explanation::new(&scene.effects.effects.usage(), &lines, busy_ns)
     });
+    let (failure, after) = cut.unzip();
+    // Of a run that was cut short only the simulated part counts.
+    let duration_s = after.unwrap_or(summary.duration).as_secs_f64();
+    let took_s = took.as_secs_f64();
     let report = Report {
-        effects,
+        scene: name,
         seed: scene.seed,
+        effects,
+        packets: summary.packets,
+        shots: summary.shots,
+        returned: summary.returned,
+        share_returned: ratio(summary.returned as f64, summary.shots as f64),
+        returns: summary.returns,
+        polls: summary.polls,
+        duration_s,
+        took_s,
+        times_real_time: ratio(duration_s, took_s),
         threads: threads.get(),
         log: path.display().to_string(),
         truth: truth.map(|path| path.display().to_string()),
         warnings,
         explanation,
-        ..Report::new(name, &summary, took)
     };
-    let Some((failure, after)) = cut else {
-        return Ok((report, None));
-    };
-    // Only the simulated part counts towards the speed.
-    let duration_s = after.as_secs_f64();
-    let report = Report {
-        duration_s,
-        times_real_time: duration_s / report.took_s.max(f64::MIN_POSITIVE),
-        ..report
-    };
-    Ok((report, Some(failure)))
+    Ok((report, failure))
 }
 
 impl Report {
-    fn new(scene: String, summary: &SimulationSummary, took: Duration) -> Self {
-        let (duration_s, took_s) = (summary.duration.as_secs_f64(), took.as_secs_f64());
-        Self {
-            scene,
-            seed: 0,
-            effects: Vec::new(),
-            packets: summary.packets,
-            shots: summary.shots,
-            returned: summary.returned,
-            share_returned: share(summary.returned, summary.shots),
-            returns: summary.returns,
-            polls: summary.polls,
-            duration_s,
-            took_s,
-            times_real_time: if took_s > 0.0 {
-                duration_s / took_s
-            } else {
-                0.0
-            },
-            threads: 0,
-            log: String::new(),
-            truth: None,
-            warnings: Vec::new(),
-            explanation: None,
-        }
-    }
-
     /// Text of the report.
     #[must_use]
     pub fn text(&self) -> String {
-        match &self.explanation {
-            Some(explanation) => format!("{}\n{explanation}", self.table()),
-            None => self.table(),
-        }
-    }
-
-    /// Table of the report.
-    #[must_use]
-    pub fn table(&self) -> String {
         let effects = match self.effects.is_empty() {
             true => "none".to_owned(),
             false => {
@@ -402,7 +366,11 @@ impl Report {
         rows.extend(self.truth.iter().map(|truth| ("truth", truth.clone())));
         let warnings = self.warnings.iter();
         rows.extend(warnings.map(|warning| ("warning", warning.clone())));
-        crate::tables::table(rows)
+        let table = crate::tables::table(rows);
+        match &self.explanation {
+            Some(explanation) => format!("{table}\n{explanation}"),
+            None => table,
+        }
     }
 }
 
@@ -418,12 +386,9 @@ fn beyond_the_log(scene: &SceneFile) -> Option<String> {
     })
 }
 
-fn share(part: u64, of: u64) -> f64 {
-    if of == 0 {
-        0.0
-    } else {
-        part as f64 / of as f64
-    }
+/// A quotient, 0 of nothing.
+fn ratio(part: f64, of: f64) -> f64 {
+    if of > 0.0 { part / of } else { 0.0 }
 }
 
 fn metadata(name: &str) -> Metadata {

@@ -5,7 +5,7 @@
 
 use units::{Span, Stamp};
 
-use crate::random::Draws;
+use sim::random::Draws;
 
 /// Distribution of delays.
 #[derive(Clone, Copy, Debug, PartialEq)]
