@@ -2,9 +2,9 @@
 //! WHAT...]`.
 //!
 //! What is `exact:FRAMES`, `avx2:FRAMES`, `least:FRAMES`, `two:FRAMES` (two threads),
-//! `turned:FRAMES`, `sampled:FRAMES`, `gridded:FRAMES` or `harmonics:FRAMES` (to degree 64): an
-//! RMBL of so many frames of 14,416 points. Times are those for which the process had a core; where
-//! another has the other half of that core, they are up to twice as long.
+//! `turned:FRAMES` or `sampled:FRAMES`: an RMBL of so many frames of 14,416 points. Times are those
+//! for which the process had a core; where another has the other half of that core, they are up to
+//! twice as long.
 
 #![expect(
     clippy::disallowed_methods,
@@ -22,7 +22,7 @@ use glam::DVec3;
 #[path = "../../crates/analysis/src/k/tests/patterns.rs"]
 mod patterns;
 
-const USUAL: [&str; 13] = [
+const USUAL: [&str; 11] = [
     "exact:1",
     "exact:30",
     "exact:72",
@@ -34,8 +34,6 @@ const USUAL: [&str; 13] = [
     "turned:788",
     "sampled:30",
     "sampled:72",
-    "harmonics:30",
-    "harmonics:72",
 ];
 
 /// Seconds for which this process had a core, all threads, ended ones too.
@@ -71,7 +69,6 @@ fn run(what: &str, points: &[DVec3], frames: usize, edges: &Edges) -> Result<Fou
         "sampled" => {
             return k::sampled(points, edges, &k::Sampling::default()).map(Found::Estimate);
         }
-        "harmonics" => return k::harmonics(points, edges, 64).map(Found::Estimate),
         _ => {
             let step_rad = std::f64::consts::PI / frames as f64;
             let rotation = k::FrameRotation {
@@ -134,7 +131,7 @@ fn main() {
                 println!(
                     "{words}: {} points, {cpu:.3} CPU s, {wall:.3} s; bound {:.2e}, off {:.2e}",
                     points.len(),
-                    of.bound.largest(),
+                    of.largest_bound(),
                     off.fold(0.0, f64::max),
                 );
             }

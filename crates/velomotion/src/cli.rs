@@ -379,10 +379,6 @@ pub struct Analyze {
     /// method; 0 counts every pair
     #[arg(long, value_name = "X", default_value_t = 1e-4, value_parser = tolerance)]
     pub tolerance: f64,
-    /// The K function by spherical harmonics up to this degree (64 is usual) instead: faster, but
-    /// how far it is off is not known
-    #[arg(long, value_name = "DEGREE", conflicts_with = "tolerance", value_parser = clap::value_parser!(u16).range(1..=512))]
-    pub harmonics: Option<u16>,
     /// Bins of the K function, from 0 to 180 degrees
     #[arg(long, value_name = "N", default_value_t = 151, value_parser = clap::value_parser!(u16).range(1..=3_600))]
     pub bins: u16,

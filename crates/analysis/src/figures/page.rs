@@ -277,7 +277,6 @@ fn extremes(scans: &AnalyzedScans) -> String {
         }
         let bound = match k.d_error_bound {
             0.0 => "0 (exact)".to_owned(),
-            bound if !bound.is_finite() => "unknown".to_owned(),
             bound => format!("{bound:.1e}"),
         };
         vec![

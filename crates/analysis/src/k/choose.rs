@@ -85,7 +85,7 @@ pub fn estimate(
         KMethod::Exact => return by_all(points, None, edges, threads),
         KMethod::Turned => return by_all(points, rotation, edges, threads),
     };
-    if found.bound.largest() <= tolerance {
+    if found.largest_bound() <= tolerance {
         return Ok(found);
     }
     by_all(points, rotation, edges, threads)

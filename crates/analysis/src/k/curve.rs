@@ -48,7 +48,7 @@ impl KCurve {
     /// Of an estimate, on a sphere of this radius.
     #[must_use]
     pub fn of_estimate(estimate: &Estimate, radius_m: f64) -> Self {
-        let bound = estimate.bound.largest();
+        let bound = estimate.largest_bound();
         let shares = match estimate.points {
             0 | 1 => &[][..],
             _ => &estimate.shares,

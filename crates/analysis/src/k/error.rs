@@ -49,15 +49,6 @@ pub enum KError {
         /// Its value.
         got: f64,
     },
-    /// A degree of harmonics out of range.
-    #[error(
-        "analysis: k: expected harmonics of degree 1 to {}, got {got}",
-        super::MOST_DEGREE
-    )]
-    Degree {
-        /// Requested degree.
-        got: usize,
-    },
     /// A point off its place in the rotated first frame.
     #[error(
         "analysis: k: point {index} of frame {frame}: expected that of frame 0, turned, within {}, got {off} from it",

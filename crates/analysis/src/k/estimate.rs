@@ -1,47 +1,6 @@
 //! Shares of pairs by angle, with a bound on their error.
 
 use super::{Edges, PairCounts};
-use serde::Serialize;
-
-/// Bound on the error of a share of pairs, that is, of a count divided by `n (n - 1) / 2`. `D` has
-/// the same error.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case", tag = "kind")]
-pub enum ErrorBound {
-    /// The shares are exact.
-    Exact,
-    /// The error is unknown; it has been measured for some scans.
-    Unknown,
-    /// Bounds that hold for all bins at once with a probability over the draws, for any points.
-    Confidence {
-        /// Bound on the share up to the upper edge of each bin.
-        shares: Vec<f64>,
-        /// Upper bound of the probability that any of them fails.
-        risk: f64,
-    },
-}
-
-impl ErrorBound {
-    /// The largest over all bins; infinite if unknown.
-    #[must_use]
-    pub fn largest(&self) -> f64 {
-        match self {
-            Self::Exact => 0.0,
-            Self::Unknown => f64::INFINITY,
-            Self::Confidence { shares, .. } => shares.iter().copied().fold(0.0, f64::max),
-        }
-    }
-
-    /// Bound on the share up to the upper edge of a bin.
-    #[must_use]
-    pub fn of(&self, bin: usize) -> f64 {
-        match self {
-            Self::Exact => 0.0,
-            Self::Unknown => f64::INFINITY,
-            Self::Confidence { shares, .. } => shares.get(bin).copied().unwrap_or(0.0),
-        }
-    }
-}
 
 /// Pairs by angle, with a bound on the error.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,17 +11,23 @@ pub struct Estimate {
     pub edges: Edges,
     /// Share of all pairs up to the upper edge of each bin, 0 to 1; the last is 1.
     pub shares: Vec<f64>,
-    /// Bound on the error of each share.
-    pub bound: ErrorBound,
+    /// Bound on the error of each share, and so of `D`: 0 for exact counts. Those of samples hold
+    /// for all bins at once, except with the probability [`super::Sampling::risk`] over the draws.
+    pub bounds: Vec<f64>,
     /// Number of directions.
     pub points: usize,
-    /// Pairs on an inner edge within rounding ([`super::ON_EDGE`]), counted or estimated; `None` if
-    /// the method cannot tell. If they are a relevant share of all, another number of bins is more
-    /// meaningful.
-    pub on_edges: Option<u64>,
+    /// Pairs on an inner edge within rounding ([`super::ON_EDGE`]), counted or estimated. If they
+    /// are a relevant share of all, another number of bins is more meaningful.
+    pub on_edges: u64,
 }
 
 impl Estimate {
+    /// The largest bound of all bins.
+    #[must_use]
+    pub fn largest_bound(&self) -> f64 {
+        self.bounds.iter().copied().fold(0.0, f64::max)
+    }
+
     /// The shares under randomness, for fewer than two points.
     pub(super) fn without_pairs(method: &'static str, edges: &Edges, points: usize) -> Self {
         let csr = |t: &f64| (t / 2.0).sin().powi(2);
@@ -70,9 +35,9 @@ impl Estimate {
             method,
             shares: edges.upper_rad().iter().map(csr).collect(),
             edges: edges.clone(),
-            bound: ErrorBound::Exact,
+            bounds: vec![0.0; edges.bins()],
             points,
-            on_edges: Some(0),
+            on_edges: 0,
         }
     }
 }
@@ -87,9 +52,9 @@ impl From<PairCounts> for Estimate {
         Self {
             method: "exact",
             shares: shares.into_iter().map(|sum| sum as f64 / all).collect(),
-            bound: ErrorBound::Exact,
+            bounds: vec![0.0; counts.edges.bins()],
             points: counts.points,
-            on_edges: Some(counts.on_edges),
+            on_edges: counts.on_edges,
             edges: counts.edges,
         }
     }

@@ -7,15 +7,14 @@
 use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use fearless_simd::dispatch;
 use glam::DVec3;
 
-use super::edges::{ON_EDGE, dot};
-use super::lanes::{LANES, Portable};
+use super::lanes::LANES;
 use super::leaf_pair::{ExactBinTest, PairCounter, Rows, edges, leaf_pair, rows, thresholds};
 use super::leaves_by_edge_count::{Bits, LeavesByEdgeCount};
 use super::outline::Outline;
 use super::plain::check;
+use super::registers::LaneWork;
 use super::sign_mask::SignMask;
 use super::tree::{BLOCK_LEAVES, LeafBlock, Tree};
 use super::{Edges, KError, PairCounts, Registers};
@@ -39,36 +38,18 @@ pub fn exact_by(
     threads: NonZeroUsize,
 ) -> Result<PairCounts, KError> {
     check(points)?;
-    let level = registers.level();
     let tree = Tree::new(points);
     let next = AtomicUsize::new(0);
     let work = || {
-        let exact_test = QueuedExactTest::new(&tree.points, edges);
+        let exact_test = ExactBinTest::new(&tree.points, edges);
         let mut one = ExactWorker {
             tree: &tree,
             edges,
             counter: PairCounter::new(edges.bins()),
             exact_test,
+            next: &next,
         };
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        if let Some(avx512) = level.as_avx512() {
-            use fearless_simd::Simd as _;
-            avx512.vectorize(
-                #[inline(always)]
-                || one.all(super::lanes::Wide(avx512), &next),
-            );
-            return one.done();
-        }
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        if let (None, Some(avx2)) = (level.as_avx512(), level.as_avx2()) {
-            use fearless_simd::Simd as _;
-            avx2.vectorize(
-                #[inline(always)]
-                || one.all(super::lanes::Half(avx2), &next),
-            );
-            return one.done();
-        }
-        dispatch!(level, simd => one.all(Portable(simd), &next));
+        registers.run(&mut one);
         one.done()
     };
     let parts = on_threads(threads, &work);
@@ -105,97 +86,21 @@ pub(super) fn on_threads<T: Send>(threads: NonZeroUsize, work: &(impl Fn() -> T 
     })
 }
 
-/// A queue of pairs for the exact test.
-struct QueuedExactTest<'a> {
-    points: &'a [DVec3],
-    edges: &'a Edges,
-    /// Pairs are tested together, since their points are far apart in memory.
-    waiting: Vec<QueuedPair>,
-    /// Tested pairs beyond each edge, less those already counted as beyond it.
-    beyond: Vec<i64>,
-    on_edges: u64,
-    wrong: Option<KError>,
-}
-
-/// A pair, an edge, and whether the pair is counted as beyond it.
-struct QueuedPair {
-    edge: usize,
-    pair: (usize, usize),
-    counted: bool,
-}
-
-impl<'a> QueuedExactTest<'a> {
-    fn new(points: &'a [DVec3], edges: &'a Edges) -> Self {
-        Self {
-            points,
-            edges,
-            waiting: Vec::new(),
-            beyond: vec![0; edges.bins()],
-            on_edges: 0,
-            wrong: None,
-        }
-    }
-
-    fn is_beyond(&mut self, edge: usize, a: usize, b: usize) -> bool {
-        let (Some(&a), Some(&b)) = (self.points.get(a), self.points.get(b)) else {
-            return false;
-        };
-        self.on_edges += u64::from(self.edges.is_on(edge, a, b));
-        match self.edges.reaches(edge, a, b) {
-            Ok(reaches) => !reaches,
-            Err(wrong) => {
-                self.wrong = Some(wrong);
-                false
-            }
-        }
-    }
-
-    /// Tests the queued pairs.
-    #[inline(never)]
-    fn settle(&mut self) {
-        let mut waiting = std::mem::take(&mut self.waiting);
-        for QueuedPair {
-            edge,
-            pair,
-            counted,
-        } in waiting.drain(..)
-        {
-            let (Some(&a), Some(&b)) = (self.points.get(pair.0), self.points.get(pair.1)) else {
-                continue;
-            };
-            let above = dot(a, b) - self.edges.cosine(edge);
-            // Without a branch to predict, the next points are fetched before these have arrived.
-            let is_beyond = if above.abs() > ON_EDGE {
-                above < 0.0
-            } else {
-                self.is_beyond(edge, pair.0, pair.1)
-            };
-            if let Some(beyond) = self.beyond.get_mut(edge) {
-                *beyond += i64::from(is_beyond) - i64::from(counted);
-            }
-        }
-        self.waiting = waiting;
-    }
-}
-
-impl ExactBinTest for QueuedExactTest<'_> {
-    #[inline(always)]
-    fn recheck(&mut self, edge: usize, a: usize, b: usize, counted: bool) {
-        let pair = (a, b);
-        self.waiting.push(QueuedPair {
-            edge,
-            pair,
-            counted,
-        });
-    }
-}
-
 /// The counts of one thread.
 struct ExactWorker<'a> {
     tree: &'a Tree,
     edges: &'a Edges,
     counter: PairCounter,
-    exact_test: QueuedExactTest<'a>,
+    exact_test: ExactBinTest<'a>,
+    /// The next block that no thread has taken.
+    next: &'a AtomicUsize,
+}
+
+impl LaneWork for ExactWorker<'_> {
+    #[inline(always)]
+    fn run<L: SignMask>(&mut self, on: L) {
+        self.all(on);
+    }
 }
 
 impl ExactWorker<'_> {
@@ -211,12 +116,12 @@ impl ExactWorker<'_> {
 
     /// Takes blocks until none is left, and pairs each with those that are not before it.
     #[inline(always)]
-    fn all<L: SignMask>(&mut self, on: L, next: &AtomicUsize) {
+    fn all<L: SignMask>(&mut self, on: L) {
         let tree = self.tree;
         let thresholds = thresholds::<L>(self.edges);
         let mut waiting = Vec::new();
         loop {
-            let first = next.fetch_add(1, Ordering::Relaxed);
+            let first = self.next.fetch_add(1, Ordering::Relaxed);
             let Some(block) = tree.blocks.get(first) else {
                 return;
             };

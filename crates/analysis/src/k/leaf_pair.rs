@@ -6,11 +6,13 @@
 //! which leaves.
 
 use fearless_simd::{Simd, f32x16, prelude::*, u32x16};
+use glam::DVec3;
 
-use super::Edges;
+use super::edges::{ON_EDGE, dot};
 use super::lanes::{AlignedLanes, LANES, SimdLanes};
 use super::sign_mask::SignMask;
 use super::tree::Leaf;
+use super::{Edges, KError};
 
 /// How far a dot product less a cosine in f32 may be off: 2^-21.
 ///
@@ -20,11 +22,89 @@ use super::tree::Leaf;
 /// and turns no sign. Together below 7.1 u; 8 u is 2^-21. Sums are bounded by Cauchy's inequality.
 pub(super) const F32_BAND: f32 = 1.0 / (1_u32 << 21) as f32;
 
-/// The exact test of the side of an edge on which a pair lies.
-pub(super) trait ExactBinTest {
-    /// Tests the pair of points `a` and `b`, which f32 cannot assign to a side of the upper edge of
+/// The exact test of the side of an edge on which a pair lies, with a queue of pairs.
+pub(super) struct ExactBinTest<'a> {
+    points: &'a [DVec3],
+    edges: &'a Edges,
+    /// Pairs are tested together, since their points are far apart in memory.
+    waiting: Vec<QueuedPair>,
+    /// Tested pairs beyond each edge, less those already counted as beyond it.
+    pub beyond: Vec<i64>,
+    pub on_edges: u64,
+    pub wrong: Option<KError>,
+}
+
+/// A pair, an edge, and whether the pair is counted as beyond it.
+struct QueuedPair {
+    edge: usize,
+    pair: (usize, usize),
+    counted: bool,
+}
+
+impl<'a> ExactBinTest<'a> {
+    pub(super) fn new(points: &'a [DVec3], edges: &'a Edges) -> Self {
+        Self {
+            points,
+            edges,
+            waiting: Vec::new(),
+            beyond: vec![0; edges.bins()],
+            on_edges: 0,
+            wrong: None,
+        }
+    }
+
+    pub(super) fn is_beyond(&mut self, edge: usize, a: usize, b: usize) -> bool {
+        let (Some(&a), Some(&b)) = (self.points.get(a), self.points.get(b)) else {
+            return false;
+        };
+        self.on_edges += u64::from(self.edges.is_on(edge, a, b));
+        match self.edges.reaches(edge, a, b) {
+            Ok(reaches) => !reaches,
+            Err(wrong) => {
+                self.wrong = Some(wrong);
+                false
+            }
+        }
+    }
+
+    /// Tests the queued pairs.
+    #[inline(never)]
+    pub(super) fn settle(&mut self) {
+        let mut waiting = std::mem::take(&mut self.waiting);
+        for QueuedPair {
+            edge,
+            pair,
+            counted,
+        } in waiting.drain(..)
+        {
+            let (Some(&a), Some(&b)) = (self.points.get(pair.0), self.points.get(pair.1)) else {
+                continue;
+            };
+            let above = dot(a, b) - self.edges.cosine(edge);
+            // Without a branch to predict, the next points are fetched before these have arrived.
+            let is_beyond = if above.abs() > ON_EDGE {
+                above < 0.0
+            } else {
+                self.is_beyond(edge, pair.0, pair.1)
+            };
+            if let Some(beyond) = self.beyond.get_mut(edge) {
+                *beyond += i64::from(is_beyond) - i64::from(counted);
+            }
+        }
+        self.waiting = waiting;
+    }
+
+    /// Queues the pair of points `a` and `b`, which f32 cannot assign to a side of the upper edge of
     /// a bin. `counted` tells whether it is counted as beyond the edge.
-    fn recheck(&mut self, edge: usize, a: usize, b: usize, counted: bool);
+    #[inline(always)]
+    fn recheck(&mut self, edge: usize, a: usize, b: usize, counted: bool) {
+        let pair = (a, b);
+        self.waiting.push(QueuedPair {
+            edge,
+            pair,
+            counted,
+        });
+    }
 }
 
 /// Counts of pairs.
@@ -121,7 +201,7 @@ pub(super) fn leaf_pair<L: SignMask>(
     (first, last): (usize, usize),
     thresholds: &[f32],
     counter: &mut PairCounter,
-    exact_test: &mut impl ExactBinTest,
+    exact_test: &mut ExactBinTest<'_>,
 ) {
     let mut edge = first;
     while edge < last {
@@ -147,7 +227,7 @@ pub(super) fn edges<L: SignMask, const E: usize>(
     (place_a, place_b, edge): (usize, usize, usize),
     thresholds: [f32; E],
     counter: &mut PairCounter,
-    exact_test: &mut impl ExactBinTest,
+    exact_test: &mut ExactBinTest<'_>,
 ) -> usize {
     let lanes = loaded(on.simd(), b);
     // One per edge, so that none waits for another.
@@ -180,7 +260,7 @@ fn recheck_masked<L: SignMask>(
     on: L,
     masks: L::Mask,
     (place_a, place_b, edge): (usize, usize, usize),
-    exact_test: &mut impl ExactBinTest,
+    exact_test: &mut ExactBinTest<'_>,
 ) {
     let (mut words, which) = on.which(masks);
     while words != 0 {
@@ -238,7 +318,7 @@ fn near<L: SignMask, const E: usize>(
     (a, b): (&Rows, &Leaf),
     (place_a, place_b, edge): (usize, usize, usize),
     thresholds: [f32; E],
-    exact_test: &mut impl ExactBinTest,
+    exact_test: &mut ExactBinTest<'_>,
 ) {
     let lanes = loaded(on.simd(), b);
     for (row, at) in a.iter().enumerate() {

@@ -3,8 +3,7 @@
 //! [`exact()`] counts every pair in whole numbers; the side of an edge on which a pair lies is
 //! decided without rounding ([`Edges`]). [`turned()`] does the same for scans whose frames are
 //! rotated copies of one frame. [`sampled()`] is faster and has a confidence interval. [`choose()`]
-//! takes the cheapest that is good enough. [`harmonics()`] is faster still, and its error is
-//! unknown.
+//! takes the cheapest that is good enough.
 
 mod cells;
 mod choose;
@@ -15,7 +14,6 @@ mod edges;
 mod error;
 mod estimate;
 mod exact;
-mod harmonics;
 mod lanes;
 mod leaf_pair;
 mod leaves_by_edge_count;
@@ -35,9 +33,8 @@ pub use counts::PairCounts;
 pub use curve::KCurve;
 pub use edges::{Edges, LEAST_COORDINATE, MOST_BINS, ON_EDGE};
 pub use error::{KError, UNIT_WITHIN};
-pub use estimate::{ErrorBound, Estimate};
+pub use estimate::Estimate;
 pub use exact::{exact, exact_by};
-pub use harmonics::{MOST_DEGREE, harmonics};
 pub use plain::plain;
 pub use registers::Registers;
 pub use sampled::{Sampling, sampled};

@@ -1,6 +1,9 @@
 //! Choice of the registers in which pairs are counted. The counts are the same in all.
 
-use fearless_simd::Level;
+use fearless_simd::{Level, dispatch};
+
+use super::lanes::Portable;
+use super::sign_mask::SignMask;
 
 /// The widest registers to use.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -16,9 +19,37 @@ pub enum Registers {
     Least,
 }
 
+/// Work that can be done in any registers.
+pub(super) trait LaneWork {
+    fn run<L: SignMask>(&mut self, on: L);
+}
+
 impl Registers {
+    /// Does the work in these registers, or in narrower ones that the processor has.
+    pub(super) fn run(self, work: &mut impl LaneWork) {
+        let level = self.level();
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        {
+            use super::lanes::{Half, Wide};
+            use fearless_simd::Simd as _;
+            if let Some(avx512) = level.as_avx512() {
+                return avx512.vectorize(
+                    #[inline(always)]
+                    || work.run(Wide(avx512)),
+                );
+            }
+            if let Some(avx2) = level.as_avx2() {
+                return avx2.vectorize(
+                    #[inline(always)]
+                    || work.run(Half(avx2)),
+                );
+            }
+        }
+        dispatch!(level, simd => work.run(Portable(simd)));
+    }
+
     /// The level of these registers, or a lower one that the processor has.
-    pub(super) fn level(self) -> Level {
+    fn level(self) -> Level {
         let best = Level::new();
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         let narrower = match self {

@@ -7,16 +7,18 @@
 //! rows are independent. Bernstein's inequality bounds the sum. Its variance is bounded by the
 //! squared differences between the two rows of each draw. The draws are pseudo-random.
 
-use fearless_simd::{dispatch, f32x16, prelude::*};
+use fearless_simd::{f32x16, prelude::*};
 use glam::DVec3;
 
 use super::cells::{DrawSource, PointCell, PointCells, ROW, scaled};
 use super::counts::pairs;
-use super::lanes::{LANES, Portable, SimdLanes};
+use super::lanes::{LANES, SimdLanes};
 use super::leaf_pair::F32_BAND;
 use super::plain::check;
 use super::reach::reach;
-use super::{Edges, ErrorBound, Estimate, KError, Registers};
+use super::registers::LaneWork;
+use super::sign_mask::SignMask;
+use super::{Edges, Estimate, KError, Registers};
 
 /// Settings of [`sampled()`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,18 +79,9 @@ pub fn sampled(points: &[DVec3], edges: &Edges, sampling: &Sampling) -> Result<E
         // Rounds share the risk, so that stopping at a bound that suffices is valid.
         let risk = sampling.risk * 0.9 * 0.1_f64.powi(round - 1);
         let estimate = drawn(points, &cells, edges, draws, risk, &mut chance)?;
-        let bound = estimate.bound.largest();
+        let bound = estimate.largest_bound();
         if bound <= sampling.tolerance || round == MOST_ROUNDS {
-            return Ok(Estimate {
-                bound: match estimate.bound {
-                    ErrorBound::Confidence { shares, .. } => ErrorBound::Confidence {
-                        shares,
-                        risk: sampling.risk,
-                    },
-                    other => other,
-                },
-                ..estimate
-            });
+            return Ok(estimate);
         }
         // The next round has a tenth of the risk, which widens its bound.
         let more = (bound / sampling.tolerance).powi(2) * 1.3;
@@ -121,17 +114,7 @@ fn drawn(
         on_edges: 0.0,
         wrong: None,
     };
-    let level = Registers::Best.level();
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    if let Some(avx512) = level.as_avx512() {
-        use fearless_simd::Simd as _;
-        avx512.vectorize(
-            #[inline(always)]
-            || one.all_cells(super::lanes::Wide(avx512)),
-        );
-        return one.done(risk);
-    }
-    dispatch!(level, simd => one.all_cells(Portable(simd)));
+    Registers::Best.run(&mut one);
     one.done(risk)
 }
 
@@ -165,6 +148,13 @@ struct SamplingWorker<'a> {
     /// The estimated share of pairs on an inner edge.
     on_edges: f64,
     wrong: Option<KError>,
+}
+
+impl LaneWork for SamplingWorker<'_> {
+    #[inline(always)]
+    fn run<L: SignMask>(&mut self, on: L) {
+        self.all_cells(on);
+    }
 }
 
 impl<'a> SamplingWorker<'a> {
@@ -425,12 +415,9 @@ impl<'a> SamplingWorker<'a> {
             method: "sampled",
             edges: self.edges.clone(),
             shares,
-            bound: ErrorBound::Confidence {
-                shares: bounds,
-                risk,
-            },
+            bounds,
             points: self.points.len(),
-            on_edges: Some((self.on_edges * self.all).round() as u64),
+            on_edges: (self.on_edges * self.all).round() as u64,
         })
     }
 }

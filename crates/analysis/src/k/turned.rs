@@ -10,16 +10,17 @@ use std::num::NonZeroUsize;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use fearless_simd::{dispatch, f32x16, prelude::*, u32x16};
+use fearless_simd::{f32x16, prelude::*, u32x16};
 use glam::{DQuat, DVec3};
 
 use super::exact::on_threads;
-use super::lanes::{AlignedLanes, LANES, Portable, SimdLanes};
+use super::lanes::{AlignedLanes, LANES, SimdLanes};
 use super::leaf_pair::{F32_BAND, PairCounter, loaded};
 use super::leaves_by_edge_count::{Bits, LeavesByEdgeCount};
 use super::plain::check;
 use super::reach::BinRange;
-
+use super::registers::LaneWork;
+use super::sign_mask::SignMask;
 use super::tree::{BLOCK_LEAVES, Tree};
 use super::{Edges, KError, PairCounts, Registers};
 
@@ -109,7 +110,6 @@ pub fn turned_by(
     threads: NonZeroUsize,
 ) -> Result<PairCounts, KError> {
     check(points)?;
-    let level = registers.level();
     let scan = TurnedScan::new(points, rotation, edges)?;
     let next = AtomicUsize::new(0);
     let work = || {
@@ -118,17 +118,9 @@ pub fn turned_by(
             counter: PairCounter::new(edges.bins()),
             on_edges: 0,
             wrong: None,
+            next: &next,
         };
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        if let Some(avx512) = level.as_avx512() {
-            use fearless_simd::Simd as _;
-            avx512.vectorize(
-                #[inline(always)]
-                || one.all(super::lanes::Wide(avx512), &next),
-            );
-            return one.done();
-        }
-        dispatch!(level, simd => one.all(Portable(simd), &next));
+        registers.run(&mut one);
         one.done()
     };
     let mut twice = vec![0_i64; edges.bins()];
@@ -268,6 +260,15 @@ struct TurnedWorker<'a> {
     counter: PairCounter,
     on_edges: u64,
     wrong: Option<KError>,
+    /// The first row that no thread has taken.
+    next: &'a AtomicUsize,
+}
+
+impl LaneWork for TurnedWorker<'_> {
+    #[inline(always)]
+    fn run<L: SignMask>(&mut self, on: L) {
+        self.all(on);
+    }
 }
 
 impl TurnedWorker<'_> {
@@ -280,10 +281,10 @@ impl TurnedWorker<'_> {
 
     /// Takes rows until none is left, and pairs each with all points.
     #[inline(always)]
-    fn all<L: SimdLanes>(&mut self, on: L, next: &AtomicUsize) {
+    fn all<L: SimdLanes>(&mut self, on: L) {
         let scan = self.scan;
         loop {
-            let start = next.fetch_add(ROWS, Ordering::Relaxed);
+            let start = self.next.fetch_add(ROWS, Ordering::Relaxed);
             let end = start.saturating_add(ROWS).min(scan.size);
             if start >= end {
                 return;

@@ -121,17 +121,14 @@ fn command(arguments: &cli::Analyze) -> String {
         level,
         tolerance,
         bins,
-        harmonics,
         origin,
         ..
     } = arguments;
     if let Some([x, y, z]) = origin {
         words.push(format!("--origin={x},{y},{z}"));
     }
-    words.push(format!("--level {level} --bins {bins}"));
-    words.push(match harmonics {
-        Some(degree) => format!("--harmonics {degree}"),
-        None => format!("--tolerance {tolerance}"),
-    });
+    words.push(format!(
+        "--level {level} --bins {bins} --tolerance {tolerance}"
+    ));
     words.join(" ")
 }

@@ -142,8 +142,6 @@ struct Measure {
     edges: Edges,
     /// Tolerated error of K.
     tolerance: f64,
-    /// Degree of harmonics, if requested.
-    degree: Option<usize>,
     /// Centres of the bins.
     places: Vec<DVec3>,
 }
@@ -162,7 +160,6 @@ impl Measure {
             locator: Locator::new(&icosahedron),
             edges,
             tolerance: arguments.tolerance,
-            degree: arguments.harmonics.map(usize::from),
             places: icosahedron.bins().iter().map(|bin| bin.centre).collect(),
         })
     }
@@ -260,16 +257,8 @@ impl Measure {
             ..Sampling::default()
         };
         let threads = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
-        let estimate = match self.degree {
-            Some(degree) => k::harmonics(&input.directions, &self.edges, degree),
-            None => k::estimate(
-                &input.directions,
-                rotation.as_ref(),
-                &self.edges,
-                &wish,
-                threads,
-            ),
-        };
+        let directions = &input.directions;
+        let estimate = k::estimate(directions, rotation.as_ref(), &self.edges, &wish, threads);
         let estimate = estimate.map_err(|error| {
             Failure::new(Kind::BadInput, format!("{}: {error}", input.name))
                 .help("--tolerance 0 counts every pair, whatever the points")
@@ -277,7 +266,7 @@ impl Measure {
         let curve = KCurve::of_estimate(&estimate, SPHERE_M);
         let area = 4.0 * PI * RADIUS_M * RADIUS_M;
         let has_pairs = curve.has_pairs();
-        let bound = Some(curve.d_error_bound).filter(|bound| has_pairs && bound.is_finite());
+        let bound = has_pairs.then_some(curve.d_error_bound);
         let mut warnings: Vec<String> = on_edges(&estimate).into_iter().collect();
         if estimate.points < 2 {
             warnings.push("one point has no pairs, and so no K: null".to_owned());
@@ -346,12 +335,12 @@ fn blind(input: &Input, least_deg: f64) -> Result<Blind, DensityError> {
 
 /// Warning about pairs on bin edges, which rounding decides.
 fn on_edges(estimate: &Estimate) -> Option<String> {
-    let (pairs, bins) = (estimate.on_edges?, estimate.edges.bins());
+    let (pairs, bins) = (estimate.on_edges, estimate.edges.bins());
     let n = estimate.points as f64;
     if (pairs as f64) <= LEAST_ON_EDGES * n * (n - 1.0) / 2.0 {
         return None;
     }
-    let about = match estimate.bound.largest() {
+    let about = match estimate.largest_bound() {
         0.0 => "",
         _ => "about ",
     };

@@ -111,13 +111,13 @@ pub struct HoleReport {
 /// single point.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct KReport {
-    /// Method: exact, turned (exact too), sampled or harmonics.
+    /// Method: exact, turned (exact too) or sampled.
     pub method: &'static str,
     /// Bins.
     pub bins: usize,
     /// Radius of the sphere for square metres: 1.
     pub radius_m: f64,
-    /// Error bound of `k_minus_csr`, square metres: 0 for exact counts; null if unknown.
+    /// Error bound of `k_minus_csr`, square metres: 0 for exact counts.
     pub error_bound: Option<f64>,
     /// Upper end of each bin, degrees.
     pub theta_deg: Vec<f64>,
@@ -125,7 +125,7 @@ pub struct KReport {
     pub k_minus_csr: Option<Vec<f64>>,
     /// Largest absolute value of `k_minus_csr`.
     pub max_abs: Option<f64>,
-    /// Error bound of `d`; null if unknown.
+    /// Error bound of `d`.
     pub d_error_bound: Option<f64>,
     /// D = (K - K_csr) / (4 pi R2), a share.
     pub d: Option<Vec<f64>>,
@@ -133,9 +133,9 @@ pub struct KReport {
     pub d_max: Option<f64>,
     /// The smallest D.
     pub d_min: Option<f64>,
-    /// Pairs on an edge between two bins within rounding: counted, or estimated from samples; null
-    /// if the method cannot tell. They count towards the smaller angle.
-    pub on_edges: Option<u64>,
+    /// Pairs on an edge between two bins within rounding: counted, or estimated from samples. They
+    /// count towards the smaller angle.
+    pub on_edges: u64,
     /// The complete estimate, for figures.
     #[serde(skip)]
     pub curve: KCurve,

@@ -192,13 +192,13 @@ impl BinReport {
 
 impl KReport {
     fn line(&self) -> String {
-        let how = match self.d_error_bound {
-            Some(0.0) => "every pair counted".to_owned(),
-            Some(bound) => format!("{}, within {bound:.1e}", self.method),
-            None => format!("{}, error unknown", self.method),
-        };
-        let (Some(d_min), Some(d_max)) = (self.d_min, self.d_max) else {
+        let (Some(d_min), Some(d_max), Some(bound)) = (self.d_min, self.d_max, self.d_error_bound)
+        else {
             return "no K function: a single point has no pairs".to_owned();
+        };
+        let how = match bound {
+            0.0 => "every pair counted".to_owned(),
+            bound => format!("{}, within {bound:.1e}", self.method),
         };
         format!("K - K_csr from {d_min:.5} to {d_max:+.5} of the sphere's area ({how})")
     }
