@@ -5,8 +5,7 @@ use std::hint::black_box;
 use std::sync::Arc;
 
 use analysis::tradeoff::{
-    Bench, Effort, Measurement, Row, Study, StudyColumn, StudyError, StudyFindings, TimingSpread,
-    Trade, Work, in_rounds,
+    Bench, Measured, Measurement, Row, Study, StudyError, TimingSpread, Trade, Work, in_rounds,
 };
 use glam::DVec3;
 use sim::cast::{Caster, Hit, Mesh, Object, Quality, Ray, Reach, Surface};
@@ -16,7 +15,19 @@ use crate::ball::BallMesh;
 use crate::shots::Shots;
 
 /// The study.
-pub(crate) struct BvhQuality;
+pub(crate) const BVH_QUALITY: Study = Study {
+    name: "bvh-quality",
+    title: "Quality of the tree of boxes",
+    choice: "scene, tree",
+    columns: &[
+        ("build_ms", "build, ms"),
+        ("trace_ns_per_ray", "ns a ray"),
+        ("scan_ms", "built and 3 M rays, ms"),
+        ("hits_that_differ", "hits that differ"),
+    ],
+    trades: &[Trade::new(0, 1).by_group()],
+    measure,
+};
 
 /// Lasers per firing.
 const BEAMS: usize = 16;
@@ -51,83 +62,45 @@ const fn of(bins: usize, sharing: usize) -> Quality {
     Quality { bins, sharing }
 }
 
-impl Study for BvhQuality {
-    fn name(&self) -> &'static str {
-        "bvh-quality"
-    }
-
-    fn title(&self) -> &'static str {
-        "Quality of the tree of boxes"
-    }
-
-    fn measure(&self, bench: &mut Bench<'_>) -> Result<StudyFindings, StudyError> {
-        let plan = bench.plan(3, 9);
-        let shots = Shots::of("quarry", bench.size(48, 14_000))?;
-        let rays = rays(&shots)?;
-        let walls = match bench.effort {
-            Effort::Quick => CAVE_AT_A_LOOK,
-            Effort::Full => CAVE,
-        };
-        let scenes = [
-            BvhScene::new("cave", cave(walls)?)?,
-            BvhScene::new("quarry", quarry(shots.seed)?)?,
-        ];
-        (bench.say)(&format!("{} rays, {} rounds", rays.len(), plan.rounds));
-        let mut work: Vec<Work<'_, StudyError>> = Vec::new();
-        let mut named = Vec::new();
-        for scene in &scenes {
-            let expected = hits(&scene.caster(Quality::default())?, &rays);
-            for (name, label, quality) in QUALITIES {
-                let caster = scene.caster(quality)?;
-                let got = hits(&caster, &rays);
-                named.push((name, label, scene.name, differing(&got, &expected)));
-                work.push(Box::new(move || {
-                    scene.meshes().for_each(|mesh| {
-                        black_box(mesh.rebuilt(quality));
-                    });
-                    Ok(())
-                }));
-                let (rays, mut hits) = (&rays, vec![None; rays.len()]);
-                work.push(Box::new(move || {
-                    cast(&caster, black_box(rays), &mut hits);
-                    black_box(&hits);
-                    Ok(())
-                }));
-            }
+fn measure(bench: &mut Bench<'_>) -> Result<Measured, StudyError> {
+    let shots = Shots::of("quarry", bench.pick(48, 14_000))?;
+    let rays = rays(&shots)?;
+    let scenes = [
+        BvhScene::new("cave", cave(bench.pick(CAVE_AT_A_LOOK, CAVE))?)?,
+        BvhScene::new("quarry", quarry(shots.seed)?)?,
+    ];
+    let plan = bench.plan(&format!("{} rays", rays.len()), 3, 9);
+    let mut work: Vec<Work<'_>> = Vec::new();
+    let mut named = Vec::new();
+    for scene in &scenes {
+        let expected = hits(&scene.caster(Quality::default())?, &rays);
+        for (name, label, quality) in QUALITIES {
+            let caster = scene.caster(quality)?;
+            let got = hits(&caster, &rays);
+            named.push((name, label, scene.name, differing(&got, &expected)));
+            work.push(Box::new(move || {
+                scene.meshes().for_each(|mesh| {
+                    black_box(mesh.rebuilt(quality));
+                });
+                Ok(())
+            }));
+            let (rays, mut hits) = (&rays, vec![None; rays.len()]);
+            work.push(Box::new(move || {
+                cast(&caster, black_box(rays), &mut hits);
+                black_box(&hits);
+                Ok(())
+            }));
         }
-        let times = in_rounds(bench.clock, plan, &mut work)?;
-        drop(work);
-        let rows = named.into_iter().zip(times.chunks(2));
-        let rows = rows.filter_map(|((name, label, scene, differ), times)| match times {
-            [build, trace] => Some(Row::new(
-                format!("{scene}, {name}"),
-                label,
-                scene,
-                values(*build, trace.times(1.0 / rays.len() as f64), differ),
-            )),
-            _ => None,
-        });
-        Ok(StudyFindings {
-            name: self.name(),
-            title: self.title(),
-            about: about(&scenes, rays.len()),
-            choice: "scene, tree",
-            columns: columns(),
-            rows: rows.collect(),
-            trades: vec![Trade::new(0, 1).by_group()],
-        })
     }
-}
-
-fn columns() -> Vec<StudyColumn> {
-    [
-        ("build_ms", "build, ms"),
-        ("trace_ns_per_ray", "ns a ray"),
-        ("scan_ms", "built and 3 M rays, ms"),
-        ("hits_that_differ", "hits that differ"),
-    ]
-    .map(StudyColumn::log)
-    .into()
+    let times = in_rounds(bench.clock, plan, &mut work)?;
+    let rows = named.into_iter().zip(times.as_chunks().0);
+    let rows = rows.map(|((name, label, scene, differ), [build, trace])| Row {
+        name: format!("{scene}, {name}"),
+        label: label.to_owned(),
+        group: scene,
+        values: values(*build, trace.times(1.0 / rays.len() as f64), differ),
+    });
+    Ok((about(&scenes, rays.len()), rows.collect()))
 }
 
 /// The values of a row from the seconds of a build and of a ray.
@@ -276,6 +249,7 @@ fn cave(walls: BallMesh) -> Result<Vec<Object>, StudyError> {
 
 #[cfg(test)]
 mod tests {
+    use analysis::tradeoff::Effort;
     use units::{Span, Stamp};
 
     use super::*;
@@ -293,9 +267,9 @@ mod tests {
             effort: Effort::Quick,
             say: &mut |_| {},
         };
-        let findings = BvhQuality.measure(&mut bench).unwrap();
-        assert_eq!(findings.rows.len(), 2 * QUALITIES.len());
-        for row in &findings.rows {
+        let (_, rows) = measure(&mut bench).unwrap();
+        assert_eq!(rows.len(), 2 * QUALITIES.len());
+        for row in &rows {
             let values: Vec<f64> = row.values.iter().map(Measurement::middle).collect();
             assert_eq!(values[3], 0.0, "{row:?}");
             assert!((values[0] - 3.0).abs() < 1e-9, "{row:?}");

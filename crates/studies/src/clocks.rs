@@ -2,16 +2,24 @@
 
 use std::hint::black_box;
 
-use analysis::tradeoff::{
-    Bench, Effort, Measurement, Row, Study, StudyColumn, StudyError, StudyFindings, Trade, Work,
-    in_rounds,
-};
+use analysis::tradeoff::{Bench, Measured, Row, Study, StudyError, TimedChoice, Trade};
 use scanner::clock::{Arrival, LidarClock, OnlineClock};
 use sim::packet_clock::{ArrivalLink, Oscillator, PACKET_NS, PacketClock, TimedPacket};
 use units::{Host, Lidar, Span, Stamp};
 
 /// The study.
-pub(crate) struct Clocks;
+pub(crate) const CLOCKS: Study = Study {
+    name: "clocks",
+    title: "The lidar's clock from its packets",
+    choice: "link, clock",
+    columns: &[
+        ("time_ns_per_packet", "ns a packet"),
+        ("bias_us", "bias, us"),
+        ("worst_error_us", "worst error, us"),
+    ],
+    trades: &[Trade::new(0, 2).by_group()],
+    measure,
+};
 
 /// Host and lidar times at the start, a minute apart.
 const BEGIN: Stamp<Host> = Stamp::from_nanos(1_700_002_800_000_000_000);
@@ -31,73 +39,29 @@ const METHODS: [(&str, &str, Method); 4] = [
     ("of the whole: lower envelope", "whole", whole),
 ];
 
-impl Study for Clocks {
-    fn name(&self) -> &'static str {
-        "clocks"
-    }
-
-    fn title(&self) -> &'static str {
-        "The lidar's clock from its packets"
-    }
-
-    fn measure(&self, bench: &mut Bench<'_>) -> Result<StudyFindings, StudyError> {
-        let (seconds, seeds) = match bench.effort {
-            Effort::Quick => (5, 1),
-            Effort::Full => (45, 4),
+fn measure(bench: &mut Bench<'_>) -> Result<Measured, StudyError> {
+    let (seconds, seeds) = bench.pick((5, 1), (45, 4));
+    let plan = bench.plan(&format!("{seconds} s of packets"), 3, 15);
+    let recordings = ArrivalLink::ALL.map(|link| recordings(link, seconds, seeds));
+    let mut choices = Vec::new();
+    for (link, recordings) in ArrivalLink::ALL.into_iter().zip(&recordings) {
+        let Some(first) = recordings.first() else {
+            continue;
         };
-        let plan = bench.plan(3, 15);
-        (bench.say)(&format!("{seconds} s of packets, {} rounds", plan.rounds));
-        let recordings = ArrivalLink::ALL.map(|link| recordings(link, seconds, seeds));
-        let mut work: Vec<Work<'_, StudyError>> = Vec::new();
-        let mut named = Vec::new();
-        let mut packets = 1;
-        for (link, recordings) in ArrivalLink::ALL.into_iter().zip(&recordings) {
-            let Some(first) = recordings.first() else {
-                continue;
-            };
-            packets = first.len().max(1);
-            for (name, label, method) in METHODS {
-                named.push((name, label, link.name(), off(recordings, method)?));
-                work.push(Box::new(move || {
+        for (name, label, method) in METHODS {
+            let name = format!("{}, {name}", link.name());
+            choices.push(TimedChoice {
+                row: Row::new(name, label, link.name(), off(recordings, method)?),
+                scale: 1e9 / first.len().max(1) as f64,
+                work: Box::new(move || {
                     black_box(method(black_box(first)));
                     Ok(())
-                }));
-            }
+                }),
+            });
         }
-        let times = in_rounds(bench.clock, plan, &mut work)?;
-        let rows = named.into_iter().zip(times);
-        let rows = rows.map(|((name, label, link, off), time)| {
-            Row::new(
-                format!("{link}, {name}"),
-                label,
-                link,
-                vec![
-                    Measurement::Timed(time.times(1e9 / packets as f64)),
-                    Measurement::Computed(off.bias_us),
-                    Measurement::Computed(off.worst_us),
-                ],
-            )
-        });
-        Ok(StudyFindings {
-            name: self.name(),
-            title: self.title(),
-            about: about(seconds, recordings.first().map_or(0, Vec::len)),
-            choice: "link, clock",
-            columns: columns(),
-            rows: rows.collect(),
-            trades: vec![Trade::new(0, 2).by_group()],
-        })
     }
-}
-
-fn columns() -> Vec<StudyColumn> {
-    [
-        ("time_ns_per_packet", "ns a packet"),
-        ("bias_us", "bias, us"),
-        ("worst_error_us", "worst error, us"),
-    ]
-    .map(StudyColumn::log)
-    .into()
+    let runs = recordings.first().map_or(0, Vec::len);
+    Ok((about(seconds, runs), bench.rows(plan, choices)?))
 }
 
 fn about(seconds: i64, runs: usize) -> Vec<String> {
@@ -132,14 +96,8 @@ fn recordings(link: ArrivalLink, seconds: i64, seeds: u64) -> Vec<Vec<TimedPacke
     recordings
 }
 
-/// Errors of a clock, microseconds.
-struct ClockError {
-    bias_us: f64,
-    worst_us: f64,
-}
-
-/// Errors averaged over recordings.
-fn off(recordings: &[Vec<TimedPacket>], method: Method) -> Result<ClockError, StudyError> {
+/// Bias and worst error averaged over recordings, microseconds.
+fn off(recordings: &[Vec<TimedPacket>], method: Method) -> Result<[f64; 2], StudyError> {
     let (mut bias_us, mut worst_us) = (0.0, 0.0);
     for packets in recordings {
         let hosts =
@@ -156,10 +114,7 @@ fn off(recordings: &[Vec<TimedPacket>], method: Method) -> Result<ClockError, St
         worst_us += worst;
     }
     let n = recordings.len() as f64;
-    Ok(ClockError {
-        bias_us: bias_us / n,
-        worst_us: worst_us / n,
-    })
+    Ok([bias_us / n, worst_us / n])
 }
 
 fn us(span: Span) -> f64 {
@@ -226,17 +181,11 @@ mod tests {
             let recordings = recordings(link, 45, 1);
             for ((name, _, method), (bias_us, worst_us)) in METHODS.into_iter().zip(table) {
                 let off = off(&recordings, method).unwrap();
-                let case = format!("{}, {name}: {} {}", link.name(), off.bias_us, off.worst_us);
+                let case = format!("{}, {name}: {off:?}", link.name());
                 // With few recordings rare spikes change the bias of arrivals by a quarter, and the
                 // others vary by 1 us.
-                assert!(
-                    (off.bias_us - bias_us).abs() < 0.3 * bias_us + 1.5,
-                    "{case}"
-                );
-                assert!(
-                    (off.worst_us - worst_us).abs() < 0.35 * worst_us + 2.0,
-                    "{case}"
-                );
+                assert!((off[0] - bias_us).abs() < 0.3 * bias_us + 1.5, "{case}");
+                assert!((off[1] - worst_us).abs() < 0.35 * worst_us + 2.0, "{case}");
             }
         }
     }

@@ -8,8 +8,7 @@ use ::cloud::formats::Format;
 use ::cloud::{Fields, Metadata, Points, read};
 use analysis::tradeoff::pattern::TiltSweep;
 use analysis::tradeoff::{
-    Bench, Effort, Measurement, Row, SeededNoise, Study, StudyColumn, StudyError, StudyFindings,
-    Trade, Work, in_rounds,
+    Bench, Measured, Row, SeededNoise, Study, StudyError, TimedChoice, Trade,
 };
 use protocol::vlp16::models::VLP_16;
 use sim::scenes;
@@ -20,7 +19,18 @@ use crate::workload::{SimulatedShot, Workload};
 use engine::output::Buffered;
 
 /// The study.
-pub(super) struct Formats;
+pub(super) const FORMATS: Study = Study {
+    name: "formats",
+    title: "Point formats",
+    choice: "format",
+    columns: &[
+        ("time_s_per_million_points", "s a million points"),
+        ("bytes_per_point", "bytes a point"),
+        ("worst_error_um", "worst error of a place, um"),
+    ],
+    trades: &[Trade::new(0, 2), Trade::new(1, 2)],
+    measure,
+};
 
 /// A million points.
 const SWEEP: TiltSweep = TiltSweep {
@@ -33,72 +43,33 @@ const BATCH_POINTS: usize = 1 << 12;
 /// Standard deviation of a range, metres: a third of the VLP-16's +-3 cm (Table 2 of the paper).
 const NOISE_M: f64 = 0.01;
 
-impl Study for Formats {
-    fn name(&self) -> &'static str {
-        "formats"
-    }
-
-    fn title(&self) -> &'static str {
-        "Point formats"
-    }
-
-    fn measure(&self, bench: &mut Bench<'_>) -> Result<StudyFindings, StudyError> {
-        let seconds = match bench.effort {
-            Effort::Quick => 0.15,
-            Effort::Full => SWEEP.duration_s(),
-        };
-        let cloud = hall(seconds)?;
-        let batches = batches(&cloud);
-        let plan = bench.plan(3, 9);
-        let points = cloud.len();
-        (bench.say)(&format!("{points} points, {} rounds", plan.rounds));
-        let memories = Format::ALL.map(|_| Memory::default());
-        let mut work: Vec<Work<'_, StudyError>> = Vec::new();
-        for (format, memory) in Format::ALL.into_iter().zip(&memories) {
-            let batches = &batches;
-            work.push(Box::new(move || write(format, memory, batches)));
-        }
-        let times = in_rounds(bench.clock, plan, &mut work)?;
-        drop(work);
-        let mut rows = Vec::new();
-        for ((format, memory), time) in Format::ALL.into_iter().zip(&memories).zip(times) {
-            let bytes = memory.content();
-            let error_m = error_m(format, &bytes, &cloud)?;
-            let empty = Memory::default();
-            write(format, &empty, &[])?;
-            let of_points = bytes.len().saturating_sub(empty.content().len());
-            let per_point = of_points as f64 / points as f64;
-            rows.push(Row::new(
-                format!(".{format}"),
-                format!(".{format}"),
+fn measure(bench: &mut Bench<'_>) -> Result<Measured, StudyError> {
+    let cloud = hall(bench.pick(0.15, SWEEP.duration_s()))?;
+    let batches = batches(&cloud);
+    let points = cloud.len();
+    let plan = bench.plan(&format!("{points} points"), 3, 9);
+    let mut choices = Vec::new();
+    for format in Format::ALL {
+        let (memory, empty) = (Memory::default(), Memory::default());
+        write(format, &memory, &batches)?;
+        write(format, &empty, &[])?;
+        let bytes = memory.content();
+        let of_points = bytes.len().saturating_sub(empty.content().len());
+        let error_m = error_m(format, &bytes, &cloud)?;
+        let name = format!(".{format}");
+        let batches = &batches;
+        choices.push(TimedChoice {
+            row: Row::new(
+                name.clone(),
+                name,
                 "velomotion's writers",
-                vec![
-                    Measurement::Timed(time.times(1e6 / points as f64)),
-                    Measurement::Computed(per_point),
-                    Measurement::Computed(error_m * 1e6),
-                ],
-            ));
-        }
-        Ok(StudyFindings {
-            name: self.name(),
-            title: self.title(),
-            about: about(points),
-            choice: "format",
-            columns: columns(),
-            rows,
-            trades: [0, 1].map(|cost| Trade::new(cost, 2)).into(),
-        })
+                [of_points as f64 / points as f64, error_m * 1e6],
+            ),
+            scale: 1e6 / points as f64,
+            work: Box::new(move || write(format, &memory, batches)),
+        });
     }
-}
-
-fn columns() -> Vec<StudyColumn> {
-    [
-        ("time_s_per_million_points", "s a million points"),
-        ("bytes_per_point", "bytes a point"),
-        ("worst_error_um", "worst error of a place, um"),
-    ]
-    .map(StudyColumn::log)
-    .into()
+    Ok((about(points), bench.rows(plan, choices)?))
 }
 
 fn about(points: usize) -> Vec<String> {

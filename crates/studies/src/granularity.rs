@@ -5,9 +5,7 @@ use std::hint::black_box;
 use crate::placing::{
     BLOCK, Exact, FIRING, PACKET, PlacedPoints, RETURN, SensorGeometry, Shot, place, worst_m,
 };
-use analysis::tradeoff::{
-    Bench, Measurement, Row, Study, StudyColumn, StudyError, StudyFindings, Trade, Work, in_rounds,
-};
+use analysis::tradeoff::{Bench, Measured, Row, Study, StudyError, TimedChoice, Trade};
 use cloud::{Fields, Points, Sink, SinkError};
 use drive::record::Wire;
 use lidar::{Decoder, Options};
@@ -16,7 +14,17 @@ use scanner::{Alignment, Placer};
 use crate::workload::{Workload, all_at, cruise_deg, cruise_s, head};
 
 /// The study.
-pub(crate) struct Granularity;
+pub(crate) const GRANULARITY: Study = Study {
+    name: "granularity",
+    title: "How often angles are computed",
+    choice: "angles per",
+    columns: &[
+        ("time_ns_per_point", "ns a point"),
+        ("worst_error_mm", "worst error, mm at 100 m"),
+    ],
+    trades: &[Trade::new(0, 1).joined()],
+    measure,
+};
 
 const RANGE_M: f64 = 100.0;
 
@@ -52,68 +60,41 @@ const WAYS: [GranularityChoice; 7] = [
     choice::<RETURN, RETURN>("both a return", "return", "tilt and azimuth"),
 ];
 
-impl Study for Granularity {
-    fn name(&self) -> &'static str {
-        "granularity"
+fn measure(bench: &mut Bench<'_>) -> Result<Measured, StudyError> {
+    let packets = Workload::new(cruise_deg, cruise_s(bench), all_at(RANGE_M));
+    let alignment = packets.alignment()?;
+    let (shots, truth) = (packets.shots(&alignment), definition(&packets, &alignment));
+    let (head, points) = (head(), truth.len());
+    let scale = 1e9 / points as f64;
+    let mut choices = Vec::new();
+    for (name, label, group, kernel) in WAYS {
+        let mut out = PlacedPoints::new(points);
+        kernel(&shots, &head, (&Exact, &Exact), &mut out);
+        let row = Row::new(name, label, group, [out.worst_m(&truth) * 1e3]);
+        let (shots, head) = (&shots, &head);
+        choices.push(TimedChoice {
+            row,
+            scale,
+            work: Box::new(move || {
+                kernel(black_box(shots), head, (&Exact, &Exact), &mut out);
+                black_box(&out);
+                Ok(())
+            }),
+        });
     }
-
-    fn title(&self) -> &'static str {
-        "How often angles are computed"
-    }
-
-    fn measure(&self, bench: &mut Bench<'_>) -> Result<StudyFindings, StudyError> {
-        let packets = Workload::new(cruise_deg, cruise_s(bench), all_at(RANGE_M));
-        let alignment = packets.alignment()?;
-        let (shots, truth) = (packets.shots(&alignment), definition(&packets, &alignment));
-        let (head, points) = (head(), truth.len());
-        let mut errors_m = Vec::new();
-        for (_, _, _, kernel) in WAYS {
-            let mut out = PlacedPoints::new(points);
-            kernel(&shots, &head, (&Exact, &Exact), &mut out);
-            errors_m.push(out.worst_m(&truth));
-        }
-        errors_m.push(own_error_m(&packets, &alignment, &truth)?);
-
-        let plan = bench.plan(5, 25);
-        (bench.say)(&format!("{points} points, {} rounds", plan.rounds));
-        let mut work = kernels(&shots, &head, points);
-        work.push(Box::new(|| {
-            place_packets(&packets, &alignment, &mut Ignore)
-        }));
-        let times = in_rounds(bench.clock, plan, &mut work)?;
-        drop(work);
-
-        let named = WAYS.map(|(name, label, group, _)| (name, label, group));
-        let own = (
+    let error_mm = own_error_m(&packets, &alignment, &truth)? * 1e3;
+    choices.push(TimedChoice {
+        row: Row::new(
             "velomotion, from the packets' bytes",
             "velomotion",
             "velomotion",
-        );
-        let rows = named.into_iter().chain([own]).zip(times).zip(errors_m);
-        let rows = rows.map(|(((name, label, group), time), error_m)| {
-            Row::new(
-                name,
-                label,
-                group,
-                vec![
-                    Measurement::Timed(time.times(1e9 / points as f64)),
-                    Measurement::Computed(error_m * 1e3),
-                ],
-            )
-        });
-        Ok(StudyFindings {
-            name: self.name(),
-            title: self.title(),
-            about: about(points),
-            choice: "angles per",
-            columns: vec![
-                StudyColumn::log(("time_ns_per_point", "ns a point")),
-                StudyColumn::log(("worst_error_mm", "worst error, mm at 100 m")),
-            ],
-            rows: rows.collect(),
-            trades: vec![Trade::new(0, 1).joined()],
-        })
-    }
+            [error_mm],
+        ),
+        scale,
+        work: Box::new(|| place_packets(&packets, &alignment, &mut Ignore)),
+    });
+    let plan = bench.plan(&format!("{points} points"), 5, 25);
+    Ok((about(points), bench.rows(plan, choices)?))
 }
 
 fn about(points: usize) -> Vec<String> {
@@ -128,24 +109,6 @@ fn about(points: usize) -> Vec<String> {
          to each return."
             .to_owned(),
     ]
-}
-
-fn kernels<'a>(
-    shots: &'a [Shot],
-    head: &'a SensorGeometry,
-    points: usize,
-) -> Vec<Work<'a, StudyError>> {
-    WAYS.iter()
-        .map(|(_, _, _, kernel)| {
-            let mut out = PlacedPoints::new(points);
-            let work: Work<'a, StudyError> = Box::new(move || {
-                kernel(black_box(shots), head, (&Exact, &Exact), &mut out);
-                black_box(&out);
-                Ok(())
-            });
-            work
-        })
-        .collect()
 }
 
 /// A sink that drops its points.

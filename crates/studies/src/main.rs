@@ -49,14 +49,14 @@ const BOOK: Book<'_> = Book {
 };
 
 /// The studies in the order of the page.
-const STUDIES: [&dyn Study; 7] = [
-    &granularity::Granularity,
-    &trigonometry::Trigonometry,
-    &clocks::Clocks,
-    &formats::Formats,
-    &beam_sampling::BeamSampling,
-    &precision::Precision,
-    &bvh_quality::BvhQuality,
+const STUDIES: [Study; 7] = [
+    granularity::GRANULARITY,
+    trigonometry::TRIGONOMETRY,
+    clocks::CLOCKS,
+    formats::FORMATS,
+    beam_sampling::BEAM_SAMPLING,
+    precision::PRECISION,
+    bvh_quality::BVH_QUALITY,
 ];
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -66,21 +66,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     } else {
         Effort::Full
     };
-    let mut findings = Vec::new();
-    for study in tradeoff::select(&STUDIES, &arguments.only)? {
-        eprintln!("{}", study.title());
-        findings.push(study.measure(&mut Bench {
-            clock: &mut io::clock::steady,
-            effort,
-            say: &mut |line| eprintln!("  {line}"),
-        })?);
-    }
-    let report = StudyReport {
-        program: concat!("velomotion ", env!("CARGO_PKG_VERSION")).to_owned(),
+    let bench = Bench {
+        clock: &mut io::clock::steady,
         effort,
-        machine: Machine::current(|path| std::fs::read_to_string(path).ok()),
-        studies: findings,
+        say: &mut |line| eprintln!("{line}"),
     };
+    let selected = tradeoff::select(&STUDIES, &arguments.only)?;
+    let machine = Machine::current(|path| std::fs::read_to_string(path).ok());
+    let report = StudyReport::measure(&selected, machine, bench)
+        .map_err(|(study, error)| format!("study {}: {error}", study.name))?;
     if let Some(folder) = arguments.markdown {
         std::fs::create_dir_all(folder.join(BOOK.name))?;
         for (path, content) in BOOK.files(&report) {

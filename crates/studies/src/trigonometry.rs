@@ -6,25 +6,24 @@ use crate::placing::{
     Addition, Exact, LASERS, PlacedPoints, RETURN, Real, SensorGeometry, Shot, Sine, SineTable,
     place,
 };
-use analysis::tradeoff::{
-    Bench, Measurement, Row, Study, StudyColumn, StudyError, StudyFindings, Trade, Work, in_rounds,
-};
+use analysis::tradeoff::{Bench, Measured, Row, Study, StudyError, TimedChoice, Trade};
 
 use crate::workload::{Workload, all_at, cruise_deg, cruise_s, head};
 
 /// The study.
-pub(crate) struct Trigonometry;
+pub(crate) const TRIGONOMETRY: Study = Study {
+    name: "trigonometry",
+    title: "Numbers and sines",
+    choice: "numbers, sine and cosine",
+    columns: &[
+        ("time_ns_per_point", "ns a point"),
+        ("worst_error_mm", "worst error, mm at 100 m"),
+    ],
+    trades: &[Trade::new(0, 1)],
+    measure,
+};
 
 const RANGE_M: f64 = 100.0;
-
-/// A method with its name, label, group and error.
-struct PlacingMethod<'a> {
-    name: String,
-    label: &'static str,
-    group: &'static str,
-    error_m: f64,
-    work: Work<'a, StudyError>,
-}
 
 /// The workload of all methods.
 struct TrigonometrySetup {
@@ -33,52 +32,18 @@ struct TrigonometrySetup {
     truth: PlacedPoints<f64>,
 }
 
-impl Study for Trigonometry {
-    fn name(&self) -> &'static str {
-        "trigonometry"
-    }
-
-    fn title(&self) -> &'static str {
-        "Numbers and sines"
-    }
-
-    fn measure(&self, bench: &mut Bench<'_>) -> Result<StudyFindings, StudyError> {
-        let packets = Workload::new(cruise_deg, cruise_s(bench), all_at(RANGE_M));
-        let shots = packets.shots(&packets.alignment()?);
-        let (head, points) = (head(), shots.len() * LASERS);
-        let mut truth = PlacedPoints::new(points);
-        place::<f64, _, _, RETURN, RETURN>(&shots, &head, (&Exact, &Exact), &mut truth);
-        let setting = TrigonometrySetup { shots, head, truth };
-        let (wide, narrow) = (SineTable::<f64>::new(), SineTable::<f32>::new());
-        let mut ways = ways("f64", &setting, &wide);
-        ways.extend(self::ways("f32", &setting, &narrow));
-
-        let plan = bench.plan(5, 25);
-        (bench.say)(&format!("{points} points, {} rounds", plan.rounds));
-        let (mut work, named): (Vec<_>, Vec<_>) = ways
-            .into_iter()
-            .map(|w| (w.work, (w.name, w.label, w.group, w.error_m)))
-            .unzip();
-        let times = in_rounds(bench.clock, plan, &mut work)?;
-        let rows = named.into_iter().zip(times);
-        let rows = rows.map(|((name, label, group, error_m), time)| {
-            let time_ns = Measurement::Timed(time.times(1e9 / points as f64));
-            let error_mm = Measurement::Computed(error_m * 1e3);
-            Row::new(name, label, group, vec![time_ns, error_mm])
-        });
-        Ok(StudyFindings {
-            name: self.name(),
-            title: self.title(),
-            about: about(points),
-            choice: "numbers, sine and cosine",
-            columns: vec![
-                StudyColumn::log(("time_ns_per_point", "ns a point")),
-                StudyColumn::log(("worst_error_mm", "worst error, mm at 100 m")),
-            ],
-            rows: rows.collect(),
-            trades: vec![Trade::new(0, 1)],
-        })
-    }
+fn measure(bench: &mut Bench<'_>) -> Result<Measured, StudyError> {
+    let packets = Workload::new(cruise_deg, cruise_s(bench), all_at(RANGE_M));
+    let shots = packets.shots(&packets.alignment()?);
+    let (head, points) = (head(), shots.len() * LASERS);
+    let mut truth = PlacedPoints::new(points);
+    place::<f64, _, _, RETURN, RETURN>(&shots, &head, (&Exact, &Exact), &mut truth);
+    let setting = TrigonometrySetup { shots, head, truth };
+    let (wide, narrow) = (SineTable::<f64>::new(), SineTable::<f32>::new());
+    let mut choices = ways("f64", &setting, &wide);
+    choices.extend(ways("f32", &setting, &narrow));
+    let plan = bench.plan(&format!("{points} points"), 5, 25);
+    Ok((about(points), bench.rows(plan, choices)?))
 }
 
 fn about(points: usize) -> Vec<String> {
@@ -98,7 +63,7 @@ fn ways<'a, T: Real>(
     group: &'static str,
     setting: &'a TrigonometrySetup,
     table: &'a SineTable<T>,
-) -> Vec<PlacingMethod<'a>> {
+) -> Vec<TimedChoice<'a>> {
     vec![
         way::<T, _, _>((group, "library"), setting, (&Exact, &Exact)),
         way::<T, _, _>((group, "azimuth table"), setting, (table, &Exact)),
@@ -111,15 +76,14 @@ fn way<'a, T: Real, A: Sine<T>, G: Sine<T>>(
     (group, label): (&'static str, &'static str),
     setting: &'a TrigonometrySetup,
     sines: (&'a A, &'a G),
-) -> PlacingMethod<'a> {
+) -> TimedChoice<'a> {
     let TrigonometrySetup { shots, head, truth } = setting;
     let mut out = PlacedPoints::<T>::new(truth.len());
     place::<T, A, G, RETURN, RETURN>(shots, head, sines, &mut out);
-    PlacingMethod {
-        name: format!("{group}, {label}"),
-        label,
-        group,
-        error_m: out.worst_m(truth),
+    let name = format!("{group}, {label}");
+    TimedChoice {
+        row: Row::new(name, label, group, [out.worst_m(truth) * 1e3]),
+        scale: 1e9 / truth.len() as f64,
         work: Box::new(move || {
             place::<T, A, G, RETURN, RETURN>(black_box(shots), head, sines, &mut out);
             black_box(&out);

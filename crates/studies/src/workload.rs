@@ -4,7 +4,7 @@
 //! arrive as soon as they are full; [`crate::clocks`] studies delays.
 
 use crate::placing::{LASERS, LaserGeometry, SensorGeometry, Shot};
-use analysis::tradeoff::{Bench, Effort, StudyError};
+use analysis::tradeoff::{Bench, StudyError};
 use drive::record::{Record, Wire};
 use firmware_sim::vlp16::{DATA_PORT, DataPacketBuilder, PacketModel, ReturnMode};
 use lidar::{Decoder, Options};
@@ -164,11 +164,8 @@ pub(crate) fn cruise_deg(t_s: f64) -> f64 {
 }
 
 /// The duration of 45 degrees, or less with quick effort.
-pub(crate) const fn cruise_s(bench: &Bench<'_>) -> f64 {
-    match bench.effort {
-        Effort::Quick => 0.2,
-        Effort::Full => 0.8,
-    }
+pub(crate) fn cruise_s(bench: &Bench<'_>) -> f64 {
+    bench.pick(0.2, 0.8)
 }
 
 /// A surface at `range_m` in every direction.

@@ -20,8 +20,8 @@ pub fn page(report: &StudyReport) -> String {
     for findings in &report.studies {
         page += &format!(
             "<a href=\"#{}\">{}</a>\n",
-            findings.name,
-            escaped(findings.title)
+            findings.study.name,
+            escaped(findings.study.title)
         );
     }
     page += "</nav>\n</header>\n<main>\n";
@@ -40,8 +40,8 @@ pub fn page(report: &StudyReport) -> String {
 fn section(findings: &StudyFindings) -> String {
     let mut html = format!(
         "<section id=\"{}\">\n<h2>{}</h2>\n",
-        findings.name,
-        escaped(findings.title)
+        findings.study.name,
+        escaped(findings.study.title)
     );
     for paragraph in &findings.about {
         html += &format!("<p>{}</p>\n", escaped(paragraph));
@@ -57,10 +57,10 @@ fn section(findings: &StudyFindings) -> String {
 fn table(findings: &StudyFindings) -> String {
     let mut html = format!(
         "<div class=\"scroll\"><table>\n<thead><tr><th>{}</th>",
-        escaped(findings.choice)
+        escaped(findings.study.choice)
     );
-    for column in &findings.columns {
-        html += &format!("<th>{}</th>", escaped(column.heading));
+    for (_, heading) in findings.study.columns {
+        html += &format!("<th>{}</th>", escaped(heading));
     }
     html += "<th>front</th></tr></thead>\n<tbody>\n";
     for (row, mark) in findings.rows.iter().zip(findings.marks()) {

@@ -1,10 +1,8 @@
 //! Findings as JSON. The format is a contract: [`SCHEMA`] increases when it changes.
 
-use std::collections::BTreeMap;
+use serde_json::{Map, Value, json};
 
-use serde::Serialize;
-
-use super::{Effort, Machine, Measurement, StudyFindings, StudyReport, Trade};
+use super::{StudyFindings, StudyReport, Trade};
 
 /// Version of the format.
 pub const SCHEMA: u32 = 1;
@@ -14,91 +12,43 @@ pub const SCHEMA: u32 = 1;
 /// [{`name`, `group`, `values`}], `trades` [{`cost`, `loss`, `front`}]}. `values` goes by the
 /// columns' keys; a timed one is {`median`, `min`, `max`, `runs`}, another a number. `front` has
 /// the names of its rows.
-#[derive(Debug, Serialize)]
-pub struct Json<'a> {
-    schema: u32,
-    program: &'a str,
-    effort: Effort,
-    machine: &'a Machine,
-    studies: Vec<StudyJson<'a>>,
-}
-
-#[derive(Debug, Serialize)]
-struct StudyJson<'a> {
-    name: &'a str,
-    title: &'a str,
-    choice: &'a str,
-    columns: Vec<ColumnJson>,
-    rows: Vec<RowJson<'a>>,
-    trades: Vec<TradeJson<'a>>,
-}
-
-#[derive(Debug, Serialize)]
-struct ColumnJson {
-    key: &'static str,
-    heading: &'static str,
-}
-
-#[derive(Debug, Serialize)]
-struct RowJson<'a> {
-    name: &'a str,
-    group: &'a str,
-    values: BTreeMap<&'static str, &'a Measurement>,
-}
-
-#[derive(Debug, Serialize)]
-struct TradeJson<'a> {
-    cost: &'static str,
-    loss: &'static str,
-    front: Vec<&'a str>,
-}
-
-/// A report, ready to be serialised.
 #[must_use]
-pub fn report(report: &StudyReport) -> Json<'_> {
-    Json {
-        schema: SCHEMA,
-        program: &report.program,
-        effort: report.effort,
-        machine: &report.machine,
-        studies: report.studies.iter().map(study).collect(),
-    }
+pub fn json(report: &StudyReport) -> Value {
+    json!({
+        "schema": SCHEMA,
+        "program": report.program,
+        "effort": report.effort,
+        "machine": report.machine,
+        "studies": report.studies.iter().map(study).collect::<Vec<_>>(),
+    })
 }
 
-fn study(findings: &StudyFindings) -> StudyJson<'_> {
-    let columns = findings.columns.iter().map(|column| ColumnJson {
-        key: column.key,
-        heading: column.heading,
+fn study(findings: &StudyFindings) -> Value {
+    let of = &findings.study;
+    let columns = of
+        .columns
+        .iter()
+        .map(|(key, heading)| json!({"key": key, "heading": heading}));
+    let rows = findings.rows.iter().map(|row| {
+        let values = of.columns.iter().zip(&row.values);
+        let values = values.map(|((key, _), value)| ((*key).to_owned(), json!(value)));
+        json!({"name": row.name, "group": row.group, "values": values.collect::<Map<_, _>>()})
     });
-    let rows = findings.rows.iter().map(|row| RowJson {
-        name: &row.name,
-        group: row.group,
-        values: findings
-            .columns
-            .iter()
-            .map(|c| c.key)
-            .zip(&row.values)
-            .collect(),
-    });
-    StudyJson {
-        name: findings.name,
-        title: findings.title,
-        choice: findings.choice,
-        columns: columns.collect(),
-        rows: rows.collect(),
-        trades: findings.trades.iter().map(|t| trade(findings, t)).collect(),
-    }
+    json!({
+        "name": of.name,
+        "title": of.title,
+        "choice": of.choice,
+        "columns": columns.collect::<Vec<_>>(),
+        "rows": rows.collect::<Vec<_>>(),
+        "trades": of.trades.iter().map(|trade| self::trade(findings, trade)).collect::<Vec<_>>(),
+    })
 }
 
-fn trade<'a>(findings: &'a StudyFindings, trade: &Trade) -> TradeJson<'a> {
-    let key = |column: usize| findings.columns.get(column).map_or("", |c| c.key);
-    let on = findings.front(trade);
-    let rows = findings.rows.iter().zip(on).filter(|(_, on)| *on);
-    TradeJson {
-        cost: key(trade.cost),
-        loss: key(trade.loss),
-        front: rows.map(|(row, _)| row.name.as_str()).collect(),
-    }
+fn trade(findings: &StudyFindings, trade: &Trade) -> Value {
+    let [(cost, _), (loss, _)] = [trade.cost, trade.loss].map(|column| findings.column(column));
+    let rows = findings.rows.iter().zip(findings.front(trade));
+    let front = rows.filter_map(|(row, on)| on.then_some(&row.name));
+    json!({"cost": cost, "loss": loss, "front": front.collect::<Vec<_>>()})
 }
 
 #[cfg(test)]
@@ -112,7 +62,7 @@ mod tests {
     fn the_json_structure_is_stable() {
         let mut report = example();
         report.studies[0].rows.truncate(2);
-        let json = serde_json::to_value(self::report(&report)).unwrap();
+        let json = self::json(&report);
         let timed = |median: f64, min: f64, max: f64| serde_json::json!({"median": median, "min": min, "max": max, "runs": 5});
         let expected = serde_json::json!({
             "schema": 1,

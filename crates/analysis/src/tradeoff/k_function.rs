@@ -7,15 +7,24 @@ use std::num::NonZeroUsize;
 
 use glam::DVec3;
 
-use super::{
-    Bench, Measurement, Row, Study, StudyColumn, StudyError, StudyFindings, Trade, Work, in_rounds,
-};
+use super::{Bench, Measured, Row, Study, StudyError, TimedChoice, Trade};
 use crate::k::{
     Edges, Estimate, FrameRotation, KError, Registers, Sampling, exact_by, sampled, turned,
 };
 
 /// The study.
-pub struct KFunction;
+pub const K_FUNCTION: Study = Study {
+    name: "k-function",
+    title: "Ways to the K function",
+    choice: "way",
+    columns: &[
+        ("time_ms", "ms"),
+        ("error", "error of D"),
+        ("bound", "its bound"),
+    ],
+    trades: &[Trade::new(0, 1).joined(), Trade::new(0, 2).joined()],
+    measure,
+};
 
 /// Number of bins, as in the paper.
 const BINS: usize = 151;
@@ -66,69 +75,35 @@ fn sample(scan: &StudyScan, tolerance: f64) -> Result<Estimate, KError> {
     sampled(&scan.points, &scan.edges, &sampling)
 }
 
-impl Study for KFunction {
-    fn name(&self) -> &'static str {
-        "k-function"
-    }
-
-    fn title(&self) -> &'static str {
-        "Ways to the K function"
-    }
-
-    fn measure(&self, bench: &mut Bench<'_>) -> Result<StudyFindings, StudyError> {
-        let wrong = |error: KError| StudyError::Workload(Box::new(error));
-        let scan = scan(bench.size(2, 8)).map_err(wrong)?;
-        let truth = every(&scan, Registers::Best).map_err(wrong)?;
-        let mut errors = Vec::new();
-        for (.., way) in WAYS {
-            let of = way(&scan).map_err(wrong)?;
-            let off = of
-                .shares
-                .iter()
-                .zip(&truth.shares)
-                .map(|(a, b)| (a - b).abs());
-            errors.push((off.fold(0.0, f64::max), of.largest_bound()));
-        }
-        let plan = bench.plan(2, 7);
-        let points = scan.points.len();
-        (bench.say)(&format!("{points} points, {} rounds", plan.rounds));
-        let mut work: Vec<Work<'_, KError>> = Vec::new();
-        for (.., way) in WAYS {
-            let scan = &scan;
-            work.push(Box::new(move || way(scan).map(|of| drop(black_box(of)))));
-        }
-        let times = in_rounds(bench.clock, plan, &mut work).map_err(wrong)?;
-        let rows = WAYS.into_iter().zip(times).zip(errors);
-        let rows = rows.map(|(((name, label, group, _), time), (error, bound))| {
-            Row::new(
-                name,
-                label,
-                group,
-                vec![
-                    Measurement::Timed(time.times(1e3)),
-                    Measurement::Computed(error),
-                    Measurement::Computed(bound),
-                ],
-            )
+fn measure(bench: &mut Bench<'_>) -> Result<Measured, StudyError> {
+    let wrong = |error: KError| StudyError::Workload(Box::new(error));
+    let scan = scan(bench.pick(2, 8)).map_err(wrong)?;
+    let truth = every(&scan, Registers::Best).map_err(wrong)?;
+    let mut choices = Vec::new();
+    for (name, label, group, way) in WAYS {
+        let of = way(&scan).map_err(wrong)?;
+        let off = of
+            .shares
+            .iter()
+            .zip(&truth.shares)
+            .map(|(a, b)| (a - b).abs());
+        let error = off.fold(0.0, f64::max);
+        let scan = &scan;
+        choices.push(TimedChoice {
+            row: Row::new(name, label, group, [error, of.largest_bound()]),
+            scale: 1e3,
+            work: Box::new(move || way(scan).map(|of| drop(black_box(of))).map_err(wrong)),
         });
-        let trade = |loss| Trade::new(0, loss).joined();
-        Ok(StudyFindings {
-            name: self.name(),
-            title: self.title(),
-            about: vec![
-                format!("An RMBL of {points} points: a VLP-16 at 901 azimuths, rotated in steps from 0 to 180 degrees; 151 bins of equal \
-                angle; one thread."),
-                "The error is the largest error of D, the share of all pairs, relative to the exact count. The bound is the method's: for \
-                 samples a confidence interval with a risk of 1 in 1000.".to_owned(),
-            ],
-            choice: "way",
-            columns: [("time_ms", "ms"), ("error", "error of D"), ("bound", "its bound")]
-                .map(StudyColumn::log)
-                .into(),
-            rows: rows.collect(),
-            trades: vec![trade(1), trade(2)],
-        })
     }
+    let points = scan.points.len();
+    let plan = bench.plan(&format!("{points} points"), 2, 7);
+    let about = vec![
+        format!("An RMBL of {points} points: a VLP-16 at 901 azimuths, rotated in steps from 0 to 180 degrees; 151 bins of equal \
+        angle; one thread."),
+        "The error is the largest error of D, the share of all pairs, relative to the exact count. The bound is the method's: for \
+         samples a confidence interval with a risk of 1 in 1000.".to_owned(),
+    ];
+    Ok((about, bench.rows(plan, choices)?))
 }
 
 /// An RMBL of `frames` frames (Eq. 1-6 of the paper with d = 0) that stands still within a frame.
@@ -176,15 +151,15 @@ mod tests {
             effort: Effort::Quick,
             say: &mut |_| (),
         };
-        let found = KFunction.measure(&mut bench).unwrap();
-        assert_eq!(found.rows.len(), WAYS.len());
-        for row in &found.rows {
+        let (_, rows) = measure(&mut bench).unwrap();
+        assert_eq!(rows.len(), WAYS.len());
+        for row in &rows {
             let [error, bound] = [1, 2].map(|column| row.values[column].middle());
             assert!(error <= bound, "{}: {error} {bound}", row.name);
             assert_eq!(bound == 0.0, row.group == "exact", "{}", row.name);
         }
         let bound = |name: &str| {
-            let row = found.rows.iter().find(|row| row.name == name);
+            let row = rows.iter().find(|row| row.name == name);
             row.unwrap().values[2].middle()
         };
         assert!(bound("sampled, 1e-4") <= 1e-4);

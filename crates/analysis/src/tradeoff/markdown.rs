@@ -24,7 +24,7 @@ impl Book<'_> {
             self.page(report),
         );
         let figures = report.studies.iter().map(|study| {
-            let path = Path::new(self.name).join(format!("{}.svg", study.name));
+            let path = Path::new(self.name).join(format!("{}.svg", study.study.name));
             (path, svg::figure(study))
         });
         [page].into_iter().chain(figures).collect()
@@ -57,12 +57,12 @@ impl Book<'_> {
 }
 
 fn section(findings: &StudyFindings, folder: &str) -> String {
-    let mut section = vec![format!("## {}", escaped(findings.title))];
+    let mut section = vec![format!("## {}", escaped(findings.study.title))];
     section.extend(findings.about.iter().map(|paragraph| escaped(paragraph)));
     section.push(format!(
         "![{}]({folder}/{}.svg)",
-        escaped(findings.title),
-        findings.name
+        escaped(findings.study.title),
+        findings.study.name
     ));
     section.push(table(findings));
     section.extend(findings.verdicts().iter().map(|verdict| escaped(verdict)));
@@ -70,11 +70,14 @@ fn section(findings: &StudyFindings, folder: &str) -> String {
 }
 
 fn table(findings: &StudyFindings) -> String {
-    let headings = findings.columns.iter().map(|column| column.heading);
-    let headings: Vec<&str> = [findings.choice].into_iter().chain(headings).collect();
+    let headings = findings.study.columns.iter().map(|(_, heading)| *heading);
+    let headings: Vec<&str> = [findings.study.choice]
+        .into_iter()
+        .chain(headings)
+        .collect();
     let mut lines = vec![
         format!("| {} | front |", headings.join(" | ")),
-        format!("|---{}|:-:|", "|--:".repeat(findings.columns.len())),
+        format!("|---{}|:-:|", "|--:".repeat(findings.study.columns.len())),
     ];
     for (row, mark) in findings.rows.iter().zip(findings.marks()) {
         let values: Vec<String> = row.values.iter().map(Measurement::text).collect();

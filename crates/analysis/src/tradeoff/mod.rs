@@ -1,13 +1,13 @@
 //! Studies of choices that trade accuracy for time.
 //!
-//! A [`Study`] measures every choice and returns [`StudyFindings`]: a table, the pairs of columns
-//! that are traded, and the choices on the Pareto front ([`front`]). [`text`], [`svg`], [`Book`],
-//! [`html`] and [`json`] show the findings. [`KFunction`] and [`ScanSpeed`] are studies; others are
-//! in `velomotion` and in `studies`. The clock is an argument ([`StudyClock`]).
+//! A [`Study`] measures every choice. [`StudyFindings`] are a table, the pairs of columns that are
+//! traded, and the choices on the Pareto front ([`front`]). [`text`], [`svg`], [`Book`], [`html`]
+//! and [`json()`] show them. [`K_FUNCTION`] and [`SCAN_SPEED`] are studies; others are in
+//! `velomotion` and in `studies`. The clock is an argument.
 
 pub mod front;
 pub mod html;
-pub mod json;
+mod json;
 mod k_function;
 mod markdown;
 mod noise;
@@ -19,13 +19,13 @@ pub mod svg;
 pub mod text;
 mod timing;
 
-pub use crate::draw::Scale;
-pub use k_function::KFunction;
+pub use json::json;
+pub use k_function::K_FUNCTION;
 pub use markdown::Book;
 pub use noise::SeededNoise;
-pub use scan_speed::ScanSpeed;
+pub use scan_speed::SCAN_SPEED;
 pub use study::{
-    Bench, Effort, Machine, Measurement, Row, Study, StudyColumn, StudyError, StudyFindings,
-    StudyReport, Trade, UnknownStudy, select,
+    Bench, Effort, Machine, Measured, Measurement, Row, Study, StudyError, StudyFindings,
+    StudyReport, TimedChoice, Trade, UnknownStudy, select,
 };
-pub use timing::{StudyClock, TimingPlan, TimingSpread, Work, in_rounds};
+pub use timing::{TimingPlan, TimingSpread, Work, in_rounds};

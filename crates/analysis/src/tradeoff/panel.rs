@@ -1,7 +1,8 @@
 //! A plot: axes, grid, steps of the front, and a mark per choice with its spread and label.
 
 use super::svg::{Groups, WIDTH};
-use super::{Measurement, Row, Scale, StudyFindings, Trade};
+use super::{Measurement, Row, StudyFindings, Trade};
+use crate::draw::Scale;
 use crate::draw::axis::PlotAxis;
 use crate::draw::labels::{self, LabelBox};
 use crate::draw::{escaped, marks};
@@ -47,8 +48,8 @@ pub(super) fn draw(
         BOTTOM - TOP,
         BOTTOM + 34.0,
         grid = grid(&x, &y),
-        loss = escaped(findings.heading(trade.loss)),
-        cost = escaped(findings.heading(trade.cost)),
+        loss = escaped(findings.column(trade.loss).1),
+        cost = escaped(findings.column(trade.cost).1),
     );
     let points = points(findings, trade, &x, &y);
     let mut lines: Vec<LabelBox> = Vec::new();
@@ -77,10 +78,6 @@ pub(super) fn draw(
 }
 
 fn axis(findings: &StudyFindings, column: usize, from: f64, to: f64) -> PlotAxis {
-    let scale = findings
-        .columns
-        .get(column)
-        .map_or(Scale::Linear, |c| c.scale);
     let values = findings
         .rows
         .iter()
@@ -89,7 +86,7 @@ fn axis(findings: &StudyFindings, column: usize, from: f64, to: f64) -> PlotAxis
         let (low, high) = ends(value);
         [low, high]
     });
-    PlotAxis::new(scale, ends, from, to)
+    PlotAxis::new(Scale::Log, ends, from, to)
 }
 
 const fn ends(value: &Measurement) -> (f64, f64) {

@@ -1,12 +1,27 @@
 //! Study of the tilt speed: scan time, resolution and unseen areas. Computed, not timed.
 
 use super::pattern::{PatternLidar, TiltSweep};
-use super::{
-    Bench, Effort, Measurement, Row, Study, StudyColumn, StudyError, StudyFindings, Trade,
-};
+use super::{Bench, Measured, Row, Study, StudyError, Trade};
 
 /// The study.
-pub struct ScanSpeed;
+pub const SCAN_SPEED: Study = Study {
+    name: "scan-speed",
+    title: "Tilt speed and scan time",
+    choice: "cruise",
+    columns: &[
+        ("scan_time_s", "scan time, s"),
+        ("mean_resolution_deg", "mean vertical resolution, deg"),
+        ("gap_deg", "widest gap, deg"),
+        ("gap_in_the_middle_deg", "widest gap in the middle, deg"),
+        ("widest_circle_deg", "widest unseen circle, deg"),
+    ],
+    trades: &[
+        Trade::new(0, 1).joined(),
+        Trade::new(0, 2).joined(),
+        Trade::new(0, 3).joined(),
+    ],
+    measure,
+};
 
 /// 45 degrees, with the drive's factory ramps.
 const WAY_DEG: f64 = 45.0;
@@ -17,71 +32,37 @@ const SPEEDS_DEG_S: [f64; 18] = [
     56.25,
 ];
 
-impl Study for ScanSpeed {
-    fn name(&self) -> &'static str {
-        "scan-speed"
-    }
-
-    fn title(&self) -> &'static str {
-        "Tilt speed and scan time"
-    }
-
-    fn measure(&self, bench: &mut Bench<'_>) -> Result<StudyFindings, StudyError> {
-        let lidar = PatternLidar::vlp_16();
-        let (phases, step_deg) = match bench.effort {
-            Effort::Quick => (8, 3.0),
-            Effort::Full => (64, 0.5),
+fn measure(bench: &mut Bench<'_>) -> Result<Measured, StudyError> {
+    let lidar = PatternLidar::vlp_16();
+    let (phases, step_deg) = bench.pick((8, 3.0), (64, 0.5));
+    (bench.say)(&format!("{} speeds, computed", SPEEDS_DEG_S.len()));
+    let rows = SPEEDS_DEG_S.map(|speed_deg_s| {
+        let sweep = TiltSweep {
+            way_deg: WAY_DEG,
+            speed_deg_s,
+            accel_deg_s2: ACCEL_DEG_S2,
         };
-        (bench.say)(&format!("{} speeds, computed", SPEEDS_DEG_S.len()));
-        let rows = SPEEDS_DEG_S.map(|speed_deg_s| {
-            let sweep = TiltSweep {
-                way_deg: WAY_DEG,
-                speed_deg_s,
-                accel_deg_s2: ACCEL_DEG_S2,
-            };
-            let gaps = lidar.gaps(&sweep, phases);
-            Row {
-                name: format!("{speed_deg_s} deg/s"),
-                label: speed_deg_s.to_string(),
-                group: "VLP-16 at 10 turns a second",
-                values: [
-                    sweep.duration_s(),
-                    lidar.mean_resolution_deg(&sweep),
-                    gaps.field_deg,
-                    gaps.middle_deg,
-                    lidar.widest_circle_deg(&sweep, step_deg),
-                ]
-                .map(|x| Measurement::Computed(without_rounding(x)))
-                .to_vec(),
-            }
-        });
-        Ok(StudyFindings {
-            name: self.name(),
-            title: self.title(),
-            about: about(phases, step_deg),
-            choice: "cruise",
-            columns: columns(),
-            rows: rows.into(),
-            trades: [1, 2, 3].map(|loss| Trade::new(0, loss).joined()).into(),
-        })
-    }
+        let gaps = lidar.gaps(&sweep, phases);
+        let values = [
+            sweep.duration_s(),
+            lidar.mean_resolution_deg(&sweep),
+            gaps.field_deg,
+            gaps.middle_deg,
+            lidar.widest_circle_deg(&sweep, step_deg),
+        ];
+        Row::new(
+            format!("{speed_deg_s} deg/s"),
+            speed_deg_s.to_string(),
+            "VLP-16 at 10 turns a second",
+            values.map(without_rounding),
+        )
+    });
+    Ok((about(phases, step_deg), rows.into()))
 }
 
 /// Rounds to 1e-9, so that equal gaps of two speeds compare as equal.
 fn without_rounding(x: f64) -> f64 {
     (x * 1e9).round() / 1e9
-}
-
-fn columns() -> Vec<StudyColumn> {
-    [
-        ("scan_time_s", "scan time, s"),
-        ("mean_resolution_deg", "mean vertical resolution, deg"),
-        ("gap_deg", "widest gap, deg"),
-        ("gap_in_the_middle_deg", "widest gap in the middle, deg"),
-        ("widest_circle_deg", "widest unseen circle, deg"),
-    ]
-    .map(StudyColumn::log)
-    .into()
 }
 
 fn about(phases: u32, step_deg: f64) -> Vec<String> {
@@ -111,6 +92,7 @@ fn about(phases: u32, step_deg: f64) -> Vec<String> {
 mod tests {
     use units::Stamp;
 
+    use super::super::{Effort, StudyFindings};
     use super::*;
 
     #[test]
@@ -121,7 +103,9 @@ mod tests {
             effort: Effort::Quick,
             say: &mut |_| {},
         };
-        let findings = ScanSpeed.measure(&mut bench).unwrap();
+        let (about, rows) = measure(&mut bench).unwrap();
+        let study = SCAN_SPEED;
+        let findings = StudyFindings { study, about, rows };
         let value = |name: &str, column: usize| {
             let row = findings.rows.iter().find(|row| row.name == name).unwrap();
             row.values[column].middle()
@@ -140,6 +124,6 @@ mod tests {
             assert!(row.values[4].middle() >= 2.0 - 1e-9, "{row:?}");
         }
         // Slower is finer on average, so every speed is on the first front.
-        assert_eq!(findings.front(&findings.trades[0]), [true; 18]);
+        assert_eq!(findings.front(&study.trades[0]), [true; 18]);
     }
 }

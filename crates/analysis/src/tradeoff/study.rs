@@ -4,50 +4,46 @@ use std::fmt;
 
 use cloud::SinkError;
 use serde::Serialize;
-use units::Span;
+use units::{Host, Span, Stamp};
 
 use super::front::{front, front_within_spread};
-use super::{Scale, StudyClock, TimingPlan, TimingSpread};
+use super::{TimingPlan, TimingSpread, Work, in_rounds};
 use crate::draw::number::short;
 
 /// A comparison of several ways to do one thing.
-pub trait Study {
+#[derive(Clone, Copy, Debug)]
+pub struct Study {
     /// Name on the command line and of its files: lower-case letters and hyphens.
-    fn name(&self) -> &'static str;
-
+    pub name: &'static str,
     /// The compared choice in one line.
-    fn title(&self) -> &'static str;
-
+    pub title: &'static str,
+    /// Heading of the choices' names.
+    pub choice: &'static str,
+    /// The measured quantities: key in JSON, which ends with the unit, and heading with the unit.
+    pub columns: &'static [(&'static str, &'static str)],
+    /// The traded columns.
+    pub trades: &'static [Trade],
     /// Measures the choices.
-    ///
-    /// # Errors
-    /// [`StudyError`] if a choice fails.
-    fn measure(&self, bench: &mut Bench<'_>) -> Result<StudyFindings, StudyError>;
+    pub measure: fn(&mut Bench<'_>) -> Result<Measured, StudyError>,
 }
+
+/// Paragraphs on the workload and the columns, and the choices.
+pub type Measured = (Vec<String>, Vec<Row>);
 
 /// The studies of `all` with the names `only`, in their own order; all of them if `only` is empty.
 ///
 /// # Errors
 /// [`UnknownStudy`] if a name belongs to no study.
-pub fn select<'a>(
-    all: &[&'a dyn Study],
-    only: &[String],
-) -> Result<Vec<&'a dyn Study>, UnknownStudy> {
-    if let Some(name) = only
-        .iter()
-        .find(|name| all.iter().all(|s| s.name() != *name))
-    {
+pub fn select(all: &[Study], only: &[String]) -> Result<Vec<Study>, UnknownStudy> {
+    if let Some(name) = only.iter().find(|name| all.iter().all(|s| s.name != *name)) {
         return Err(UnknownStudy {
             name: name.clone(),
-            known: all.iter().map(|study| study.name()).collect(),
+            known: all.iter().map(|study| study.name).collect(),
         });
     }
-    let selected = |name| only.is_empty() || only.iter().any(|wanted| wanted == name);
-    Ok(all
-        .iter()
-        .copied()
-        .filter(|study| selected(study.name()))
-        .collect())
+    let is_selected =
+        |study: &&Study| only.is_empty() || only.iter().any(|name| name == study.name);
+    Ok(all.iter().filter(is_selected).copied().collect())
 }
 
 /// A name that belongs to no study.
@@ -91,53 +87,62 @@ pub enum Effort {
 /// The environment of a measurement.
 pub struct Bench<'a> {
     /// The clock.
-    pub clock: &'a mut dyn StudyClock,
+    pub clock: &'a mut dyn FnMut() -> Stamp<Host>,
     /// Size of the workloads.
     pub effort: Effort,
     /// Receives progress messages.
     pub say: &'a mut dyn FnMut(&str),
 }
 
+/// A choice to be timed.
+pub struct TimedChoice<'a> {
+    /// Its row without the first value, which is the time.
+    pub row: Row,
+    /// Factor from seconds to the unit of the first column.
+    pub scale: f64,
+    /// The work to be timed.
+    pub work: Work<'a>,
+}
+
 impl Bench<'_> {
     /// `quick` or `full`, by the effort.
-    #[must_use]
-    pub const fn size(&self, quick: usize, full: usize) -> usize {
+    pub fn pick<T>(&self, quick: T, full: T) -> T {
         match self.effort {
             Effort::Quick => quick,
             Effort::Full => full,
         }
     }
 
-    /// A timing plan with measurements of at least 2 ms.
-    #[must_use]
-    pub const fn plan(&self, quick: usize, full: usize) -> TimingPlan {
+    /// A timing plan with measurements of at least 2 ms; reports the size of the workload and the
+    /// number of rounds.
+    pub fn plan(&mut self, workload: &str, quick: usize, full: usize) -> TimingPlan {
+        let rounds = self.pick(quick, full);
+        (self.say)(&format!("{workload}, {rounds} rounds"));
         TimingPlan {
-            rounds: self.size(quick, full),
+            rounds,
             least: Span::from_micros(2_000),
         }
     }
-}
 
-/// A measured quantity.
-#[derive(Clone, Debug, PartialEq)]
-pub struct StudyColumn {
-    /// Name in JSON; ends with the unit.
-    pub key: &'static str,
-    /// Heading with the unit.
-    pub heading: &'static str,
-    /// Scale of its axis.
-    pub scale: Scale,
-}
-
-impl StudyColumn {
-    /// A column on a logarithmic axis.
-    #[must_use]
-    pub const fn log((key, heading): (&'static str, &'static str)) -> Self {
-        Self {
-            key,
-            heading,
-            scale: Scale::Log,
-        }
+    /// The rows of choices with their times.
+    ///
+    /// # Errors
+    /// The first error of any work.
+    pub fn rows(
+        &mut self,
+        plan: TimingPlan,
+        choices: Vec<TimedChoice<'_>>,
+    ) -> Result<Vec<Row>, StudyError> {
+        let (mut work, rows): (Vec<_>, Vec<_>) = choices
+            .into_iter()
+            .map(|choice| (choice.work, (choice.row, choice.scale)))
+            .unzip();
+        let times = in_rounds(self.clock, plan, &mut work)?;
+        let timed = rows.into_iter().zip(times).map(|((mut row, scale), time)| {
+            row.values.insert(0, Measurement::Timed(time.times(scale)));
+            row
+        });
+        Ok(timed.collect())
     }
 }
 
@@ -196,18 +201,18 @@ pub struct Row {
 }
 
 impl Row {
-    /// A row of the table; the name occurs once per study.
+    /// A row of computed values; the name occurs once per study.
     pub fn new(
         name: impl Into<String>,
         label: impl Into<String>,
         group: &'static str,
-        values: Vec<Measurement>,
+        computed: impl IntoIterator<Item = f64>,
     ) -> Self {
         Self {
             name: name.into(),
             label: label.into(),
             group,
-            values,
+            values: computed.into_iter().map(Measurement::Computed).collect(),
         }
     }
 }
@@ -257,35 +262,21 @@ impl Trade {
 }
 
 /// Findings of a study.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct StudyFindings {
-    /// Name of the study.
-    pub name: &'static str,
-    /// Title of the study.
-    pub title: &'static str,
+    /// The study.
+    pub study: Study,
     /// Paragraphs on the workload and the columns.
     pub about: Vec<String>,
-    /// Heading of the choices' names.
-    pub choice: &'static str,
-    /// The measured quantities.
-    pub columns: Vec<StudyColumn>,
     /// The choices.
     pub rows: Vec<Row>,
-    /// The traded columns.
-    pub trades: Vec<Trade>,
 }
 
 impl StudyFindings {
-    /// The value of a row in a column.
+    /// Key and heading of a column.
     #[must_use]
-    pub fn value(&self, row: usize, column: usize) -> Option<&Measurement> {
-        self.rows.get(row)?.values.get(column)
-    }
-
-    /// Heading of a column.
-    #[must_use]
-    pub fn heading(&self, column: usize) -> &'static str {
-        self.columns.get(column).map_or("", |c| c.heading)
+    pub fn column(&self, column: usize) -> (&'static str, &'static str) {
+        self.study.columns.get(column).copied().unwrap_or_default()
     }
 
     /// Whether each row is on the front of a trade: the medians of no other row dominate its
@@ -326,15 +317,11 @@ impl StudyFindings {
     fn by_group(&self, trade: &Trade, front: impl Fn(&[&Row]) -> Vec<bool>) -> Vec<bool> {
         let mut on = vec![false; self.rows.len()];
         for group in self.circumstances(trade) {
-            let of_group = |row: &Row| group.is_none_or(|group| row.group == group);
-            let rows: Vec<&Row> = self.rows.iter().filter(|row| of_group(row)).collect();
-            let places = self
-                .rows
-                .iter()
-                .zip(&mut on)
-                .filter(|(row, _)| of_group(row));
-            for ((_, place), found) in places.zip(front(&rows)) {
-                *place = found;
+            let both = self.rows.iter().zip(&mut on);
+            let own = both.filter(|(row, _)| group.is_none_or(|group| row.group == group));
+            let (rows, places): (Vec<&Row>, Vec<&mut bool>) = own.unzip();
+            for (place, is_on) in places.into_iter().zip(front(&rows)) {
+                *place = is_on;
             }
         }
         on
@@ -345,8 +332,8 @@ impl StudyFindings {
     #[must_use]
     pub fn marks(&self) -> Vec<String> {
         let mut marks = vec![String::new(); self.rows.len()];
-        for (number, trade) in self.trades.iter().enumerate() {
-            let mark = match self.trades.len() {
+        for (number, trade) in self.study.trades.iter().enumerate() {
+            let mark = match self.study.trades.len() {
                 1 => "*".to_owned(),
                 _ => (number + 1).to_string(),
             };
@@ -364,7 +351,7 @@ impl StudyFindings {
     /// A sentence on each front, with its choices in order of cost.
     #[must_use]
     pub fn verdicts(&self) -> Vec<String> {
-        let trades = self.trades.iter();
+        let trades = self.study.trades.iter();
         trades
             .flat_map(|trade| {
                 let groups = self.circumstances(trade).into_iter();
@@ -398,8 +385,8 @@ impl StudyFindings {
         };
         format!(
             "Pareto front of {} and {}{}: {names}.",
-            self.heading(trade.cost),
-            self.heading(trade.loss),
+            self.column(trade.cost).1,
+            self.column(trade.loss).1,
             group.map_or(String::new(), |group| format!(", {group}")),
         )
     }
@@ -477,7 +464,7 @@ fn os_name(os_release: &str, kernel: &str) -> String {
 }
 
 /// All findings of one run.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct StudyReport {
     /// Name and version of the program.
     pub program: String,
@@ -490,6 +477,39 @@ pub struct StudyReport {
 }
 
 impl StudyReport {
+    /// Measures studies one after the other.
+    ///
+    /// # Errors
+    /// The first study that fails, with its error.
+    pub fn measure(
+        studies: &[Study],
+        machine: Machine,
+        bench: Bench<'_>,
+    ) -> Result<Self, (Study, StudyError)> {
+        let mut findings = Vec::with_capacity(studies.len());
+        for (index, &study) in studies.iter().enumerate() {
+            (bench.say)(&format!(
+                "{} of {}: {}",
+                index + 1,
+                studies.len(),
+                study.title
+            ));
+            let mut indented = Bench {
+                clock: &mut *bench.clock,
+                effort: bench.effort,
+                say: &mut |line| (bench.say)(&format!("  {line}")),
+            };
+            let (about, rows) = (study.measure)(&mut indented).map_err(|error| (study, error))?;
+            findings.push(StudyFindings { study, about, rows });
+        }
+        Ok(Self {
+            program: concat!("velomotion ", env!("CARGO_PKG_VERSION")).to_owned(),
+            effort: bench.effort,
+            machine,
+            studies: findings,
+        })
+    }
+
     /// Reasons to distrust the figures, one sentence each.
     #[must_use]
     pub fn cautions(&self) -> Vec<&'static str> {
@@ -529,11 +549,6 @@ pub(crate) fn example() -> StudyReport {
             Measurement::Computed(size),
         ],
     };
-    let column = |key, heading, scale| StudyColumn {
-        key,
-        heading,
-        scale,
-    };
     StudyReport {
         program: "velomotion 0.0.0".to_owned(),
         effort: Effort::Quick,
@@ -544,24 +559,24 @@ pub(crate) fn example() -> StudyReport {
             build: "release",
         },
         studies: vec![StudyFindings {
-            name: "example",
-            title: "Ways & means",
+            study: Study {
+                name: "example",
+                title: "Ways & means",
+                choice: "way",
+                columns: &[
+                    ("time_ns", "ns a point"),
+                    ("error_mm", "worst error, mm"),
+                    ("size_bytes", "bytes"),
+                ],
+                trades: const { &[Trade::new(0, 1).joined(), Trade::new(2, 1)] },
+                measure: |_| Ok(Measured::default()),
+            },
             about: vec!["What is <measured> here, in a sentence that is long enough to need a second line of text.".to_owned()],
-            choice: "way",
-            columns: vec![
-                column("time_ns", "ns a point", Scale::Log),
-                column("error_mm", "worst error, mm", Scale::Log),
-                column("size_bytes", "bytes", Scale::Linear),
-            ],
             rows: vec![
                 row("coarse", "plain", 2.0, 130.0, 10.0),
                 row("fine", "plain", 9.0, 1e-6, 12.0),
                 row("exact", "clever", 20.0, 0.0, 14.0),
                 row("bad", "clever", 21.0, 1.0, 9.0),
-            ],
-            trades: vec![
-                Trade { cost: 0, loss: 1, joined: true, by_group: false },
-                Trade { cost: 2, loss: 1, joined: false, by_group: false },
             ],
         }],
     }
@@ -587,8 +602,7 @@ mod tests {
     fn separate_groups_have_separate_fronts() {
         let mut report = example();
         let findings = &mut report.studies[0];
-        findings.trades.truncate(1);
-        findings.trades[0].by_group = true;
+        findings.study.trades = const { &[Trade::new(0, 1).joined().by_group()] };
         findings.rows[2].values[0] = Measurement::Computed(10.0);
         assert_eq!(findings.marks(), ["*", "*", "*", ""]);
         findings.rows[2].values[0] = Measurement::Computed(50.0);

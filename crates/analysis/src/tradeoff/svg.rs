@@ -23,17 +23,17 @@ const MARGIN: f64 = 14.0;
 pub fn figure(findings: &StudyFindings) -> String {
     let groups = Groups::of(findings);
     let legend = groups.legend(findings);
-    let panels_end = TITLE + panel::HEIGHT * findings.trades.len() as f64;
+    let panels_end = TITLE + panel::HEIGHT * findings.study.trades.len() as f64;
     let height = panels_end + LEGEND_LINE * legend.len() as f64 + MARGIN;
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"tv\" viewBox=\"0 0 {WIDTH} {height}\" width=\"{WIDTH}\" height=\"{height}\" \
          role=\"img\">\n<title>{title}</title>\n<style>{STYLE}</style>\n\
          <rect class=\"tv-page\" width=\"{WIDTH}\" height=\"{height}\" rx=\"6\"/>\n\
          <text class=\"tv-ink tv-title\" x=\"{MARGIN}\" y=\"20\">{title}</text>\n",
-        title = escaped(findings.title)
+        title = escaped(findings.study.title)
     );
-    for (number, trade) in findings.trades.iter().enumerate() {
-        let number = (findings.trades.len() > 1).then_some(number + 1);
+    for (number, trade) in findings.study.trades.iter().enumerate() {
+        let number = (findings.study.trades.len() > 1).then_some(number + 1);
         let top = TITLE + panel::HEIGHT * number.map_or(0.0, |n| (n - 1) as f64);
         svg += &panel::draw(findings, trade, number, &groups, top);
     }

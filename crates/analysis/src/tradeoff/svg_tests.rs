@@ -15,7 +15,7 @@ fn the_figure_is_well_formed_and_has_every_choice_in_every_plot() {
         let title = format!("<title>{}</title>", escaped(&row.name));
         assert_eq!(
             svg.matches(&title).count(),
-            findings.trades.len(),
+            findings.study.trades.len(),
             "{title}"
         );
     }

@@ -28,7 +28,7 @@ pub fn report(report: &StudyReport) -> String {
 #[must_use]
 pub fn findings(findings: &StudyFindings) -> String {
     let mut text = vec![
-        format!("{} ({})", findings.title, findings.name),
+        format!("{} ({})", findings.study.title, findings.study.name),
         String::new(),
     ];
     for paragraph in &findings.about {
@@ -46,7 +46,7 @@ pub fn findings(findings: &StudyFindings) -> String {
 /// The table: names on the left, values on the right, marks of the fronts last.
 fn table(findings: &StudyFindings) -> Vec<String> {
     let marks = findings.marks();
-    let headings = findings.columns.iter().map(|c| c.heading).chain(["front"]);
+    let headings = findings.study.columns.iter().map(|c| c.1).chain(["front"]);
     let headings: Vec<&str> = headings.collect();
     let cells: Vec<Vec<String>> = findings
         .rows
@@ -73,7 +73,7 @@ fn table(findings: &StudyFindings) -> Vec<String> {
     let longest = findings.rows.iter().map(|row| length(&row.name)).max();
     let first = longest
         .unwrap_or(0)
-        .max(length(findings.choice))
+        .max(length(findings.study.choice))
         .min(WIDTH.saturating_sub(taken))
         .max(8);
     let heads: Vec<Vec<String>> = headings
@@ -95,7 +95,7 @@ fn table(findings: &StudyFindings) -> Vec<String> {
             })
             .collect();
         let name = if line + 1 == deep {
-            findings.choice
+            findings.study.choice
         } else {
             ""
         };

@@ -4,17 +4,7 @@
 use serde::Serialize;
 use units::{Host, Span, Stamp};
 
-/// A monotonic clock.
-pub trait StudyClock {
-    /// The current time.
-    fn now(&mut self) -> Stamp<Host>;
-}
-
-impl<F: FnMut() -> Stamp<Host>> StudyClock for F {
-    fn now(&mut self) -> Stamp<Host> {
-        self()
-    }
-}
+use super::StudyError;
 
 /// Median and extremes of repeated measurements.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -57,7 +47,7 @@ impl TimingSpread {
 }
 
 /// The work of one alternative.
-pub type Work<'a, E> = Box<dyn FnMut() -> Result<(), E> + 'a>;
+pub type Work<'a> = Box<dyn FnMut() -> Result<(), StudyError> + 'a>;
 
 /// Rounds and length of measurements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,11 +66,11 @@ const MOST_REPEATS: i64 = 100_000;
 ///
 /// # Errors
 /// The first error of any work.
-pub fn in_rounds<E>(
-    clock: &mut dyn StudyClock,
+pub fn in_rounds(
+    clock: &mut dyn FnMut() -> Stamp<Host>,
     plan: TimingPlan,
-    work: &mut [Work<'_, E>],
-) -> Result<Vec<TimingSpread>, E> {
+    work: &mut [Work<'_>],
+) -> Result<Vec<TimingSpread>, StudyError> {
     let mut repeats = Vec::with_capacity(work.len());
     for work in work.iter_mut() {
         let took = time(clock, 1, work)?.as_nanos().max(1);
@@ -101,18 +91,21 @@ pub fn in_rounds<E>(
     Ok(measured.into_iter().map(TimingSpread::of).collect())
 }
 
-fn time<E>(clock: &mut dyn StudyClock, repeats: i64, work: &mut Work<'_, E>) -> Result<Span, E> {
-    let start = clock.now();
+fn time(
+    clock: &mut dyn FnMut() -> Stamp<Host>,
+    repeats: i64,
+    work: &mut Work<'_>,
+) -> Result<Span, StudyError> {
+    let start = clock();
     for _ in 0..repeats {
         work()?;
     }
-    Ok(clock.now().saturating_since(start))
+    Ok(clock().saturating_since(start))
 }
 
 #[cfg(test)]
 mod tests {
     use std::cell::{Cell, RefCell};
-    use std::convert::Infallible;
 
     use super::*;
 
@@ -130,7 +123,7 @@ mod tests {
     fn short_work_is_repeated_and_rounds_rotate_their_order() {
         let now = Cell::new(0_i64);
         let log = RefCell::new(Vec::new());
-        let work = |name: char, ns: i64| -> Work<'_, Infallible> {
+        let work = |name: char, ns: i64| -> Work<'_> {
             let (now, log) = (&now, &log);
             Box::new(move || {
                 now.set(now.get() + ns);
@@ -144,7 +137,7 @@ mod tests {
         };
         let mut clock = || Stamp::from_nanos(now.get());
         let mut works = [work('a', 3_000), work('b', 1_000_000)];
-        let Ok(spreads) = in_rounds(&mut clock, plan, &mut works);
+        let spreads = in_rounds(&mut clock, plan, &mut works).unwrap();
         assert!((spreads[0].median - 3e-6).abs() < 1e-15);
         assert!((spreads[1].max - 1e-3).abs() < 1e-12);
         assert_eq!((spreads[0].runs, spreads[1].runs), (4, 4));
@@ -155,16 +148,16 @@ mod tests {
     #[test]
     fn failing_work_ends_the_measurement() {
         let mut calls = 0;
-        let mut works: [Work<'_, &str>; 1] = [Box::new(|| {
+        let mut works: [Work<'_>; 1] = [Box::new(|| {
             calls += 1;
-            Err("broken")
+            Err(StudyError::workload("broken"))
         })];
         let plan = TimingPlan {
             rounds: 3,
             least: Span::ZERO,
         };
         let error = in_rounds(&mut || Stamp::from_nanos(0), plan, &mut works);
-        assert_eq!(error.unwrap_err(), "broken");
+        assert_eq!(error.unwrap_err().to_string(), "workload: broken");
         drop(works);
         assert_eq!(calls, 1);
     }

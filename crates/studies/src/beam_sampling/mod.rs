@@ -4,10 +4,7 @@ mod reference;
 
 use std::hint::black_box;
 
-use analysis::tradeoff::{
-    Bench, Effort, Measurement, Row, Study, StudyColumn, StudyError, StudyFindings, Trade, Work,
-    in_rounds,
-};
+use analysis::tradeoff::{Bench, Measured, Row, Study, StudyError, TimedChoice, Trade};
 use sim::effect_models::{Divergence, DivergenceSettings};
 use sim::effects::BeamEffect;
 use sim::firing::{Echo, Echoes, Firing};
@@ -16,7 +13,19 @@ use crate::shots::Shots;
 use reference::ReferenceFootprint;
 
 /// The study.
-pub(super) struct BeamSampling;
+pub(super) const BEAM_SAMPLING: Study = Study {
+    name: "beam-sampling",
+    title: "Sub-rays of a beam",
+    choice: "scene, sub-rays",
+    columns: &[
+        ("time_ns_per_shot", "ns a shot"),
+        ("rms_error_m", "RMS at edges, m"),
+        ("worst_error_m", "worst at edges, m"),
+        ("dual_wrong_percent", "two returns wrong, %"),
+    ],
+    trades: &[Trade::new(0, 1).by_group(), Trade::new(0, 3).by_group()],
+    measure,
+};
 
 /// Sub-rays along the scan and across it. 5 x 3 is the default of a scene.
 const GRIDS: [[usize; 2]; 6] = [[3, 1], [3, 3], [5, 3], [7, 5], [9, 7], [15, 9]];
@@ -59,83 +68,41 @@ struct SamplingError {
     wrong: f64,
 }
 
-impl Study for BeamSampling {
-    fn name(&self) -> &'static str {
-        "beam-sampling"
+fn measure(bench: &mut Bench<'_>) -> Result<Measured, StudyError> {
+    let (firings, grids) = bench.pick((48, &GRIDS[1..3]), (1_500, &GRIDS[..]));
+    let plan = bench.plan(&format!("{firings} firings"), 3, 9);
+    let mut scenes = Vec::new();
+    for name in SCENES {
+        let shots = Shots::of(name, firings)?;
+        let edges = edges(&shots)?;
+        scenes.push((name, shots, edges, choices(grids)?));
     }
-
-    fn title(&self) -> &'static str {
-        "Sub-rays of a beam"
-    }
-
-    fn measure(&self, bench: &mut Bench<'_>) -> Result<StudyFindings, StudyError> {
-        let (firings, grids) = match bench.effort {
-            Effort::Quick => (48, &GRIDS[1..3]),
-            Effort::Full => (1_500, &GRIDS[..]),
-        };
-        let plan = bench.plan(3, 9);
-        (bench.say)(&format!("{firings} firings, {} rounds", plan.rounds));
-        let mut scenes = Vec::new();
-        for name in SCENES {
-            let shots = Shots::of(name, firings)?;
-            let edges = edges(&shots)?;
-            scenes.push((name, shots, edges, choices(grids)?));
-        }
-        let mut work: Vec<Work<'_, StudyError>> = Vec::new();
-        let mut named = Vec::new();
-        for (scene, shots, edges, choices) in &scenes {
-            let per_shot = 1e9 / shots.count().max(1) as f64;
-            for choice in choices {
-                named.push((*scene, choice, per_shot, off(&choice.way, shots, edges)));
-                work.push(Box::new(|| {
+    let mut timed = Vec::new();
+    for (scene, shots, edges, choices) in &scenes {
+        for choice in choices {
+            let off = off(&choice.way, shots, edges);
+            timed.push(TimedChoice {
+                row: Row::new(
+                    format!("{scene}, {}", choice.name),
+                    choice.label.clone(),
+                    scene,
+                    [off.rms_m, off.worst_m, 100.0 * off.wrong],
+                ),
+                scale: 1e9 / shots.count().max(1) as f64,
+                work: Box::new(|| {
                     choice.way.act(shots, |_, echoes| {
                         black_box(echoes);
                     });
                     Ok(())
-                }));
-            }
+                }),
+            });
         }
-        let times = in_rounds(bench.clock, plan, &mut work)?;
-        drop(work);
-        let rows = named.into_iter().zip(times);
-        let rows = rows.map(|((scene, choice, per_shot, off), time)| {
-            Row::new(
-                format!("{scene}, {}", choice.name),
-                choice.label.clone(),
-                scene,
-                vec![
-                    Measurement::Timed(time.times(per_shot)),
-                    Measurement::Computed(off.rms_m),
-                    Measurement::Computed(off.worst_m),
-                    Measurement::Computed(100.0 * off.wrong),
-                ],
-            )
-        });
-        let rows = rows.collect();
-        let counts = scenes
-            .iter()
-            .map(|(scene, shots, edges, _)| counted(scene, shots, edges));
-        Ok(StudyFindings {
-            name: self.name(),
-            title: self.title(),
-            about: about(&counts.collect::<Vec<_>>()),
-            choice: "scene, sub-rays",
-            columns: columns(),
-            rows,
-            trades: [1, 3].map(|loss| Trade::new(0, loss).by_group()).into(),
-        })
     }
-}
-
-fn columns() -> Vec<StudyColumn> {
-    [
-        ("time_ns_per_shot", "ns a shot"),
-        ("rms_error_m", "RMS at edges, m"),
-        ("worst_error_m", "worst at edges, m"),
-        ("dual_wrong_percent", "two returns wrong, %"),
-    ]
-    .map(StudyColumn::log)
-    .into()
+    let rows = bench.rows(plan, timed)?;
+    let counts = scenes
+        .iter()
+        .map(|(scene, shots, edges, _)| counted(scene, shots, edges));
+    Ok((about(&counts.collect::<Vec<_>>()), rows))
 }
 
 fn counted(scene: &str, shots: &Shots, edges: &[SilhouetteEdge]) -> String {

@@ -7,8 +7,7 @@ use std::hint::black_box;
 
 use crate::placing::Real;
 use analysis::tradeoff::{
-    Bench, Effort, Measurement, Row, SeededNoise, Study, StudyColumn, StudyError, StudyFindings,
-    Trade, Work, in_rounds,
+    Bench, Measured, Row, SeededNoise, Study, StudyError, TimedChoice, Trade, Work,
 };
 use glam::DVec3;
 
@@ -17,7 +16,19 @@ use crate::ball::BallMesh;
 use kernels::{Cast, Eight, Kernel, LANES, Patch};
 
 /// The study.
-pub(super) struct Precision;
+pub(super) const PRECISION: Study = Study {
+    name: "precision",
+    title: "Numbers in which rays are cast",
+    choice: "coordinates, test",
+    columns: &[
+        ("time_ns_per_test", "ns a test"),
+        ("rms_error_mm", "RMS error, mm"),
+        ("worst_error_mm", "worst error, mm"),
+        ("missed_per_million", "slipped through, of a million"),
+    ],
+    trades: &[Trade::new(0, 2).by_group(), Trade::new(0, 3).by_group()],
+    measure,
+};
 
 /// The surface: a bumpy ball around the scanner with triangles 0.8 m wide.
 const SURFACE: BallMesh = BallMesh {
@@ -69,71 +80,28 @@ fn circumstances() -> [CastingCase; 3] {
     ]
 }
 
-impl Study for Precision {
-    fn name(&self) -> &'static str {
-        "precision"
-    }
-
-    fn title(&self) -> &'static str {
-        "Numbers in which rays are cast"
-    }
-
-    fn measure(&self, bench: &mut Bench<'_>) -> Result<StudyFindings, StudyError> {
-        let patches = match bench.effort {
-            Effort::Quick => 12,
-            Effort::Full => 4_096,
-        };
-        let rays = patches * PACKETS * LANES;
-        let plan = bench.plan(3, 15);
-        (bench.say)(&format!("{rays} rays of each, {} rounds", plan.rounds));
-        let sets: Vec<(CastingCase, Set)> = circumstances()
-            .into_iter()
-            .map(|circumstance| (circumstance, Set::new(circumstance, patches)))
-            .collect();
-        let mut work: Vec<Work<'_, StudyError>> = Vec::new();
-        let mut named = Vec::new();
-        for (circumstance, set) in &sets {
-            for kernel in Kernel::ALL {
-                named.push((*circumstance, kernel, set.off(kernel)?));
-                work.push(set.work(kernel));
-            }
+fn measure(bench: &mut Bench<'_>) -> Result<Measured, StudyError> {
+    let patches = bench.pick(12, 4_096);
+    let rays = patches * PACKETS * LANES;
+    let plan = bench.plan(&format!("{rays} rays of each"), 3, 15);
+    let sets = circumstances().map(|circumstance| (circumstance, Set::new(circumstance, patches)));
+    let mut choices = Vec::new();
+    for (circumstance, set) in &sets {
+        for kernel in Kernel::ALL {
+            let off = set.off(kernel)?;
+            choices.push(TimedChoice {
+                row: Row::new(
+                    format!("{}, {}", circumstance.name, kernel.name()),
+                    kernel.label(),
+                    circumstance.group,
+                    [off.rms_m * 1e3, off.worst_m * 1e3, off.missed * 1e6],
+                ),
+                scale: 1e9 / (rays * TRIANGLES) as f64,
+                work: set.work(kernel),
+            });
         }
-        let times = in_rounds(bench.clock, plan, &mut work)?;
-        let rows = named.into_iter().zip(times);
-        let rows = rows.map(|((circumstance, kernel, off), time)| {
-            Row::new(
-                format!("{}, {}", circumstance.name, kernel.name()),
-                kernel.label(),
-                circumstance.group,
-                vec![
-                    Measurement::Timed(time.times(1e9 / (rays * TRIANGLES) as f64)),
-                    Measurement::Computed(off.rms_m * 1e3),
-                    Measurement::Computed(off.worst_m * 1e3),
-                    Measurement::Computed(off.missed * 1e6),
-                ],
-            )
-        });
-        Ok(StudyFindings {
-            name: self.name(),
-            title: self.title(),
-            about: about(rays),
-            choice: "coordinates, test",
-            columns: columns(),
-            rows: rows.collect(),
-            trades: [2, 3].map(|loss| Trade::new(0, loss).by_group()).into(),
-        })
     }
-}
-
-fn columns() -> Vec<StudyColumn> {
-    [
-        ("time_ns_per_test", "ns a test"),
-        ("rms_error_mm", "RMS error, mm"),
-        ("worst_error_mm", "worst error, mm"),
-        ("missed_per_million", "slipped through, of a million"),
-    ]
-    .map(StudyColumn::log)
-    .into()
+    Ok((about(rays), bench.rows(plan, choices)?))
 }
 
 fn about(rays: usize) -> Vec<String> {
@@ -210,7 +178,7 @@ impl Set {
         })
     }
 
-    fn work(&self, kernel: Kernel) -> Work<'_, StudyError> {
+    fn work(&self, kernel: Kernel) -> Work<'_> {
         match kernel.wide() {
             Some(cast) => work(&self.wide, cast),
             None => work(&self.narrow, kernel.narrow()),
@@ -229,7 +197,7 @@ fn ranges<T: Real>(patches: &[Patch<T>], cast: Cast<T>) -> Vec<[f64; LANES]> {
     ranges.iter().map(|eight| eight.map(T::f64)).collect()
 }
 
-fn work<T: Real>(patches: &[Patch<T>], cast: Cast<T>) -> Work<'_, StudyError> {
+fn work<T: Real>(patches: &[Patch<T>], cast: Cast<T>) -> Work<'_> {
     let mut ranges = room(patches);
     Box::new(move || {
         cast(black_box(patches), &mut ranges);
@@ -338,6 +306,8 @@ fn steepest(along: DVec3) -> usize {
 
 #[cfg(test)]
 mod tests {
+    use analysis::tradeoff::Effort;
+
     use super::*;
 
     fn off(circumstance: usize, kernel: Kernel, patches: usize) -> CastError {
@@ -399,10 +369,10 @@ mod tests {
             effort: Effort::Quick,
             say: &mut |_| {},
         };
-        let findings = Precision.measure(&mut bench).unwrap();
-        assert_eq!(findings.rows.len(), 12);
+        let (_, rows) = measure(&mut bench).unwrap();
+        assert_eq!(rows.len(), 12);
         let rays = (12 * PACKETS * LANES * TRIANGLES) as f64;
-        for row in &findings.rows {
+        for row in &rows {
             assert!(
                 (row.values[0].middle() - 3e6 / rays).abs() < 1e-9,
                 "{row:?}"

@@ -8,8 +8,7 @@ mod trajectory;
 use std::path::{Path, PathBuf};
 
 use analysis::tradeoff::{
-    self, Bench, Book, Effort, KFunction, Machine, ScanSpeed, Study, StudyFindings, StudyReport,
-    html, json, svg, text,
+    self, Bench, Book, Effort, K_FUNCTION, Machine, SCAN_SPEED, Study, StudyReport, html, svg, text,
 };
 
 use super::CommandOutput;
@@ -19,7 +18,7 @@ use engine::failure::{Failure, Kind};
 use engine::output::{check_free, make_folder, write_text};
 
 /// The studies in the order of the page.
-const STUDIES: [&dyn Study; 3] = [&trajectory::Trajectories, &KFunction, &ScanSpeed];
+const STUDIES: [Study; 3] = [trajectory::TRAJECTORIES, K_FUNCTION, SCAN_SPEED];
 
 /// The page of the book that `--markdown` writes.
 const BOOK: Book<'_> = Book {
@@ -40,7 +39,7 @@ pub fn run(arguments: &cli::Tradeoff, common: &Common) -> Result<CommandOutput, 
             error.known.join(", ")
         ))
     })?;
-    let names: Vec<&str> = selected.iter().map(|study| study.name()).collect();
+    let names: Vec<&str> = selected.iter().map(|study| study.name).collect();
     prepare(arguments, &names)?;
     let effort = if arguments.quick {
         Effort::Quick
@@ -48,44 +47,26 @@ pub fn run(arguments: &cli::Tradeoff, common: &Common) -> Result<CommandOutput, 
         Effort::Full
     };
     let progress = Progress::new(common);
-    let mut findings = Vec::with_capacity(selected.len());
-    for (index, study) in selected.iter().enumerate() {
-        let (number, count) = (index + 1, selected.len());
-        progress.say(&format!("{number} of {count}: {}", study.title()));
-        findings.push(measure(*study, effort, &progress)?);
-    }
-    let report = StudyReport {
-        program: concat!("velomotion ", env!("CARGO_PKG_VERSION")).to_owned(),
+    let bench = Bench {
+        clock: &mut io::clock::steady,
         effort,
-        machine: Machine::current(|path| std::fs::read_to_string(path).ok()),
-        studies: findings,
+        say: &mut |line| progress.say(line),
     };
+    let machine = Machine::current(|path| std::fs::read_to_string(path).ok());
+    let report = StudyReport::measure(&selected, machine, bench).map_err(|(study, error)| {
+        let name = study.name;
+        Failure::new(Kind::Incomplete, format!("study {name}: {error}")).help(format!(
+            "leave it out with --only, and report it with the output of --only {name} -vv"
+        ))
+    })?;
     for (path, content) in files(arguments, &report) {
         write_text(&path, &content, arguments.force)?;
         progress.say(&format!("wrote {}", path.display()));
     }
     Ok(CommandOutput::result(
-        &json::report(&report),
+        &tradeoff::json(&report),
         text::report(&report),
     ))
-}
-
-fn measure(
-    study: &dyn Study,
-    effort: Effort,
-    progress: &Progress,
-) -> Result<StudyFindings, Failure> {
-    let mut bench = Bench {
-        clock: &mut io::clock::steady,
-        effort,
-        say: &mut |line| progress.say(&format!("  {line}")),
-    };
-    study.measure(&mut bench).map_err(|error| {
-        let name = study.name();
-        Failure::new(Kind::Incomplete, format!("study {name}: {error}")).help(format!(
-            "leave it out with --only, and report it with the output of --only {name} -vv"
-        ))
-    })
 }
 
 /// Creates the folders, and refuses to overwrite files without `--force`, before any measurement.
@@ -115,10 +96,10 @@ fn files(arguments: &cli::Tradeoff, report: &StudyReport) -> Vec<(PathBuf, Strin
     let mut files = Vec::new();
     if let Some(folder) = &arguments.report {
         files.push((folder.join("index.html"), html::page(report)));
-        let json = super::json(&json::report(report));
+        let json = tradeoff::json(report);
         files.push((folder.join("tradeoff.json"), format!("{json:#}\n")));
         files.extend(report.studies.iter().map(|study| {
-            let path = folder.join(format!("{}.svg", study.name));
+            let path = folder.join(format!("{}.svg", study.study.name));
             (path, svg::figure(study))
         }));
     }

@@ -5,8 +5,7 @@ use std::hint::black_box;
 
 use analysis::tradeoff::pattern;
 use analysis::tradeoff::{
-    Bench, Effort, Measurement, Row, SeededNoise, Study, StudyColumn, StudyError, StudyFindings,
-    Trade, Work, in_rounds,
+    Bench, Measured, Row, SeededNoise, Study, StudyError, TimedChoice, Trade,
 };
 use scanner::AngleSample;
 use scanner::clock::Moment;
@@ -15,7 +14,26 @@ use scanner::trajectory::{Method, Trajectory};
 use units::{DegPerS, DegPerS2, Degrees, Host, Span, Stamp};
 
 /// The study.
-pub(super) struct Trajectories;
+pub(super) const TRAJECTORIES: Study = Study {
+    name: "trajectory",
+    title: "The angle between polls",
+    choice: "polls, method",
+    // The worst errors are those of `CIRCUMSTANCES`.
+    columns: &[
+        ("time_ms_per_sweep", "ms a sweep"),
+        ("worst_ideal_deg", "worst, ideal polls, deg"),
+        ("worst_jitter_0_1_ms_deg", "worst, 0.1 ms jitter, deg"),
+        ("worst_jitter_0_5_ms_deg", "worst, 0.5 ms jitter, deg"),
+        ("worst_servo_deg", "worst, 0.1 ms and servo, deg"),
+    ],
+    trades: &[
+        Trade::new(0, 1),
+        Trade::new(0, 2),
+        Trade::new(0, 3),
+        Trade::new(0, 4),
+    ],
+    measure,
+};
 
 const RATES_HZ: [(f64, &str); 3] = [
     (50.0, "50 polls a second"),
@@ -49,10 +67,8 @@ const MOST_SD: f64 = 4.0;
 const NEAREST: f64 = 0.1;
 
 /// Properties of drive and polls.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct PollingCase {
-    key: &'static str,
-    heading: &'static str,
     /// Standard deviation of a poll's time, seconds.
     jitter_s: f64,
     /// Step of the encoder, degrees; 0 for none.
@@ -63,29 +79,21 @@ struct PollingCase {
 
 const CIRCUMSTANCES: [PollingCase; 4] = [
     PollingCase {
-        key: "worst_ideal_deg",
-        heading: "worst, ideal polls, deg",
         jitter_s: 0.0,
         quantum_deg: 0.0,
         servo: false,
     },
     PollingCase {
-        key: "worst_jitter_0_1_ms_deg",
-        heading: "worst, 0.1 ms jitter, deg",
         jitter_s: 0.1e-3,
         quantum_deg: QUANTUM_DEG,
         servo: false,
     },
     PollingCase {
-        key: "worst_jitter_0_5_ms_deg",
-        heading: "worst, 0.5 ms jitter, deg",
         jitter_s: 0.5e-3,
         quantum_deg: QUANTUM_DEG,
         servo: false,
     },
     PollingCase {
-        key: "worst_servo_deg",
-        heading: "worst, 0.1 ms and servo, deg",
         jitter_s: 0.1e-3,
         quantum_deg: QUANTUM_DEG,
         servo: true,
@@ -94,83 +102,34 @@ const CIRCUMSTANCES: [PollingCase; 4] = [
 /// The case that is timed.
 const USUAL: PollingCase = CIRCUMSTANCES[1];
 
-impl Study for Trajectories {
-    fn name(&self) -> &'static str {
-        "trajectory"
-    }
-
-    fn title(&self) -> &'static str {
-        "The angle between polls"
-    }
-
-    fn measure(&self, bench: &mut Bench<'_>) -> Result<StudyFindings, StudyError> {
-        let seeds = match bench.effort {
-            Effort::Quick => 1,
-            Effort::Full => 8,
-        };
-        let plan = bench.plan(3, 15);
-        (bench.say)(&format!("{seeds} runs of each, {} rounds", plan.rounds));
-        let shafts = [false, true].map(shaft);
-        let choices: Vec<(f64, &'static str, Method)> = RATES_HZ
-            .into_iter()
-            .flat_map(|(hz, group)| Method::ALL.map(|method| (hz, group, method)))
-            .collect();
-        let mut work: Vec<Work<'_, StudyError>> = Vec::new();
-        let mut errors = Vec::new();
-        for &(hz, _, method) in &choices {
+fn measure(bench: &mut Bench<'_>) -> Result<Measured, StudyError> {
+    let seeds = bench.pick(1, 8);
+    let plan = bench.plan(&format!("{seeds} runs of each"), 3, 15);
+    let [stiff, soft] = [false, true].map(shaft);
+    let mut choices = Vec::new();
+    for (hz, group) in RATES_HZ {
+        for method in Method::ALL {
             let mut worst = Vec::new();
             for circumstance in CIRCUMSTANCES {
-                let [stiff, soft] = &shafts;
-                let shaft = if circumstance.servo { soft } else { stiff };
-                worst.push(Measurement::Computed(worst_deg(
-                    shaft,
-                    hz,
-                    circumstance,
-                    method,
-                    seeds,
-                )?));
+                let shaft = if circumstance.servo { &soft } else { &stiff };
+                worst.push(worst_deg(shaft, hz, circumstance, method, seeds)?);
             }
-            errors.push(worst);
-            let [shaft, _] = &shafts;
-            let samples = polls(shaft, hz, USUAL, 1);
-            work.push(Box::new(move || {
-                let trajectory = through(black_box(samples.clone()), USUAL, method)?;
-                for at in blocks() {
-                    black_box(trajectory.angle(at));
-                }
-                Ok(())
-            }));
-        }
-        let times = in_rounds(bench.clock, plan, &mut work)?;
-        let rows = choices.into_iter().zip(times).zip(errors);
-        let rows = rows.map(|(((hz, group, method), time), worst)| {
-            let time_ms = Measurement::Timed(time.times(1e3));
-            let values = [time_ms].into_iter().chain(worst).collect();
+            let samples = polls(&stiff, hz, USUAL, 1);
             let name = format!("{hz} Hz, {}", method.name());
-            Row::new(name, method.name(), group, values)
-        });
-        Ok(StudyFindings {
-            name: self.name(),
-            title: self.title(),
-            about: about(seeds),
-            choice: "polls, method",
-            columns: columns(),
-            rows: rows.collect(),
-            trades: (1..=CIRCUMSTANCES.len())
-                .map(|loss| Trade::new(0, loss))
-                .collect(),
-        })
+            choices.push(TimedChoice {
+                row: Row::new(name, method.name(), group, worst),
+                scale: 1e3,
+                work: Box::new(move || {
+                    let trajectory = through(black_box(samples.clone()), USUAL, method)?;
+                    for at in blocks() {
+                        black_box(trajectory.angle(at));
+                    }
+                    Ok(())
+                }),
+            });
+        }
     }
-}
-
-fn columns() -> Vec<StudyColumn> {
-    let time = ("time_ms_per_sweep", "ms a sweep");
-    let worst = CIRCUMSTANCES.map(|c| (c.key, c.heading));
-    [time]
-        .into_iter()
-        .chain(worst)
-        .map(StudyColumn::log)
-        .collect()
+    Ok((about(seeds), bench.rows(plan, choices)?))
 }
 
 fn about(seeds: u64) -> Vec<String> {
@@ -332,7 +291,7 @@ mod tests {
             (200.0, half, Method::Profile, 0.0076),
         ] {
             let got_deg = worst_deg(&stiff, hz, circumstance, method, 3).unwrap();
-            let case = format!("{hz} Hz, {}, {}", method.name(), circumstance.heading);
+            let case = format!("{hz} Hz, {}, {circumstance:?}", method.name());
             let ratio = got_deg / expected_deg;
             assert!(
                 (0.4..1.5).contains(&ratio),
