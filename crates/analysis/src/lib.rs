@@ -13,7 +13,7 @@
 //! let counts = exact(&axes, &edges, std::num::NonZeroUsize::MIN)?;
 //! assert_eq!(counts.counts, [0, 12, 3]);
 //!
-//! let curve = KCurve::of_counts(&counts, 10.0);
+//! let curve = KCurve::new(&counts.into(), 10.0);
 //! assert!(curve.d[0] < 0.0); // fewer close pairs than random directions have
 //! # Ok::<(), analysis::k::KError>(())
 //! ```

@@ -39,7 +39,7 @@ fn scan(name: &str, directions: &[DVec3], level: u32) -> AnalyzedScan {
         in_view: None,
         warnings: Vec::new(),
         counts: BinCounts::new(&locator, directions).unwrap(),
-        k: KCurve::of_counts(&counts, SPHERE_M),
+        k: KCurve::new(&counts.into(), SPHERE_M),
         method: "exact",
         planes: Planes::new(directions),
     }

@@ -6,7 +6,6 @@
 use std::num::NonZeroUsize;
 
 use glam::DVec3;
-use serde::Serialize;
 
 use super::{Edges, Estimate, FrameRotation, KError, Sampling, exact, sampled, turned};
 
@@ -14,8 +13,7 @@ use super::{Edges, Estimate, FrameRotation, KError, Sampling, exact, sampled, tu
 pub const EXACT_BELOW: usize = 65_000;
 
 /// A method of computing the K function.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KMethod {
     /// [`exact()`].
     Exact,

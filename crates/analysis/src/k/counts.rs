@@ -24,13 +24,6 @@ impl PairCounts {
         pairs(self.points)
     }
 
-    /// Whether no pair lies on an inner edge, so that counts do not depend on the rounding of the
-    /// points.
-    #[must_use]
-    pub const fn is_well_posed(&self) -> bool {
-        self.on_edges == 0
-    }
-
     /// Pairs up to the upper edge of each bin.
     #[must_use]
     pub fn cumulative(&self) -> Vec<u64> {

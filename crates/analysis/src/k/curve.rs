@@ -4,13 +4,12 @@
 //! `K_csr(t) = 2 pi R2 (1 - cos t)`. `D` is their difference divided by the area of the sphere, and
 //! independent of R.
 
-use super::{Edges, Estimate, PairCounts};
-use serde::Serialize;
+use super::Estimate;
 use std::f64::consts::PI;
 
 /// The K function at the upper edges of bins. Fewer than two points have no pairs: all lists but
 /// the angles are empty then, and the extremes are 0.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct KCurve {
     /// `t_j`, radians; the last is pi.
     pub theta_rad: Vec<f64>,
@@ -24,8 +23,6 @@ pub struct KCurve {
     /// The first derivative of `K - K_csr` by the angle at the middle of each bin, square metres
     /// per radian: the difference of its ends divided by its width.
     pub derivative_m2_rad: Vec<f64>,
-    /// The largest of `|K - K_csr|`, square metres.
-    pub max_abs_m2: f64,
     /// The largest `D`; at least 0, as `D(0)` is.
     pub d_max: f64,
     /// The smallest `D`; at most 0.
@@ -35,41 +32,19 @@ pub struct KCurve {
 }
 
 impl KCurve {
-    /// Of exact counts, on a sphere of this radius.
+    /// The curve of an estimate, on a sphere of this radius.
     #[must_use]
-    pub fn of_counts(counts: &PairCounts, radius_m: f64) -> Self {
-        let all = counts.pairs();
-        let share = |sum: u64| sum as f64 / all as f64;
-        let sums = counts.cumulative().into_iter().filter(|_| all > 0);
-        let shares: Vec<f64> = sums.map(share).collect();
-        Self::of_shares(&counts.edges, &shares, 0.0, radius_m)
-    }
-
-    /// Of an estimate, on a sphere of this radius.
-    #[must_use]
-    pub fn of_estimate(estimate: &Estimate, radius_m: f64) -> Self {
-        let bound = estimate.largest_bound();
+    pub fn new(estimate: &Estimate, radius_m: f64) -> Self {
         let shares = match estimate.points {
             0 | 1 => &[][..],
             _ => &estimate.shares,
         };
-        Self::of_shares(&estimate.edges, shares, bound, radius_m)
-    }
-
-    /// Whether there are pairs to tell anything of.
-    #[must_use]
-    pub fn has_pairs(&self) -> bool {
-        !self.d.is_empty()
-    }
-
-    /// Of the share of all pairs up to every edge; none without pairs.
-    fn of_shares(edges: &Edges, shares: &[f64], d_error_bound: f64, radius_m: f64) -> Self {
         let area = 4.0 * PI * radius_m * radius_m;
-        let theta_rad = edges.upper_rad();
+        let theta_rad = estimate.edges.upper_rad();
         // (1 - cos t) / 2 without the loss of digits near 0.
         let csr = theta_rad.iter().map(|t| (t / 2.0).sin().powi(2));
         let d: Vec<f64> = shares.iter().zip(csr).map(|(s, csr)| s - csr).collect();
-        let width = PI / edges.bins() as f64;
+        let width = PI / estimate.edges.bins() as f64;
         let before = std::iter::once(&0.0).chain(&d);
         let slopes = d
             .iter()
@@ -81,12 +56,17 @@ impl KCurve {
             k_m2: shares.iter().map(|s| area * s).collect(),
             k_minus_csr_m2: d.iter().map(|d| area * d).collect(),
             derivative_m2_rad: slopes.collect(),
-            max_abs_m2: area * d_max.max(-d_min),
             theta_rad,
             d,
             d_max,
             d_min,
-            d_error_bound,
+            d_error_bound: estimate.largest_bound(),
         }
+    }
+
+    /// Whether there are pairs to tell anything of.
+    #[must_use]
+    pub fn has_pairs(&self) -> bool {
+        !self.d.is_empty()
     }
 }

@@ -1,5 +1,6 @@
 //! Errors of the K function.
 
+use glam::DVec3;
 use thiserror::Error;
 
 /// Tolerance of the length of a direction.
@@ -75,4 +76,19 @@ pub enum KError {
         /// The other direction.
         second: [f64; 3],
     },
+}
+
+/// Checks the lengths and the number of directions.
+pub(super) fn check(points: &[DVec3]) -> Result<(), KError> {
+    if u32::try_from(points.len()).is_err() {
+        return Err(KError::TooMany { got: points.len() });
+    }
+    let is_unit = |p: &DVec3| (p.length() - 1.0).abs() <= UNIT_WITHIN;
+    match points.iter().position(|p| !is_unit(p)) {
+        None => Ok(()),
+        Some(index) => Err(KError::NotUnit {
+            index,
+            length: points.get(index).map_or(f64::NAN, |p| p.length()),
+        }),
+    }
 }

@@ -9,11 +9,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::DVec3;
 
+use super::error::check;
 use super::lanes::LANES;
 use super::leaf_pair::{ExactBinTest, PairCounter, Rows, edges, leaf_pair, rows, thresholds};
 use super::leaves_by_edge_count::{Bits, LeavesByEdgeCount};
 use super::outline::Outline;
-use super::plain::check;
 use super::registers::LaneWork;
 use super::sign_mask::SignMask;
 use super::tree::{BLOCK_LEAVES, LeafBlock, Tree};

@@ -18,6 +18,7 @@ mod lanes;
 mod leaf_pair;
 mod leaves_by_edge_count;
 mod outline;
+#[cfg(test)]
 mod plain;
 mod reach;
 mod registers;
@@ -35,7 +36,6 @@ pub use edges::{Edges, LEAST_COORDINATE, MOST_BINS, ON_EDGE};
 pub use error::{KError, UNIT_WITHIN};
 pub use estimate::Estimate;
 pub use exact::{exact, exact_by};
-pub use plain::plain;
 pub use registers::Registers;
 pub use sampled::{Sampling, sampled};
 pub use turned::{FrameRotation, MOST_FRAMES, TURNED_WITHIN, turned, turned_by};

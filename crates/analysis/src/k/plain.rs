@@ -2,13 +2,14 @@
 
 use glam::DVec3;
 
-use super::{Edges, KError, PairCounts, UNIT_WITHIN};
+use super::error::check;
+use super::{Edges, KError, PairCounts};
 
 /// Counts pairs one by one.
 ///
 /// # Errors
 /// [`KError::NotUnit`] and [`KError::TooMany`] for invalid directions; [`KError::Undecided`].
-pub fn plain(points: &[DVec3], edges: &Edges) -> Result<PairCounts, KError> {
+pub(super) fn plain(points: &[DVec3], edges: &Edges) -> Result<PairCounts, KError> {
     check(points)?;
     let mut counts = vec![0_u64; edges.bins()];
     let mut on_edges = 0;
@@ -29,19 +30,4 @@ pub fn plain(points: &[DVec3], edges: &Edges) -> Result<PairCounts, KError> {
         points: points.len(),
         on_edges,
     })
-}
-
-/// Checks the lengths and the number of directions.
-pub(super) fn check(points: &[DVec3]) -> Result<(), KError> {
-    if u32::try_from(points.len()).is_err() {
-        return Err(KError::TooMany { got: points.len() });
-    }
-    let is_unit = |p: &DVec3| (p.length() - 1.0).abs() <= UNIT_WITHIN;
-    match points.iter().position(|p| !is_unit(p)) {
-        None => Ok(()),
-        Some(index) => Err(KError::NotUnit {
-            index,
-            length: points.get(index).map_or(f64::NAN, |p| p.length()),
-        }),
-    }
 }

@@ -12,9 +12,9 @@ use glam::DVec3;
 
 use super::cells::{DrawSource, PointCell, PointCells, ROW, scaled};
 use super::counts::pairs;
+use super::error::check;
 use super::lanes::{LANES, SimdLanes};
 use super::leaf_pair::F32_BAND;
-use super::plain::check;
 use super::reach::reach;
 use super::registers::LaneWork;
 use super::sign_mask::SignMask;

@@ -13,11 +13,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use fearless_simd::{f32x16, prelude::*, u32x16};
 use glam::{DQuat, DVec3};
 
+use super::error::check;
 use super::exact::on_threads;
 use super::lanes::{AlignedLanes, LANES, SimdLanes};
 use super::leaf_pair::{F32_BAND, PairCounter, loaded};
 use super::leaves_by_edge_count::{Bits, LeavesByEdgeCount};
-use super::plain::check;
 use super::reach::BinRange;
 use super::registers::LaneWork;
 use super::sign_mask::SignMask;

@@ -8,8 +8,9 @@ use proptest::prelude::*;
 
 use super::hard_cases::ONE;
 use super::patterns::{rmbl, scattered, vlp16};
+use crate::k::plain::plain;
 use crate::k::{
-    Edges, FrameRotation, KError, MOST_FRAMES, Registers, exact, exact_by, plain, turned, turned_by,
+    Edges, FrameRotation, KError, MOST_FRAMES, Registers, exact, exact_by, turned, turned_by,
 };
 
 /// The SIMD levels of this processor.

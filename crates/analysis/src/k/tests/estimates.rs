@@ -102,10 +102,7 @@ fn a_sampled_rmbl_is_within_a_ten_thousandth() {
     let of = sampled(&points, &edges, &Sampling::default()).unwrap();
     assert!(of.largest_bound() <= 1e-4);
     assert_eq!(compared_with(&of, &truth).0, 0);
-    let (of, truth) = (
-        KCurve::of_estimate(&of, 1.0),
-        KCurve::of_estimate(&truth, 1.0),
-    );
+    let (of, truth) = (KCurve::new(&of, 1.0), KCurve::new(&truth, 1.0));
     assert!((of.d_max - truth.d_max).abs() <= of.d_error_bound);
     assert!((of.d_min - truth.d_min).abs() <= of.d_error_bound);
 }

@@ -10,7 +10,8 @@ use super::equality::REGISTERS;
 use super::hard_cases::ONE;
 use super::patterns::{rmbl, scattered};
 use crate::k::outline::{self, Outline, Outlines};
-use crate::k::{Edges, FrameRotation, exact_by, plain, turned_by};
+use crate::k::plain::plain;
+use crate::k::{Edges, FrameRotation, exact_by, turned_by};
 
 /// This many points of a width about a centre; with a width of 4 or more, over the whole sphere.
 fn cluster(count: usize, width: f64, seed: u64) -> Vec<DVec3> {

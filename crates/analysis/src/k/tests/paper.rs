@@ -21,7 +21,7 @@ fn curve(name: &str, tolerance: f64) -> KCurve {
     };
     // Without their rotation, so that samples are taken.
     let of = estimate(&pattern.directions(), None, &edges, &sampling, ONE).unwrap();
-    let curve = KCurve::of_estimate(&of, 1.0);
+    let curve = KCurve::new(&of, 1.0);
     assert!(curve.d_error_bound <= tolerance, "{name}");
     curve
 }

@@ -6,7 +6,8 @@ use glam::DVec3;
 
 use super::hard_cases::{ONE, counted};
 use super::patterns::{rmbl, vlp16};
-use crate::k::{Edges, FrameRotation, KCurve, PairCounts, plain, turned};
+use crate::k::plain::plain;
+use crate::k::{Edges, FrameRotation, KCurve, PairCounts, turned};
 
 fn by_rotation(frames: u32) -> PairCounts {
     let rotation = FrameRotation {
@@ -20,7 +21,7 @@ fn by_rotation(frames: u32) -> PairCounts {
 
 fn first_two_and_last(counts: &PairCounts) -> [u64; 3] {
     assert_eq!(counts.counts.iter().sum::<u64>(), counts.pairs());
-    assert!(counts.is_well_posed());
+    assert_eq!(counts.on_edges, 0);
     [counts.counts[0], counts.counts[1], counts.counts[150]]
 }
 
@@ -57,7 +58,7 @@ fn rmbls_match_the_known_counts_and_curves() {
     for (frames, truth, d_max) in truths {
         let counts = by_rotation(frames);
         assert_eq!(first_two_and_last(&counts), truth, "{frames} frames");
-        let curve = KCurve::of_counts(&counts, 10.0);
+        let curve = KCurve::new(&counts.clone().into(), 10.0);
         if let Some(d_max) = d_max {
             assert!((curve.d_max - d_max).abs() < 1e-5, "{}", curve.d_max);
         }
@@ -70,14 +71,12 @@ fn rmbls_match_the_known_counts_and_curves() {
 
 #[test]
 fn vlp16_clustering_and_dispersion_match_known_values() {
-    let curve = KCurve::of_counts(&counted(&vlp16(901), 151), 10.0);
+    let curve = KCurve::new(&counted(&vlp16(901), 151).into(), 10.0);
     assert!((curve.d_max - 0.094_86).abs() < 5e-6, "{}", curve.d_max);
     assert!((curve.d_min + 0.094_93).abs() < 5e-6, "{}", curve.d_min);
     // K of the whole sphere is its area, whatever the points.
     assert!((curve.k_m2[150] - 400.0 * PI).abs() < 1e-9);
     assert!(curve.d[150].abs() < 1e-15);
-    let area = 400.0 * PI;
-    assert!((curve.max_abs_m2 - area * 0.094_93).abs() < area * 5e-6);
     // The sum of the derivative over the bins is the end of the curve.
     let sum: f64 = curve.derivative_m2_rad.iter().sum::<f64>() * PI / 151.0;
     assert!(sum.abs() < 1e-9);

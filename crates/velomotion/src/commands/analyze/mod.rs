@@ -263,7 +263,7 @@ impl Measure {
             Failure::new(Kind::BadInput, format!("{}: {error}", input.name))
                 .help("--tolerance 0 counts every pair, whatever the points")
         })?;
-        let curve = KCurve::of_estimate(&estimate, SPHERE_M);
+        let curve = KCurve::new(&estimate, SPHERE_M);
         let area = 4.0 * PI * RADIUS_M * RADIUS_M;
         let has_pairs = curve.has_pairs();
         let bound = has_pairs.then_some(curve.d_error_bound);
