@@ -4,6 +4,7 @@ pub(crate) mod axis;
 pub(crate) mod labels;
 pub(crate) mod marks;
 pub mod number;
+pub(crate) mod plot;
 #[cfg(test)]
 pub(crate) mod xml;
 

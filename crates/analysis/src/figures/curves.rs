@@ -2,15 +2,18 @@
 
 use std::f64::consts::PI;
 
-use super::frame::{MARGIN, TITLE, TextAnchor, WIDTH, document, legend, levels, stroke, text};
+use super::frame::{MARGIN, TITLE, WIDTH, document, legend, stroke};
 use super::{AnalyzedScans, SPHERE_M};
 use crate::draw::Scale;
-use crate::draw::axis::PlotAxis;
+use crate::draw::axis::{AxisTick, PlotAxis};
+use crate::draw::plot::{PlotArea, TextAnchor, line, small, text};
 
-const LEFT: f64 = 62.0;
-const RIGHT: f64 = WIDTH - MARGIN - 6.0;
-const TOP: f64 = 24.0;
-const BOTTOM: f64 = 276.0;
+const AREA: PlotArea = PlotArea {
+    left: 62.0,
+    right: WIDTH - MARGIN - 6.0,
+    top: 24.0,
+    bottom: 276.0,
+};
 const PLOT: f64 = 330.0;
 
 /// A curve: angles in degrees and values.
@@ -57,46 +60,29 @@ pub(super) fn middles_deg(upper_rad: &[f64]) -> impl Iterator<Item = f64> {
 }
 
 fn plot(title: &str, curves: &[Curve], top: f64) -> String {
+    let PlotArea { left, right, .. } = AREA;
     let values = curves.iter().flatten().map(|(_, value)| *value);
-    let y = PlotAxis::new(Scale::Linear, values.chain([0.0]), BOTTOM, TOP);
-    let x = |degrees: f64| LEFT + (RIGHT - LEFT) * degrees / 180.0;
+    let y = PlotAxis::new(Scale::Linear, values.chain([0.0]), AREA.bottom, AREA.top);
+    let x = |degrees: f64| left + (right - left) * degrees / 180.0;
+    let ticks = [0, 30, 60, 90, 120, 150, 180].map(|degrees| AxisTick {
+        at: x(f64::from(degrees)),
+        label: format!("{degrees}\u{b0}"),
+    });
     let mut svg = format!("<g transform=\"translate(0 {top})\">\n");
     svg += &text(MARGIN, 14.0, TextAnchor::Start, "tv-ink", title);
-    for degrees in (0..=180).step_by(30).map(f64::from) {
-        let at = x(degrees);
-        svg += &format!("<path class=\"tv-grid\" d=\"M{at:.1} {TOP}V{BOTTOM}\"/>\n");
-        svg += &text(
-            at,
-            BOTTOM + 15.0,
-            TextAnchor::Middle,
-            "tv-soft tv-small",
-            &format!("{degrees}\u{b0}"),
-        );
-    }
-    svg += &text(
-        f64::midpoint(LEFT, RIGHT),
-        BOTTOM + 30.0,
-        TextAnchor::Middle,
-        "tv-soft tv-small",
-        "angle between two points, degrees",
-    );
-    svg += &levels(&y, LEFT, RIGHT);
+    svg += &AREA.verticals(&ticks, 15.0);
+    let name = "angle between two points, degrees";
+    let middle = f64::midpoint(left, right);
+    svg += &small(middle, AREA.bottom + 30.0, TextAnchor::Middle, name);
+    svg += &AREA.horizontals(&y);
     if let Some(zero) = y.place(0.0) {
-        svg += &format!("<path class=\"tv-zero\" d=\"M{LEFT} {zero:.1}H{RIGHT}\"/>\n");
+        svg += &AREA.horizontal("tv-zero", zero);
     }
-    svg += &format!(
-        "<rect class=\"tv-frame\" x=\"{LEFT}\" y=\"{TOP}\" width=\"{:.1}\" height=\"{:.1}\"/>\n",
-        RIGHT - LEFT,
-        BOTTOM - TOP
-    );
+    svg += &AREA.frame();
     for (number, curve) in curves.iter().enumerate() {
-        let places = curve.iter().filter_map(|(degrees, value)| {
-            Some(format!("{:.1} {:.1}", x(*degrees), y.place(*value)?))
-        });
-        let places: Vec<String> = places.collect();
-        if !places.is_empty() {
-            svg += &format!("<path {} d=\"M{}\"/>\n", stroke(number), places.join("L"));
-        }
+        let places = curve.iter();
+        let places = places.filter_map(|(degrees, value)| Some((x(*degrees), y.place(*value)?)));
+        svg += &line(&stroke(number), places);
     }
     svg + "</g>\n"
 }

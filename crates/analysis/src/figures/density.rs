@@ -3,9 +3,10 @@
 use glam::DVec3;
 
 use super::colour::Shades;
-use super::frame::{MARGIN, TITLE, TextAnchor, WIDTH, document, heading, scale_name, text};
+use super::frame::{MARGIN, TITLE, WIDTH, document, heading, scale_name};
 use super::{AnalyzedScan, AnalyzedScans};
 use crate::density::IcosahedronFace;
+use crate::draw::plot::{TextAnchor, small};
 
 /// The finest level of bins that is drawn; finer bins are merged, since there are more of them than
 /// pixels.
@@ -113,19 +114,13 @@ fn row(
         let y = top + 30.0 + RADIUS;
         svg += &sphere(side, faces, counts, shades, (x, y));
         let below = y + RADIUS + 18.0;
-        svg += &text(
-            x,
-            below,
-            TextAnchor::Middle,
-            "tv-soft tv-small",
-            side.caption,
-        );
+        svg += &small(x, below, TextAnchor::Middle, side.caption);
         let names = [
             (x + RADIUS + 5.0, y + 4.0, side.right_name),
             (x - 3.0, y - RADIUS - 3.0, side.up_name),
         ];
         for (x, y, name) in names {
-            svg += &text(x, y, TextAnchor::Start, "tv-soft tv-small", name);
+            svg += &small(x, y, TextAnchor::Start, name);
         }
     }
     svg
@@ -219,23 +214,11 @@ fn scale(shades: &Shades, top: f64) -> String {
             "<path class=\"tv-frame\" d=\"M{x:.1} {:.1}v4\"/>\n",
             y + high
         );
-        svg += &text(
-            x,
-            y + high + 16.0,
-            TextAnchor::Middle,
-            "tv-soft tv-small",
-            &tick.to_string(),
-        );
+        svg += &small(x, y + high + 16.0, TextAnchor::Middle, &tick.to_string());
     }
     let (x, bottom) = (left + wide + 34.0, y + high);
     svg += &format!(
         "<g transform=\"translate({x:.1} {bottom:.1}) scale(0.1)\"><path class=\"tv-empty\" d=\"M0 0h160l-80 -120zM160 0l80 -120h-160z\"/></g>\n"
     );
-    svg + &text(
-        x + 30.0,
-        bottom - 2.0,
-        TextAnchor::Start,
-        "tv-soft tv-small",
-        "without a point",
-    )
+    svg + &small(x + 30.0, bottom - 2.0, TextAnchor::Start, "without a point")
 }

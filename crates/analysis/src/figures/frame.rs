@@ -1,7 +1,7 @@
 //! The parts of all figures of scans: document, headings, colours and dashes of curves.
 
-use crate::draw::axis::PlotAxis;
 use crate::draw::labels::width;
+use crate::draw::plot::{TextAnchor, small, text};
 use crate::draw::{STYLE, escaped};
 
 /// Width of a figure, pixels.
@@ -31,27 +31,6 @@ pub(super) fn document(title: &str, about: &str, height: f64, body: &str) -> Str
     )
 }
 
-/// Alignment of a text.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum TextAnchor {
-    Start,
-    Middle,
-    End,
-}
-
-/// A small text.
-pub(super) fn text(x: f64, y: f64, at: TextAnchor, class: &str, text: &str) -> String {
-    let anchor = match at {
-        TextAnchor::Start => "start",
-        TextAnchor::Middle => "middle",
-        TextAnchor::End => "end",
-    };
-    format!(
-        "<text class=\"{class}\" x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{}</text>\n",
-        escaped(text)
-    )
-}
-
 /// Longest name in a figure, characters; the tables have the rest.
 const NAME: usize = 48;
 
@@ -68,8 +47,7 @@ pub(super) fn short_name(name: &str) -> String {
 pub(super) fn heading(name: &str, more: &str, y: f64) -> String {
     let name = short_name(name);
     let beside = MARGIN + width(&name) * 1.12 + 16.0;
-    text(MARGIN, y, TextAnchor::Start, "tv-ink", &name)
-        + &text(beside, y, TextAnchor::Start, "tv-soft tv-small", more)
+    text(MARGIN, y, TextAnchor::Start, "tv-ink", &name) + &small(beside, y, TextAnchor::Start, more)
 }
 
 /// Colours of curves in light and dark colour schemes; the first ten differ.
@@ -140,35 +118,10 @@ pub(super) fn legend(names: &[&str], mut y: f64) -> (String, f64) {
             y += 18.0;
         }
         svg += &format!("<path {} d=\"M{x:.1} {y:.1}h36\"/>\n", stroke(number));
-        svg += &text(
-            x + 42.0,
-            y + 4.0,
-            TextAnchor::Start,
-            "tv-soft tv-small",
-            &name,
-        );
+        svg += &small(x + 42.0, y + 4.0, TextAnchor::Start, &name);
         x += wide;
     }
     (svg, y + 14.0)
-}
-
-/// Horizontal lines at the ticks of a vertical axis, with labels on the left.
-pub(super) fn levels(axis: &PlotAxis, left: f64, right: f64) -> String {
-    let mut svg = String::new();
-    for tick in axis.ticks() {
-        svg += &format!(
-            "<path class=\"tv-grid\" d=\"M{left} {:.1}H{right}\"/>\n",
-            tick.at
-        );
-        svg += &text(
-            left - 6.0,
-            tick.at + 4.0,
-            TextAnchor::End,
-            "tv-soft tv-small",
-            &tick.label,
-        );
-    }
-    svg
 }
 
 /// The quantity of a colour scale.

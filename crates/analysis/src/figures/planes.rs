@@ -8,7 +8,8 @@ use glam::DVec3;
 
 use super::AnalyzedScans;
 use super::colour::colour;
-use super::frame::{MARGIN, TITLE, TextAnchor, WIDTH, document, heading, scale_name, text};
+use super::frame::{MARGIN, TITLE, WIDTH, document, heading, scale_name};
+use crate::draw::plot::{TextAnchor, small};
 
 /// Depth of the ground below the scanner, metres.
 const GROUND_M: f64 = 1.5;
@@ -178,11 +179,10 @@ fn panel(cells: &[u32], (name, right, up): (&str, &str, &str), left: f64, top: f
         ),
         _ => format!("{name}: {right}, {up} \u{b1}{half} m"),
     };
-    svg += &text(
+    svg += &small(
         left + PANEL / 2.0,
         bottom + 15.0,
         TextAnchor::Middle,
-        "tv-soft tv-small",
         &caption,
     );
     svg
@@ -228,13 +228,7 @@ fn scale(top: f64) -> String {
         svg += &format!(
             "<rect fill=\"{colour}\" x=\"{x:.1}\" y=\"{y:.1}\" width=\"14\" height=\"12\"/>\n"
         );
-        svg += &text(
-            x + 18.0,
-            y + 10.0,
-            TextAnchor::Start,
-            "tv-soft tv-small",
-            &name,
-        );
+        svg += &small(x + 18.0, y + 10.0, TextAnchor::Start, &name);
         x += 71.0;
     }
     svg

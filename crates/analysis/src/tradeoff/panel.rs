@@ -5,14 +5,17 @@ use super::{Measurement, Row, StudyFindings, Trade};
 use crate::draw::Scale;
 use crate::draw::axis::PlotAxis;
 use crate::draw::labels::{self, LabelBox};
+use crate::draw::plot::{PlotArea, line};
 use crate::draw::{escaped, marks};
 
 /// Height of a plot with its margins.
 pub(super) const HEIGHT: f64 = 322.0;
-const LEFT: f64 = 56.0;
-const RIGHT: f64 = WIDTH - 18.0;
-const TOP: f64 = 26.0;
-const BOTTOM: f64 = 276.0;
+const AREA: PlotArea = PlotArea {
+    left: 56.0,
+    right: WIDTH - 18.0,
+    top: 26.0,
+    bottom: 276.0,
+};
 
 /// A choice in the plot.
 struct PlotPoint<'a> {
@@ -36,27 +39,28 @@ pub(super) fn draw(
     groups: &Groups<'_>,
     top: f64,
 ) -> String {
-    let x = axis(findings, trade.cost, LEFT, RIGHT);
-    let y = axis(findings, trade.loss, BOTTOM, TOP);
+    let x = axis(findings, trade.cost, AREA.left, AREA.right);
+    let y = axis(findings, trade.loss, AREA.bottom, AREA.top);
     let number = number.map_or(String::new(), |n| format!("{n}: "));
-    let mut svg = format!(
-        "<g transform=\"translate(0 {top})\">\n{grid}\
-         <rect class=\"tv-frame\" x=\"{LEFT}\" y=\"{TOP}\" width=\"{:.1}\" height=\"{:.1}\"/>\n\
-         <text class=\"tv-ink\" x=\"14\" y=\"16\">{number}{loss}</text>\n\
-         <text class=\"tv-ink\" x=\"{RIGHT}\" y=\"{:.1}\" text-anchor=\"end\">{cost}</text>\n",
-        RIGHT - LEFT,
-        BOTTOM - TOP,
-        BOTTOM + 34.0,
-        grid = grid(&x, &y),
-        loss = escaped(findings.column(trade.loss).1),
-        cost = escaped(findings.column(trade.cost).1),
+    let mut svg = format!("<g transform=\"translate(0 {top})\">\n");
+    svg += &AREA.verticals(&x.ticks(), 15.0);
+    svg += &AREA.horizontals(&y);
+    svg += &AREA.frame();
+    svg += &format!(
+        "<text class=\"tv-ink\" x=\"14\" y=\"16\">{number}{}</text>\n\
+         <text class=\"tv-ink\" x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>\n",
+        escaped(findings.column(trade.loss).1),
+        AREA.right,
+        AREA.bottom + 34.0,
+        escaped(findings.column(trade.cost).1),
     );
     let points = points(findings, trade, &x, &y);
     let mut lines: Vec<LabelBox> = Vec::new();
     for group in findings.circumstances(trade) {
         let corners = corners(&points, group);
         let colour = group.map(|group| marks::colour(groups.number(group)));
-        svg += &steps(&corners, colour.as_deref());
+        let class = colour.map_or("tv-front".to_owned(), |c| format!("tv-front {c} tv-none"));
+        svg += &line(&format!("class=\"{class}\""), corners.iter().copied());
         let sides = corners.windows(2);
         lines.extend(sides.filter_map(|pair| Some(LabelBox::along(*pair.first()?, *pair.last()?))));
     }
@@ -96,31 +100,6 @@ const fn ends(value: &Measurement) -> (f64, f64) {
     }
 }
 
-fn grid(x: &PlotAxis, y: &PlotAxis) -> String {
-    let mut svg = String::new();
-    for tick in x.ticks() {
-        svg += &format!(
-            "<path class=\"tv-grid\" d=\"M{:.1} {TOP}V{BOTTOM}\"/>\n<text class=\"tv-soft tv-small\" x=\"{:.1}\" y=\"{:.1}\" \
-             text-anchor=\"middle\">{}</text>\n",
-            tick.at,
-            tick.at,
-            BOTTOM + 15.0,
-            tick.label
-        );
-    }
-    for tick in y.ticks() {
-        svg += &format!(
-            "<path class=\"tv-grid\" d=\"M{LEFT} {:.1}H{RIGHT}\"/>\n<text class=\"tv-soft tv-small\" x=\"{:.1}\" y=\"{:.1}\" \
-             text-anchor=\"end\">{}</text>\n",
-            tick.at,
-            LEFT - 6.0,
-            tick.at + 4.0,
-            tick.label
-        );
-    }
-    svg
-}
-
 fn points<'a>(
     findings: &'a StudyFindings,
     trade: &Trade,
@@ -148,40 +127,25 @@ fn corners(points: &[PlotPoint<'_>], group: Option<&str>) -> Vec<(f64, f64)> {
     let mut front: Vec<&PlotPoint<'_>> = steps.collect();
     front.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     let mut corners = Vec::new();
-    let mut y = TOP;
+    let mut y = AREA.top;
     for point in front {
         corners.extend([(point.x, y), (point.x, point.y)]);
         y = point.y;
     }
     if !corners.is_empty() {
-        corners.push((RIGHT, y));
+        corners.push((AREA.right, y));
     }
     corners
-}
-
-fn steps(corners: &[(f64, f64)], colour: Option<&str>) -> String {
-    if corners.is_empty() {
-        return String::new();
-    }
-    let places = corners.iter().map(|(x, y)| format!("{x:.1} {y:.1}"));
-    let places: Vec<String> = places.collect();
-    let class = colour.map_or("tv-front".to_owned(), |colour| {
-        format!("tv-front {colour} tv-none")
-    });
-    format!("<path class=\"{class}\" d=\"M{}\"/>\n", places.join("L"))
 }
 
 fn joined(points: &[PlotPoint<'_>], groups: &Groups<'_>) -> String {
     let mut svg = String::new();
     for (group, number) in &groups.0 {
         let own = points.iter().filter(|point| point.row.group == *group);
-        let places: Vec<String> = own.map(|s| format!("{:.1} {:.1}", s.x, s.y)).collect();
+        let class = format!("class=\"{} tv-line tv-none\"", marks::colour(*number));
+        let places: Vec<(f64, f64)> = own.map(|point| (point.x, point.y)).collect();
         if places.len() > 1 {
-            let class = marks::colour(*number);
-            svg += &format!(
-                "<path class=\"{class} tv-line tv-none\" d=\"M{}\"/>\n",
-                places.join("L")
-            );
+            svg += &line(&class, places);
         }
     }
     svg
@@ -227,10 +191,10 @@ fn bars(
 /// `lines`. A label without a free place is left out; the table has it.
 fn names(points: &[PlotPoint<'_>], lines: &[LabelBox]) -> String {
     let room = LabelBox {
-        left: LEFT + 2.0,
-        top: TOP + 2.0,
-        right: RIGHT - 2.0,
-        bottom: BOTTOM - 2.0,
+        left: AREA.left + 2.0,
+        top: AREA.top + 2.0,
+        right: AREA.right - 2.0,
+        bottom: AREA.bottom - 2.0,
     };
     let mut taken: Vec<LabelBox> = points
         .iter()
