@@ -1,6 +1,7 @@
 //! Parts that all figures and pages share: style sheets, axes, marks, labels and numbers.
 
 pub(crate) mod axis;
+pub(crate) mod html;
 pub(crate) mod labels;
 pub(crate) mod marks;
 pub mod number;
@@ -26,34 +27,6 @@ pub(crate) const STYLE: &str = "\
 .tv-s0{stroke:#6cb4ff;fill:#6cb4ff}.tv-s1{stroke:#ff9a62;fill:#ff9a62}.tv-s2{stroke:#4fd1a1;fill:#4fd1a1}\
 .tv-s3{stroke:#e79bdc;fill:#e79bdc}.tv-s4{stroke:#e3c04d;fill:#e3c04d}.tv-s5{stroke:#b6c2d1;fill:#b6c2d1}\
 .tv-open{fill:#181b20}.tv-none{fill:none}}";
-
-/// Style of an HTML page, for light and dark colour schemes.
-pub(crate) const PAGE_STYLE: &str = "\
-:root{color-scheme:light dark;--ink:#1f2328;--soft:#57606a;--page:#f3f4f6;--card:#fff;--line:#d8dee4;--mark:#0b62b8;--tint:#eef5fc}\
-@media (prefers-color-scheme:dark){:root{--ink:#e6e8eb;--soft:#a0a8b2;--page:#101216;--card:#181b20;--line:#333941;--mark:#6cb4ff;--tint:#1b2733}}\
-*{box-sizing:border-box}\
-body{margin:0;background:var(--page);color:var(--ink);font:16px/1.55 system-ui,-apple-system,'Segoe UI',sans-serif}\
-main,header,footer{max-width:56rem;margin:0 auto;padding:1rem}\
-h1{font-size:1.7rem;line-height:1.2;margin:1rem 0 .4rem}\
-h2{font-size:1.25rem;line-height:1.3;margin:0 0 .6rem}\
-p{margin:.5rem 0}\
-.soft,footer{color:var(--soft);font-size:.92rem}\
-.caution{border-left:4px solid #d9822b;padding:.3rem .8rem;margin:.8rem 0}\
-nav{display:flex;flex-wrap:wrap;gap:.5rem;margin:1rem 0 0}\
-nav a{background:var(--card);border:1px solid var(--line);border-radius:99px;padding:.25rem .8rem;color:var(--mark);text-decoration:none;font-size:.92rem}\
-section{background:var(--card);border:1px solid var(--line);border-radius:12px;padding:1.1rem;margin:0 0 1.2rem}\
-figure{margin:1rem 0}\
-figure svg{display:block;width:100%;max-width:40rem;height:auto;margin:0 auto}\
-.scroll{overflow-x:auto;-webkit-overflow-scrolling:touch}\
-table{border-collapse:collapse;width:100%;font-variant-numeric:tabular-nums;font-size:.9rem}\
-th,td{padding:.35rem .6rem;border-bottom:1px solid var(--line);text-align:right;vertical-align:bottom}\
-th:first-child,td:first-child{text-align:left}\
-th{font-weight:600}\
-td small{color:var(--soft);white-space:nowrap}\
-tr.on td{background:var(--tint)}\
-tr.on td:last-child{color:var(--mark);font-weight:700}\
-@media (max-width:34rem){header,footer{padding:.8rem}main{padding:.4rem}section{padding:.7rem;border-radius:8px}figure{margin:1rem -.7rem}\
-th,td{padding:.3rem .35rem}td small{display:block;font-size:.78rem}}";
 
 /// Text with the special characters of XML escaped and control characters replaced by spaces.
 pub(crate) fn escaped(text: &str) -> String {

@@ -4,8 +4,8 @@
 use super::conclusion::{conclusions, farthest};
 use super::frame::short_name;
 use super::{AnalyzedScan, AnalyzedScans, CELL_M, SPHERE_M, curves, density, histogram, planes};
-use crate::draw::PAGE_STYLE;
 use crate::draw::escaped;
+use crate::draw::html::{self, Section, caution};
 use crate::draw::number::short;
 
 /// Files next to the page that it links to, and their descriptions.
@@ -48,37 +48,25 @@ pub fn page(scans: &AnalyzedScans) -> String {
         .iter()
         .map(|scan| short_name(&scan.name))
         .collect();
-    let title = escaped(&names.join(", "));
-    let mut page = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>AnalyzedScan patterns: {title}</title>\n<style>{PAGE_STYLE}{MORE_STYLE}</style>\n</head>\n<body>\n\
-         <header>\n<h1>AnalyzedScan patterns: {title}</h1>\n<p class=\"soft\">{}: <code>{}</code></p>\n<nav>\n",
+    let title = format!("Scan patterns: {}", escaped(&names.join(", ")));
+    let intro = format!(
+        "<p class=\"soft\">{}: <code>{}</code></p>\n",
         escaped(&scans.program),
         escaped(&scans.command)
     );
-    let sections = sections(scans);
-    for (id, heading, _) in &sections {
-        page += &format!("<a href=\"#{id}\">{heading}</a>\n");
-    }
-    page += "</nav>\n</header>\n<main>\n";
-    for (id, heading, content) in &sections {
-        page += &format!("<section id=\"{id}\">\n<h2>{heading}</h2>\n{content}</section>\n");
-    }
-    page + "</main>\n<footer>After: Analysis of 3D AnalyzedScan Measurement Distribution with Application to a Multi-Beam Lidar on a Rotating Platform (2018). \
-            Directions are seen from the origin, on the tilt axis y; x is right, z is up.</footer>\n</body>\n</html>\n"
+    let footer = "After: Analysis of 3D Scan Measurement Distribution with Application to a Multi-Beam Lidar on a Rotating Platform (2018). \
+                  Directions are seen from the origin, on the tilt axis y; x is right, z is up.";
+    html::page(&title, MORE_STYLE, &title, &intro, &sections(scans), footer)
 }
-
-type Section = (&'static str, &'static str, String);
 
 fn sections(scans: &AnalyzedScans) -> Vec<Section> {
     let bins = scans.bins.bins().len();
     let cell = short(CELL_M);
     vec![
-        ("summary", "At a glance", summary(scans)),
+        ("summary", "At a glance".to_owned(), summary(scans)),
         (
             "density",
-            "Density on the sphere",
+            "Density on the sphere".to_owned(),
             figure(
                 &density(scans),
                 "All scans have one scale of colours, by equal factors. Darker is more; bins without a point are white with grey edges.",
@@ -86,7 +74,7 @@ fn sections(scans: &AnalyzedScans) -> Vec<Section> {
         ),
         (
             "histogram",
-            "Histogram of the density",
+            "Histogram of the density".to_owned(),
             figure(
                 &histogram(scans),
                 &format!(
@@ -97,7 +85,7 @@ fn sections(scans: &AnalyzedScans) -> Vec<Section> {
         ),
         (
             "planes",
-            "Points on planes",
+            "Points on planes".to_owned(),
             figure(
                 &planes(scans),
                 &format!(
@@ -108,7 +96,7 @@ fn sections(scans: &AnalyzedScans) -> Vec<Section> {
         ),
         (
             "k",
-            "How evenly points lie",
+            "How evenly points lie".to_owned(),
             figure(
                 &curves(scans),
                 "Ripley's K function less that of points at random (complete spatial randomness), over the area of the sphere: so much larger is the share of \
@@ -117,7 +105,7 @@ fn sections(scans: &AnalyzedScans) -> Vec<Section> {
             ) + &extremes(scans)
                 + &k_table(scans),
         ),
-        ("files", "Figures and numbers as files", files()),
+        ("files", "Figures and numbers as files".to_owned(), files()),
     ]
 }
 
@@ -132,27 +120,15 @@ fn figure(svg: &str, caption: &str) -> String {
 }
 
 /// A table with a caption above it, which wraps independent of the table's width.
-fn table(caption: &str, headings: &[String], rows: &[Vec<String>]) -> String {
-    let mut html = format!(
-        "<p class=\"caption\">{0}</p>\n{HINT}<div class=\"scroll\" tabindex=\"0\"><table aria-label=\"{0}\">\n<thead><tr>",
-        escaped(caption)
-    );
-    for heading in headings {
-        html += &format!("<th scope=\"col\">{}</th>", escaped(heading));
-    }
-    html += "</tr></thead>\n<tbody>\n";
-    for row in rows {
-        html += "<tr>";
-        for cell in row {
-            html += &format!("<td>{}</td>", escaped(cell));
-        }
-        html += "</tr>\n";
-    }
-    html + "</tbody></table></div>\n"
-}
-
-fn headings(words: &[&str]) -> Vec<String> {
-    words.iter().map(|word| (*word).to_owned()).collect()
+fn table(caption: &str, headings: &[&str], rows: &[Vec<String>]) -> String {
+    let caption = escaped(caption);
+    let rows = rows.iter();
+    let rows = rows.map(|row| (false, row.iter().map(|cell| escaped(cell)).collect()));
+    let label = format!(" aria-label=\"{caption}\"");
+    let table = html::table(&label, headings.iter().copied(), rows);
+    format!(
+        "<p class=\"caption\">{caption}</p>\n{HINT}<div class=\"scroll\" tabindex=\"0\">{table}</div>\n"
+    )
 }
 
 fn rows(scans: &AnalyzedScans, row: impl Fn(&AnalyzedScan) -> Vec<String>) -> Vec<Vec<String>> {
@@ -169,8 +145,7 @@ fn summary(scans: &AnalyzedScans) -> String {
     let mut html = conclusions(scans);
     for scan in &scans.scans {
         for warning in &scan.warnings {
-            let said = escaped(&format!("{}: {warning}", scan.name));
-            html += &format!("<p class=\"caution\">{said}</p>\n");
+            html += &caution(&format!("{}: {warning}", scan.name));
         }
     }
     let percent =
@@ -205,7 +180,7 @@ fn summary(scans: &AnalyzedScans) -> String {
     ];
     html + &table(
         "Covered: bins that hold a point. In view: where the scan could see at all, known of patterns and logs. Less is better from the holes on.",
-        &headings(&words),
+        &words,
         &rows,
     )
 }
@@ -237,11 +212,7 @@ fn densities(scans: &AnalyzedScans) -> String {
         "sd a deg\u{b2}",
     ];
     let bins = scans.bins.bins().len();
-    table(
-        &format!("Points a bin, of {bins} bins"),
-        &headings(&words),
-        &rows,
-    )
+    table(&format!("Points a bin, of {bins} bins"), &words, &rows)
 }
 
 fn plane_table(scans: &AnalyzedScans) -> String {
@@ -261,7 +232,7 @@ fn plane_table(scans: &AnalyzedScans) -> String {
         "within the pictures",
         "squares drawn",
     ];
-    table("What the pictures show", &headings(&words), &rows)
+    table("What the pictures show", &words, &rows)
 }
 
 fn extremes(scans: &AnalyzedScans) -> String {
@@ -297,17 +268,13 @@ fn extremes(scans: &AnalyzedScans) -> String {
         "counted by",
         "off by at most",
     ];
-    table(
-        "K - K_csr, share of the sphere's area",
-        &headings(&words),
-        &rows,
-    )
+    table("K - K_csr, share of the sphere's area", &words, &rows)
 }
 
 /// The curves at some angles.
 fn k_table(scans: &AnalyzedScans) -> String {
-    let mut words = vec!["angle up to, deg".to_owned()];
-    words.extend(scans.scans.iter().map(|scan| scan.name.clone()));
+    let mut words = vec!["angle up to, deg"];
+    words.extend(scans.scans.iter().map(|scan| scan.name.as_str()));
     let thetas = scans
         .scans
         .first()

@@ -1,48 +1,32 @@
 //! Findings as one self-contained HTML page for light and dark colour schemes and phones.
 
 use super::{StudyFindings, StudyReport, svg};
-use crate::draw::{PAGE_STYLE, escaped};
+use crate::draw::escaped;
+use crate::draw::html::{self, Section, caution};
 
 /// The page.
 #[must_use]
 pub fn page(report: &StudyReport) -> String {
-    let machine = escaped(&report.machine.line());
-    let mut page = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>velomotion: what accuracy costs in time</title>\n<style>{PAGE_STYLE}</style>\n</head>\n<body>\n\
-         <header>\n<h1>What accuracy costs in time</h1>\n<p class=\"soft\">{machine}</p>\n"
+    let mut intro = format!(
+        "<p class=\"soft\">{}</p>\n",
+        escaped(&report.machine.line())
     );
-    for caution in report.cautions() {
-        page += &format!("<p class=\"caution\">{}</p>\n", escaped(caution));
-    }
-    page += "<nav>\n";
-    for findings in &report.studies {
-        page += &format!(
-            "<a href=\"#{}\">{}</a>\n",
-            findings.study.name,
-            escaped(findings.study.title)
-        );
-    }
-    page += "</nav>\n</header>\n<main>\n";
-    for findings in &report.studies {
-        page += &section(findings);
-    }
-    page += &format!(
-        "</main>\n<footer>{}. Times: the median of repeated runs in turns, with the least and the greatest. Less is better everywhere. \
+    intro.extend(report.cautions().into_iter().map(caution));
+    let studies = report.studies.iter();
+    let sections: Vec<Section> = studies.map(section).collect();
+    let footer = format!(
+        "{}. Times: the median of repeated runs in turns, with the least and the greatest. Less is better everywhere. \
          Marked rows are on the Pareto front of their figure (\u{25cf}, or its number). \
-         The same figures are in <a href=\"tradeoff.json\">tradeoff.json</a>.</footer>\n</body>\n</html>\n",
+         The same figures are in <a href=\"tradeoff.json\">tradeoff.json</a>.",
         escaped(&report.program)
     );
-    page
+    let heading = "What accuracy costs in time";
+    let title = "velomotion: what accuracy costs in time";
+    html::page(title, "", heading, &intro, &sections, &footer)
 }
 
-fn section(findings: &StudyFindings) -> String {
-    let mut html = format!(
-        "<section id=\"{}\">\n<h2>{}</h2>\n",
-        findings.study.name,
-        escaped(findings.study.title)
-    );
+fn section(findings: &StudyFindings) -> Section {
+    let mut html = String::new();
     for paragraph in &findings.about {
         html += &format!("<p>{}</p>\n", escaped(paragraph));
     }
@@ -51,34 +35,29 @@ fn section(findings: &StudyFindings) -> String {
     for verdict in findings.verdicts() {
         html += &format!("<p class=\"soft\">{}</p>\n", escaped(&verdict));
     }
-    html + "</section>\n"
+    (findings.study.name, escaped(findings.study.title), html)
 }
 
 fn table(findings: &StudyFindings) -> String {
-    let mut html = format!(
-        "<div class=\"scroll\"><table>\n<thead><tr><th>{}</th>",
-        escaped(findings.study.choice)
-    );
-    for (_, heading) in findings.study.columns {
-        html += &format!("<th>{}</th>", escaped(heading));
-    }
-    html += "<th>front</th></tr></thead>\n<tbody>\n";
-    for (row, mark) in findings.rows.iter().zip(findings.marks()) {
-        let class = if mark.is_empty() { "" } else { " class=\"on\"" };
-        html += &format!("<tr{class}><td>{}</td>", escaped(&row.name));
-        for value in &row.values {
+    let study = &findings.study;
+    let headings = study.columns.iter().map(|(_, heading)| *heading);
+    let headings = [study.choice].into_iter().chain(headings).chain(["front"]);
+    let rows = findings.rows.iter().zip(findings.marks());
+    let rows = rows.map(|(row, mark)| {
+        let values = row.values.iter().map(|value| {
             let text = value.text();
-            let (middle, ends) = text.split_once(' ').unwrap_or((&text, ""));
-            html += &format!("<td>{middle}");
-            if !ends.is_empty() {
-                html += &format!(" <small>{ends}</small>");
+            match text.split_once(' ') {
+                Some((middle, ends)) => format!("{middle} <small>{ends}</small>"),
+                None => text,
             }
-            html += "</td>";
-        }
-        let mark = mark.replace('*', "\u{25cf}");
-        html += &format!("<td>{mark}</td></tr>\n");
-    }
-    html + "</tbody></table></div>\n"
+        });
+        let name = escaped(&row.name);
+        let cells = [name].into_iter().chain(values);
+        let cells = cells.chain([mark.replace('*', "\u{25cf}")]);
+        (!mark.is_empty(), cells.collect())
+    });
+    let table = html::table("", headings, rows);
+    format!("<div class=\"scroll\">{table}</div>\n")
 }
 
 #[cfg(test)]
