@@ -101,8 +101,11 @@ number!(f64);
 
 /// Sine and cosine of an angle that changes.
 pub trait Sine<T: Real> {
-    /// Of an angle in degrees.
-    fn at(&self, degrees: T) -> (T, T);
+    /// Of an angle in degrees: the standard library's.
+    #[inline(always)]
+    fn at(&self, degrees: T) -> (T, T) {
+        degrees.radians().sin_cos()
+    }
 
     /// Of an angle `ahead_deg` beyond `degrees`, whose sine and cosine are `from`.
     #[inline(always)]
@@ -116,22 +119,11 @@ pub trait Sine<T: Real> {
 #[derive(Clone, Copy, Debug)]
 pub struct Exact;
 
-impl<T: Real> Sine<T> for Exact {
-    #[inline(always)]
-    fn at(&self, degrees: T) -> (T, T) {
-        degrees.radians().sin_cos()
-    }
-}
+impl<T: Real> Sine<T> for Exact {}
 
 /// A table with an entry per hundredth of a degree.
 #[derive(Clone, Debug)]
 pub struct SineTable<T>(Vec<(T, T)>);
-
-impl<T: Real> Default for SineTable<T> {
-    fn default() -> Self {
-        Self::new()
-    }
-}
 
 impl<T: Real> SineTable<T> {
     /// The table, [`TABLE_STEPS`] long.
@@ -161,11 +153,6 @@ impl<T: Real> Sine<T> for SineTable<T> {
 pub struct Addition;
 
 impl<T: Real> Sine<T> for Addition {
-    #[inline(always)]
-    fn at(&self, degrees: T) -> (T, T) {
-        degrees.radians().sin_cos()
-    }
-
     #[inline(always)]
     fn ahead(&self, (sin, cos): (T, T), degrees: T, ahead_deg: T) -> (T, T) {
         let _ = degrees;

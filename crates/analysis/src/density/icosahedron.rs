@@ -50,14 +50,6 @@ impl IcosahedronFace {
         let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
         [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]].map(Self::new)
     }
-
-    /// The solid angle, steradians (van Oosterom and Strackee 1983).
-    #[must_use]
-    pub fn area_sr(&self) -> f64 {
-        let [a, b, c] = self.corners;
-        let volume = a.dot(b.cross(c));
-        2.0 * volume.atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a))
-    }
 }
 
 impl Icosahedron {
@@ -135,13 +127,20 @@ mod tests {
 
     use super::*;
 
+    /// The solid angle, steradians (van Oosterom and Strackee 1983).
+    fn area_sr(face: &IcosahedronFace) -> f64 {
+        let [a, b, c] = face.corners;
+        let volume = a.dot(b.cross(c));
+        2.0 * volume.atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a))
+    }
+
     #[test]
     fn faces_tile_the_sphere() {
         for level in 0..=6 {
             let bins = Icosahedron::new(level).unwrap();
             assert_eq!(bins.bins().len(), 20 << (2 * level));
             assert_eq!(bins.level(), level);
-            let area: f64 = bins.bins().iter().map(IcosahedronFace::area_sr).sum();
+            let area: f64 = bins.bins().iter().map(area_sr).sum();
             assert!((area - 4.0 * PI).abs() < 1e-11, "{level}: {area}");
         }
         assert_eq!(
@@ -157,7 +156,7 @@ mod tests {
         let areas = bins
             .bins()
             .iter()
-            .map(|bin| bin.area_sr().to_degrees().to_degrees());
+            .map(|bin| area_sr(bin).to_degrees().to_degrees());
         let [least, most] = areas.fold([f64::MAX, 0.0_f64], |[least, most], area| {
             [least.min(area), most.max(area)]
         });

@@ -7,7 +7,6 @@
 
 use glam::DVec3;
 
-use super::DensityError;
 use super::cells::CubeCell;
 use super::icosahedron::{Icosahedron, IcosahedronFace};
 
@@ -74,15 +73,6 @@ impl Locator {
     #[must_use]
     pub fn bins(&self) -> usize {
         self.centres.len()
-    }
-
-    /// The bin of each direction.
-    ///
-    /// # Errors
-    /// [`DensityError::Direction`] for the first invalid direction.
-    pub fn bins_of(&self, directions: &[DVec3]) -> Result<Vec<u32>, DensityError> {
-        super::check(directions)?;
-        Ok(directions.iter().map(|d| self.bin(*d)).collect())
     }
 }
 

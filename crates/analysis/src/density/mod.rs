@@ -18,6 +18,7 @@ mod many;
 mod nearby;
 
 use glam::DVec3;
+use rayon::prelude::*;
 use thiserror::Error;
 
 pub use blind::{EmptyBand, HoleRow, bands, holes, rows};
@@ -64,7 +65,7 @@ fn is_direction(direction: DVec3) -> bool {
 
 /// Checks that all are directions.
 fn check(directions: &[DVec3]) -> Result<(), DensityError> {
-    match directions.iter().position(|d| !is_direction(*d)) {
+    match directions.par_iter().position_first(|d| !is_direction(*d)) {
         None => Ok(()),
         Some(index) => Err(DensityError::Direction {
             index,

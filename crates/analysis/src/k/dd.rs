@@ -1,12 +1,15 @@
-//! Numbers of two doubles, about 106 bits: enough to say what the cosine of an edge is.
+//! Numbers of two doubles, about 106 bits: enough for the cosine of an edge.
 //!
 //! Error-free sums and products after Dekker and Knuth; the product takes the fused multiply-add.
-//! Left out: everything that cosines of edges and the sign of a sum do not need.
+
+use std::ops::{Add, Mul, Neg, Sub};
 
 /// A sum of two doubles of which the second is at most half a unit in the last place of the first.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Dd {
+pub struct Dd {
+    /// The first, which is the sum rounded.
     pub hi: f64,
+    /// The second.
     pub lo: f64,
 }
 
@@ -33,7 +36,9 @@ impl Dd {
         lo: 1.224_646_799_147_353_2e-16,
     };
 
-    pub(super) const fn of(hi: f64) -> Self {
+    /// A double.
+    #[must_use]
+    pub const fn of(hi: f64) -> Self {
         Self { hi, lo: 0.0 }
     }
 
@@ -42,32 +47,20 @@ impl Dd {
         Self { hi, lo }
     }
 
-    pub(super) fn minus(self) -> Self {
-        Self {
-            hi: -self.hi,
-            lo: -self.lo,
-        }
-    }
-
-    fn plus(self, other: Self) -> Self {
-        let (high, rest) = two_sum(self.hi, other.hi);
-        let (low, least) = two_sum(self.lo, other.lo);
-        let first = Self::joined((high, rest + low));
-        Self::joined((first.hi, first.lo + least))
-    }
-
-    fn times(self, other: Self) -> Self {
-        let (high, rest) = two_product(self.hi, other.hi);
-        Self::joined((high, rest + (self.hi * other.lo + self.lo * other.hi)))
+    /// `a - b` without rounding.
+    #[must_use]
+    pub fn difference(a: f64, b: f64) -> Self {
+        Self::joined((a, -b))
     }
 
     fn over(self, divisor: f64) -> Self {
         let high = self.hi / divisor;
         let (product, rest) = two_product(high, divisor);
-        let left = self.plus(Self {
-            hi: -product,
-            lo: -rest,
-        });
+        let left = self
+            - Self {
+                hi: product,
+                lo: rest,
+            };
         Self::joined((high, (left.hi + left.lo) / divisor))
     }
 
@@ -79,7 +72,7 @@ impl Dd {
         for step in (0..16_u32).rev() {
             let n = f64::from(first + 2 * step);
             let factor = square.over((n + 1.0) * (n + 2.0));
-            sum = Self::ONE.plus(factor.times(sum).minus());
+            sum = Self::ONE - factor * sum;
         }
         sum
     }
@@ -88,20 +81,56 @@ impl Dd {
     /// exactly opposite cosines. `part` is at most `whole`, both below 2^31.
     pub(super) fn cosine(part: u32, whole: u32) -> Self {
         if 2 * part > whole {
-            return Self::cosine(whole.saturating_sub(part), whole).minus();
+            return -Self::cosine(whole.saturating_sub(part), whole);
         }
-        let angle = |part: u32, whole: u32| {
-            Self::PI
-                .times(Self::of(f64::from(part)))
-                .over(f64::from(whole))
-        };
+        let angle =
+            |part: u32, whole: u32| (Self::PI * Self::of(f64::from(part))).over(f64::from(whole));
         if 4 * part <= whole {
             let x = angle(part, whole);
-            Self::series(x.times(x), 0)
+            Self::series(x * x, 0)
         } else {
             let x = angle(whole - 2 * part, 2 * whole);
-            x.times(Self::series(x.times(x), 1))
+            x * Self::series(x * x, 1)
         }
+    }
+}
+
+impl Neg for Dd {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self {
+            hi: -self.hi,
+            lo: -self.lo,
+        }
+    }
+}
+
+impl Add for Dd {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        let (high, rest) = two_sum(self.hi, other.hi);
+        let (low, least) = two_sum(self.lo, other.lo);
+        let first = Self::joined((high, rest + low));
+        Self::joined((first.hi, first.lo + least))
+    }
+}
+
+impl Sub for Dd {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Mul for Dd {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        let (high, rest) = two_product(self.hi, other.hi);
+        Self::joined((high, rest + (self.hi * other.lo + self.lo * other.hi)))
     }
 }
 

@@ -32,6 +32,7 @@ mod turned;
 pub use choose::{EXACT_BELOW, KMethod, choose, estimate};
 pub use counts::PairCounts;
 pub use curve::KCurve;
+pub use dd::Dd;
 pub use edges::{Edges, LEAST_COORDINATE, MOST_BINS, ON_EDGE};
 pub use error::{KError, UNIT_WITHIN};
 pub use estimate::Estimate;

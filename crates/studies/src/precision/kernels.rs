@@ -25,58 +25,36 @@ pub struct Patch<T> {
 /// The test of all patches: the range of every ray, packet after packet, infinite for none.
 pub type Cast<T> = fn(&[Patch<T>], &mut [[T; LANES]]);
 
-/// The tests.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// A test in one of the number types.
+#[derive(Clone, Copy)]
 pub enum Kernel {
-    MoellerF32,
-    MoellerF64,
-    WatertightF32,
-    WatertightF64,
+    F32(Cast<f32>),
+    F64(Cast<f64>),
 }
 
-impl Kernel {
-    pub const ALL: [Self; 4] = [
-        Self::MoellerF32,
-        Self::MoellerF64,
-        Self::WatertightF32,
-        Self::WatertightF64,
-    ];
-
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::MoellerF32 => "Moeller-Trumbore in f32",
-            Self::MoellerF64 => "Moeller-Trumbore in f64",
-            Self::WatertightF32 => "watertight in f32",
-            Self::WatertightF64 => "watertight in f64 (velomotion's)",
-        }
-    }
-
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::MoellerF32 => "M-T f32",
-            Self::MoellerF64 => "M-T f64",
-            Self::WatertightF32 => "tight f32",
-            Self::WatertightF64 => "tight f64",
-        }
-    }
-
-    /// In f64, if it exists.
-    pub fn wide(self) -> Option<Cast<f64>> {
-        match self {
-            Self::MoellerF64 => Some(moeller_f64),
-            Self::WatertightF64 => Some(casters),
-            Self::MoellerF32 | Self::WatertightF32 => None,
-        }
-    }
-
-    /// In f32.
-    pub fn narrow(self) -> Cast<f32> {
-        match self {
-            Self::MoellerF32 | Self::MoellerF64 => moeller_f32,
-            Self::WatertightF32 | Self::WatertightF64 => watertight_f32,
-        }
-    }
-}
+/// Name, label and function of the tests.
+pub const KERNELS: [(&str, &str, Kernel); 4] = [
+    (
+        "Moeller-Trumbore in f32",
+        "M-T f32",
+        Kernel::F32(moeller_f32),
+    ),
+    (
+        "Moeller-Trumbore in f64",
+        "M-T f64",
+        Kernel::F64(moeller_f64),
+    ),
+    (
+        "watertight in f32",
+        "tight f32",
+        Kernel::F32(watertight_f32),
+    ),
+    (
+        "watertight in f64 (velomotion's)",
+        "tight f64",
+        Kernel::F64(casters),
+    ),
+];
 
 macro_rules! kernels {
     ($($name:ident: $number:ty, $vector:ident, $test:ident;)*) => {$(

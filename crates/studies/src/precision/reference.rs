@@ -1,102 +1,55 @@
-//! True intersections of rays and triangles in double-double arithmetic: sums of two f64 with 106
-//! bits (Dekker 1971; Hida, Li and Bailey 2001).
+//! True intersections of rays and triangles in double-double arithmetic ([`Dd`]).
 //!
 //! Cramer's rule on `origin + t direction = a + u (b - a) + v (c - a)`.
 
-use std::ops::{Add, Mul, Sub};
+use analysis::k::Dd;
 
 use super::kernels::{LANES, Patch};
 
-/// The sum of two numbers, the second below half a unit in the last place of the first.
-#[derive(Clone, Copy, Debug)]
-struct Double(f64, f64);
-
-impl Double {
-    /// The exact sum of two numbers.
-    fn sum(a: f64, b: f64) -> Self {
-        let sum = a + b;
-        let of_b = sum - a;
-        Self(sum, (a - (sum - of_b)) + (b - of_b))
-    }
-
-    /// Their exact difference.
-    fn difference(a: f64, b: f64) -> Self {
-        Self::sum(a, -b)
-    }
-
-    /// The quotient, rounded to f64.
-    fn over(self, by: Self) -> f64 {
-        let first = self.0 / by.0;
-        let rest = self - by * Self(first, 0.0);
-        first + rest.0 / by.0
-    }
-
-    /// -1, 0 or 1.
-    fn sign(self) -> f64 {
-        match self.0 == 0.0 {
-            true => 0.0,
-            false => self.0.signum(),
-        }
-    }
-}
-
-impl Add for Double {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
-        let (high, low) = (Self::sum(self.0, other.0), Self::sum(self.1, other.1));
-        let once = Self::sum(high.0, high.1 + low.0);
-        Self::sum(once.0, once.1 + low.1)
-    }
-}
-
-impl Sub for Double {
-    type Output = Self;
-
-    fn sub(self, other: Self) -> Self {
-        self + Self(-other.0, -other.1)
-    }
-}
-
-impl Mul for Double {
-    type Output = Self;
-
-    fn mul(self, other: Self) -> Self {
-        let product = self.0 * other.0;
-        let rounding = self.0.mul_add(other.0, -product);
-        Self::sum(product, rounding + (self.0 * other.1 + self.1 * other.0))
-    }
-}
-
-type Three = [Double; 3];
+type Three = [Dd; 3];
 
 fn difference(a: [f64; 3], b: [f64; 3]) -> Three {
-    [0, 1, 2].map(|axis| Double::difference(a[axis], b[axis]))
+    [0, 1, 2].map(|axis| Dd::difference(a[axis], b[axis]))
 }
 
 fn cross(a: &Three, b: &Three) -> Three {
     [(1, 2), (2, 0), (0, 1)].map(|(i, j)| a[i] * b[j] - a[j] * b[i])
 }
 
-fn dot(a: &Three, b: &Three) -> Double {
+fn dot(a: &Three, b: &Three) -> Dd {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// A quotient, rounded to f64.
+fn quotient(of: Dd, by: Dd) -> f64 {
+    let first = of.hi / by.hi;
+    let rest = of - by * Dd::of(first);
+    first + rest.hi / by.hi
+}
+
+/// -1, 0 or 1.
+fn sign(of: Dd) -> f64 {
+    match of.hi == 0.0 {
+        true => 0.0,
+        false => of.hi.signum(),
+    }
 }
 
 /// Distance along a ray to a triangle, including edges and corners; `None` for a miss and for a ray
 /// in its plane.
 fn triangle(from: [f64; 3], along: [f64; 3], [a, b, c]: [[f64; 3]; 3]) -> Option<f64> {
     let (ab, ac, off) = (difference(b, a), difference(c, a), difference(from, a));
-    let along = along.map(|along| Double(along, 0.0));
+    let along = along.map(Dd::of);
     let across = cross(&along, &ac);
     let whole = dot(&ab, &across);
     let around = cross(&off, &ab);
     let (u, v) = (dot(&off, &across), dot(&along, &around));
     let range = dot(&ac, &around);
-    let side = whole.sign();
+    let side = sign(whole);
     let inside = [u, v, whole - u - v]
         .iter()
-        .all(|weight| weight.sign() * side >= 0.0);
-    (inside && side != 0.0 && range.sign() * side > 0.0).then(|| range.over(whole))
+        .all(|weight| sign(*weight) * side >= 0.0);
+    (inside && side != 0.0 && sign(range) * side > 0.0).then(|| quotient(range, whole))
 }
 
 /// The range of every ray, packet after packet, infinite for none.

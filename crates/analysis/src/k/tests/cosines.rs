@@ -46,11 +46,7 @@ fn cosines_are_within_their_stated_error() {
             let off = exact(of.hi) + exact(of.lo) - cosine(part, whole);
             let off = if off < exact(0.0) { -off } else { off };
             assert!(off < bound, "cos({part}/{whole} pi) is off by {off}");
-            assert_eq!(
-                Dd::cosine(whole - part, whole),
-                of.minus(),
-                "{part}/{whole}"
-            );
+            assert_eq!(Dd::cosine(whole - part, whole), -of, "{part}/{whole}");
         }
     }
 }
