@@ -1,6 +1,6 @@
 //! A plot: axes, grid, steps of the front, and a mark per choice with its spread and label.
 
-use super::svg::{Groups, WIDTH};
+use super::svg::WIDTH;
 use super::{Measurement, Row, StudyFindings, Trade};
 use crate::draw::Scale;
 use crate::draw::axis::PlotAxis;
@@ -36,7 +36,7 @@ pub(super) fn draw(
     findings: &StudyFindings,
     trade: &Trade,
     number: Option<usize>,
-    groups: &Groups<'_>,
+    groups: &[&str],
     top: f64,
 ) -> String {
     let x = axis(findings, trade.cost, AREA.left, AREA.right);
@@ -58,7 +58,7 @@ pub(super) fn draw(
     let mut lines: Vec<LabelBox> = Vec::new();
     for group in findings.circumstances(trade) {
         let corners = corners(&points, group);
-        let colour = group.map(|group| marks::colour(groups.number(group)));
+        let colour = group.map(|group| marks::colour(number_of(groups, group)));
         let class = colour.map_or("tv-front".to_owned(), |c| format!("tv-front {c} tv-none"));
         svg += &line(&format!("class=\"{class}\""), corners.iter().copied());
         let sides = corners.windows(2);
@@ -71,7 +71,12 @@ pub(super) fn draw(
         svg += &bars(point, trade, &x, &y, groups);
     }
     for point in &points {
-        let mark = marks::mark(groups.number(point.row.group), point.x, point.y, point.on);
+        let mark = marks::mark(
+            number_of(groups, point.row.group),
+            point.x,
+            point.y,
+            point.on,
+        );
         let name = escaped(&point.row.name);
         svg += &format!("<g><title>{name}</title>{mark}</g>\n");
     }
@@ -79,6 +84,12 @@ pub(super) fn draw(
     lines.extend(bars.flatten().map(|(a, b)| LabelBox::along(a, b)));
     svg += &names(&points, &lines);
     svg + "</g>\n"
+}
+
+/// The number of a group, which selects its colour and shape.
+fn number_of(groups: &[&str], group: &str) -> usize {
+    let place = groups.iter().position(|name| *name == group);
+    place.unwrap_or(0)
 }
 
 fn axis(findings: &StudyFindings, column: usize, from: f64, to: f64) -> PlotAxis {
@@ -138,11 +149,16 @@ fn corners(points: &[PlotPoint<'_>], group: Option<&str>) -> Vec<(f64, f64)> {
     corners
 }
 
-fn joined(points: &[PlotPoint<'_>], groups: &Groups<'_>) -> String {
+fn joined(points: &[PlotPoint<'_>], groups: &[&str]) -> String {
     let mut svg = String::new();
-    for (group, number) in &groups.0 {
-        let own = points.iter().filter(|point| point.row.group == *group);
-        let class = format!("class=\"{} tv-line tv-none\"", marks::colour(*number));
+    let mut names = groups.to_vec();
+    names.sort_unstable();
+    for group in names {
+        let own = points.iter().filter(|point| point.row.group == group);
+        let class = format!(
+            "class=\"{} tv-line tv-none\"",
+            marks::colour(number_of(groups, group))
+        );
         let places: Vec<(f64, f64)> = own.map(|point| (point.x, point.y)).collect();
         if places.len() > 1 {
             svg += &line(&class, places);
@@ -169,9 +185,9 @@ fn bars(
     trade: &Trade,
     x: &PlotAxis,
     y: &PlotAxis,
-    groups: &Groups<'_>,
+    groups: &[&str],
 ) -> String {
-    let class = marks::colour(groups.number(point.row.group));
+    let class = marks::colour(number_of(groups, point.row.group));
     let [level, upright] = spread(point, trade, x, y);
     let level = level.map(|((a, y), (b, _))| {
         let top = y - 3.0;

@@ -299,19 +299,25 @@ impl StudyFindings {
         })
     }
 
-    /// The groups in their order, or `[None]` for one front over all rows.
+    /// The groups in their order.
     #[must_use]
-    pub fn circumstances(&self, trade: &Trade) -> Vec<Option<&'static str>> {
-        if !trade.by_group {
-            return vec![None];
-        }
+    pub fn groups(&self) -> Vec<&'static str> {
         let mut groups = Vec::new();
         for row in &self.rows {
-            if !groups.contains(&Some(row.group)) {
-                groups.push(Some(row.group));
+            if !groups.contains(&row.group) {
+                groups.push(row.group);
             }
         }
         groups
+    }
+
+    /// The groups, or `[None]` for one front over all rows.
+    #[must_use]
+    pub fn circumstances(&self, trade: &Trade) -> Vec<Option<&'static str>> {
+        match trade.by_group {
+            true => self.groups().into_iter().map(Some).collect(),
+            false => vec![None],
+        }
     }
 
     fn by_group(&self, trade: &Trade, front: impl Fn(&[&Row]) -> Vec<bool>) -> Vec<bool> {

@@ -7,8 +7,6 @@
 //! axis and no labels that avoid each other, and its file is 1.6 times as large (10,771 bytes for a
 //! plot of 6 rows, ours 6,696 for 8).
 
-use std::collections::BTreeMap;
-
 use super::{Measurement, StudyFindings, panel};
 use crate::draw::{STYLE, escaped, labels, marks};
 
@@ -21,10 +19,10 @@ const MARGIN: f64 = 14.0;
 /// The figure as a document.
 #[must_use]
 pub fn figure(findings: &StudyFindings) -> String {
-    let groups = Groups::of(findings);
-    let legend = groups.legend(findings);
+    let groups = findings.groups();
     let panels_end = TITLE + panel::HEIGHT * findings.study.trades.len() as f64;
-    let height = panels_end + LEGEND_LINE * legend.len() as f64 + MARGIN;
+    let (legend, legend_end) = legend(findings, &groups, panels_end);
+    let height = legend_end + MARGIN;
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"tv\" viewBox=\"0 0 {WIDTH} {height}\" width=\"{WIDTH}\" height=\"{height}\" \
          role=\"img\">\n<title>{title}</title>\n<style>{STYLE}</style>\n\
@@ -37,100 +35,56 @@ pub fn figure(findings: &StudyFindings) -> String {
         let top = TITLE + panel::HEIGHT * number.map_or(0.0, |n| (n - 1) as f64);
         svg += &panel::draw(findings, trade, number, &groups, top);
     }
-    for (i, line) in legend.iter().enumerate() {
-        let y = panels_end + LEGEND_LINE * (i as f64 + 0.5);
-        for entry in line {
-            svg += &entry.draw(y);
-        }
-    }
-    svg + "</svg>\n"
+    svg + &legend + "</svg>\n"
 }
 
-/// The groups in their order, each with a colour and a shape.
-pub(super) struct Groups<'a>(pub(super) BTreeMap<&'a str, usize>);
-
-impl<'a> Groups<'a> {
-    fn of(findings: &'a StudyFindings) -> Self {
-        let mut groups = BTreeMap::new();
-        for row in &findings.rows {
-            let next = groups.len();
-            groups.entry(row.group).or_insert(next);
-        }
-        Self(groups)
-    }
-
-    pub(super) fn number(&self, group: &str) -> usize {
-        self.0.get(group).copied().unwrap_or(0)
-    }
-
-    /// The legend below the plots, in lines that fit.
-    fn legend(&self, findings: &StudyFindings) -> Vec<Vec<LegendEntry>> {
-        let mut names: Vec<(&str, usize)> = self.0.iter().map(|(name, n)| (*name, *n)).collect();
-        names.sort_by_key(|(_, number)| *number);
-        let timed = findings.rows.iter().flat_map(|row| &row.values);
-        let runs = timed
-            .filter_map(|value| match value {
-                Measurement::Timed(spread) => Some(spread.runs),
-                Measurement::Computed(_) => None,
-            })
-            .max();
-        let groups = names
-            .into_iter()
-            .map(|(name, n)| (LegendSymbol::Group(n), name.to_owned()));
-        let front = (LegendSymbol::Front, "Pareto front: filled".to_owned());
-        let bars = runs.map(|n| {
-            (
-                LegendSymbol::Bar,
-                format!("median, least and greatest of {n} runs"),
-            )
-        });
-        let mut lines: Vec<Vec<LegendEntry>> = vec![Vec::new()];
-        let mut x = MARGIN;
-        for (sign, text) in groups.chain([front]).chain(bars) {
-            let width = 24.0 + labels::width(&text) + 14.0;
-            if x > MARGIN && x + width > WIDTH {
-                lines.push(Vec::new());
-                x = MARGIN;
-            }
-            if let Some(line) = lines.last_mut() {
-                line.push(LegendEntry { sign, text, x });
-            }
-            x += width;
-        }
-        lines
-    }
-}
-
-/// An entry of the legend.
-struct LegendEntry {
-    sign: LegendSymbol,
-    text: String,
-    x: f64,
-}
-
+/// A symbol of the legend.
 enum LegendSymbol {
     Group(usize),
     Front,
     Bar,
 }
 
-impl LegendEntry {
-    fn draw(&self, y: f64) -> String {
-        let x = self.x;
-        let sign = match self.sign {
+/// The legend below the plots in lines that fit, and its end.
+fn legend(findings: &StudyFindings, groups: &[&str], top: f64) -> (String, f64) {
+    let timed = findings.rows.iter().flat_map(|row| &row.values);
+    let runs = timed
+        .filter_map(|value| match value {
+            Measurement::Timed(spread) => Some(spread.runs),
+            Measurement::Computed(_) => None,
+        })
+        .max();
+    let groups = groups.iter().enumerate();
+    let groups = groups.map(|(n, name)| (LegendSymbol::Group(n), (*name).to_owned()));
+    let front = (LegendSymbol::Front, "Pareto front: filled".to_owned());
+    let bars = runs.map(|n| {
+        let text = format!("median, least and greatest of {n} runs");
+        (LegendSymbol::Bar, text)
+    });
+    let mut svg = String::new();
+    let (mut x, mut y) = (MARGIN, top + LEGEND_LINE / 2.0);
+    for (symbol, text) in groups.chain([front]).chain(bars) {
+        let width = 24.0 + labels::width(&text) + 14.0;
+        if x > MARGIN && x + width > WIDTH {
+            x = MARGIN;
+            y += LEGEND_LINE;
+        }
+        svg += &match symbol {
             LegendSymbol::Group(n) => marks::mark(n, x + 8.0, y, true),
             LegendSymbol::Front => format!("<path class=\"tv-front\" d=\"M{x:.1} {y:.1}h18\"/>\n"),
             LegendSymbol::Bar => {
                 format!("<path class=\"tv-frame\" d=\"M{x:.1} {y:.1}h18m0 -3v6m-18 -6v6\"/>\n")
             }
         };
-        format!(
-            "{sign}<text class=\"tv-soft tv-small\" x=\"{:.1}\" y=\"{:.1}\">{}</text>\n",
+        svg += &format!(
+            "<text class=\"tv-soft tv-small\" x=\"{:.1}\" y=\"{:.1}\">{}</text>\n",
             x + 24.0,
             y + 4.0,
-            escaped(&self.text)
-        )
+            escaped(&text)
+        );
+        x += width;
     }
+    (svg, y + LEGEND_LINE / 2.0)
 }
 
 #[cfg(test)]

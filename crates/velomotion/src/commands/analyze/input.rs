@@ -24,6 +24,7 @@ use engine::reconstruct::replay::TimeReference;
 use engine::reconstruct::source::Source;
 
 /// Directions and their provenance.
+#[derive(Default)]
 pub struct Input {
     /// Name of the input.
     pub name: String,
@@ -126,12 +127,9 @@ fn of_pattern(pattern: &Pattern) -> Input {
         directions: pattern.directions(),
         frames: Some(u64::from(pattern.frames())),
         scan_s: Some(pattern.scan_s()),
-        without_direction: 0,
-        without_numbers: 0,
         view: Some(Seen::of_pattern(pattern)),
-        warnings: Vec::new(),
-        outside: None,
         pattern: Some(pattern.clone()),
+        ..Input::default()
     }
 }
 
@@ -187,14 +185,10 @@ fn of_cloud(path: &Path, format: Format, origin_m: DVec3) -> Result<Input, Failu
     Ok(Input {
         name: path.display().to_string(),
         directions,
-        frames: None,
-        scan_s: None,
         without_direction,
         without_numbers: read.without_numbers,
-        view: None,
-        warnings: Vec::new(),
         outside,
-        pattern: None,
+        ..Input::default()
     })
 }
 
@@ -300,10 +294,8 @@ fn of_log(path: &Path, interrupt: &AtomicBool) -> Result<Input, Failure> {
         frames: frames.map(|frames| frames.round() as u64),
         scan_s: Some(scan_s),
         without_direction,
-        without_numbers: 0,
         view,
         warnings: scan.contents.warnings,
-        outside: None,
-        pattern: None,
+        ..Input::default()
     })
 }

@@ -1,6 +1,6 @@
 //! Report of `analyze` as tables of 80 columns.
 
-use std::fmt::Write;
+use std::fmt::{Display, Write};
 
 use analysis::density::{EmptyBand, HistogramClass};
 use analysis::device::VisibleRange;
@@ -28,39 +28,45 @@ impl AnalyzeReport {
         let names = self.patterns.iter().map(|p| p.name.chars().count());
         let long = names.clone().any(|length| length > NAME);
         let column = names.max().unwrap_or(0).clamp(8, NAME);
-        let mut text = String::new();
-        let _ = writeln!(
-            text,
-            "{:column$} {:>9} {:>6} {:>7} {:>8} {:>6} {:>7} {:>7} {:>8}",
-            "", "points", "scan", "points", "", "", "", "points", "hole in"
-        );
-        let _ = writeln!(
-            text,
-            "{:column$} {:>9} {:>6} {:>7} {:>8} {:>6} {:>7} {:>7} {:>8}",
-            "pattern", "", "s", "a bin", "sd", "min", "max", "a deg2", "view deg"
-        );
+        let above = ["points", "scan", "points", "", "", "", "points", "hole in"];
+        let below = ["", "s", "a bin", "sd", "min", "max", "a deg2", "view deg"];
+        let mut text = row("", column, above) + &row("pattern", column, below);
         for pattern in &self.patterns {
             let s = &pattern.density.bins.statistics;
             let hole = pattern.hole_in_view.as_ref();
-            let hole = hole.map_or("-".to_owned(), |hole| number(hole.radius_deg, 6));
-            let scan = pattern.scan_s.map_or("-".to_owned(), |s| number(s, 6));
             if long {
                 let _ = writeln!(text, "{}", pattern.name);
             }
-            let name = if long { "" } else { &pattern.name };
-            let _ = writeln!(
-                text,
-                "{name:column$} {:>9} {scan:>6} {:>7} {:>8} {:>6} {:>7} {:>7} {:>8}",
-                pattern.points,
+            let cells = [
+                pattern.points.to_string(),
+                pattern.scan_s.map_or("-".to_owned(), |s| number(s, 6)),
                 thousandths(s.mean, 7),
                 thousandths(s.sd, 8),
-                s.min,
-                s.max,
+                s.min.to_string(),
+                s.max.to_string(),
                 number(s.mean_per_deg2, 7),
-                hole,
-            );
+                hole.map_or("-".to_owned(), |hole| number(hole.radius_deg, 6)),
+            ];
+            text += &row(if long { "" } else { &pattern.name }, column, cells);
         }
         text
+    }
+}
+
+/// A row of the comparison: a name in a column of this width, and cells aligned right.
+fn row<T: Display>(name: &str, column: usize, cells: [T; 8]) -> String {
+    let mut line = format!("{name:column$}");
+    for (cell, width) in cells.into_iter().zip([9, 6, 7, 8, 6, 7, 7, 8]) {
+        let _ = write!(line, " {cell:>width$}");
+    }
+    line + "\n"
+}
+
+/// A number of things.
+fn counted(number: u64, noun: &str) -> String {
+    match number {
+        1 => format!("1 {noun}"),
+        _ => format!("{number} {noun}s"),
     }
 }
 
@@ -91,16 +97,14 @@ impl PatternReport {
     fn lines(&self) -> Vec<String> {
         let mut lines = Vec::new();
         if let Some(frames) = self.frames {
-            let turns = if frames == 1 { "turn" } else { "turns" };
-            lines.push(format!("{frames} {turns} of the lidar"));
+            lines.push(format!("{} of the lidar", counted(frames, "turn")));
         }
         let left_out = [
             (self.without_direction, "in the origin"),
             (self.without_numbers, "whose coordinates are no numbers"),
         ];
         for (points, which) in left_out.into_iter().filter(|(points, _)| *points > 0) {
-            let noun = if points == 1 { "point" } else { "points" };
-            lines.push(format!("{points} {noun} {which} left out"));
+            lines.push(format!("{} {which} left out", counted(points, "point")));
         }
         lines.push(self.hole.line("largest hole"));
         lines.push(match (&self.hole_in_view, &self.view) {
@@ -140,14 +144,11 @@ impl PatternReport {
         let blind = &self.blind;
         let (holes, least_deg) = (blind.holes?, blind.least_radius_deg?);
         let more = if blind.and_more? { "at least " } else { "" };
-        let rows = match blind.rows.as_ref()?.len() {
-            1 => "1 row".to_owned(),
-            rows => format!("{rows} rows"),
-        };
-        let spots = if holes == 1 { "spot" } else { "spots" };
         Some(format!(
-            "{more}{holes} blind {spots} (holes of {} deg and more), in {rows} about the tilt axis",
+            "{more}{} (holes of {} deg and more), in {} about the tilt axis",
+            counted(holes as u64, "blind spot"),
             number(least_deg, 6),
+            counted(blind.rows.as_ref()?.len() as u64, "row"),
         ))
     }
 
@@ -164,10 +165,7 @@ impl PatternReport {
         };
         Some(format!(
             "{} about the tilt axis, {BAND_DEG} deg and wider, {} no point{why}: {} deg together, the widest from {} to {} deg",
-            match bands.len() {
-                1 => "1 band".to_owned(),
-                bands => format!("{bands} bands"),
-            },
+            counted(bands.len() as u64, "band"),
             if bands.len() == 1 { "holds" } else { "hold" },
             number(sum, 6),
             number(widest.from_deg, 6),
