@@ -23,5 +23,6 @@ pub mod device;
 mod draw;
 pub mod figures;
 pub mod k;
+mod noise;
 pub mod tradeoff;
 pub mod truth;

@@ -51,24 +51,6 @@ impl PointCell {
     }
 }
 
-/// Pseudo-random numbers (SplitMix64).
-#[derive(Clone, Debug)]
-pub(super) struct DrawSource(u64);
-
-impl DrawSource {
-    pub(super) const fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    #[inline]
-    pub(super) const fn draw(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-}
-
 /// A number in `0..below` from 32 random bits; its probability is off by at most `below / 2^32` in
 /// total.
 #[inline]

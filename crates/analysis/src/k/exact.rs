@@ -5,6 +5,7 @@
 //! not depend on the order.
 
 use std::num::NonZeroUsize;
+use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::DVec3;
@@ -76,12 +77,8 @@ pub(super) fn on_threads<T: Send>(threads: NonZeroUsize, work: &(impl Fn() -> T 
         let start = |_| std::thread::Builder::new().spawn_scoped(scope, work).ok();
         let others: Vec<_> = (1..threads.get()).map_while(start).collect();
         let mut parts = vec![work()];
-        for other in others {
-            match other.join() {
-                Ok(part) => parts.push(part),
-                Err(panic) => std::panic::resume_unwind(panic),
-            }
-        }
+        let joined = others.into_iter().map(|other| other.join());
+        parts.extend(joined.map(|part| part.unwrap_or_else(|panic| resume_unwind(panic))));
         parts
     })
 }

@@ -10,7 +10,7 @@
 use fearless_simd::{f32x16, prelude::*};
 use glam::DVec3;
 
-use super::cells::{DrawSource, PointCell, PointCells, ROW, scaled};
+use super::cells::{PointCell, PointCells, ROW, scaled};
 use super::counts::pairs;
 use super::error::check;
 use super::lanes::{LANES, SimdLanes};
@@ -19,6 +19,7 @@ use super::reach::reach;
 use super::registers::LaneWork;
 use super::sign_mask::SignMask;
 use super::{Edges, Estimate, KError, Registers};
+use crate::noise::SeededNoise;
 
 /// Settings of [`sampled()`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,7 +65,7 @@ pub fn sampled(points: &[DVec3], edges: &Edges, sampling: &Sampling) -> Result<E
             return Err(KError::Setting { name, got });
         }
     }
-    let mut chance = DrawSource::new(sampling.seed);
+    let mut chance = SeededNoise(sampling.seed);
     if points.len() < 2 {
         return Ok(Estimate::without_pairs("sampled", edges, points.len()));
     }
@@ -97,7 +98,7 @@ fn drawn(
     edges: &Edges,
     draws: f64,
     risk: f64,
-    chance: &mut DrawSource,
+    chance: &mut SeededNoise,
 ) -> Result<Estimate, KError> {
     let of_cells = cells.cells.len() as f64;
     let mut one = SamplingWorker {
@@ -132,7 +133,7 @@ struct SamplingWorker<'a> {
     points: &'a [DVec3],
     cells: &'a PointCells,
     edges: &'a Edges,
-    chance: &'a mut DrawSource,
+    chance: &'a mut SeededNoise,
     /// Number of draws in all, shared by weight.
     draws: f64,
     /// Number of pairs.
@@ -223,7 +224,7 @@ impl<'a> SamplingWorker<'a> {
     /// Draws the start of a row.
     #[inline(always)]
     fn row<'c>(&mut self, a: &'c PointCell, b: &'c PointCell, is_same: bool) -> Row<'c> {
-        let bits = self.chance.draw();
+        let bits = self.chance.bits();
         let from_a = scaled(bits, a.len);
         let (layout, from_b) = if is_same {
             // Another point of the cell in the same layout, so that no point is paired with itself.

@@ -10,7 +10,6 @@ pub mod html;
 mod json;
 mod k_function;
 mod markdown;
-mod noise;
 mod panel;
 pub mod pattern;
 mod scan_speed;
@@ -19,10 +18,10 @@ pub mod svg;
 pub mod text;
 mod timing;
 
+pub use crate::noise::SeededNoise;
 pub use json::json;
 pub use k_function::K_FUNCTION;
 pub use markdown::Book;
-pub use noise::SeededNoise;
 pub use scan_speed::SCAN_SPEED;
 pub use study::{
     Bench, Effort, Machine, Measured, Measurement, Row, Study, StudyError, StudyFindings,

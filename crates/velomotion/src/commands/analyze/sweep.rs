@@ -5,7 +5,6 @@
 //! nearest point for 99 % of directions, which is not decided by a single place; and the evenness
 //! of the bins (sd over mean).
 
-use std::fmt::Write;
 use std::sync::atomic::AtomicBool;
 
 use analysis::density::{
@@ -17,7 +16,7 @@ use serde::Serialize;
 use sim::patterns::{Pattern, PatternRequest};
 
 use super::input::pattern_failure;
-use super::text::number;
+use super::text::{aligned, number};
 use super::{Measure, failure, go_on};
 use crate::sweep_ranges::SweepRanges;
 use crate::terminal::Progress;
@@ -186,34 +185,30 @@ impl SettingsReport {
         );
         // All three columns refer to the field of view, so their headings differ from those of
         // other tables.
-        let before = 9 * self.keys.len() + 18;
-        let [a, b, c] = ["in view "; 3];
-        let _ = writeln!(text, "{:before$} {a:>9} {b:>9} {c:>10}", "");
-        for key in &self.keys {
-            let _ = write!(text, "{key:>8} ");
-        }
-        let _ = writeln!(
-            text,
-            "{:>8} {:>9} {:>9} {:>9} {:>10}",
-            "scan s", "points", "hole deg ", "99 % deg ", "sd / mean "
-        );
+        let keys = self.keys.len();
+        let mut line = |values: Vec<String>, others: [String; 5]| {
+            let widths = std::iter::repeat_n(8, keys).chain([8, 9, 9, 9, 10]);
+            text += &aligned(values.into_iter().chain(others), widths);
+            text.push('\n');
+        };
+        let above = ["", "", "in view ", "in view ", "in view "];
+        let below = ["scan s", "points", "hole deg ", "99 % deg ", "sd / mean "];
+        line(vec![String::new(); keys], above.map(str::to_owned));
+        line(self.keys.clone(), below.map(str::to_owned));
         for setting in shown {
-            for value in &setting.values {
-                let _ = write!(text, "{:>8} ", number(*value, 8));
-            }
+            let values = setting.values.iter().map(|value| number(*value, 8));
             let marked = |value: f64, best: bool| {
                 let mark = if best { "*" } else { " " };
                 format!("{}{mark}", number(value, 7))
             };
-            let _ = writeln!(
-                text,
-                "{:>8} {:>9} {:>9} {:>9} {:>10}",
+            let others = [
                 number(setting.scan_s, 7),
-                setting.points,
+                setting.points.to_string(),
                 marked(setting.hole_deg, setting.best_hole),
                 marked(setting.gap_deg, setting.best_gap),
-                marked(setting.sd_over_mean_in_view, setting.best_evenness)
-            );
+                marked(setting.sd_over_mean_in_view, setting.best_evenness),
+            ];
+            line(values.collect(), others);
         }
         text.push_str(
             "\nall in view, where the scan can see: radius of the largest hole; 99 % of\n\

@@ -30,7 +30,13 @@ impl AnalyzeReport {
         let column = names.max().unwrap_or(0).clamp(8, NAME);
         let above = ["points", "scan", "points", "", "", "", "points", "hole in"];
         let below = ["", "s", "a bin", "sd", "min", "max", "a deg2", "view deg"];
-        let mut text = row("", column, above) + &row("pattern", column, below);
+        let mut text = format!(
+            "{:column$} {}\n{:column$} {}\n",
+            "",
+            aligned(above, WIDTHS),
+            "pattern",
+            aligned(below, WIDTHS)
+        );
         for pattern in &self.patterns {
             let s = &pattern.density.bins.statistics;
             let hole = pattern.hole_in_view.as_ref();
@@ -47,19 +53,21 @@ impl AnalyzeReport {
                 number(s.mean_per_deg2, 7),
                 hole.map_or("-".to_owned(), |hole| number(hole.radius_deg, 6)),
             ];
-            text += &row(if long { "" } else { &pattern.name }, column, cells);
+            let name = if long { "" } else { &pattern.name };
+            let _ = writeln!(text, "{name:column$} {}", aligned(cells, WIDTHS));
         }
         text
     }
 }
 
-/// A row of the comparison: a name in a column of this width, and cells aligned right.
-fn row<T: Display>(name: &str, column: usize, cells: [T; 8]) -> String {
-    let mut line = format!("{name:column$}");
-    for (cell, width) in cells.into_iter().zip([9, 6, 7, 8, 6, 7, 7, 8]) {
-        let _ = write!(line, " {cell:>width$}");
-    }
-    line + "\n"
+/// Cells aligned right in columns of these widths.
+pub(super) fn aligned<T: Display>(
+    cells: impl IntoIterator<Item = T>,
+    widths: impl IntoIterator<Item = usize>,
+) -> String {
+    let cells = cells.into_iter().zip(widths);
+    let cells = cells.map(|(cell, width)| format!("{cell:>width$}"));
+    cells.collect::<Vec<_>>().join(" ")
 }
 
 /// A number of things.
@@ -72,6 +80,8 @@ fn counted(number: u64, noun: &str) -> String {
 
 /// Longest name of a row label.
 const NAME: usize = 14;
+/// Widths of the other columns of a comparison.
+const WIDTHS: [usize; 8] = [9, 6, 7, 8, 6, 7, 7, 8];
 
 impl PatternReport {
     fn describe(&self, text: &mut String) {
