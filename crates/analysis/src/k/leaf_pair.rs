@@ -9,7 +9,7 @@ use fearless_simd::{Simd, f32x16, prelude::*, u32x16};
 use glam::DVec3;
 
 use super::edges::{ON_EDGE, dot};
-use super::lanes::{AlignedLanes, LANES, SimdLanes};
+use super::lanes::{AlignedLanes, LANES};
 use super::sign_mask::SignMask;
 use super::tree::Leaf;
 use super::{Edges, KError};
@@ -279,7 +279,7 @@ fn recheck_masked<L: SignMask>(
 
 /// Dot products of one point with sixteen, less each threshold.
 #[inline(always)]
-fn row_above<L: SimdLanes, const E: usize>(
+fn row_above<L: SignMask, const E: usize>(
     on: L,
     [x, y, z]: [f32; 3],
     [bx, by, bz]: [f32x16<L::S>; 3],

@@ -2,8 +2,7 @@
 
 use fearless_simd::{Level, dispatch};
 
-use super::lanes::Portable;
-use super::sign_mask::SignMask;
+use super::sign_mask::{Portable, SignMask};
 
 /// The widest registers to use.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -30,7 +29,7 @@ impl Registers {
         let level = self.level();
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         {
-            use super::lanes::{Half, Wide};
+            use super::sign_mask::x86::{Half, Wide};
             use fearless_simd::Simd as _;
             if let Some(avx512) = level.as_avx512() {
                 return avx512.vectorize(

@@ -13,7 +13,7 @@ use glam::DVec3;
 use super::cells::{PointCell, PointCells, ROW, scaled};
 use super::counts::pairs;
 use super::error::check;
-use super::lanes::{LANES, SimdLanes};
+use super::lanes::LANES;
 use super::leaf_pair::F32_BAND;
 use super::reach::reach;
 use super::registers::LaneWork;
@@ -161,7 +161,7 @@ impl LaneWork for SamplingWorker<'_> {
 impl<'a> SamplingWorker<'a> {
     /// All pairs of cells, tile by tile, so that the points of two tiles stay in the cache.
     #[inline(always)]
-    fn all_cells<L: SimdLanes>(&mut self, on: L) {
+    fn all_cells<L: SignMask>(&mut self, on: L) {
         let len = self.cells.cells.len();
         for tile in (0..len).step_by(TILE) {
             for other in (tile..len).step_by(TILE) {
@@ -174,7 +174,7 @@ impl<'a> SamplingWorker<'a> {
 
     /// Draws pairs of a cell with a range of cells.
     #[inline(always)]
-    fn some_cells<L: SimdLanes>(&mut self, on: L, at: usize, (first, end): (usize, usize)) {
+    fn some_cells<L: SignMask>(&mut self, on: L, at: usize, (first, end): (usize, usize)) {
         let cells = self.cells;
         let (Some(a), Some(around)) = (cells.cells.get(at), cells.around.one(at)) else {
             return;
@@ -192,7 +192,7 @@ impl<'a> SamplingWorker<'a> {
     }
 
     #[inline(always)]
-    fn two_cells<L: SimdLanes>(
+    fn two_cells<L: SignMask>(
         &mut self,
         on: L,
         a: &'a PointCell,
@@ -243,7 +243,7 @@ impl<'a> SamplingWorker<'a> {
 
     /// Counts two rows at all edges between `first` and `last`.
     #[inline(always)]
-    fn draw<L: SimdLanes>(
+    fn draw<L: SignMask>(
         &mut self,
         on: L,
         rows: &[Row<'_>; 2],
@@ -373,7 +373,7 @@ impl<'a> SamplingWorker<'a> {
 
     /// Dot products of the pairs of a row.
     #[inline(always)]
-    fn dots<L: SimdLanes>(&self, on: L, row: &Row<'_>) -> Option<[f32x16<L::S>; REGISTERS]> {
+    fn dots<L: SignMask>(&self, on: L, row: &Row<'_>) -> Option<[f32x16<L::S>; REGISTERS]> {
         let [x, y, z] = &self.cells.columns;
         let [(a, ..), (b, ..)] = *row;
         let simd = on.simd();

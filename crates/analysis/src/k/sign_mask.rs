@@ -1,5 +1,7 @@
-//! Masks of the signs of sixteen rows of sixteen lanes, which also mark numbers too near to zero to
-//! tell.
+//! Registers of sixteen lanes for counting pairs, with AVX-512 where the processor has it; and masks
+//! of the signs of sixteen rows, which also mark numbers too near to zero to tell.
+//!
+//! All access goes through `fearless_simd`, whose tokens prove what the processor has.
 //!
 //! With instructions that pack two registers into one with saturation, one packing yields both. All
 //! numbers are scaled so that the band where f32 cannot tell maps to the integers 0 to 16,383 of a
@@ -10,11 +12,14 @@
 
 use fearless_simd::{Simd, f32x16, prelude::*, u32x16};
 
-use super::lanes::{AlignedLanes, LANES, Portable, SimdLanes};
+use super::lanes::{AlignedLanes, LANES};
 use super::leaf_pair::F32_BAND;
 
-/// Sign masks in some kind of registers.
-pub(super) trait SignMask: SimdLanes {
+/// Registers of sixteen lanes, and sign masks in them.
+pub(super) trait SignMask: Copy {
+    /// The registers' type.
+    type S: Simd;
+
     /// The mask of up to sixteen rows.
     type Mask: Copy;
 
@@ -26,6 +31,14 @@ pub(super) trait SignMask: SimdLanes {
 
     /// Shift of thresholds downwards, before the scale.
     const MOVED: f32;
+
+    fn simd(self) -> Self::S;
+
+    /// Per lane, the number nearer to zero; its sign may be lost.
+    #[inline(always)]
+    fn nearer_zero(self, a: f32x16<Self::S>, b: f32x16<Self::S>) -> f32x16<Self::S> {
+        a.min(b.abs())
+    }
 
     fn empty_mask(self) -> Self::Mask;
 
@@ -49,12 +62,22 @@ pub(super) trait SignMask: SimdLanes {
     fn which(self, mask: Self::Mask) -> (u32, [u16; 2 * LANES]);
 }
 
+/// The registers of any processor: AVX2, SSE, NEON or none.
+#[derive(Clone, Copy)]
+pub(super) struct Portable<S>(pub S);
+
 impl<S: Simd> SignMask for Portable<S> {
+    type S = S;
     type Mask = (u32x16<S>, f32x16<S>);
 
     const MASK_NAMES_PAIRS: bool = false;
     const SCALE: f32 = 1.0;
     const MOVED: f32 = 0.0;
+
+    #[inline(always)]
+    fn simd(self) -> S {
+        self.0
+    }
 
     #[inline(always)]
     fn empty_mask(self) -> Self::Mask {
@@ -96,7 +119,7 @@ impl<S: Simd> SignMask for Portable<S> {
 }
 
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-mod x86 {
+pub(super) mod x86 {
     #[cfg(target_arch = "x86")]
     use std::arch::x86::*;
     #[cfg(target_arch = "x86_64")]
@@ -105,7 +128,7 @@ mod x86 {
     use fearless_simd::x86::{Avx2, Avx512};
     use fearless_simd::{f32x8, f32x16, prelude::*, u16x16, u16x32, u32x16};
 
-    use super::super::lanes::{AlignedLanes, Half, LANES, Wide};
+    use super::super::lanes::{AlignedLanes, LANES};
     use super::super::leaf_pair::F32_BAND;
     use super::SignMask;
 
@@ -114,13 +137,29 @@ mod x86 {
     /// Floats from 0 to below this are in the band.
     const BAND_END: f32 = f32::from_bits(1 << 14);
 
+    /// AVX-512, in which selecting the nearer number is one instruction.
+    #[derive(Clone, Copy)]
+    pub(in super::super) struct Wide(pub Avx512);
+
     impl SignMask for Wide {
+        type S = Avx512;
+
         /// Two bits per row in words of 16 bits.
         type Mask = u32x16<Avx512>;
 
         const MASK_NAMES_PAIRS: bool = true;
         const SCALE: f32 = DOWN;
         const MOVED: f32 = F32_BAND;
+
+        #[inline(always)]
+        fn simd(self) -> Avx512 {
+            self.0
+        }
+
+        #[inline(always)]
+        fn nearer_zero(self, a: f32x16<Avx512>, b: f32x16<Avx512>) -> f32x16<Avx512> {
+            nearer(self.0, a, b)
+        }
 
         #[inline(always)]
         fn empty_mask(self) -> Self::Mask {
@@ -163,7 +202,13 @@ mod x86 {
         }
     }
 
+    /// AVX2.
+    #[derive(Clone, Copy)]
+    pub(in super::super) struct Half(pub Avx2);
+
     impl SignMask for Half {
+        type S = Avx2;
+
         /// The number of negative rows in two halves of 16 lanes, and the smallest of all packed
         /// words.
         type Mask = (u16x16<Avx2>, u16x16<Avx2>);
@@ -171,6 +216,11 @@ mod x86 {
         const MASK_NAMES_PAIRS: bool = false;
         const SCALE: f32 = DOWN;
         const MOVED: f32 = F32_BAND;
+
+        #[inline(always)]
+        fn simd(self) -> Avx2 {
+            self.0
+        }
 
         #[inline(always)]
         fn empty_mask(self) -> Self::Mask {
@@ -218,6 +268,14 @@ mod x86 {
             (0, [0; 2 * LANES])
         }
     }
+
+    fearless_simd::kernel!(
+        #[inline(always)]
+        fn nearer(token: Avx512, a: f32x16<Avx512>, b: f32x16<Avx512>) -> f32x16<Avx512> {
+            // 0b0010: the smaller magnitude, with the sign cleared.
+            _mm512_range_ps::<0b1010>(a.into(), b.into()).simd_into(token)
+        }
+    );
 
     fearless_simd::kernel!(
         #[inline(always)]

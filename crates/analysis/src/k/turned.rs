@@ -15,7 +15,7 @@ use glam::{DQuat, DVec3};
 
 use super::error::check;
 use super::exact::on_threads;
-use super::lanes::{AlignedLanes, LANES, SimdLanes};
+use super::lanes::{AlignedLanes, LANES};
 use super::leaf_pair::{F32_BAND, PairCounter, loaded};
 use super::leaves_by_edge_count::{Bits, LeavesByEdgeCount};
 use super::reach::BinRange;
@@ -227,7 +227,7 @@ impl TurnedScan<'_> {
     /// Counts a row with a leaf that edges cross; returns the dot products if any is too near to an
     /// edge.
     #[inline(always)]
-    fn leaf<L: SimdLanes>(
+    fn leaf<L: SignMask>(
         &self,
         on: L,
         [x, y, z]: [f32; 3],
@@ -281,7 +281,7 @@ impl TurnedWorker<'_> {
 
     /// Takes rows until none is left, and pairs each with all points.
     #[inline(always)]
-    fn all<L: SimdLanes>(&mut self, on: L) {
+    fn all<L: SignMask>(&mut self, on: L) {
         let scan = self.scan;
         loop {
             let start = self.next.fetch_add(ROWS, Ordering::Relaxed);
@@ -298,7 +298,7 @@ impl TurnedWorker<'_> {
     /// Counts rows with sixteen blocks: one block with all rows before the next, so that it stays
     /// in the cache.
     #[inline(always)]
-    fn rows<L: SimdLanes>(&mut self, on: L, rows: Range<usize>, first_block: usize) {
+    fn rows<L: SignMask>(&mut self, on: L, rows: Range<usize>, first_block: usize) {
         let scan = self.scan;
         let (blocks, bins) = (&scan.tree.around_blocks, scan.edges.bins());
         let mut found = [([0.0; 3], BinRange::default()); ROWS];
@@ -325,7 +325,7 @@ impl TurnedWorker<'_> {
 
     /// Counts a row with the leaves of a block.
     #[inline(always)]
-    fn block<L: SimdLanes>(&mut self, on: L, (row, at): (usize, [f32; 3]), block: usize) {
+    fn block<L: SignMask>(&mut self, on: L, (row, at): (usize, [f32; 3]), block: usize) {
         let scan = self.scan;
         let Some(block) = scan.tree.blocks.get(block) else {
             return;
@@ -364,7 +364,7 @@ impl TurnedWorker<'_> {
 
     /// Counts a row with leaves that `E` edges cross.
     #[inline(always)]
-    fn few<L: SimdLanes, const E: usize>(
+    fn few<L: SignMask, const E: usize>(
         &mut self,
         on: L,
         (row, at, start): (usize, [f32; 3], usize),
