@@ -39,24 +39,18 @@ fn section(findings: &StudyFindings) -> Section {
 }
 
 fn table(findings: &StudyFindings) -> String {
-    let study = &findings.study;
-    let headings = study.columns.iter().map(|(_, heading)| *heading);
-    let headings = [study.choice].into_iter().chain(headings).chain(["front"]);
-    let rows = findings.rows.iter().zip(findings.marks());
-    let rows = rows.map(|(row, mark)| {
-        let values = row.values.iter().map(|value| {
-            let text = value.text();
-            match text.split_once(' ') {
+    let rows = findings.cells().into_iter().map(|row| {
+        let is_marked = row.last().is_some_and(|mark| !mark.is_empty());
+        let cells = row.iter().enumerate().map(|(column, text)| {
+            let text = escaped(text).replace('*', "\u{25cf}");
+            match text.split_once(' ').filter(|_| column > 0) {
                 Some((middle, ends)) => format!("{middle} <small>{ends}</small>"),
                 None => text,
             }
         });
-        let name = escaped(&row.name);
-        let cells = [name].into_iter().chain(values);
-        let cells = cells.chain([mark.replace('*', "\u{25cf}")]);
-        (!mark.is_empty(), cells.collect())
+        (is_marked, cells.collect())
     });
-    let table = html::table("", headings, rows);
+    let table = html::table("", findings.headings(), rows);
     format!("<div class=\"scroll\">{table}</div>\n")
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Measurement, StudyFindings, StudyReport, svg};
+use super::{StudyFindings, StudyReport, svg};
 
 /// A page of the book that a command writes, with its figures in a folder of the page's name.
 #[derive(Clone, Copy, Debug)]
@@ -70,23 +70,14 @@ fn section(findings: &StudyFindings, folder: &str) -> String {
 }
 
 fn table(findings: &StudyFindings) -> String {
-    let headings = findings.study.columns.iter().map(|(_, heading)| *heading);
-    let headings: Vec<&str> = [findings.study.choice]
-        .into_iter()
-        .chain(headings)
-        .collect();
+    let columns = findings.study.columns.len();
     let mut lines = vec![
-        format!("| {} | front |", headings.join(" | ")),
-        format!("|---{}|:-:|", "|--:".repeat(findings.study.columns.len())),
+        format!("| {} |", findings.headings().join(" | ")),
+        format!("|---{}|:-:|", "|--:".repeat(columns)),
     ];
-    for (row, mark) in findings.rows.iter().zip(findings.marks()) {
-        let values: Vec<String> = row.values.iter().map(Measurement::text).collect();
-        let mark = mark.replace('*', "\\*");
-        lines.push(format!(
-            "| {} | {} | {mark} |",
-            escaped(&row.name),
-            values.join(" | ")
-        ));
+    for row in findings.cells() {
+        let cells: Vec<String> = row.iter().map(|cell| escaped(cell)).collect();
+        lines.push(format!("| {} |", cells.join(" | ")));
     }
     lines.join("\n")
 }

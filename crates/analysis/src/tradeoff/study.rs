@@ -354,6 +354,26 @@ impl StudyFindings {
         marks
     }
 
+    /// Headings of the table: of the choices, the columns and the marks.
+    #[must_use]
+    pub fn headings(&self) -> Vec<&'static str> {
+        let columns = self.study.columns.iter().map(|(_, heading)| *heading);
+        let headings = [self.study.choice].into_iter().chain(columns);
+        headings.chain(["front"]).collect()
+    }
+
+    /// Rows of the table: name, values and mark of each choice.
+    #[must_use]
+    pub fn cells(&self) -> Vec<Vec<String>> {
+        let rows = self.rows.iter().zip(self.marks());
+        let cells = rows.map(|(row, mark)| {
+            let values = row.values.iter().map(Measurement::text);
+            let cells = [row.name.clone()].into_iter().chain(values);
+            cells.chain([mark]).collect()
+        });
+        cells.collect()
+    }
+
     /// A sentence on each front, with its choices in order of cost.
     #[must_use]
     pub fn verdicts(&self) -> Vec<String> {

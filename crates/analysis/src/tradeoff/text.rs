@@ -1,6 +1,6 @@
 //! Findings as text of 80 columns.
 
-use super::{Measurement, StudyFindings, StudyReport};
+use super::{StudyFindings, StudyReport};
 
 /// Width of a line.
 const WIDTH: usize = 80;
@@ -45,77 +45,58 @@ pub fn findings(findings: &StudyFindings) -> String {
 
 /// The table: names on the left, values on the right, marks of the fronts last.
 fn table(findings: &StudyFindings) -> Vec<String> {
-    let marks = findings.marks();
-    let headings = findings.study.columns.iter().map(|c| c.1).chain(["front"]);
-    let headings: Vec<&str> = headings.collect();
-    let cells: Vec<Vec<String>> = findings
-        .rows
-        .iter()
-        .zip(marks)
-        .map(|(row, mark)| {
-            row.values
-                .iter()
-                .map(Measurement::text)
-                .chain([mark])
-                .collect()
-        })
-        .collect();
-    let widths: Vec<usize> = headings
-        .iter()
-        .enumerate()
-        .map(|(i, heading)| {
-            let cells = cells.iter().filter_map(|row| row.get(i)).map(|c| length(c));
-            let words = heading.split(' ').map(length);
-            cells.chain(words).max().unwrap_or(0)
-        })
-        .collect();
+    let (headings, rows) = (findings.headings(), findings.cells());
+    let longest = |column: usize| {
+        let cells = rows.iter().filter_map(|row| row.get(column));
+        cells.map(|cell| length(cell)).max().unwrap_or(0)
+    };
+    let mut widths = Vec::new();
+    for (column, heading) in headings.iter().enumerate().skip(1) {
+        let words = heading.split(' ').map(length);
+        widths.push(words.fold(longest(column), usize::max));
+    }
     let taken: usize = widths.iter().map(|w| w + GAP).sum();
-    let longest = findings.rows.iter().map(|row| length(&row.name)).max();
-    let first = longest
-        .unwrap_or(0)
+    let first = longest(0)
         .max(length(findings.study.choice))
         .min(WIDTH.saturating_sub(taken))
         .max(8);
-    let heads: Vec<Vec<String>> = headings
-        .iter()
-        .zip(&widths)
+    widths.insert(0, first);
+    let heads = headings.iter().zip(&widths);
+    let heads: Vec<Vec<String>> = heads
         .map(|(heading, width)| wrap(heading, *width))
         .collect();
     let deep = heads.iter().map(Vec::len).max().unwrap_or(1);
     let mut lines = Vec::new();
     for line in 0..deep {
         // Headings are aligned at the bottom.
-        let words: Vec<String> = heads
-            .iter()
-            .map(|head| {
-                let above = deep - head.len();
-                line.checked_sub(above)
-                    .and_then(|i| head.get(i).cloned())
-                    .unwrap_or_default()
-            })
-            .collect();
-        let name = if line + 1 == deep {
-            findings.study.choice
-        } else {
-            ""
-        };
-        lines.push(line_of(name, first, &words, &widths));
+        let words = heads.iter().map(|head| {
+            let place = (line + head.len()).checked_sub(deep);
+            place.and_then(|i| head.get(i)).cloned().unwrap_or_default()
+        });
+        lines.push(line_of(&words.collect::<Vec<_>>(), &widths));
     }
     lines.push("-".repeat((first + taken).min(WIDTH)));
-    for (row, cells) in findings.rows.iter().zip(&cells) {
-        for (i, name) in wrap(&row.name, first).iter().enumerate() {
-            let none = vec![String::new(); cells.len()];
-            let cells = if i == 0 { cells } else { &none };
-            lines.push(line_of(name, first, cells, &widths));
+    for mut row in rows {
+        let names = row.first().map_or(Vec::new(), |name| wrap(name, first));
+        for name in names {
+            if let Some(cell) = row.first_mut() {
+                *cell = name;
+            }
+            lines.push(line_of(&row, &widths));
+            // Only the first line has values.
+            row.fill(String::new());
         }
     }
     lines
 }
 
-fn line_of(name: &str, first: usize, cells: &[String], widths: &[usize]) -> String {
-    let mut line = format!("{name:<first$}");
-    for (cell, width) in cells.iter().zip(widths) {
-        line += &format!("{:GAP$}{cell:>width$}", "");
+fn line_of(cells: &[String], widths: &[usize]) -> String {
+    let mut line = String::new();
+    for (column, (cell, width)) in cells.iter().zip(widths).enumerate() {
+        line += &match column {
+            0 => format!("{cell:<width$}"),
+            _ => format!("{:GAP$}{cell:>width$}", ""),
+        };
     }
     line.trim_end().to_owned()
 }
