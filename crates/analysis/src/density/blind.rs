@@ -6,8 +6,7 @@
 //! fills it: blind spots form rows around the axis. [`bands`] finds the bands from the points
 //! alone; [`holes`] and [`rows`] find the spots. [`super::hole`] has the search.
 
-use std::cmp::Ordering;
-use std::collections::{BinaryHeap, HashMap};
+use std::collections::{BTreeMap, HashMap};
 
 use glam::DVec3;
 use serde::Serialize;
@@ -117,7 +116,7 @@ struct HoleList {
     most: usize,
     listed: Vec<Hole>,
     /// Found holes that a larger one may still displace.
-    waiting: BinaryHeap<BySize>,
+    waiting: BTreeMap<[i64; 4], Hole>,
     /// Listed holes by the cell of a lattice; each reaches at most into the neighbouring cells.
     lattice: HashMap<[i64; 3], Vec<Hole>>,
     /// The few holes that are much larger.
@@ -130,7 +129,7 @@ impl HoleList {
             least_rad,
             most,
             listed: Vec::new(),
-            waiting: BinaryHeap::new(),
+            waiting: BTreeMap::new(),
             lattice: HashMap::new(),
             wide: Vec::new(),
         }
@@ -142,17 +141,17 @@ impl HoleList {
 
     fn add(&mut self, hole: Hole) {
         if hole.radius_rad >= self.least_rad && !self.covers(hole.centre, 0.0) {
-            self.waiting.push(BySize(hole));
+            self.waiting.insert(by_size(&hole), hole);
         }
     }
 
     /// Lists the waiting holes of at least this radius.
     fn settle(&mut self, radius_rad: f64) {
         while !self.is_full()
-            && let Some(BySize(hole)) = self.waiting.peek().copied()
-            && hole.radius_rad >= radius_rad
+            && let Some(largest) = self.waiting.last_entry()
+            && largest.get().radius_rad >= radius_rad
         {
-            self.waiting.pop();
+            let hole = largest.remove();
             if self.covers(hole.centre, 0.0) {
                 continue;
             }
@@ -194,35 +193,15 @@ impl HoleList {
     }
 }
 
-/// Order by radius, then by coordinates.
-#[derive(Clone, Copy, Debug)]
-struct BySize(Hole);
-
-impl Ord for BySize {
-    fn cmp(&self, other: &Self) -> Ordering {
-        let by_radius = self.0.radius_rad.total_cmp(&other.0.radius_rad);
-        let places = || {
-            let of = |hole: &Hole| hole.centre.to_array();
-            of(&self.0).into_iter().zip(of(&other.0))
-        };
-        let by_place = || places().map(|(a, b)| a.total_cmp(&b)).find(|o| o.is_ne());
-        by_radius.then_with(|| by_place().unwrap_or(Ordering::Equal))
-    }
+/// A key that orders holes by radius, then by coordinates.
+fn by_size(hole: &Hole) -> [i64; 4] {
+    let [x, y, z] = hole.centre.to_array();
+    // As `f64::total_cmp` orders numbers.
+    [hole.radius_rad, x, y, z].map(|number| {
+        let bits = number.to_bits().cast_signed();
+        bits ^ ((bits >> 63).cast_unsigned() >> 1).cast_signed()
+    })
 }
-
-impl PartialOrd for BySize {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for BySize {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for BySize {}
 
 /// Holes by their angle from an axis; a gap of more than `apart_rad` starts another row.
 #[must_use]
