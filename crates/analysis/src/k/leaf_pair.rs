@@ -94,8 +94,8 @@ impl<'a> ExactBinTest<'a> {
         self.waiting = waiting;
     }
 
-    /// Queues the pair of points `a` and `b`, which f32 cannot assign to a side of the upper edge of
-    /// a bin. `counted` tells whether it is counted as beyond the edge.
+    /// Queues the pair of points `a` and `b`, which f32 cannot assign to a side of the upper edge
+    /// of a bin. `counted` tells whether it is counted as beyond the edge.
     #[inline(always)]
     fn recheck(&mut self, edge: usize, a: usize, b: usize, counted: bool) {
         let pair = (a, b);

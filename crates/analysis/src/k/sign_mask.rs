@@ -1,5 +1,5 @@
-//! Registers of sixteen lanes for counting pairs, with AVX-512 where the processor has it; and masks
-//! of the signs of sixteen rows, which also mark numbers too near to zero to tell.
+//! Registers of sixteen lanes for counting pairs, with AVX-512 where the processor has it, and
+//! masks of the signs of sixteen rows, which also mark numbers too near to zero to tell.
 //!
 //! All access goes through `fearless_simd`, whose tokens prove what the processor has.
 //!
