@@ -1,10 +1,10 @@
-//! A day of scans, one per minute, through what a daemon keeps in memory: the list of scans, their
+//! A day of scans, one per minute, through the daemon's state in memory: the list of scans, their
 //! clouds and thumbnails, the live preview, the lidar's statistics, and the events of nine clients,
-//! one of which never reads. Prints the memory of the process hour by hour.
+//! one of which never reads. Prints the memory of the process every hour.
 //!
-//! Devices and sockets are not used. Times are those of the made-up day, not of a clock.
+//! Devices and sockets are not used. Times are those of the simulated day, not of a clock.
 //!
-//! `cargo bench -p velomotion-tests --bench day [-- SCANS]`; it fails where memory grows after the
+//! `cargo bench -p velomotion-tests --bench day [-- SCANS]`; it fails if memory grows after the
 //! second hour.
 
 use std::sync::Arc;
@@ -28,7 +28,7 @@ use velomotion_tests::capture::{Captured, Setting};
 
 /// Scans of a day.
 const DAY: usize = 1_440;
-/// How much more memory may be in use at the end than after two hours.
+/// Limit of the growth of memory between the second hour and the end.
 const GROWTH: f64 = 1.1;
 
 fn main() {
@@ -100,11 +100,11 @@ fn main() {
     drop(jobs);
     state.close_cloud_jobs();
     builder.join().unwrap();
-    assert!(state.scans.list().len() <= 100, "more scans than are kept");
+    assert!(state.scans.list().len() <= 100, "more scans than the limit");
     assert_eq!(
         readers.len(),
         state.events().clients(),
-        "a client that read was dropped"
+        "a reading client was disconnected"
     );
 }
 
@@ -160,7 +160,7 @@ fn finished(state: &DaemonState, id: &str) {
     while !state.scans.view(id).unwrap().state.is_final() {
         assert!(
             begin.elapsed() < Duration::from_secs(60),
-            "{id} is never made"
+            "{id} is never finished"
         );
         std::thread::sleep(Duration::from_millis(2));
     }
@@ -177,7 +177,7 @@ fn reader(events: &Arc<Events>) -> std::thread::JoinHandle<()> {
             .unwrap();
         runtime.block_on(async {
             while let Ok(event) = subscription.next().await {
-                // As a socket needs it.
+                // The form that a socket sends.
                 match &*event {
                     Event::Points(frame) => drop(frame.bytes(1)),
                     event => drop(serde_json::to_string(event)),
@@ -187,7 +187,7 @@ fn reader(events: &Arc<Events>) -> std::thread::JoinHandle<()> {
     })
 }
 
-/// What of the process is in memory, by Linux.
+/// Resident memory of the process, by Linux.
 fn memory_mb() -> f64 {
     let text = std::fs::read_to_string("/proc/self/status").unwrap();
     let line = text.lines().find(|line| line.starts_with("VmRSS")).unwrap();

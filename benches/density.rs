@@ -1,8 +1,8 @@
-//! How long the density of a scan takes, by its points; and its largest hole.
+//! Time to compute the density of a scan by number of points, and its largest hole.
 //!
 //! `cargo bench -p velomotion-analysis --bench density` prints the table of docs/src/patterns.md:
-//! the least of `-- --rounds N` (5). `RAYON_NUM_THREADS=1` keeps it to one core. The largest scan
-//! has the points of the 2018 paper's slow one. Left out: making the points.
+//! the minimum of `-- --rounds N` (5). `RAYON_NUM_THREADS=1` limits it to one core. The largest
+//! scan has as many points as the slow one of the 2018 paper. Computing the points is not included.
 
 #![allow(
     clippy::expect_used,

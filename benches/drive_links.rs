@@ -1,10 +1,10 @@
-//! How fast the drive's position can be asked for over each link, and what that costs: real time,
-//! real pseudo-terminals, the software drive in a process of its own.
+//! Rate and cost of reading the drive's position over each link, in real time with pseudo-terminals
+//! and the software drive in its own process.
 //!
 //! `cargo bench -p velomotion-tests --bench drive_links` prints the tables of docs/src/links.md.
-//! `-- --seconds N` is how long each row is measured (10 s; 60 s for the stream at SYNC), `-- --can
-//! IFACE` adds an interface of the kernel. Left out: wire time, which a pseudo-terminal does not
-//! have; the page says what it adds.
+//! `-- --seconds N` sets the duration of each row (10 s; 60 s for the stream at SYNC), `-- --can
+//! IFACE` adds an interface of the kernel. Wire time is not included, as a pseudo-terminal has
+//! none; the page states it.
 
 use std::cell::RefCell;
 use std::io::{BufRead, BufReader};
@@ -55,7 +55,7 @@ fn software_drive(interface: &[String]) {
         .unwrap();
 }
 
-/// The software drive in a process of its own.
+/// The software drive in its own process.
 struct SoftwareDrive {
     process: Child,
     port: String,
@@ -99,10 +99,10 @@ fn cpu_s(process: &str) -> f64 {
     (fields[11] + fields[12]) / TICKS_A_SECOND
 }
 
-/// What a stretch of sampling gave.
+/// Results of a sampling interval.
 struct Measured {
     samples: Vec<ShaftSample>,
-    /// When SYNCs were sent, and when process data came.
+    /// Times of sent SYNCs and received process data.
     beats: Vec<Stamp<Host>>,
     answers: Vec<Stamp<Host>>,
     seconds: f64,
@@ -117,10 +117,10 @@ fn device(kind: DeviceKind) -> Device {
     }
 }
 
-/// Samples for so long at the axis's poll period.
+/// Samples for a duration at the axis's poll period.
 fn measure(kind: DeviceKind, drive: &SoftwareDrive, axis: AxisConfig, seconds: f64) -> Measured {
     let opened = ports::open(&device(kind), drive.port.as_ref()).unwrap();
-    // As in a log: what was sent and received is what counts, not what the client made of it.
+    // As in a log: sent and received bytes count, not the client's interpretation.
     let received = RefCell::new(ReceivedTraffic::new(&axis));
     let port = RecordingPort::new(opened.port, opened.link, |record: &Record<'_>| {
         received.borrow_mut().receive(record);
@@ -154,8 +154,8 @@ fn measure(kind: DeviceKind, drive: &SoftwareDrive, axis: AxisConfig, seconds: f
     measured
 }
 
-/// Reads the position by SDO for so long, one read after the other, at most one a period: what is
-/// left on a bus whose drive refuses to be mapped.
+/// Reads the position by SDO for a duration, one read after the other, at most one per period: the
+/// fallback on a bus whose drive refuses the mapping.
 fn ask(kind: DeviceKind, drive: &SoftwareDrive, period: Span, seconds: f64) -> Measured {
     let mut bus: Box<dyn CanPort> = match kind {
         DeviceKind::Can => Box::new(SocketCan::open(&drive.port).unwrap()),
@@ -186,7 +186,7 @@ fn ask(kind: DeviceKind, drive: &SoftwareDrive, period: Span, seconds: f64) -> M
             trigger: SampleTrigger::Request,
             device_us: None,
         });
-        // As the client does: no burst for what is late.
+        // Like the client: no burst of late requests.
         due = (due + period).max(answer);
     }
     let took = begin.elapsed().as_secs_f64();
@@ -216,7 +216,7 @@ fn read_position(bus: &mut dyn CanPort, sdo: &mut SdoClient<8>) -> i32 {
     }
 }
 
-/// What a log of the session tells.
+/// Counts and times of a session's traffic.
 struct ReceivedTraffic {
     listener: DriveListener,
     samples: Vec<ShaftSample>,
@@ -266,7 +266,7 @@ impl ReceivedTraffic {
     }
 }
 
-/// Whether this is a frame of a bus that went this way with this identifier.
+/// Whether this is a bus frame of this direction and identifier.
 fn is_frame(record: &Record<'_>, way: Direction, id: CobId) -> bool {
     let Wire::Drive {
         link: DriveLink::Can,
@@ -280,7 +280,7 @@ fn is_frame(record: &Record<'_>, way: Direction, id: CobId) -> bool {
         && CanFrame::from_socketcan(frame).is_ok_and(|frame| frame.cob_id() == Some(id))
 }
 
-/// The median of these spans, what 99 % are below, and the longest, in microseconds.
+/// Median, 99th percentile and maximum of these spans, in microseconds.
 fn spans_us(spans: impl Iterator<Item = Span>) -> [f64; 3] {
     let mut spans: Vec<f64> = spans.map(Span::as_micros_f64).collect();
     spans.sort_by(f64::total_cmp);
@@ -298,7 +298,7 @@ fn row(name: &str, pace: &str, measured: &Measured) {
     );
 }
 
-/// The stream at SYNC, 1 kHz: by the drive's own time nothing is missing in between.
+/// The stream at SYNC, 1 kHz: by the drive's time no sample is missing.
 fn stream(name: &str, measured: &Measured) {
     let times: Vec<u32> = measured
         .samples
@@ -311,7 +311,7 @@ fn stream(name: &str, measured: &Measured) {
         .collect();
     let worst = spacings.iter().copied().fold(0.0, f64::max);
     let (beats, answers) = (&measured.beats, &measured.answers);
-    // In order, which holds where none is lost.
+    // In order, which is correct if none is lost.
     let [median, most, _] = spans_us(beats.iter().zip(answers).map(|(beat, at)| *at - *beat));
     println!(
         "| {name} | {:.1} s | {:.0} | {} | {} | {} | {} | {worst:.2} ms | {median:.0} | {most:.0} | {:.1} % | {:.1} % |",

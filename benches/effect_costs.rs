@@ -1,9 +1,9 @@
-//! What each effect of the simulator adds to a sweep through the hall, alone and all together.
+//! Cost that each effect of the simulator adds to a sweep through the hall, alone and combined.
 //!
 //! `cargo bench -p velomotion-tests --bench effect_costs` prints the table of docs/src/effects.md.
-//! Instructions are counted by valgrind's callgrind and are the same on any day; times are the
-//! least of `-- --rounds N` (9) on one thread, all taking turns. Left out: other scenes. What an
-//! effect costs depends on how often it has to act.
+//! Instructions are counted by valgrind's callgrind and are reproducible; times are the minimum of
+//! `-- --rounds N` (9) on one thread, alternating. Other scenes are not included: the cost of an
+//! effect depends on how often it acts.
 
 use std::env;
 use std::num::NonZeroUsize;
@@ -24,7 +24,7 @@ use units::{Gearing, Stamp};
 /// First argument of the process that callgrind watches.
 const ONE: &str = "--one";
 
-/// DaemonConfig as one would have them.
+/// Typical settings of every effect.
 const TABLES: [(&str, &str); 18] = [
     ("limited_field_of_view", "from_deg = 30.0\nto_deg = 330.0"),
     (
@@ -52,7 +52,7 @@ const TABLES: [(&str, &str); 18] = [
     ("batching", ""),
 ];
 
-/// Takes everything and keeps nothing.
+/// A sink that discards everything.
 struct Nowhere;
 
 impl SimulationSink for Nowhere {
@@ -62,7 +62,7 @@ impl SimulationSink for Nowhere {
     }
 }
 
-/// The rig's sweep, down at full speed.
+/// The rig's sweep at full speed.
 fn sweep() -> Simulation {
     let motion = AxisMotion::sweeps(&Sweeps {
         from_deg: 0.0,
@@ -101,15 +101,15 @@ fn config(name: &str) -> EffectsConfig {
     let text: String = effects
         .map(|(name, table)| format!("[{name}]\n{table}\n"))
         .collect();
-    toml::from_str(&text).expect("tables as they are")
+    toml::from_str(&text).expect("valid tables")
 }
 
-/// A run; what it gives is how often effects acted.
+/// Runs the sweep. Returns how often effects acted.
 fn run(simulation: &Simulation, name: &str) -> ConfiguredEffects {
-    let mut effects = config(name).build(1, None).expect("settings as they are");
+    let mut effects = config(name).build(1, None).expect("valid settings");
     let one = NonZeroUsize::MIN;
     let ran = match name {
-        // The engine that has no effects in it, as for a scene that asks for none.
+        // The engine compiled without effects, as for a scene without effects.
         "none" => simulation.run(
             &mut Effects::<FiringEffectSet>::default(),
             one,

@@ -1,12 +1,12 @@
-//! UDP payloads in memory to tilted points in memory: points per second on one core, beside what
-//! memory itself allows.
+//! UDP payloads in memory to tilted points in memory: points per second on one core, next to the
+//! limit of memory bandwidth.
 //!
 //! `cargo bench -p velomotion-scanner --bench fast_path [-- --runs N --only LINE]`
 //!
 //! Points have x, y, z, intensity, ring, time and tilt: 42 bytes. The platform swings at 56.25
-//! deg/s, its angle is polled every millisecond. Every line is the least time of all runs and the
-//! spread up to their median; lines of one table are measured in turns, so that they share what
-//! else the machine does.
+//! deg/s, its angle is polled every millisecond. Every line is the minimum time of all runs and the
+//! spread up to their median; lines of one table are measured alternately, so that other load
+//! affects them equally.
 #![expect(clippy::unwrap_used, reason = "a bench of recordings")]
 
 mod common;
@@ -146,7 +146,7 @@ fn one_by_one(recording: &Recording, alignment: &Alignment, batch: &mut Points) 
     }
 }
 
-/// Columns of points, to be written without computation.
+/// Columns of points, written without computation.
 struct Columns {
     wide: [Vec<f64>; 5],
     narrow: [Vec<u8>; 2],

@@ -3,10 +3,10 @@
 //!
 //! `cargo bench -p velomotion-io --bench live_udp -- --seconds 60 [--log FILE]`
 //!
-//! The sensors are a process of their own that sends 1206 bytes every 663.552 us (12 sequences of
-//! 55.296 us, VLP-16 user manual 63-9243, 9.3.2) and 512 bytes every 6.8 ms for each, numbered,
-//! from 127.0.0.2 to 127.0.0.4. The log is read back at the end. The bench fails on any loss.
-//! Packets have no meaningful content.
+//! The sensors are a separate process that sends numbered packets, 1206 bytes every 663.552 us (12
+//! sequences of 55.296 us, VLP-16 user manual 63-9243, 9.3.2) and 512 bytes every 6.8 ms for each
+//! sensor, from 127.0.0.2 to 127.0.0.4. The log is read back at the end. The bench fails on any
+//! loss. Packets have no meaningful content.
 
 use std::error::Error;
 use std::io::{BufRead, BufReader, Write};

@@ -1,15 +1,15 @@
-//! What the best angles cost a replay: the same log by straight lines between samples and by the
-//! truest curve of each sweep.
+//! Cost of the best angles in a replay: the same log with straight lines between samples and with
+//! the most accurate curve of each sweep.
 //!
 //! `cargo bench -p velomotion-tests --bench replay_methods [-- --runs N]`
 //!
-//! A whole replay each time, as `velomotion replay LOG -o CLOUD.ply` makes it: the log read twice
-//! from its file, clocks and angles found, every point placed and written. The logs are captures in
-//! virtual time of the card's scan, 45 degrees at 56.25 deg/s, with an ideal drive and with one
-//! whose servo lags and whose gear ripples. The two ways take turns, each round another one first;
-//! what counts is the ratio within a round, so that what else the machine does falls on both. On
-//! Linux it is the processor's time that counts, which a busy machine stretches least. Logs and
-//! clouds are in the temporary folder: in memory, where that is.
+//! Each run is a whole replay like `velomotion replay LOG -o CLOUD.ply`: the log is read twice from
+//! its file, clocks and angles are fitted, every point is placed and written. The logs are captures
+//! in virtual time of the default scan, 45 degrees at 56.25 deg/s, with an ideal drive and with one
+//! whose servo lags and whose gear ripples. The two methods alternate, with another one first in
+//! each round; the result is the ratio within a round, so that other load affects both. On Linux
+//! CPU time is measured, which depends least on other load. Logs and clouds are in the temporary
+//! folder, which may be in memory.
 
 use std::fs;
 use std::path::Path;
@@ -101,8 +101,7 @@ fn compare(name: &str, captured: &Captured, runs: usize) {
     );
 }
 
-/// Seconds that this thread has had a processor for, where that is known, else seconds that went
-/// by.
+/// CPU seconds of this thread where known, else elapsed seconds.
 fn now_s() -> f64 {
     static START: LazyLock<Instant> = LazyLock::new(Instant::now);
     let known = fs::read_to_string("/proc/thread-self/schedstat").ok();

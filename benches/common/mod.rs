@@ -1,6 +1,6 @@
 //! Real recordings in memory, and the timing of code.
 //!
-//! Tests take the cuts of `tests/recordings`. Benchmarks take the whole recordings of
+//! Tests use the cuts of `tests/recordings`. Benchmarks use the whole recordings of
 //! `$VELOMOTION_RECORDINGS`, or of `shared/recordings` next to the repository.
 #![expect(
     clippy::disallowed_methods,
@@ -146,7 +146,7 @@ fn restamp(bytes: &[u8], datagrams: &mut [(Stamp<Host>, std::ops::Range<usize>)]
 pub struct Timing(Vec<f64>);
 
 impl Timing {
-    /// Runs every work once to warm up, and then `runs` times, in turns.
+    /// Runs every task once to warm up, and then `runs` times, alternating.
     pub fn in_turns(runs: usize, work: &mut [&mut dyn FnMut()]) -> Vec<Self> {
         for work in work.iter_mut() {
             work();

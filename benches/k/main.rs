@@ -1,10 +1,10 @@
 //! CPU seconds of the ways to the K function: `cargo bench -p velomotion-analysis --bench k [--
 //! WHAT...]`.
 //!
-//! What is `exact:FRAMES`, `avx2:FRAMES`, `least:FRAMES`, `two:FRAMES` (two threads),
-//! `turned:FRAMES` or `sampled:FRAMES`: an RMBL of so many frames of 14,416 points. Times are those
-//! for which the process had a core; where another has the other half of that core, they are up to
-//! twice as long.
+//! WHAT is `exact:FRAMES`, `avx2:FRAMES`, `least:FRAMES`, `two:FRAMES` (two threads),
+//! `turned:FRAMES` or `sampled:FRAMES` for an RMBL of FRAMES frames of 14,416 points. Times are CPU
+//! times of the process; if another process uses the second hardware thread of the core, they are
+//! up to twice as long.
 
 #![expect(
     clippy::disallowed_methods,
@@ -36,14 +36,14 @@ const USUAL: [&str; 11] = [
     "sampled:72",
 ];
 
-/// Seconds for which this process had a core, all threads, ended ones too.
+/// CPU seconds of this process, including ended threads.
 fn cpu_s() -> f64 {
     let alone = std::fs::read_to_string("/proc/self/schedstat").ok();
     let ns = alone.and_then(|line| line.split(' ').next()?.parse::<f64>().ok());
     ns.unwrap_or(f64::NAN) * 1e-9
 }
 
-/// The same of all threads, in ticks of 10 ms.
+/// CPU seconds of all threads, in ticks of 10 ms.
 fn all_cpu_s() -> f64 {
     let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
     let behind = stat.rsplit(')').next().unwrap_or_default();
