@@ -310,7 +310,7 @@ fn fault_text(error: Option<DeviceError>) -> String {
 }
 
 impl DriveError {
-    /// What the user can do, in one or two sentences.
+    /// Advice for the user, in one or two sentences.
     #[must_use]
     pub fn help(&self) -> String {
         let help = match self {

@@ -20,7 +20,7 @@ pub struct ShaftSample {
     pub answer: Stamp<Host>,
     /// Position actual value (6064).
     pub position: Quadcounts,
-    /// What made the drive sample its position.
+    /// The trigger of a position sample.
     pub trigger: SampleTrigger,
     /// The drive's clock at the sample (1013) in us, with an arbitrary zero, wrapping every 71
     /// minutes; `None` if the reply does not contain it.

@@ -183,7 +183,7 @@ impl<R: Read> Recording<R> {
         })
     }
 
-    /// Yields foreign UDP datagrams as well. RecordingCounts do not change.
+    /// Yields foreign UDP datagrams as well. Counts do not change.
     #[must_use]
     pub fn keep_foreign(mut self) -> Self {
         self.keep_foreign = true;

@@ -36,7 +36,7 @@ impl BlindSector {
         EDGE_CDEG < depth && depth < width - EDGE_CDEG
     }
 
-    /// How often a rotation by `way_cdeg` from `azimuth` passes this sector.
+    /// Number of times that a rotation by `way_cdeg` from `azimuth` passes this sector.
     fn passes(self, azimuth: i32, way_cdeg: f64) -> f64 {
         let since = (azimuth - self.from - EDGE_CDEG).rem_euclid(REVOLUTION_CDEG);
         ((f64::from(since) + way_cdeg) / f64::from(REVOLUTION_CDEG)).floor()

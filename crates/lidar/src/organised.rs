@@ -23,8 +23,8 @@ pub struct FiringColumn {
 
 /// The returns of firings of one sensor, by ring and firing.
 ///
-/// ReturnLayer 0 holds the strongest or last return of a single-return mode, and of dual mode the
-/// last. ReturnLayer 1 holds dual mode's second return; a pulse whose two returns are one has it in
+/// Layer 0 holds the strongest or last return of a single-return mode, and of dual mode the
+/// last. Layer 1 holds dual mode's second return; a pulse whose two returns are one has it in
 /// both layers.
 #[derive(Clone, Debug, Default)]
 pub struct OrganisedFrame {

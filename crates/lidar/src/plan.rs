@@ -141,7 +141,7 @@ impl AzimuthSteps {
         self.azimuths().last().copied().unwrap_or_default()
     }
 
-    /// AzimuthSteps from each block to the next within the packet.
+    /// Steps from each block to the next within the packet.
     fn inner(&self) -> impl Iterator<Item = i32> + Clone + '_ {
         let steps = self.inner.get(..self.blocks.saturating_sub(1));
         steps.unwrap_or_default().iter().copied()

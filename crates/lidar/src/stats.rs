@@ -35,7 +35,7 @@ pub struct Stats {
     pub lost_packets: u64,
     /// Emitted firings of all lasers.
     pub firings: u64,
-    /// FiringReturns in the emitted packets.
+    /// Returns in the emitted packets.
     pub returns: u64,
     /// Returns with equal dual pairs counted once.
     pub unique_returns: u64,

@@ -98,7 +98,7 @@ impl<'a> Live<'a> {
     /// Takes one record, and places the points whose angles it completes.
     ///
     /// # Errors
-    /// What the sink reports.
+    /// Returns the errors of the sink.
     pub fn observe(&mut self, record: &Record<'_>) -> Result<(), SinkError> {
         match record.wire {
             Wire::Lidar { payload, .. } => self.packet(record.host, payload),
@@ -133,7 +133,7 @@ impl<'a> Live<'a> {
     /// Places what the decoder still holds. The caller finishes the sink.
     ///
     /// # Errors
-    /// What the sink reports.
+    /// Returns the errors of the sink.
     pub fn finish(mut self) -> Result<(PlacementCounts, Stats), SinkError> {
         if let Some(alignment) = &self.alignment {
             let mut placer = FiringBlockPlacer::new(alignment);

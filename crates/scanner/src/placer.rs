@@ -34,7 +34,7 @@ impl<'a> Placer<'a> {
     /// Takes one record.
     ///
     /// # Errors
-    /// What the sink reports.
+    /// Returns the errors of the sink.
     pub fn observe(&mut self, record: &Record<'_>) -> Result<(), SinkError> {
         let Wire::Lidar { payload, .. } = record.wire else {
             return Ok(());
@@ -54,7 +54,7 @@ impl<'a> Placer<'a> {
     /// Places what the decoder still holds. The caller finishes the sink.
     ///
     /// # Errors
-    /// What the sink reports.
+    /// Returns the errors of the sink.
     pub fn finish(mut self) -> Result<(PlacementCounts, Stats), SinkError> {
         let (blocks, batch, counts) = (&mut self.blocks, &mut self.batch, &mut self.counts);
         self.decoder

@@ -83,7 +83,7 @@ impl Survey {
 /// begun. The caller finishes the sink.
 ///
 /// # Errors
-/// What the sink reports.
+/// Returns the errors of the sink.
 pub fn place<'r>(
     records: impl IntoIterator<Item = Record<'r>>,
     alignment: &Alignment,

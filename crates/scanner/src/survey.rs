@@ -25,7 +25,7 @@ pub struct Survey {
     link: Option<DriveLink>,
 }
 
-/// What the drive's records hold, with all stamps on one host clock.
+/// The contents of the drive's records, with all stamps on one host clock.
 pub(crate) struct ShaftRecords {
     pub gearing: Gearing,
     pub samples: Vec<ShaftSample>,

@@ -12,7 +12,7 @@ use crate::sweeps::{MoveWatch, Sweep};
 use crate::tolerance::{Accuracy, MethodChoice};
 use crate::trajectory::{Method, Trajectory};
 
-/// Where tilt angles come from.
+/// The source of tilt angles.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TiltSource {
     /// The drive's recorded traffic.

@@ -30,7 +30,7 @@ pub struct AxisSettings {
     pub brake_output: Option<u8>,
     /// Limit switches; the factory's inputs without the table.
     pub limit_switches: LimitSwitchSettings,
-    /// HomingSettings.
+    /// Homing.
     pub homing: HomingSettings,
 }
 
@@ -49,11 +49,11 @@ pub struct LimitSwitchSettings {
     pub normally_closed: bool,
 }
 
-/// HomingSettings of the axis.
+/// Homing of the axis.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct HomingSettings {
-    /// HomingSettings method (object 6098).
+    /// Homing method (object 6098).
     pub method: i8,
     /// Tilt angle of the position that homing finds, degrees.
     pub at_deg: f64,

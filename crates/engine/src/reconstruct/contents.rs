@@ -39,7 +39,7 @@ pub fn read_contents(
 struct SensorSurveys {
     options: Options,
     sensors: Vec<SensorSurvey>,
-    /// PacketCounts that belong to no sensor.
+    /// Packets that belong to no sensor.
     unassigned: Decoder,
 }
 
@@ -53,7 +53,7 @@ struct SensorSurvey {
     pps: Option<Pps>,
 }
 
-/// Sensors with statistics of their own. PacketCounts of further sensors are only counted.
+/// Sensors with statistics of their own. Packets of further sensors are only counted.
 const MAX_SENSORS: usize = 64;
 
 impl SensorSurveys {

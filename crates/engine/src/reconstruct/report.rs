@@ -224,18 +224,18 @@ pub struct SyncReport {
     pub angle_bound_deg: Option<f64>,
 }
 
-/// PacketCounts received and lost during a capture.
+/// Packets received and lost during a capture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Reception {
-    /// PacketCounts received, position packets included.
+    /// Packets received, position packets included.
     pub packets: u64,
-    /// PacketCounts dropped by the kernel because this program was too slow.
+    /// Packets dropped by the kernel because this program was too slow.
     pub dropped_by_kernel: u64,
     /// Records of either device dropped because the disk was too slow or the log cannot hold them.
     pub dropped_by_log: u64,
     /// Received packets without a kernel timestamp.
     pub without_kernel_time: u64,
-    /// PacketCounts of other senders than the configured lidar; not in `packets`.
+    /// Packets of other senders than the configured lidar; not in `packets`.
     pub from_others: u64,
 }
 
@@ -277,7 +277,7 @@ pub struct ScanReport {
     /// Planned sweeps that are incomplete; also in the warnings.
     #[serde(skip)]
     pub incomplete_sweeps: Vec<String>,
-    /// PacketCounts received during a capture.
+    /// Packets received during a capture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reception: Option<Reception>,
     /// Errors against the simulator's truth; absent for real scans.

@@ -66,7 +66,7 @@ impl<R> Recording<R> {
         })
     }
 
-    /// RecordingCounts a datagram; `None` if it is not wanted.
+    /// Counts a datagram; `None` if it is not wanted.
     fn datagram(
         &mut self,
         source: [u8; 4],

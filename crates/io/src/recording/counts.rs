@@ -76,7 +76,7 @@ impl RecordingCounts {
         count_pair(&mut self.foreign, port, size);
     }
 
-    /// RecordingCounts the completion of a datagram; its earlier fragments were counted as not
+    /// Counts the completion of a datagram; its earlier fragments were counted as not
     /// reassembled.
     pub(super) fn reassembled(&mut self, fragments: u64) {
         let before = fragments.saturating_sub(1);
@@ -105,7 +105,7 @@ impl RecordingCounts {
     }
 }
 
-/// RecordingCounts a pair; returns false beyond the limit.
+/// Counts a pair; returns false beyond the limit.
 fn count_pair(kinds: &mut BTreeMap<(u16, usize), u64>, port: u16, size: usize) -> bool {
     let room = kinds.len() < MAX_KINDS;
     match kinds.entry((port, size)) {

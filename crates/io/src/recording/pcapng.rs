@@ -28,7 +28,7 @@ pub(super) const FRAMING_LEN: u32 = 12;
 pub(super) const SECTION_HEADER: u32 = SHB_MAGIC;
 /// Byte-order magic of a section (draft-ietf-opsawg-pcapng, section 4.1).
 pub(super) const BYTE_ORDER_MAGIC: u32 = 0x1A2B_3C4D;
-/// CapturedOffset of the packet data in an enhanced packet block: type, length, interface, two
+/// Offset of the packet data in an enhanced packet block: type, length, interface, two
 /// halves of the time, two lengths.
 pub(super) const PACKET_DATA_OFFSET: usize = 28;
 /// Option code of `epb_flags`, which pcap-parser does not name.

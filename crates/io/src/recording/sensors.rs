@@ -33,7 +33,7 @@ pub struct Sensor {
     pub last: Stamp<Host>,
 }
 
-/// RecordingCounts records by sensor.
+/// Counts records by sensor.
 #[derive(Clone, Debug, Default)]
 pub struct Sensors {
     /// In order of appearance; `data_port` is `None` for position packets.
@@ -44,7 +44,7 @@ pub struct Sensors {
 }
 
 impl Sensors {
-    /// RecordingCounts a record; returns whether it is a lidar's.
+    /// Counts a record; returns whether it is a lidar's.
     pub fn observe(&mut self, record: &Record<'_>) -> bool {
         let Wire::Lidar {
             source,

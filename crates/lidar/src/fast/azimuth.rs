@@ -15,7 +15,7 @@ use crate::geometry::{ChannelTable, PerChannel};
 
 /// Whole degrees of a revolution.
 const DEGREES: usize = 360;
-/// AzimuthSteps of a degree in packets.
+/// Azimuth units per degree in packets.
 const HUNDREDTHS: usize = 100;
 /// Cached paces, a power of two. A rotor at constant speed shows three or four.
 const PACES: usize = 8;

@@ -112,7 +112,7 @@ impl<'a> BlockReturns<'a> {
         }
     }
 
-    /// FiringNumber of returns, and the same with equal pairs counted once.
+    /// Number of returns, and the same with equal pairs counted once.
     #[inline(always)]
     pub(crate) fn count(&self) -> (u64, u64) {
         let ones = |mask: u32| u64::from(mask.count_ones());

@@ -2,7 +2,7 @@
 
 use units::{Host, Span, Stamp};
 
-/// How much of an interval lies within the spans.
+/// The part of an interval that lies within the spans.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Coverage {
     All,

@@ -72,7 +72,7 @@ fn read(bytes: &[u8]) -> Vec<Read> {
         .collect()
 }
 
-/// McapLog time and points of each cloud.
+/// Log time and points of each cloud.
 fn clouds(messages: &[Read]) -> Vec<(i64, u32)> {
     messages
         .iter()
