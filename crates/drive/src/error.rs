@@ -13,7 +13,7 @@ use units::{DegPerS, DegPerS2, Degrees, Quadcounts, Rpm, Span};
 
 use crate::command::CommandKind;
 
-/// Why a command was refused or failed.
+/// Reason why a command was refused or failed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DriveError {

@@ -6,7 +6,7 @@ use units::GearingError;
 use crate::angles::AngleTableError;
 use crate::tolerance::UnreachableTolerance;
 
-/// Why no scan could be made of the records.
+/// Reason why no scan could be made of the records.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ScanError {
     /// No lidar data packet.

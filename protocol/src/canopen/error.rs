@@ -37,7 +37,7 @@ impl core::fmt::Display for CanopenLayer {
     }
 }
 
-/// Why bytes are not a CAN frame.
+/// Reason why bytes are not a CAN frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum CanFrameError {
     /// More data than in a classic frame, or a data length code above 8.
@@ -84,7 +84,7 @@ pub enum CanFrameError {
     },
 }
 
-/// Why a CAN frame is not a message of the expected kind.
+/// Reason why a CAN frame is not a message of the expected kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum MessageError {
     /// The identifier belongs to another service.

@@ -7,7 +7,7 @@ use core::fmt;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct DeviceError(pub u16);
 
-/// How the drive stops on an error.
+/// The drive's reaction to an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reaction {
     /// Ramps down with the quick-stop deceleration (6085), then switches the power off.

@@ -23,7 +23,7 @@ impl core::fmt::Display for SerialLayer {
     }
 }
 
-/// Why bytes are not a frame, or a frame is not the expected message.
+/// Reason why bytes are not a frame, or a frame is not the expected message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum SerialFrameError {
     /// The checksum does not match.

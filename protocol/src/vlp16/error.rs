@@ -1,4 +1,4 @@
-//! Why bytes are not a packet of this family.
+//! Reason why bytes are not a packet of this family.
 
 use thiserror::Error;
 

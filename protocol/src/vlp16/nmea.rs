@@ -40,7 +40,7 @@ pub struct UtcTime {
     pub nanosecond: u32,
 }
 
-/// Why a sentence gives no time.
+/// Reason why a sentence gives no time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("NMEA sentence offset {offset}: expected {fault}")]
 pub struct NmeaError {

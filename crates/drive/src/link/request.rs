@@ -30,7 +30,7 @@ pub(crate) struct TimedReply {
     pub answer: Stamp<Host>,
 }
 
-/// Why a request has no reply.
+/// Reason why a request has no reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum RequestFailure {
     /// The link works, but the reply to every attempt was lost.

@@ -1,4 +1,4 @@
-//! How long resynchronisation of the link is tried.
+//! Time limits of the link's resynchronisation.
 //!
 //! Without any input two unanswered probes end it: silence costs most while the axis moves. Damaged
 //! replies prove that the drive is alive, and bursts of damage end (a relay, a motor cable next to

@@ -280,7 +280,7 @@ fn observation(sent: &SentRequest, reply: &Reply, answer: Stamp<Host>) -> Option
     Some(origin.observation(address, reply.value()?))
 }
 
-/// How and when a value was obtained.
+/// Source and times of a value.
 #[derive(Clone, Copy, Debug)]
 struct ValueOrigin {
     request: Stamp<Host>,

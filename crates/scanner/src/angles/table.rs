@@ -12,7 +12,7 @@ pub struct AngleTable {
     rows: Vec<(f64, f64)>,
 }
 
-/// Why a table of angles is unusable.
+/// Reason why a table of angles is unusable.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum AngleTableError {
     /// The table is of another time.

@@ -14,7 +14,7 @@ use super::lanes::{BLOCK_ROWS, CHANNELS, store};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CompressedRows<const L: usize>(u64);
 
-/// Where the rows of one register's channels go, in `L` registers.
+/// Positions of the rows of one register's channels, in `L` registers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Destinations<S: Simd, const L: usize> {
     kept: [S::mask64s; L],

@@ -52,7 +52,7 @@ struct Pose {
     last: Stamp<Host>,
 }
 
-/// How to place a block.
+/// Method to place a block.
 enum BlockPlacement {
     Together(Pose),
     Outside,

@@ -48,7 +48,7 @@ impl CommunicationId {
     }
 }
 
-/// When a PDO is sent, or a received one takes effect.
+/// The event that sends a PDO, or lets a received one take effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TransmissionType {
     /// 0: at the next SYNC after an event.

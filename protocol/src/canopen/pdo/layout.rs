@@ -57,7 +57,7 @@ impl fmt::Debug for MappedObject {
     }
 }
 
-/// Why entries do not form a PDO.
+/// Reason why entries do not form a PDO.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum LayoutError {
     /// More entries than a mapping holds.
@@ -84,7 +84,7 @@ pub enum LayoutError {
     },
 }
 
-/// Why data does not match a mapping.
+/// Reason why data does not match a mapping.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum PdoError {
     /// Fewer bytes than mapped; a node reports error 8210.

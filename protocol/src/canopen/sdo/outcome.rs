@@ -8,7 +8,7 @@ use crate::canopen::AbortCode;
 use crate::canopen::error::MessageError;
 use crate::canopen::{Address, Scalar};
 
-/// Why a transfer failed.
+/// Reason why a transfer failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum TransferError {
     /// The node aborted the transfer.
@@ -102,7 +102,7 @@ impl TransferError {
     }
 }
 
-/// Why a transfer could not be started.
+/// Reason why a transfer could not be started.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum StartError {
     /// Another transfer is active, or its outcome has not been taken.
@@ -159,7 +159,7 @@ pub struct SdoOutcome<const N: usize> {
     pub result: Result<SdoValue<N>, TransferError>,
 }
 
-/// What the client did with a frame.
+/// The client's handling of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrameDisposition {
     /// Not an SDO response of this node.

@@ -43,7 +43,7 @@ enum TransferState {
     },
 }
 
-/// What follows a response.
+/// The step after a response.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TransferStep<const N: usize, const L: usize = SEGMENT_LEN> {
     /// Send the next request.

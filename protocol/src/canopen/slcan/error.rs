@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-/// Why a line was dropped. The decoder continues with the next line.
+/// Reason why a line was dropped. The decoder continues with the next line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum SlcanError {
     /// No CR within the longest line.
