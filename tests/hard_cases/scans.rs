@@ -42,7 +42,7 @@ fn a_scan_into_the_year_2100_equals_one_of_today() {
 /// targets at its limits, samples outside them are not faults, and the points at both ends are
 /// correct.
 #[test]
-fn scans_between_both_tilt_limits_are_true() {
+fn scans_between_both_tilt_limits_are_accurate() {
     for attached in [Attachment::Usb, Attachment::Can] {
         let mut setting = Setting::over(attached);
         setting.sweep_request.acceleration = DegPerS2(500.0);

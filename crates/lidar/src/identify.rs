@@ -242,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn spacings_of_the_named_model_are_no_conflict() {
+    fn spacings_of_the_named_model_are_not_a_conflict() {
         assert_eq!(contradiction(1_327, &VLP_16, false), None);
         assert_eq!(contradiction(1_328, &PUCK_HI_RES, false), None);
         assert_eq!(contradiction(553, &HDL_32E, false), None);

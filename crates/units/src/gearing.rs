@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn a_quadcount_is_1_5_millidegrees_behind_120_to_1() {
+    fn a_quadcount_is_1_5_millidegrees_with_a_gear_of_120_to_1() {
         assert!((paper().degrees_per_qc() - 0.0015).abs() < 1e-18);
         assert_eq!(paper().position(Degrees(-45.0)), Ok(Quadcounts(-30_000)));
         assert!((paper().angle(Quadcounts(-30_000)).0 + 45.0).abs() < 1e-12);

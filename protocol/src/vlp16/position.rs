@@ -101,7 +101,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn golden_bytes_read_as_the_manual_says() {
+    fn golden_bytes_match_the_manual() {
         let mut bytes = [0u8; POSITION_LEN];
         bytes[198..202].copy_from_slice(&[0x01, 0x02, 0x03, 0x04]);
         bytes[202] = 2;
@@ -132,7 +132,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(200))]
 
         #[test]
-        fn bytes_of_any_length_never_panic(len in 0usize..1300, byte: u8) {
+        fn arbitrary_payload_lengths_do_not_panic(len in 0usize..1300, byte: u8) {
             let bytes = vec![byte; len];
             match PositionPacket::new(&bytes) {
                 Ok(packet) => prop_assert!(len == 512 && packet.nmea().len() <= 306),

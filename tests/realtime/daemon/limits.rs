@@ -217,7 +217,7 @@ fn concurrent_cloud_builds_are_limited() {
 }
 
 #[test]
-fn requests_that_are_too_large_are_refused() {
+fn oversized_requests_are_refused() {
     let rig = Rig::new();
     let json = "content-type: application/json\r\n";
     let body = " ".repeat(BODY_BYTES + 1);

@@ -198,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn moves_beyond_the_axis_are_refused() {
+    fn moves_outside_the_limits_of_the_axis_are_refused() {
         let tries = [
             SweepRequest {
                 to: Degrees(-45.1),

@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn stuffed_data_is_no_sync_pair() {
+    fn stuffed_data_is_not_a_sync_pair() {
         let frame = [0x90, 0x02, 0x00, 0x01, 0x90, 0x90, 0x02, 0xAA, 0xBB];
         assert_eq!(pieces(&frame), [StreamPiece::Frame(9)]);
     }

@@ -123,7 +123,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pairs_beyond_the_limit_are_counted() {
+    fn pairs_over_the_limit_are_counted() {
         let mut counts = RecordingCounts::default();
         for port in 0..2000 {
             counts.lidar(port, 7);

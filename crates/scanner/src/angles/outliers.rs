@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn the_hardest_motion_has_no_outliers() {
+    fn the_fastest_motion_has_no_outliers() {
         // Triangles at 15,000 deg/s2, polled every 5 ms, 60 ms and at random.
         for step_us in [1_000, 5_000, 60_000] {
             let angle = |t: f64| {

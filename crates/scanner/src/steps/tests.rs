@@ -271,7 +271,7 @@ fn a_step_of_the_lidar_clock_is_found() {
 /// A stalled network delivers its packets all at once, also at the end of a recording or from its
 /// start. Neither that nor lost packets nor a paused host are steps.
 #[test]
-fn delays_are_no_steps() {
+fn delays_are_not_steps() {
     for (from, length) in [
         (10 * S, 3 * S),
         (15 * S, 4 * S),
@@ -308,7 +308,7 @@ fn delays_are_no_steps() {
 
 /// A step below 10 ms is absorbed, and the bound contains it.
 #[test]
-fn steps_too_small_to_be_found_are_within_the_bound() {
+fn undetectably_small_steps_are_within_the_bound() {
     for by in [
         100_000, 2_000_000, 8_000_000, -100_000, -2_000_000, -8_000_000,
     ] {

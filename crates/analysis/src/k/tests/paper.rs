@@ -122,7 +122,7 @@ fn velomotion_is_between_a_vlp16_and_an_rmbl() {
 /// In antipodally symmetric patterns equally many pairs are farther apart than 180 deg minus an
 /// angle as are within that angle: maximum and minimum differ only in sign.
 #[test]
-fn clustering_is_no_larger_than_dispersion_unless_the_reference_is_half_a_bin_off() {
+fn d_is_symmetric_unless_the_reference_is_half_a_bin_off() {
     for (name, curve, off_by_half) in [("rmbl", &*RMBL_120, 1.38), ("rsbl", &*RSBL_50, 1.32)] {
         let ratio = -curve.d_max / curve.d_min;
         assert!((ratio - 1.0).abs() < 2e-3, "{name}: {ratio}");

@@ -151,7 +151,7 @@ fn the_latency_timer_is_set_if_present() {
 }
 
 #[test]
-fn a_recording_port_keeps_frames_whole() {
+fn a_recording_port_does_not_split_frames() {
     let (mut pty, port) = pair();
     let answer = [0x90, 2, 0, 4, 0, 0, 0, 0, 0x37, 2, 0, 0, 0x68, 0];
     let mut seen = Vec::new();
