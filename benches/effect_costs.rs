@@ -56,7 +56,7 @@ const TABLES: [(&str, &str); 18] = [
 struct Nowhere;
 
 impl SimulationSink for Nowhere {
-    fn event(&mut self, event: &SimulationEvent<'_>) -> ControlFlow<()> {
+    fn event(&mut self, event: &SimulationEvent) -> ControlFlow<()> {
         std::hint::black_box(event);
         ControlFlow::Continue(())
     }

@@ -28,7 +28,7 @@ impl Checksum {
 }
 
 impl SimulationSink for Checksum {
-    fn event(&mut self, event: &SimulationEvent<'_>) -> ControlFlow<()> {
+    fn event(&mut self, event: &SimulationEvent) -> ControlFlow<()> {
         match event {
             SimulationEvent::Datagram { at, payload, .. } => {
                 self.add(&at.as_nanos().to_le_bytes());

@@ -44,7 +44,7 @@ impl Count {
 struct Nowhere;
 
 impl SimulationSink for Nowhere {
-    fn event(&mut self, _: &SimulationEvent<'_>) -> ControlFlow<()> {
+    fn event(&mut self, _: &SimulationEvent) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 }
@@ -140,7 +140,7 @@ mod tests {
     #[test]
     fn scan_durations_match_the_paper() {
         for (speed_deg_s, hundredths) in [(1.07, 4_205.0), (FAST_DEG_S, 80.0)] {
-            let end_s = scan_down(speed_deg_s).unwrap().end_s();
+            let end_s = scan_down(speed_deg_s).unwrap().end_s;
             assert!((end_s - 45.0 / speed_deg_s).abs() < 1e-12);
             assert_eq!((end_s * 100.0 + 1e-9).floor(), hundredths);
         }

@@ -102,7 +102,7 @@ fn enclosing(placed: &Placed) -> Vec<bool> {
     placed
         .objects
         .iter()
-        .map(|object| inside(object.surface()))
+        .map(|object| inside(&object.surface))
         .collect()
 }
 

@@ -76,7 +76,7 @@ use crate::effects::{ConfiguredEffects, Stopwatch};
 use settings::EffectSettings;
 
 pub use divergence::{Divergence, DivergenceSettings};
-pub use explain::{EffectExplanation, Explanation};
+pub use explain::{EffectExplanation, EffectLine, Explanation};
 pub use moving_objects::{Mover, MovingObjects};
 pub use settings::InvalidSetting;
 

@@ -56,8 +56,10 @@ pub struct Sweeps {
 #[derive(Clone, Debug, PartialEq)]
 pub struct AxisMotion {
     start_deg: f64,
-    moves: Vec<AxisMove>,
-    end_s: f64,
+    /// The moves in order of time.
+    pub moves: Vec<AxisMove>,
+    /// End of the motion, rests included, seconds.
+    pub end_s: f64,
 }
 
 /// An invalid motion.
@@ -157,18 +159,6 @@ impl AxisMotion {
         self.end_s = begin_s + duration_s + sweeps.rest_s;
     }
 
-    /// The moves in order of time.
-    #[must_use]
-    pub fn moves(&self) -> &[AxisMove] {
-        &self.moves
-    }
-
-    /// End of the motion, rests included, seconds.
-    #[must_use]
-    pub const fn end_s(&self) -> f64 {
-        self.end_s
-    }
-
     /// Whether the axis never moves.
     #[must_use]
     pub fn is_fixed(&self) -> bool {
@@ -266,12 +256,12 @@ mod tests {
     #[test]
     fn the_default_sweep_takes_0_811_s() {
         let motion = AxisMotion::sweeps(&sweeps()).unwrap();
-        let [next_move] = motion.moves() else {
+        let [next_move] = &motion.moves[..] else {
             panic!()
         };
         // 45 / 56.25 s and one ramp of 56.25 / 5000 s.
         assert!((next_move.end_s - next_move.begin_s - 0.811_25).abs() < 1e-12);
-        assert!((motion.end_s() - 1.011_25).abs() < 1e-12);
+        assert!((motion.end_s - 1.011_25).abs() < 1e-12);
         assert_eq!(motion.at(0.05).angle_deg, 0.0);
         assert_eq!(motion.at(next_move.end_s).angle_deg, -45.0);
         let middle = motion.at(0.1 + 0.811_25 / 2.0);
@@ -288,7 +278,7 @@ mod tests {
             ..sweeps()
         })
         .unwrap();
-        assert_eq!(motion.end_s(), 1.5);
+        assert_eq!(motion.end_s, 1.5);
         for at_s in [0.0, 0.3, 0.75, 1.0, 1.4999] {
             let state = motion.at(at_s);
             assert!((state.angle_deg - 120.0 * at_s).abs() < 1e-12);
@@ -305,7 +295,7 @@ mod tests {
                 ..sweeps()
             };
             let motion = AxisMotion::sweeps(&sweeps).unwrap();
-            let ways = motion.moves().iter();
+            let ways = motion.moves.iter();
             ways.map(|next_move| (next_move.to_deg, next_move.sweep))
                 .collect::<Vec<_>>()
         };
@@ -357,7 +347,7 @@ mod tests {
                 from_deg: from, to_deg: to, speed_deg_s: speed, accel_deg_s2: Some(accel), count, both_ways: both, rest_s: 0.05,
             };
             let motion = AxisMotion::sweeps(&sweeps).unwrap();
-            let end_s = motion.end_s();
+            let end_s = motion.end_s;
             for step in 0..=200 {
                 let at_s = end_s * f64::from(step) / 200.0;
                 let h = 1e-7 * (1.0 + end_s);
@@ -367,7 +357,7 @@ mod tests {
                 prop_assert!((slope - now.rate_deg_s).abs() <= bound, "{slope} {now:?} at {at_s}");
                 prop_assert!(now.rate_deg_s.abs() <= speed * (1.0 + 1e-12));
             }
-            let last = motion.moves().last().map_or(from, |next_move| next_move.to_deg);
+            let last = motion.moves.last().map_or(from, |next_move| next_move.to_deg);
             prop_assert_eq!(motion.at(end_s).angle_deg, last);
         }
     }

@@ -17,10 +17,13 @@ use units::{Host, Stamp};
 
 use crate::effect_models::{EffectsConfig, MovingObjects};
 use crate::effects::{ConfiguredEffects, Listed, Stopwatch};
-use crate::scenery::{InvalidValue, MaterialTable, ObjectTable, line_of_value, no_files};
+use crate::scenery::{
+    FilePosition, InvalidValue, MaterialTable, ObjectTable, line_of_value, no_files,
+};
 use crate::simulate::Simulation;
 use sections::{DriveSection, MotionSection, MountSection, SensorSection, invalid};
 
+pub use crate::effect_models::EffectLine;
 pub use crate::scenery::SHIPPED;
 
 /// A scene file that is read.
@@ -42,15 +45,6 @@ pub struct SceneEffects {
     pub effects: ConfiguredEffects,
     /// The line that configures each, in the order in which they act.
     pub lines: Vec<EffectLine>,
-}
-
-/// The line of a scene file that configures an effect.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct EffectLine {
-    /// Name of the effect.
-    pub name: &'static str,
-    /// The line, from 1.
-    pub line: usize,
 }
 
 /// An invalid scene file.
@@ -155,7 +149,7 @@ impl SceneFile {
         files: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
     ) -> Result<Self, SceneFileError> {
         let sections: Sections = toml::from_str(text).map_err(|error| SceneFileError {
-            line: (error.span()).map_or(1, |span| line_of(text, span.start)),
+            line: (error.span()).map_or(1, |span| FilePosition::of(text, span.start).line),
             what: error.message().to_owned(),
         })?;
         let seed = seed.unwrap_or(sections.seed);
@@ -222,12 +216,6 @@ impl SceneFile {
             seed,
         })
     }
-}
-
-/// The line of a byte of the text, from 1.
-fn line_of(text: &str, offset: usize) -> usize {
-    let before = text.as_bytes().get(..offset).unwrap_or_default();
-    before.iter().filter(|&&byte| byte == b'\n').count() + 1
 }
 
 #[cfg(test)]

@@ -63,8 +63,8 @@ pub struct Polls {
 }
 
 /// A message that reaches or leaves the host.
-#[derive(Clone, Copy, Debug)]
-pub enum SimulationEvent<'a> {
+#[derive(Clone, Debug)]
+pub enum SimulationEvent {
     /// A datagram of the lidar arrives.
     Datagram {
         /// Time of arrival.
@@ -72,7 +72,7 @@ pub enum SimulationEvent<'a> {
         /// Destination port.
         port: u16,
         /// The UDP payload.
-        payload: &'a [u8],
+        payload: Vec<u8>,
     },
     /// The host sends a request to the drive.
     Request {
@@ -119,7 +119,7 @@ pub enum DriveRequest {
 /// A consumer of what the simulation makes.
 pub trait SimulationSink {
     /// Takes an event; events come in order of time. `Break` ends the run.
-    fn event(&mut self, event: &SimulationEvent<'_>) -> ControlFlow<()>;
+    fn event(&mut self, event: &SimulationEvent) -> ControlFlow<()>;
 
     /// Whether true points are wanted. Called once before the run.
     fn wants_truth(&self) -> bool {
@@ -212,21 +212,19 @@ impl Simulation {
     }
 
     fn check(&self) -> Result<(), SimulateError> {
-        let got_s = self.motion.end_s();
+        let got_s = self.motion.end_s;
         if got_s > MAX_DURATION_S {
             return Err(SimulateError::TooLong { got_s });
         }
-        match self.polls {
-            Some(Polls {
-                period_ns,
-                answer_ns,
-                ..
-            }) if period_ns <= 0 || answer_ns < 0 => Err(SimulateError::Polls {
-                period_ns,
-                answer_ns,
-            }),
-            _ => Ok(()),
+        if let Some(polls) = self.polls
+            && (polls.period_ns <= 0 || polls.answer_ns < 0)
+        {
+            return Err(SimulateError::Polls {
+                period_ns: polls.period_ns,
+                answer_ns: polls.answer_ns,
+            });
         }
+        Ok(())
     }
 
     fn lidar(&self) -> Lidar {
@@ -243,7 +241,7 @@ impl Simulation {
 
     /// Duration of the motion, nanoseconds.
     fn end_ns(&self) -> i64 {
-        (self.motion.end_s() * 1e9).ceil() as i64
+        (self.motion.end_s * 1e9).ceil() as i64
     }
 
     /// Host time at nanoseconds since the start.

@@ -162,7 +162,7 @@ impl BvhScene {
     fn meshes(&self) -> impl Iterator<Item = &Arc<Mesh>> {
         self.objects
             .iter()
-            .filter_map(|object| match object.surface() {
+            .filter_map(|object| match &object.surface {
                 Surface::Mesh(mesh) => Some(mesh),
                 _ => None,
             })
@@ -170,8 +170,8 @@ impl BvhScene {
 
     /// All meshes with hierarchies of this quality.
     fn caster(&self, quality: Quality) -> Result<Caster, StudyError> {
-        let objects = self.objects.iter().map(|object| match object.surface() {
-            Surface::Mesh(mesh) => Object::new(mesh.rebuilt(quality)).placed(*object.placement()),
+        let objects = self.objects.iter().map(|object| match &object.surface {
+            Surface::Mesh(mesh) => Object::new(mesh.rebuilt(quality)).placed(object.placement),
             _ => object.clone(),
         });
         Caster::new(objects).map_err(StudyError::workload)

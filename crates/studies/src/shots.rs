@@ -38,7 +38,7 @@ impl Shots {
         let scene = SceneFile::parse(text, None, None).map_err(StudyError::workload)?;
         let mut simulation = scene.simulation;
         simulation.returns = ReturnMode::Dual;
-        let all = simulation.motion.end_s() * 1e9 / f64::from(VLP_16.firing_period_ns);
+        let all = simulation.motion.end_s * 1e9 / f64::from(VLP_16.firing_period_ns);
         let taken = Arc::new(Mutex::new(CollectedFirings::default()));
         let take = FiringCollector {
             every: ((all / firings.max(1) as f64) as u64).max(1),
@@ -118,7 +118,7 @@ impl BeamEffect for FiringCollector {
 struct NoSink;
 
 impl SimulationSink for NoSink {
-    fn event(&mut self, _: &SimulationEvent<'_>) -> ControlFlow<()> {
+    fn event(&mut self, _: &SimulationEvent) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 }

@@ -154,9 +154,8 @@ impl DictionaryEntry {
         }
     }
 
-    /// Checks access and limits of a write; bits above the type are ignored.
-    pub fn check_write(&self, raw: u32) -> Result<(), Abort> {
-        self.check_access()?;
+    /// Checks the limits of a write; bits above the type are ignored.
+    pub fn check_limits(&self, raw: u32) -> Result<(), Abort> {
         let value = self.ty.number(raw);
         if value > self.high {
             Err(Abort::TOO_HIGH)

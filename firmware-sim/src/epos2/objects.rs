@@ -106,7 +106,7 @@ impl Node {
         let entry = Dictionary::entry(address)?;
         entry.check_access()?;
         self.check_storable(entry)?;
-        entry.check_write(raw)?;
+        entry.check_limits(raw)?;
         let number = entry.ty.number(raw);
         self.check(address, number)?;
         self.dictionary.set(address, number as u32);
@@ -120,9 +120,7 @@ impl Node {
     /// As [`Node::write`]; [`Abort::TOO_LONG`], [`Abort::TOO_SHORT`] unless they are as many as the
     /// object has.
     pub fn write_bytes(&mut self, address: Address, bytes: &[u8]) -> Result<(), Abort> {
-        let entry = Dictionary::entry(address)?;
-        entry.check_access()?;
-        entry.check_length(bytes.len())?;
+        self.check_download(address, bytes.len())?;
         let mut raw = [0; 4];
         for (to, from) in raw.iter_mut().zip(bytes) {
             *to = *from;

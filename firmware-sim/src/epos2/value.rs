@@ -1,5 +1,7 @@
 //! The value of a dictionary entry as bytes, for serial answers and SDOs.
 
+use protocol::epos2::Bounded;
+
 use super::entry::Type;
 
 /// Bytes of the longest value.
@@ -7,57 +9,30 @@ pub(super) const LONGEST: usize = 8;
 
 /// A value, low byte first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ObjectValue {
-    bytes: [u8; LONGEST],
-    len: usize,
-}
+pub struct ObjectValue(Bounded<u8, LONGEST>);
 
 impl ObjectValue {
     /// A number of type `ty`, from the low bytes of `raw`.
-    pub(super) const fn number(ty: Type, raw: u64) -> Self {
-        Self {
-            bytes: raw.to_le_bytes(),
-            len: ty.bytes(),
-        }
+    pub(super) fn number(ty: Type, raw: u64) -> Self {
+        Self(raw.to_le_bytes().into_iter().take(ty.bytes()).collect())
     }
 
     /// A string, cut to 8 characters.
     pub(super) fn text(text: &str) -> Self {
-        let mut value = Self {
-            bytes: [0; LONGEST],
-            len: 0,
-        };
-        for (to, from) in value.bytes.iter_mut().zip(text.bytes()) {
-            *to = from;
-            value.len += 1;
-        }
-        value
+        Self(text.bytes().collect())
     }
 
     /// The bytes, low byte first.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
-        self.bytes.get(..self.len).unwrap_or_default()
+        &self.0
     }
 
     /// The value in 32 bits, zero above it; `None` for one that is longer.
     #[must_use]
     pub fn raw(&self) -> Option<u32> {
-        let raw = u64::from_le_bytes(self.bytes) & mask(self.len);
-        if self.len <= 4 {
-            u32::try_from(raw).ok()
-        } else {
-            None
-        }
-    }
-}
-
-/// The bits of `bytes` bytes.
-const fn mask(bytes: usize) -> u64 {
-    if bytes >= 8 {
-        u64::MAX
-    } else {
-        (1 << (8 * bytes)) - 1
+        let bytes = self.bytes().iter().rev();
+        (self.0.len() <= 4).then(|| bytes.fold(0, |raw, byte| raw << 8 | u32::from(*byte)))
     }
 }
 

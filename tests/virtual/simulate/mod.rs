@@ -36,7 +36,7 @@ struct Simulated {
 struct Truth(Vec<TruePoint>);
 
 impl SimulationSink for Truth {
-    fn event(&mut self, _: &SimulationEvent<'_>) -> ControlFlow<()> {
+    fn event(&mut self, _: &SimulationEvent) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 

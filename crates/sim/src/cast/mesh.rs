@@ -120,14 +120,7 @@ impl Mesh {
     /// [`Mesh::new`] uses the default quality.
     #[must_use]
     pub fn rebuilt(&self, quality: Quality) -> Self {
-        let mut mesh = Self {
-            origin_m: self.origin_m,
-            vertices: self.vertices.clone(),
-            faces: self.faces.clone(),
-            places: self.places.clone(),
-            bvh: Bvh::over(&[], quality).0,
-            bounds: self.bounds,
-        };
+        let mut mesh = self.clone();
         // As they came, so that the tree does not depend on the one before.
         mesh.faces.sort_unstable_by_key(|face| face.id);
         mesh.arrange(quality);

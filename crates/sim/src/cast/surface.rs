@@ -63,8 +63,10 @@ impl From<Arc<Mesh>> for Surface {
 /// A surface at a place.
 #[derive(Clone, Debug)]
 pub struct Object {
-    surface: Surface,
-    pub(super) placement: Placement,
+    /// In its own frame.
+    pub surface: Surface,
+    /// From its frame to the world's.
+    pub placement: Placement,
 }
 
 impl Object {
@@ -82,18 +84,6 @@ impl Object {
     pub fn placed(mut self, placement: Placement) -> Self {
         self.placement = placement;
         self
-    }
-
-    /// Its surface.
-    #[must_use]
-    pub const fn surface(&self) -> &Surface {
-        &self.surface
-    }
-
-    /// Its placement.
-    #[must_use]
-    pub const fn placement(&self) -> &Placement {
-        &self.placement
     }
 
     /// Bounds in the object's frame, relative to [`Object::origin_m`]; `None` for infinite

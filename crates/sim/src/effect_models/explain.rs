@@ -10,6 +10,15 @@ use serde::Serialize;
 /// Width of the table, columns.
 const WIDTH: usize = 80;
 
+/// The line of a scene file that configures an effect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct EffectLine {
+    /// Name of the effect.
+    pub name: &'static str,
+    /// The line, from 1.
+    pub line: usize,
+}
+
 /// One effect that was on.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EffectExplanation {
@@ -46,15 +55,15 @@ impl Explanation {
     /// From the counts of effects. `lines` are the lines that configure them; `busy_ns` is the
     /// working time of all threads (0 if not measured).
     #[must_use]
-    pub fn new(used: &[EffectUsage], lines: &[(&str, usize)], busy_ns: u64) -> Self {
-        let line = |name: &str| lines.iter().find(|(other, _)| *other == name);
+    pub fn new(used: &[EffectUsage], lines: &[EffectLine], busy_ns: u64) -> Self {
+        let line = |name: &str| lines.iter().find(|line| line.name == name);
         let percent = |part: u64, whole: u64| match whole {
             0 => 0.0,
             whole => 100.0 * part as f64 / whole as f64,
         };
         let on = used.iter().map(|used| EffectExplanation {
             effect: used.name,
-            line: line(used.name).map(|(_, line)| *line),
+            line: line(used.name).map(|line| line.line),
             each: used.each,
             asked: used.counts.calls,
             acted: used.counts.acted,
@@ -172,7 +181,9 @@ mod tests {
             used("range_noise", 10_000),
             used("weather", 3),
         ];
-        let explanation = Explanation::new(&used, &[("divergence", 14), ("weather", 107)], 10_000);
+        let lines = [("divergence", 14), ("weather", 107)];
+        let lines = lines.map(|(name, line)| EffectLine { name, line });
+        let explanation = Explanation::new(&used, &lines, 10_000);
         let text = explanation.to_string();
         assert!(
             text.lines().all(|line| line.chars().count() <= 80),

@@ -68,7 +68,7 @@ struct Taken {
 }
 
 impl SimulationSink for Taken {
-    fn event(&mut self, event: &SimulationEvent<'_>) -> ControlFlow<()> {
+    fn event(&mut self, event: &SimulationEvent) -> ControlFlow<()> {
         let (at, bytes) = match event {
             SimulationEvent::Datagram { at, port, payload } => {
                 if *port == crate::DATA_PORT {

@@ -116,7 +116,7 @@ fn rays_off_the_axis_hit_the_sphere_as_the_equation_gives() {
 struct Truth(Vec<TruePoint>);
 
 impl SimulationSink for Truth {
-    fn event(&mut self, _: &SimulationEvent<'_>) -> ControlFlow<()> {
+    fn event(&mut self, _: &SimulationEvent) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 

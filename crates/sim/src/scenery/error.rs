@@ -20,7 +20,7 @@ pub struct FilePosition {
 
 impl FilePosition {
     /// The position of a byte of the text.
-    pub(super) fn of(text: &str, offset: usize) -> Self {
+    pub(crate) fn of(text: &str, offset: usize) -> Self {
         let before = text.get(..offset).unwrap_or(text);
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
         Self {

@@ -86,7 +86,7 @@ impl Placed {
             let (Some(object), Some(assignment), Some(line)) = all else {
                 continue;
             };
-            let placement = object.placement().moved(-from_m)?;
+            let placement = object.placement.moved(-from_m)?;
             only.objects.push(Object::clone(object).placed(placement));
             only.assignments.push(*assignment);
             only.lines.push(*line);

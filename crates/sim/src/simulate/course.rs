@@ -25,7 +25,7 @@ impl AxisCourse {
     pub fn new<M: MechanismEffect>(motion: &AxisMotion, mechanism: &mut M) -> Self {
         let mut steps = Vec::new();
         if mechanism.is_present() {
-            let count = (motion.end_s() / STEP_S).ceil() as usize + STEPS_BEYOND_END;
+            let count = (motion.end_s / STEP_S).ceil() as usize + STEPS_BEYOND_END;
             steps.reserve_exact(count);
             steps.extend((0..count).map(|step| {
                 let time_s = step as f64 * STEP_S;

@@ -5,8 +5,7 @@
 //! axis moves on time in any case. After a timeout it sends probe requests until one is answered,
 //! as the drive client does.
 
-use std::cmp::{Ordering, Reverse};
-use std::collections::{BinaryHeap, VecDeque};
+use std::collections::{BTreeMap, VecDeque};
 use std::ops::ControlFlow;
 
 use firmware_sim::vlp16::{DATA_PORT, POSITION_PORT};
@@ -25,55 +24,9 @@ const TIMEOUT_PERIODS: i64 = 8;
 /// Periods before a move at which its commands begin: six commands and two to spare.
 const COMMAND_PERIODS: i64 = 8;
 
-/// Messages under way in the order of arrival.
-type Pending = BinaryHeap<Reverse<PendingMessage>>;
-
-/// A message under way. Of two that arrive at the same time, the one sent first comes first.
-#[derive(Debug)]
-struct PendingMessage {
-    arrives_ns: i64,
-    order: u64,
-    content: MessageContent,
-}
-
-#[derive(Debug)]
-enum MessageContent {
-    Datagram {
-        port: u16,
-        payload: Vec<u8>,
-    },
-    Request(DriveRequest),
-    Answer {
-        request: DriveRequest,
-        position_qc: i32,
-    },
-}
-
-impl PendingMessage {
-    const fn key(&self) -> (i64, u64) {
-        (self.arrives_ns, self.order)
-    }
-}
-
-impl PartialEq for PendingMessage {
-    fn eq(&self, other: &Self) -> bool {
-        self.key() == other.key()
-    }
-}
-
-impl Eq for PendingMessage {}
-
-impl PartialOrd for PendingMessage {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for PendingMessage {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.key().cmp(&other.key())
-    }
-}
+/// Events to come by time of arrival, nanoseconds since the start. Of two that arrive at the same
+/// time, the one sent first comes first.
+type Pending = BTreeMap<(i64, u64), SimulationEvent>;
 
 pub(super) struct Merge<'a, E, L> {
     simulation: &'a Simulation,
@@ -114,7 +67,7 @@ impl<'a, E: EncoderEffect, L: LinkEffect> Merge<'a, E, L> {
                 .polls
                 .map(|polls| (polls, gearing.unwrap_or(polls.gearing))),
             next_poll_ns: 0,
-            moves: simulation.motion.moves().iter(),
+            moves: simulation.motion.moves.iter(),
             commands: VecDeque::new(),
             probe: None,
             pending: Pending::new(),
@@ -166,16 +119,15 @@ impl<'a, E: EncoderEffect, L: LinkEffect> Merge<'a, E, L> {
     }
 
     fn datagram(&mut self, message: LinkMessage, port: u16, payload: &[u8]) {
-        let (pending, order) = (&mut self.pending, &mut self.order);
+        let (simulation, pending, order) = (self.simulation, &mut self.pending, &mut self.order);
         self.link.deliver(message, &mut |arrived| {
-            let payload = payload.to_vec();
-            let content = MessageContent::Datagram { port, payload };
-            push(
-                pending,
-                order,
-                arrived.time_ns.max(message.time_ns),
-                content,
-            );
+            let arrives_ns = arrived.time_ns.max(message.time_ns);
+            let event = SimulationEvent::Datagram {
+                at: simulation.host(arrives_ns),
+                port,
+                payload: payload.to_vec(),
+            };
+            push(pending, order, arrives_ns, event);
         });
     }
 
@@ -198,8 +150,10 @@ impl<'a, E: EncoderEffect, L: LinkEffect> Merge<'a, E, L> {
             Some(second) => DriveRequest::Probe(second),
             None => (self.commands.front().copied()).unwrap_or(DriveRequest::Position),
         };
-        let content = MessageContent::Request(request);
-        push(&mut self.pending, &mut self.order, sent_ns, content);
+        let simulation = self.simulation;
+        let at = simulation.host(sent_ns);
+        let event = SimulationEvent::Request { at, request };
+        push(&mut self.pending, &mut self.order, sent_ns, event);
         let message = |kind, time_ns| LinkMessage {
             kind,
             number,
@@ -225,11 +179,12 @@ impl<'a, E: EncoderEffect, L: LinkEffect> Merge<'a, E, L> {
             self.link.deliver(answer, &mut |arrived| {
                 let arrives_ns = arrived.time_ns.max(time_ns);
                 answered_ns = Some(answered_ns.map_or(arrives_ns, |first| first.min(arrives_ns)));
-                let content = MessageContent::Answer {
+                let event = SimulationEvent::Answer {
+                    at: simulation.host(arrives_ns),
                     request,
                     position_qc,
                 };
-                push(pending, order, arrives_ns, content);
+                push(pending, order, arrives_ns, event);
             });
         }
         let timeout_ns = sent_ns.saturating_add(TIMEOUT_PERIODS.saturating_mul(polls.period_ns));
@@ -276,28 +231,10 @@ impl<'a, E: EncoderEffect, L: LinkEffect> Merge<'a, E, L> {
 
     /// Passes on what arrives until then; nothing that is sent later arrives earlier.
     fn release(&mut self, until_ns: i64) -> ControlFlow<()> {
-        let due = |next: &Reverse<PendingMessage>| next.0.arrives_ns <= until_ns;
-        while self.pending.peek().is_some_and(due)
-            && let Some(Reverse(next)) = self.pending.pop()
+        while let Some(next) = self.pending.first_entry()
+            && next.key().0 <= until_ns
         {
-            let at = self.simulation.host(next.arrives_ns);
-            let event = match &next.content {
-                MessageContent::Datagram { port, payload } => SimulationEvent::Datagram {
-                    at,
-                    port: *port,
-                    payload,
-                },
-                &MessageContent::Request(request) => SimulationEvent::Request { at, request },
-                &MessageContent::Answer {
-                    request,
-                    position_qc,
-                } => SimulationEvent::Answer {
-                    at,
-                    request,
-                    position_qc,
-                },
-            };
-            self.sink.event(&event)?;
+            self.sink.event(&next.remove())?;
         }
         ControlFlow::Continue(())
     }
@@ -318,11 +255,7 @@ fn quadcounts(angle: Degrees, gearing: Gearing) -> i32 {
     (angle.0 / gearing.degrees_per_qc()).round() as i32
 }
 
-fn push(pending: &mut Pending, order: &mut u64, arrives_ns: i64, content: MessageContent) {
-    pending.push(Reverse(PendingMessage {
-        arrives_ns,
-        order: *order,
-        content,
-    }));
+fn push(pending: &mut Pending, order: &mut u64, arrives_ns: i64, event: SimulationEvent) {
+    pending.insert((arrives_ns, *order), event);
     *order += 1;
 }

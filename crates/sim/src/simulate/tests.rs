@@ -28,7 +28,7 @@ struct Taken {
 }
 
 impl SimulationSink for Taken {
-    fn event(&mut self, event: &SimulationEvent<'_>) -> ControlFlow<()> {
+    fn event(&mut self, event: &SimulationEvent) -> ControlFlow<()> {
         let at = match event {
             SimulationEvent::Datagram { at, port, payload } => {
                 self.datagrams.push((*port, payload.to_vec()));

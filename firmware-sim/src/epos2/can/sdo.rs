@@ -27,28 +27,23 @@ pub(super) struct SdoServer {
 
 /// A segmented transfer under way.
 #[derive(Clone, Copy, Debug)]
-enum ServerTransfer {
+struct ServerTransfer {
+    address: Address,
+    toggle: bool,
+    content: TransferContent,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum TransferContent {
     Upload {
-        address: Address,
         value: ObjectValue,
         sent: usize,
-        toggle: bool,
     },
     Download {
-        address: Address,
         bytes: Bounded<u8, MAX_BYTES>,
         /// Bytes announced.
         size: Option<u32>,
-        toggle: bool,
     },
-}
-
-impl ServerTransfer {
-    const fn address(&self) -> Address {
-        match self {
-            Self::Upload { address, .. } | Self::Download { address, .. } => *address,
-        }
-    }
 }
 
 impl SdoServer {
@@ -61,7 +56,7 @@ impl SdoServer {
     ) -> Option<SdoResponse> {
         self.last_request_us = now_us;
         let transfer = self.transfer.take();
-        let current = transfer.map_or(Address::default(), |transfer| transfer.address());
+        let current = transfer.map_or(Address::default(), |transfer| transfer.address);
         let (address, outcome) = match request {
             SdoRequest::InitiateUpload { address } => (*address, self.upload(node, *address)),
             SdoRequest::InitiateDownload { address, transfer } => {
@@ -88,7 +83,7 @@ impl SdoServer {
         let silent = now_us.saturating_sub(self.last_request_us) > TRANSFER_TIMEOUT_US;
         let transfer = self.transfer.take_if(|_| silent)?;
         Some(SdoResponse::Abort {
-            address: transfer.address(),
+            address: transfer.address,
             error: CommError::TIMEOUT,
         })
     }
@@ -98,12 +93,7 @@ impl SdoServer {
         let transfer = match Expedited::new(value.bytes()) {
             Some(data) => Initiate::Expedited(data),
             None => {
-                self.transfer = Some(ServerTransfer::Upload {
-                    address,
-                    value,
-                    sent: 0,
-                    toggle: false,
-                });
+                self.begin(address, TransferContent::Upload { value, sent: 0 });
                 Initiate::Segmented {
                     size: u32::try_from(value.bytes().len()).ok(),
                 }
@@ -115,30 +105,30 @@ impl SdoServer {
     fn upload_segment(
         &mut self,
         transfer: Option<ServerTransfer>,
-        requested: bool,
+        toggle: bool,
     ) -> Result<SdoResponse, Abort> {
-        let Some(ServerTransfer::Upload {
-            address,
-            value,
-            sent,
-            toggle,
-        }) = transfer
-        else {
+        let mut transfer = transfer.ok_or(Abort::COMMAND)?;
+        let TransferContent::Upload { value, sent } = &mut transfer.content else {
             return Err(Abort::COMMAND);
         };
-        if requested != toggle {
+        if toggle != transfer.toggle {
             return Err(Abort::TOGGLE);
         }
-        let segment = SdoSegment::cut(value.bytes(), sent, toggle, SEGMENT_LEN);
+        let segment = SdoSegment::cut(value.bytes(), *sent, toggle, SEGMENT_LEN);
+        *sent += segment.bytes.len();
+        transfer.toggle = !toggle;
         if !segment.last {
-            self.transfer = Some(ServerTransfer::Upload {
-                address,
-                value,
-                sent: sent + segment.bytes.len(),
-                toggle: !toggle,
-            });
+            self.transfer = Some(transfer);
         }
         Ok(SdoResponse::UploadSegment(segment))
+    }
+
+    fn begin(&mut self, address: Address, content: TransferContent) {
+        self.transfer = Some(ServerTransfer {
+            address,
+            toggle: false,
+            content,
+        });
     }
 
     fn download(
@@ -160,12 +150,8 @@ impl SdoServer {
                     Some(size) => node.check_download(address, *size as usize)?,
                     None => Dictionary::entry(address)?.check_access()?,
                 }
-                self.transfer = Some(ServerTransfer::Download {
-                    address,
-                    bytes: Bounded::new(),
-                    size: *size,
-                    toggle: false,
-                });
+                let (bytes, size) = (Bounded::new(), *size);
+                self.begin(address, TransferContent::Download { bytes, size });
             }
         }
         Ok(SdoResponse::InitiateDownload { address })
@@ -177,16 +163,12 @@ impl SdoServer {
         transfer: Option<ServerTransfer>,
         segment: &SdoSegment,
     ) -> Result<SdoResponse, Abort> {
-        let Some(ServerTransfer::Download {
-            address,
-            mut bytes,
-            size,
-            toggle,
-        }) = transfer
-        else {
+        let mut transfer = transfer.ok_or(Abort::COMMAND)?;
+        let TransferContent::Download { bytes, size } = &mut transfer.content else {
             return Err(Abort::COMMAND);
         };
-        if segment.toggle != toggle {
+        let toggle = segment.toggle;
+        if toggle != transfer.toggle {
             return Err(Abort::TOGGLE);
         }
         let len = bytes.len() + segment.bytes.len();
@@ -198,14 +180,10 @@ impl SdoServer {
             if size.is_some_and(|size| len < size as usize) {
                 return Err(Abort::TOO_SHORT);
             }
-            node.write_bytes(address, &bytes)?;
+            node.write_bytes(transfer.address, bytes)?;
         } else {
-            self.transfer = Some(ServerTransfer::Download {
-                address,
-                bytes,
-                size,
-                toggle: !toggle,
-            });
+            transfer.toggle = !toggle;
+            self.transfer = Some(transfer);
         }
         Ok(SdoResponse::DownloadSegment { toggle })
     }

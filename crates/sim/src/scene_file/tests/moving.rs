@@ -19,7 +19,7 @@ struct Taken {
 }
 
 impl SimulationSink for Taken {
-    fn event(&mut self, event: &SimulationEvent<'_>) -> ControlFlow<()> {
+    fn event(&mut self, event: &SimulationEvent) -> ControlFlow<()> {
         if let SimulationEvent::Datagram { payload, .. } = event {
             self.bytes.extend_from_slice(payload);
         }
@@ -111,7 +111,11 @@ fn a_box_at_2_m_s_is_at_its_position_of_each_firing() {
     let line = BEFORE.lines().count() + 1;
     let name = "moving_objects";
     assert_eq!(scene.effects.lines, [EffectLine { name, line }]);
-    let explained = Explanation::new(&scene.effects.effects.usage(), &[(name, line)], 0);
+    let explained = Explanation::new(
+        &scene.effects.effects.usage(),
+        &[EffectLine { name, line }],
+        0,
+    );
     let [on] = &explained.on[..] else { panic!() };
     assert_eq!(
         (on.effect, on.line, on.not_needed),

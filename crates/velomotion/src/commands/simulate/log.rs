@@ -58,7 +58,7 @@ impl<'a> Log<'a> {
         interrupt: &'a AtomicBool,
         mut progress: Progress,
     ) -> Self {
-        progress.begin_run(simulation.motion.end_s());
+        progress.begin_run(simulation.motion.end_s);
         Self {
             writer,
             gearing,
@@ -140,11 +140,11 @@ impl<'a> Log<'a> {
 }
 
 impl SimulationSink for Log<'_> {
-    fn event(&mut self, event: &SimulationEvent<'_>) -> ControlFlow<()> {
-        match *event {
+    fn event(&mut self, event: &SimulationEvent) -> ControlFlow<()> {
+        match event {
             SimulationEvent::Datagram { at, port, payload } => {
-                self.progress.ran((at - self.began).as_secs_f64());
-                self.last = at;
+                self.progress.ran((*at - self.began).as_secs_f64());
+                self.last = *at;
                 if self.interrupt.load(Ordering::Relaxed) {
                     return self.fail(
                         Failure::new(Kind::Interrupted, "stopped by the user during the simulation")
@@ -154,34 +154,29 @@ impl SimulationSink for Log<'_> {
                     );
                 }
                 self.record(&Record {
-                    host: at,
+                    host: *at,
                     wire: Wire::Lidar {
                         source: SOURCE,
-                        port,
+                        port: *port,
                         payload,
                     },
                 })
             }
-            SimulationEvent::Request {
-                at,
-                request: drive_request,
-            } => {
-                let frame = self.gearing.map(|gearing| request(drive_request, gearing));
-                frame.map_or(ControlFlow::Continue(()), |frame| {
-                    self.frame(at, Direction::ToDevice, &frame)
-                })
-            }
+            SimulationEvent::Request { at, request } => match self.gearing {
+                Some(gearing) => self.frame(*at, Direction::ToDevice, &frame(*request, gearing)),
+                None => ControlFlow::Continue(()),
+            },
             SimulationEvent::Answer {
                 at,
-                request: drive_request,
+                request,
                 position_qc,
             } => {
-                let answer = match drive_request {
-                    DriveRequest::Position => ReadObject::answer(Ok(position_qc as u32)),
-                    DriveRequest::Probe(which) => ReadObject::answer(Err(marker(which).1)),
+                let answer = match request {
+                    DriveRequest::Position => ReadObject::answer(Ok(*position_qc as u32)),
+                    DriveRequest::Probe(which) => ReadObject::answer(Err(marker(*which).1)),
                     _ => WriteObject::answer(Ok(())),
                 };
-                self.frame(at, Direction::FromDevice, &answer)
+                self.frame(*at, Direction::FromDevice, &answer)
             }
         }
     }
@@ -231,43 +226,34 @@ fn rings(simulation: &Simulation) -> Vec<u8> {
 }
 
 /// Frame of a request to the drive.
-fn request(drive_request: DriveRequest, gearing: Gearing) -> SerialFrame {
-    let write = |address: Address, value: u32| {
-        let write = WriteObject {
-            node: NODE,
-            address,
-            value,
-        };
-        write.to_frame()
-    };
+fn frame(request: DriveRequest, gearing: Gearing) -> SerialFrame {
     let rpm = |deg: f64| (deg / gearing.deg_s_per_rpm()).round() as u32;
     let read = |address: Address| {
-        let read = ReadObject {
-            node: NODE,
-            address,
-        };
-        read.to_frame()
+        let node = NODE;
+        ReadObject { node, address }.to_frame()
     };
-    match drive_request {
-        DriveRequest::Position => read(objects::POSITION_ACTUAL.address),
-        DriveRequest::Probe(which) => read(marker(which).0),
-        DriveRequest::Target(qc) => write(objects::TARGET_POSITION.address, qc as u32),
-        DriveRequest::Speed(deg_s) => write(objects::PROFILE_VELOCITY.address, rpm(deg_s)),
-        DriveRequest::Acceleration(deg_s2) => {
-            write(objects::PROFILE_ACCELERATION.address, rpm(deg_s2))
-        }
-        DriveRequest::Deceleration(deg_s2) => {
-            write(objects::PROFILE_DECELERATION.address, rpm(deg_s2))
-        }
-        DriveRequest::Ready => write(
+    let (address, value) = match request {
+        DriveRequest::Position => return read(objects::POSITION_ACTUAL.address),
+        DriveRequest::Probe(which) => return read(marker(which).0),
+        DriveRequest::Target(qc) => (objects::TARGET_POSITION.address, qc as u32),
+        DriveRequest::Speed(deg_s) => (objects::PROFILE_VELOCITY.address, rpm(deg_s)),
+        DriveRequest::Acceleration(deg_s2) => (objects::PROFILE_ACCELERATION.address, rpm(deg_s2)),
+        DriveRequest::Deceleration(deg_s2) => (objects::PROFILE_DECELERATION.address, rpm(deg_s2)),
+        DriveRequest::Ready => (
             objects::CONTROLWORD.address,
-            u32::from(control::ENABLE_OPERATION),
+            control::ENABLE_OPERATION.into(),
         ),
-        DriveRequest::Go => write(
+        DriveRequest::Go => (
             objects::CONTROLWORD.address,
-            u32::from(control::ENABLE_OPERATION | NEW_SETPOINT | AT_ONCE),
+            control::START_ABSOLUTE_AT_ONCE.into(),
         ),
-    }
+    };
+    let write = WriteObject {
+        node: NODE,
+        address,
+        value,
+    };
+    write.to_frame()
 }
 
 /// Address and error answer of the two probe requests.
@@ -275,11 +261,6 @@ const fn marker(second: bool) -> (Address, CommError) {
     let [one, other] = drive::PROBES;
     if second { other } else { one }
 }
-
-/// Controlword bits in profile position mode (Firmware Specification, 8.3): new setpoint, change
-/// immediately.
-const NEW_SETPOINT: u16 = 0x0010;
-const AT_ONCE: u16 = 0x0020;
 
 /// Configuration stored in the log.
 pub(super) fn scan_config(scene: &SceneFile, gearing: Option<Gearing>) -> ScanConfig {
@@ -307,7 +288,7 @@ pub(super) fn scan_config(scene: &SceneFile, gearing: Option<Gearing>) -> ScanCo
 
 /// The planned sweeps of the motion.
 fn plan(simulation: &Simulation) -> Option<SweepPlan> {
-    let sweeps = || simulation.motion.moves().iter().filter(|next| next.sweep);
+    let sweeps = || simulation.motion.moves.iter().filter(|next| next.sweep);
     let first = sweeps().next()?;
     let speed = first.cruise_deg_s.abs();
     Some(SweepPlan {

@@ -18,7 +18,7 @@ use protocol::record::DriveLink;
 use serde::Serialize;
 use sim::effect_models::Explanation;
 use sim::effects::{Effects, FiringEffectSet, Stopwatch};
-use sim::scene_file::{SHIPPED, SceneFile};
+use sim::scene_file::{EffectLine, SHIPPED, SceneFile};
 use sim::simulate::SimulateError;
 use units::Metres;
 
@@ -38,7 +38,7 @@ pub struct Report {
     /// Random seed.
     pub seed: u64,
     /// Requested effects.
-    pub effects: Vec<Effect>,
+    pub effects: Vec<EffectLine>,
     /// Data packets sent.
     pub packets: u64,
     /// Shots in the packets.
@@ -69,15 +69,6 @@ pub struct Report {
     /// Changes and costs of effects, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub explanation: Option<Explanation>,
-}
-
-/// A requested effect.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Effect {
-    /// Its name.
-    pub name: String,
-    /// Line in the scene file.
-    pub line: usize,
 }
 
 /// A simulation to run.
@@ -267,12 +258,6 @@ pub fn make(
         interrupt,
         progress,
     );
-    let effects: Vec<Effect> = (scene.effects.lines.iter())
-        .map(|asked| Effect {
-            name: asked.name.to_owned(),
-            line: asked.line,
-        })
-        .collect();
     // Separate instances, so that a scene without effects pays nothing for them.
     let summary = match scene.effects.is_none() {
         true => {
@@ -289,11 +274,13 @@ pub fn make(
     let (truth, cut) = out.finish(path)?;
     let took = began.elapsed();
     let explanation = explain.then(|| {
-        let lines = scene.effects.lines.iter();
-        let lines: Vec<_> = lines.map(|asked| (asked.name, asked.line)).collect();
         let busy_ns = took.as_nanos().saturating_mul(threads.get() as u128);
         let busy_ns = u64::try_from(busy_ns).unwrap_or(u64::MAX);
-        Explanation::new(&scene.effects.effects.usage(), &lines, busy_ns)
+        Explanation::new(
+            &scene.effects.effects.usage(),
+            &scene.effects.lines,
+            busy_ns,
+        )
     });
     let (failure, after) = cut.unzip();
     // Of a run that was cut short only the simulated part counts.
@@ -302,7 +289,7 @@ pub fn make(
     let report = Report {
         scene: name,
         seed: scene.seed,
-        effects,
+        effects: scene.effects.lines,
         packets: summary.packets,
         shots: summary.shots,
         returned: summary.returned,
