@@ -130,15 +130,15 @@ effects_config! {
     range_noise: range_noise::RangeNoiseSettings,
     lidar_clock: lidar_clock::LidarClockSettings,
     servo_lag: servo_lag::ServoLagSettings,
-    tilt_limits: tilt_limits::TiltLimitsSettings,
+    tilt_limits: tilt_limits::TiltLimits,
     gear_ripple: gear_ripple::GearRippleSettings,
-    backlash: backlash::BacklashSettings,
+    backlash: backlash::Backlash,
     encoder_quantisation: encoder_quantisation::EncoderQuantisationSettings,
     duplicate: duplicate::DuplicateSettings,
     loss: loss::LossSettings,
     link_jitter: link_jitter::LinkJitterSettings,
     reorder: reorder::ReorderSettings,
-    batching: batching::BatchingSettings,
+    batching: batching::Batching,
 }
 
 #[cfg(test)]

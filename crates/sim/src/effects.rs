@@ -44,13 +44,6 @@ pub struct Needs {
 }
 
 impl Needs {
-    /// No inputs.
-    pub const NOTHING: Self = Self {
-        normals: false,
-        azimuths: false,
-        moving: false,
-    };
-
     /// The needs of both.
     #[inline]
     #[must_use]
@@ -71,7 +64,7 @@ pub trait Effect: core::fmt::Debug {
     /// Inputs that take time to compute; none by default.
     #[inline]
     fn needs(&self) -> Needs {
-        Needs::NOTHING
+        Needs::default()
     }
 
     /// Explanation for an effect that never acted in a run.

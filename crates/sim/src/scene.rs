@@ -55,7 +55,6 @@ impl Scene {
             ..Material::plain()
         });
         placed.objects.push(object);
-        placed.lines.push(0);
         Self::of(placed)
     }
 

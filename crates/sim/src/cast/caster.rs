@@ -13,7 +13,6 @@ use super::build::Quality;
 use super::bvh::{Bounds, Bvh, MOST_ITEMS, Stack};
 use super::mesh::short_middle;
 use super::packet::{Ask, Best, Lanes, Nearest, loaded, spread};
-use super::placement::Placement;
 use super::ray::{Hit, Ray, Reach};
 use super::surface::Object;
 
@@ -40,14 +39,6 @@ pub enum CastError {
         low: [f64; 3],
         /// The greatest corner, metres.
         high: [f64; 3],
-    },
-    /// There is no such object.
-    #[error("sim: expected an object below {objects}, got {got}")]
-    NoObject {
-        /// Number of objects.
-        objects: usize,
-        /// The requested object.
-        got: usize,
     },
 }
 
@@ -109,40 +100,11 @@ impl Caster {
         if caster.objects.len() > MOST_ITEMS {
             return Err(CastError::TooMany(caster.objects.len()));
         }
-        caster.arrange()?;
-        Ok(caster)
-    }
-
-    /// The objects.
-    #[must_use]
-    pub fn objects(&self) -> &[Object] {
-        &self.objects
-    }
-
-    /// Moves an object and rebuilds the tree of objects; trees within meshes do not change.
-    ///
-    /// # Errors
-    /// [`CastError::NoObject`] if there is none of this number.
-    pub fn place(&mut self, object: usize, placement: Placement) -> Result<(), CastError> {
-        let objects = self.objects.len();
-        let Some(moved) = self.objects.get_mut(object) else {
-            return Err(CastError::NoObject {
-                objects,
-                got: object,
-            });
-        };
-        moved.placement = placement;
-        self.arrange()
-    }
-
-    /// Sorts objects into those that are tested one after the other and the tree.
-    fn arrange(&mut self) -> Result<(), CastError> {
-        self.each.clear();
         let (mut finite, mut boxes) = (Vec::new(), Vec::new());
         let mut whole = Bounds::EMPTY;
-        for ((number, object), id) in self.objects.iter().enumerate().zip(0_u32..) {
+        for ((number, object), id) in caster.objects.iter().enumerate().zip(0_u32..) {
             match object.bounds() {
-                Ok(None) => self.each.push(id),
+                Ok(None) => caster.each.push(id),
                 Ok(Some(bounds)) => {
                     whole.join(&bounds);
                     finite.push(id);
@@ -157,24 +119,29 @@ impl Caster {
                 }
             }
         }
-        self.middle_m = short_middle(&whole);
-        let middle = self.middle_m;
+        caster.middle_m = short_middle(&whole);
+        let middle = caster.middle_m;
         for Bounds { low, high } in &mut boxes {
             *low = (DVec3::from_array(*low) - middle).to_array();
             *high = (DVec3::from_array(*high) - middle).to_array();
         }
         let (tree, order) = Bvh::over(&boxes, Quality::default());
-        self.tree = tree;
+        caster.tree = tree;
         let sorted = order
             .iter()
             .filter_map(|&at| finite.get(at as usize).copied());
-        self.leaves.clear();
         if finite.len() <= FEW {
-            self.each.extend(sorted);
+            caster.each.extend(sorted);
         } else {
-            self.leaves.extend(sorted);
+            caster.leaves.extend(sorted);
         }
-        Ok(())
+        Ok(caster)
+    }
+
+    /// The objects.
+    #[must_use]
+    pub fn objects(&self) -> &[Object] {
+        &self.objects
     }
 
     /// The first hit of a ray within its reach; [`Hit`] defines the order of equal distances.

@@ -10,46 +10,36 @@ use serde::Deserialize;
 use super::settings::{InvalidSetting, SettingCheck};
 
 /// `[effects.backlash]`.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
-pub struct BacklashSettings {
+pub struct Backlash {
     /// The whole play at the platform, degrees.
     pub play_deg: f64,
-}
-
-/// The play, and the platform's last position.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Backlash {
-    half_deg: f64,
+    /// The platform's last position.
+    #[serde(skip)]
     left_deg: Option<f64>,
 }
 
 impl Backlash {
-    /// With these settings.
-    ///
-    /// # Errors
-    /// [`InvalidSetting`] for a play outside 0 to 10 degrees.
-    pub fn new(settings: &BacklashSettings) -> Result<Self, InvalidSetting> {
-        let play_deg =
-            SettingCheck(Self::NAME).within("play_deg", settings.play_deg, 0.0..=10.0)?;
-        Ok(Self {
-            half_deg: 0.5 * play_deg,
-            left_deg: None,
-        })
+    /// Checks that the play is within 0 to 10 degrees.
+    fn checked(self) -> Result<Self, InvalidSetting> {
+        SettingCheck(Self::NAME).within("play_deg", self.play_deg, 0.0..=10.0)?;
+        Ok(self)
     }
 }
 
 effect! {
-    Backlash, BacklashSettings, mechanism: Box, "backlash",
+    Backlash, Backlash, mechanism: Box, "backlash",
     idle: "the axis never moves, or there is no play",
-    new: |settings, _| Backlash::new(settings)
+    new: |backlash, _| backlash.checked()
 }
 
 impl MechanismEffect for Backlash {
     fn step(&mut self, _: f64, axis: &mut AxisAngles) -> bool {
         let gear_deg = axis.platform_deg;
         let left_deg = self.left_deg.unwrap_or(gear_deg);
-        let (low, high) = (gear_deg - self.half_deg, gear_deg + self.half_deg);
+        let half_deg = 0.5 * self.play_deg;
+        let (low, high) = (gear_deg - half_deg, gear_deg + half_deg);
         let platform_deg = left_deg.max(low).min(high);
         self.left_deg = Some(platform_deg);
         axis.platform_deg = platform_deg;
@@ -64,7 +54,11 @@ mod tests {
 
     #[test]
     fn the_platform_lags_by_half_the_backlash_in_either_direction() {
-        let mut backlash = Backlash::new(&BacklashSettings { play_deg: 0.2 }).unwrap();
+        let of_play = |play_deg| Backlash {
+            play_deg,
+            ..Backlash::default()
+        };
+        let mut backlash = of_play(0.2).checked().unwrap();
         let mut platform = |gear: f64| {
             let mut axis = at(gear);
             backlash.step(0.0, &mut axis);
@@ -78,6 +72,6 @@ mod tests {
         near(platform(0.85), 0.9);
         near(platform(0.7), 0.8);
         near(platform(1.0), 0.9);
-        assert!(Backlash::new(&BacklashSettings { play_deg: -0.1 }).is_err());
+        assert!(of_play(-0.1).checked().is_err());
     }
 }

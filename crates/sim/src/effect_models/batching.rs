@@ -8,49 +8,39 @@ use serde::Deserialize;
 
 use super::settings::{InvalidSetting, SettingCheck};
 
-/// `[effects.batching]`.
+/// `[effects.batching]`: a receiver that batches.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, default)]
-pub struct BatchingSettings {
+pub struct Batching {
     /// Period of reading, milliseconds; default 15.625.
     pub period_ms: f64,
 }
 
-impl Default for BatchingSettings {
+impl Default for Batching {
     fn default() -> Self {
         Self { period_ms: 15.625 }
     }
 }
 
-/// A receiver that batches.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Batching {
-    period_ns: i64,
-}
-
 impl Batching {
-    /// With these settings.
-    ///
-    /// # Errors
-    /// [`InvalidSetting`] for a period outside 1 us to 10 s.
-    pub fn new(settings: &BatchingSettings) -> Result<Self, InvalidSetting> {
-        let ms = SettingCheck(Self::NAME).within("period_ms", settings.period_ms, 1e-3..=1e4)?;
-        Ok(Self {
-            period_ns: (ms * 1e6).round() as i64,
-        })
+    /// Checks that the period is within 1 us to 10 s.
+    fn checked(self) -> Result<Self, InvalidSetting> {
+        SettingCheck(Self::NAME).within("period_ms", self.period_ms, 1e-3..=1e4)?;
+        Ok(self)
     }
 }
 
 effect! {
-    Batching, BatchingSettings, link: Box, "batching",
+    Batching, Batching, link: Box, "batching",
     idle: "no packet of the lidar had to wait",
-    new: |settings, _| Batching::new(settings)
+    new: |batching, _| batching.checked()
 }
 
 impl LinkEffect for Batching {
     fn deliver(&mut self, message: LinkMessage, arrive: &mut dyn FnMut(LinkMessage)) -> u32 {
+        let period_ns = (self.period_ms * 1e6).round() as i64;
         let wait_ns = match message.kind.is_from_lidar() {
-            true => (-message.time_ns).rem_euclid(self.period_ns.max(1)),
+            true => (-message.time_ns).rem_euclid(period_ns.max(1)),
             false => 0,
         };
         arrive(LinkMessage {
@@ -69,7 +59,7 @@ mod tests {
 
     #[test]
     fn packets_wait_for_the_next_poll() {
-        let mut batching = Batching::new(&BatchingSettings { period_ms: 10.0 }).unwrap();
+        let mut batching = Batching { period_ms: 10.0 }.checked().unwrap();
         let times = |arrived: Vec<LinkMessage>| -> Vec<i64> {
             arrived.iter().map(|message| message.time_ns).collect()
         };

@@ -24,9 +24,7 @@ const fn at_once() -> f64 {
 
 /// A link that duplicates packets.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Duplicate {
-    some: PacketSelection,
-}
+pub struct Duplicate(PacketSelection);
 
 impl Duplicate {
     /// With these settings, in a run with `seed`.
@@ -34,8 +32,7 @@ impl Duplicate {
     /// # Errors
     /// [`InvalidSetting`] for a share outside 0 to 1 or a delay outside 0 to 1 s.
     pub fn new(settings: &DuplicateSettings, seed: u64) -> Result<Self, InvalidSetting> {
-        let some = PacketSelection::new(Self::NAME, settings.share, settings.later_us, seed)?;
-        Ok(Self { some })
+        PacketSelection::new(Self::NAME, settings.share, settings.later_us, seed).map(Self)
     }
 }
 
@@ -48,9 +45,9 @@ effect! {
 impl LinkEffect for Duplicate {
     fn deliver(&mut self, message: LinkMessage, arrive: &mut dyn FnMut(LinkMessage)) -> u32 {
         arrive(message);
-        let twice = self.some.selects(&message);
+        let twice = self.0.selects(&message);
         if twice {
-            arrive(self.some.delayed(message));
+            arrive(self.0.delayed(message));
         }
         u32::from(twice)
     }

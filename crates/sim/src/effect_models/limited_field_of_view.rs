@@ -51,7 +51,7 @@ effect! {
     idle: "every block fires within it",
     needs: |_| Needs {
             azimuths: true,
-            ..Needs::NOTHING
+            ..Needs::default()
         },
     new: |settings, _| LimitedFieldOfView::new(settings)
 }

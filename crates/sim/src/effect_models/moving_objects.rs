@@ -126,7 +126,7 @@ effect! {
     idle: "there is nothing that moves",
     needs: |effect| Needs {
             moving: !effect.movers.is_empty(),
-            ..Needs::NOTHING
+            ..Needs::default()
         },
     new: |settings, _| MovingObjects::of(settings)
 }

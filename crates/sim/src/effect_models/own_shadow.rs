@@ -70,13 +70,11 @@ impl OwnShadow {
             let tilts = sector.tilt_from_deg..=360.0;
             check.within("tilt_to_deg", sector.tilt_to_deg, tilts)?;
         }
-        let below = match settings.below_deg {
-            Some(deg) => Some(check.within("below_deg", deg, -90.0..=90.0)?),
-            None => None,
-        };
+        let below = settings.below_deg;
+        let below = below.map(|deg| check.within("below_deg", deg, -90.0..=90.0));
         Ok(Self {
             sectors: settings.sectors.clone(),
-            below: below.map(|deg| deg.to_radians().sin()),
+            below: below.transpose()?.map(|deg| deg.to_radians().sin()),
         })
     }
 }

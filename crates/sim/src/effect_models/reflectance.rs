@@ -116,7 +116,7 @@ effect! {
     idle: "every return was strong enough, and none came in at an angle",
     needs: |effect| Needs {
             normals: effect.incidence,
-            ..Needs::NOTHING
+            ..Needs::default()
         },
     new: Reflectance::new
 }

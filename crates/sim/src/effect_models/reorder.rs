@@ -24,9 +24,7 @@ const fn more_than_a_packet() -> f64 {
 
 /// A link that reorders packets.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reorder {
-    some: PacketSelection,
-}
+pub struct Reorder(PacketSelection);
 
 impl Reorder {
     /// With these settings, in a run with `seed`.
@@ -34,8 +32,7 @@ impl Reorder {
     /// # Errors
     /// [`InvalidSetting`] for a share outside 0 to 1 or a delay outside 0 to 1 s.
     pub fn new(settings: &ReorderSettings, seed: u64) -> Result<Self, InvalidSetting> {
-        let some = PacketSelection::new(Self::NAME, settings.share, settings.later_us, seed)?;
-        Ok(Self { some })
+        PacketSelection::new(Self::NAME, settings.share, settings.later_us, seed).map(Self)
     }
 }
 
@@ -47,9 +44,9 @@ effect! {
 
 impl LinkEffect for Reorder {
     fn deliver(&mut self, message: LinkMessage, arrive: &mut dyn FnMut(LinkMessage)) -> u32 {
-        let late = self.some.selects(&message);
+        let late = self.0.selects(&message);
         arrive(match late {
-            true => self.some.delayed(message),
+            true => self.0.delayed(message),
             false => message,
         });
         u32::from(late)

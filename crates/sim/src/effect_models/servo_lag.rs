@@ -49,13 +49,11 @@ impl ServoLag {
     pub fn new(settings: &ServoLagSettings) -> Result<Self, InvalidSetting> {
         let check = SettingCheck(Self::NAME);
         let hz = check.within("frequency_hz", settings.frequency_hz, 0.1..=200.0)?;
-        let damping = match settings.damping {
-            Some(damping) => Some(check.within("damping", damping, 0.1..=4.0)?),
-            None => None,
-        };
+        let damping = settings.damping;
+        let damping = damping.map(|ratio| check.within("damping", ratio, 0.1..=4.0));
         Ok(Self {
             rad_s: TAU * hz,
-            damping,
+            damping: damping.transpose()?,
             state: None,
         })
     }

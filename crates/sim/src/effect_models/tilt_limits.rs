@@ -6,40 +6,30 @@ use serde::Deserialize;
 
 use super::settings::{InvalidSetting, SettingCheck};
 
-/// `[effects.tilt_limits]`.
+/// `[effects.tilt_limits]`: two stops.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
-pub struct TiltLimitsSettings {
+pub struct TiltLimits {
     /// The lower stop, degrees of tilt.
     pub from_deg: f64,
     /// The upper stop, not below the lower one.
     pub to_deg: f64,
 }
 
-/// Two stops.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TiltLimits {
-    from_deg: f64,
-    to_deg: f64,
-}
-
 impl TiltLimits {
-    /// With these settings.
-    ///
-    /// # Errors
-    /// [`InvalidSetting`] for angles that are not finite or in the wrong order.
-    pub fn new(settings: &TiltLimitsSettings) -> Result<Self, InvalidSetting> {
+    /// Checks that the angles are finite and in order.
+    fn checked(self) -> Result<Self, InvalidSetting> {
         let check = SettingCheck(Self::NAME);
-        let from_deg = check.within("from_deg", settings.from_deg, -360.0..=360.0)?;
-        let to_deg = check.within("to_deg", settings.to_deg, from_deg..=360.0)?;
-        Ok(Self { from_deg, to_deg })
+        check.within("from_deg", self.from_deg, -360.0..=360.0)?;
+        check.within("to_deg", self.to_deg, self.from_deg..=360.0)?;
+        Ok(self)
     }
 }
 
 effect! {
-    TiltLimits, TiltLimitsSettings, mechanism: Box, "tilt_limits",
+    TiltLimits, TiltLimits, mechanism: Box, "tilt_limits",
     idle: "the motion stays within the stops",
-    new: |settings, _| TiltLimits::new(settings)
+    new: |limits, _| limits.checked()
 }
 
 impl MechanismEffect for TiltLimits {
@@ -59,11 +49,11 @@ mod tests {
 
     #[test]
     fn the_shaft_stays_within_its_limits() {
-        let settings = TiltLimitsSettings {
+        let limits = TiltLimits {
             from_deg: -45.0,
             to_deg: 1.0,
         };
-        let mut limits = TiltLimits::new(&settings).unwrap();
+        let mut limits = limits.checked().unwrap();
         for (commanded, held, acted) in [
             (0.0, 0.0, false),
             (-45.0, -45.0, false),
@@ -77,10 +67,10 @@ mod tests {
             assert_eq!((axis.shaft_deg, axis.platform_deg), (held, held + 0.25));
             assert_eq!(axis.commanded_deg, commanded);
         }
-        let wrong = TiltLimitsSettings {
+        let wrong = TiltLimits {
             from_deg: 1.0,
             to_deg: -1.0,
         };
-        assert_eq!(TiltLimits::new(&wrong).unwrap_err().setting, "to_deg");
+        assert_eq!(wrong.checked().unwrap_err().setting, "to_deg");
     }
 }

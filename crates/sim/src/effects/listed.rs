@@ -202,7 +202,7 @@ impl<P: Deref<Target: Effect> + std::fmt::Debug> Effect for Vec<Listed<P>> {
     }
 
     fn needs(&self) -> Needs {
-        self.iter().fold(Needs::NOTHING, |needs, listed| {
+        self.iter().fold(Needs::default(), |needs, listed| {
             needs.and(listed.effect.needs())
         })
     }

@@ -119,8 +119,8 @@ impl Surroundings {
     }
 
     /// As [`Surroundings::meet`], without moving objects.
-    #[must_use]
-    pub fn meet_static(&self, origin_m: DVec3, direction: DVec3) -> Option<Met> {
+    #[cfg(test)]
+    pub(crate) fn meet_static(&self, origin_m: DVec3, direction: DVec3) -> Option<Met> {
         self.returning(self.first_static(origin_m, direction)?)
     }
 
@@ -133,7 +133,7 @@ impl Surroundings {
         });
     }
 
-    /// As [`Surroundings::meet_static`] for each direction, up to the length of the shorter list.
+    /// As [`Surroundings::meet_fan`], without moving objects.
     pub fn meet_fan_static(&self, origin_m: DVec3, directions: &[DVec3], mets: &mut [Option<Met>]) {
         batch::fan(self, origin_m, directions, &mut |ray, first| {
             if let Some(met) = mets.get_mut(ray) {

@@ -114,20 +114,16 @@ impl PatternRequest {
             ("tilt", "stepped") => self.settings.tilt.steps = TiltSteps::Stepped,
             ("tilt", "continuous") => self.settings.tilt.steps = TiltSteps::Continuous,
             ("tilt", _) => return Err(self.wrong("tilt=stepped or tilt=continuous", value)),
-            _ => return self.set_text(key, value),
+            _ if NUMBERS.contains(&key) => {
+                let number = value.parse::<f64>().ok().filter(|n| n.is_finite());
+                let Some(number) = number else {
+                    return Err(self.wrong(format!("a number for {key}"), value));
+                };
+                return self.set_number(key, number);
+            }
+            _ => return Err(self.wrong(KEYS, key)),
         }
         Ok(())
-    }
-
-    fn set_text(&mut self, key: &str, value: &str) -> Result<(), PatternError> {
-        if !NUMBERS.contains(&key) {
-            return Err(self.wrong(KEYS, key));
-        }
-        let number = value.parse::<f64>().ok().filter(|n| n.is_finite());
-        let Some(number) = number else {
-            return Err(self.wrong(format!("a number for {key}"), value));
-        };
-        self.set_number(key, number)
     }
 
     /// Sets an option with a number.

@@ -80,8 +80,6 @@ pub struct Placed {
     pub materials: Vec<Material>,
     /// The moving objects.
     pub moving: Vec<Moving>,
-    /// The line of the scene file of each object.
-    pub lines: Vec<usize>,
 }
 
 impl Placed {

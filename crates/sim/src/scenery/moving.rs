@@ -78,18 +78,13 @@ impl Placed {
             ..Self::default()
         };
         for at in objects {
-            let all = (
-                self.objects.get(at),
-                self.assignments.get(at),
-                self.lines.get(at),
-            );
-            let (Some(object), Some(assignment), Some(line)) = all else {
+            let (Some(object), Some(assignment)) = (self.objects.get(at), self.assignments.get(at))
+            else {
                 continue;
             };
             let placement = object.placement.moved(-from_m)?;
             only.objects.push(Object::clone(object).placed(placement));
             only.assignments.push(*assignment);
-            only.lines.push(*line);
         }
         Ok(only)
     }

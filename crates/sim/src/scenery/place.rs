@@ -41,11 +41,8 @@ pub(super) fn place(
         files,
         meshes: BTreeMap::new(),
         placed: Placed {
-            objects: Vec::new(),
-            assignments: Vec::new(),
             materials,
-            moving: Vec::new(),
-            lines: Vec::new(),
+            ..Placed::default()
         },
     };
     for (number, (at, object)) in scenery.objects.iter().enumerate() {
@@ -75,7 +72,6 @@ impl Builder<'_> {
                 let object = Object::new(part.surface.clone()).placed(placement);
                 self.placed.objects.push(object);
                 self.placed.assignments.push(part.assignment);
-                self.placed.lines.push(at.line);
             }
             if table.is_moving() {
                 self.placed.moving.push(Moving {

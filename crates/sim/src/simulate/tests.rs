@@ -233,7 +233,7 @@ impl Effect for Window {
     fn needs(&self) -> Needs {
         Needs {
             azimuths: true,
-            ..Needs::NOTHING
+            ..Needs::default()
         }
     }
 }

@@ -50,29 +50,6 @@ fn rotating_object_and_ray_together_changes_nothing() {
 }
 
 #[test]
-fn a_moving_object_is_hit_where_it_has_moved() {
-    let objects = (0..10).map(|at| {
-        let place = Placement::at(DVec3::X * 10.0 * f64::from(at)).unwrap();
-        Object::new(Sphere { radius_m: 1.0 }).placed(place)
-    });
-    let mut caster = Caster::new(objects).unwrap();
-    let down = ray(DVec3::new(30.0, 50.0, 9.0), DVec3::NEG_Z);
-    assert_eq!(first(&caster, &down), None);
-    caster
-        .place(3, Placement::at(DVec3::new(30.0, 50.0, 0.0)).unwrap())
-        .unwrap();
-    let hit = first(&caster, &down).unwrap();
-    assert_eq!((hit.range_m, hit.object.index()), (8.0, 3));
-    assert_eq!(
-        caster.place(10, Placement::default()),
-        Err(CastError::NoObject {
-            objects: 10,
-            got: 10
-        })
-    );
-}
-
-#[test]
 fn scaling_and_mirroring_are_rejected() {
     for bad in [
         DMat3::IDENTITY * 2.0,
