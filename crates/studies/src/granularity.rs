@@ -7,8 +7,7 @@ use crate::placing::{
 };
 use analysis::tradeoff::{Bench, Measured, Row, Study, StudyError, TimedChoice, Trade};
 use cloud::{Fields, Points, Sink, SinkError};
-use drive::record::Wire;
-use lidar::{Decoder, Options};
+use lidar::Options;
 use scanner::{Alignment, Placer};
 
 use crate::workload::{Workload, all_at, cruise_deg, cruise_s, head};
@@ -146,13 +145,7 @@ fn definition(packets: &Workload, alignment: &Alignment) -> PlacedPoints<f64> {
             places.z_m.push(z);
         }
     };
-    let mut decoder = Decoder::new(Options::default());
-    for record in packets.records() {
-        if let Wire::Lidar { payload, .. } = record.wire {
-            decoder.packet(record.host, payload, &mut each);
-        }
-    }
-    decoder.finish(&mut each);
+    packets.firings(&mut each);
     places
 }
 

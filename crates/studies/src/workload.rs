@@ -127,14 +127,17 @@ impl Workload {
                 counts,
             });
         };
-        let mut decoder = Decoder::new(Options::default());
-        for record in self.records() {
-            if let Wire::Lidar { payload, .. } = record.wire {
-                decoder.packet(record.host, payload, &mut each);
-            }
-        }
-        decoder.finish(&mut each);
+        self.firings(&mut each);
         shots
+    }
+
+    /// Decodes the packets.
+    pub fn firings(&self, each: &mut impl FnMut(&lidar::Firing<'_>)) {
+        let mut decoder = Decoder::new(Options::default());
+        for (host, payload) in &self.packets {
+            decoder.packet(*host, payload, each);
+        }
+        decoder.finish(each);
     }
 }
 

@@ -21,36 +21,29 @@ struct Side {
     caption: &'static str,
     /// Direction towards the viewer.
     to: DVec3,
-    right: DVec3,
-    right_name: &'static str,
-    up: DVec3,
-    up_name: &'static str,
+    /// Axes to the right and up, and their names.
+    right: (DVec3, &'static str),
+    up: (DVec3, &'static str),
 }
 
 const SIDES: [Side; 3] = [
     Side {
         caption: "from +x",
         to: DVec3::X,
-        right: DVec3::Y,
-        right_name: "y",
-        up: DVec3::Z,
-        up_name: "z",
+        right: (DVec3::Y, "y"),
+        up: (DVec3::Z, "z"),
     },
     Side {
         caption: "from -y, along the tilt axis",
         to: DVec3::NEG_Y,
-        right: DVec3::X,
-        right_name: "x",
-        up: DVec3::Z,
-        up_name: "z",
+        right: (DVec3::X, "x"),
+        up: (DVec3::Z, "z"),
     },
     Side {
         caption: "from +z, above",
         to: DVec3::Z,
-        right: DVec3::X,
-        right_name: "x",
-        up: DVec3::Y,
-        up_name: "y",
+        right: (DVec3::X, "x"),
+        up: (DVec3::Y, "y"),
     },
 ];
 
@@ -116,8 +109,8 @@ fn row(
         let below = y + RADIUS + 18.0;
         svg += &small(x, below, TextAnchor::Middle, side.caption);
         let names = [
-            (x + RADIUS + 5.0, y + 4.0, side.right_name),
-            (x - 3.0, y - RADIUS - 3.0, side.up_name),
+            (x + RADIUS + 5.0, y + 4.0, side.right.1),
+            (x - 3.0, y - RADIUS - 3.0, side.up.1),
         ];
         for (x, y, name) in names {
             svg += &small(x, y, TextAnchor::Start, name);
@@ -173,7 +166,7 @@ fn sphere(
 fn triangle(path: &mut String, side: &Side, face: &IcosahedronFace) {
     let place = |corner: DVec3| {
         let size = RADIUS * FINE;
-        let (right, up) = (corner.dot(side.right), corner.dot(side.up));
+        let (right, up) = (corner.dot(side.right.0), corner.dot(side.up.0));
         ((size * right).round() as i32, (-size * up).round() as i32)
     };
     let [(ax, ay), (bx, by), (cx, cy)] = face.corners.map(place);

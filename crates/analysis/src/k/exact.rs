@@ -53,34 +53,42 @@ pub fn exact_by(
         registers.run(&mut one);
         one.done()
     };
-    let parts = on_threads(threads, &work);
-    let mut counts = vec![0_u64; edges.bins()];
-    let mut on_edges = 0;
-    for part in parts {
-        let (of, on) = part?;
-        on_edges += on;
-        for (count, of) in counts.iter_mut().zip(of) {
-            *count = count.wrapping_add_signed(of);
-        }
-    }
+    let (counts, on_edges) = on_threads(threads, edges.bins(), &work)?;
     Ok(PairCounts {
         edges: edges.clone(),
-        counts,
+        counts: counts.into_iter().map(i64::cast_unsigned).collect(),
         points: points.len(),
         on_edges,
     })
 }
 
-/// Runs `work` on this thread and on as many others as the system starts, up to `threads` in all.
-pub(super) fn on_threads<T: Send>(threads: NonZeroUsize, work: &(impl Fn() -> T + Sync)) -> Vec<T> {
-    std::thread::scope(|scope| {
+/// Pairs per bin, and pairs on edges.
+pub(super) type Counted = Result<(Vec<i64>, u64), KError>;
+
+/// Runs `work` on this thread and on as many others as the system starts, up to `threads` in all;
+/// the sum of their counts.
+pub(super) fn on_threads(
+    threads: NonZeroUsize,
+    bins: usize,
+    work: &(impl Fn() -> Counted + Sync),
+) -> Counted {
+    let parts = std::thread::scope(|scope| {
         let start = |_| std::thread::Builder::new().spawn_scoped(scope, work).ok();
         let others: Vec<_> = (1..threads.get()).map_while(start).collect();
         let mut parts = vec![work()];
         let joined = others.into_iter().map(|other| other.join());
         parts.extend(joined.map(|part| part.unwrap_or_else(|panic| resume_unwind(panic))));
         parts
-    })
+    });
+    let mut sum = (vec![0; bins], 0);
+    for part in parts {
+        let (counts, on_edges) = part?;
+        sum.1 += on_edges;
+        for (sum, count) in sum.0.iter_mut().zip(counts) {
+            *sum += count;
+        }
+    }
+    Ok(sum)
 }
 
 /// The counts of one thread.
@@ -101,7 +109,7 @@ impl LaneWork for ExactWorker<'_> {
 }
 
 impl ExactWorker<'_> {
-    fn done(self) -> Result<(Vec<i64>, u64), KError> {
+    fn done(self) -> Counted {
         match self.exact_test.wrong {
             Some(wrong) => Err(wrong),
             None => Ok((

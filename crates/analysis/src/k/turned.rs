@@ -14,7 +14,7 @@ use fearless_simd::{f32x16, prelude::*, u32x16};
 use glam::{DQuat, DVec3};
 
 use super::error::check;
-use super::exact::on_threads;
+use super::exact::{Counted, on_threads};
 use super::lanes::{AlignedLanes, LANES};
 use super::leaf_pair::{F32_BAND, PairCounter, loaded};
 use super::leaves_by_edge_count::{Bits, LeavesByEdgeCount};
@@ -123,15 +123,7 @@ pub fn turned_by(
         registers.run(&mut one);
         one.done()
     };
-    let mut twice = vec![0_i64; edges.bins()];
-    let mut on_edges = 0;
-    for part in on_threads(threads, &work) {
-        let (of, on) = part?;
-        on_edges += on;
-        for (twice, of) in twice.iter_mut().zip(of) {
-            *twice += of;
-        }
-    }
+    let (mut twice, mut on_edges) = on_threads(threads, edges.bins(), &work)?;
     // Every pair is counted from both ends, and every point with itself.
     for &p in points {
         let bin = edges.bin(p, p)?;
@@ -272,7 +264,7 @@ impl LaneWork for TurnedWorker<'_> {
 }
 
 impl TurnedWorker<'_> {
-    fn done(self) -> Result<(Vec<i64>, u64), KError> {
+    fn done(self) -> Counted {
         match self.wrong {
             Some(wrong) => Err(wrong),
             None => Ok((self.counter.counts(&[]), self.on_edges)),

@@ -168,15 +168,14 @@ impl PatternLidar {
     #[must_use]
     pub fn widest_circle_deg(&self, sweep: &TiltSweep, step_deg: f64) -> f64 {
         let turns = self.turns(sweep).floor().clamp(0.0, 1e9) as u64 + 1;
-        let order = StrideOrder::new(turns);
         let mut worst: f64 = 0.0;
         for direction in grid(step_deg) {
             if !self.may_see(sweep, direction) {
                 continue;
             }
             let mut nearest = f64::INFINITY;
-            for i in 0..turns {
-                let Some(off) = self.off_line_deg(sweep, direction, order.get(i)) else {
+            for turn in strided(turns) {
+                let Some(off) = self.off_line_deg(sweep, direction, turn) else {
                     continue;
                 };
                 nearest = nearest.min(off);
@@ -260,33 +259,9 @@ pub struct LineGaps {
 }
 
 /// All numbers below `n` in large strides, so that a line near a direction is found early.
-struct StrideOrder {
-    n: u64,
-    stride: u64,
-}
-
-impl StrideOrder {
-    fn new(n: u64) -> Self {
-        let golden = (n as f64 * 0.618_033_988_75) as u64;
-        let coprime = |stride: &u64| gcd(*stride, n) == 1;
-        let stride = (golden.max(1)..=n.max(1)).find(coprime).unwrap_or(1);
-        Self { n, stride }
-    }
-
-    const fn get(&self, i: u64) -> u64 {
-        if self.n == 0 {
-            return 0;
-        }
-        i.wrapping_mul(self.stride) % self.n
-    }
-}
-
-const fn gcd(a: u64, b: u64) -> u64 {
-    let (mut a, mut b) = (a, b);
-    while b != 0 {
-        (a, b) = (b, a % b);
-    }
-    a
+fn strided(n: u64) -> impl Iterator<Item = u64> {
+    let stride = n.isqrt();
+    (0..stride).flat_map(move |first| (first..n).step_by(stride as usize))
 }
 
 #[cfg(test)]
@@ -494,10 +469,9 @@ mod tests {
 
         #[test]
         fn the_stride_order_visits_every_index(n in 1..2_000_u64) {
-            let order = StrideOrder::new(n);
             let mut seen = vec![false; n as usize];
-            for i in 0..n {
-                seen[order.get(i) as usize] = true;
+            for i in strided(n) {
+                seen[i as usize] = true;
             }
             prop_assert!(seen.into_iter().all(|s| s));
         }

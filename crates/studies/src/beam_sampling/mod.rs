@@ -155,19 +155,18 @@ fn choices(grids: &[[usize; 2]]) -> Result<Vec<SamplingChoice>, StudyError> {
         label: "1".to_owned(),
         way: SamplingMethod::Middle,
     }];
-    for &[columns, rows] in grids {
-        choices.push(SamplingChoice {
-            name: format!("{columns} x {rows} at edges"),
-            label: format!("{columns}x{rows}"),
-            way: SamplingMethod::AtEdges(divergence(columns, rows)?),
-        });
-    }
-    for &[columns, rows] in grids {
-        choices.push(SamplingChoice {
-            name: format!("{columns} x {rows} everywhere"),
-            label: format!("{columns}x{rows} all"),
-            way: SamplingMethod::Everywhere(divergence(columns, rows)?),
-        });
+    let ways: [(&str, &str, fn(Divergence) -> SamplingMethod); 2] = [
+        ("at edges", "", SamplingMethod::AtEdges),
+        ("everywhere", " all", SamplingMethod::Everywhere),
+    ];
+    for (place, mark, way) in ways {
+        for &[columns, rows] in grids {
+            choices.push(SamplingChoice {
+                name: format!("{columns} x {rows} {place}"),
+                label: format!("{columns}x{rows}{mark}"),
+                way: way(divergence(columns, rows)?),
+            });
+        }
     }
     Ok(choices)
 }

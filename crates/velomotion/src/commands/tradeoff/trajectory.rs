@@ -77,30 +77,29 @@ struct PollingCase {
     servo: bool,
 }
 
+const IDEAL: PollingCase = PollingCase {
+    jitter_s: 0.0,
+    quantum_deg: 0.0,
+    servo: false,
+};
+/// The case that is timed.
+const USUAL: PollingCase = PollingCase {
+    jitter_s: 0.1e-3,
+    quantum_deg: QUANTUM_DEG,
+    servo: false,
+};
 const CIRCUMSTANCES: [PollingCase; 4] = [
-    PollingCase {
-        jitter_s: 0.0,
-        quantum_deg: 0.0,
-        servo: false,
-    },
-    PollingCase {
-        jitter_s: 0.1e-3,
-        quantum_deg: QUANTUM_DEG,
-        servo: false,
-    },
+    IDEAL,
+    USUAL,
     PollingCase {
         jitter_s: 0.5e-3,
-        quantum_deg: QUANTUM_DEG,
-        servo: false,
+        ..USUAL
     },
     PollingCase {
-        jitter_s: 0.1e-3,
-        quantum_deg: QUANTUM_DEG,
         servo: true,
+        ..USUAL
     },
 ];
-/// The case that is timed.
-const USUAL: PollingCase = CIRCUMSTANCES[1];
 
 fn measure(bench: &mut Bench<'_>) -> Result<Measured, StudyError> {
     let seeds = bench.pick(1, 8);
