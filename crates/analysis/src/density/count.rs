@@ -29,21 +29,10 @@ pub struct Statistics {
     pub sd_per_deg2: f64,
     /// Bins without a point.
     pub empty: usize,
-}
-
-impl Statistics {
     /// Standard deviation divided by the mean; `None` without points.
-    #[must_use]
-    pub fn sd_over_mean(&self) -> Option<f64> {
-        (self.mean > 0.0).then(|| self.sd / self.mean)
-    }
-
+    pub sd_over_mean: Option<f64>,
     /// Share of the bins with a point, 0 to 1; `None` without bins.
-    #[must_use]
-    pub fn coverage(&self) -> Option<f64> {
-        let with = self.bins.saturating_sub(self.empty);
-        (self.bins > 0).then(|| with as f64 / self.bins as f64)
-    }
+    pub coverage: Option<f64>,
 }
 
 /// A class of a histogram.
@@ -118,6 +107,7 @@ impl BinCounts {
         let off = counts.iter().map(|&count| (count as f64 - mean).powi(2));
         let sd = (off.sum::<f64>() / n).sqrt();
         let per_deg2 = self.0.len() as f64 / SPHERE_DEG2;
+        let empty = counts.iter().filter(|&&count| count == 0).count();
         Statistics {
             bins,
             mean,
@@ -126,7 +116,9 @@ impl BinCounts {
             max: counts.iter().copied().max().unwrap_or(0),
             mean_per_deg2: mean * per_deg2,
             sd_per_deg2: sd * per_deg2,
-            empty: counts.iter().filter(|&&count| count == 0).count(),
+            empty,
+            sd_over_mean: (mean > 0.0).then(|| sd / mean),
+            coverage: (bins > 0).then(|| (bins - empty) as f64 / bins as f64),
         }
     }
 
@@ -219,10 +211,10 @@ mod tests {
     fn statistics_of_a_subset_of_the_bins() {
         let counts = BinCounts(vec![4, 0, 8, 100]);
         let some = counts.statistics_of(|bin| bin < 3);
-        assert_eq!(some.coverage(), Some(2.0 / 3.0));
-        assert_eq!(some.sd_over_mean(), Some(some.sd / 4.0));
-        assert_eq!(counts.statistics_of(|_| false).coverage(), None);
-        assert_eq!(counts.statistics_of(|bin| bin == 1).sd_over_mean(), None);
+        assert_eq!(some.coverage, Some(2.0 / 3.0));
+        assert_eq!(some.sd_over_mean, Some(some.sd / 4.0));
+        assert_eq!(counts.statistics_of(|_| false).coverage, None);
+        assert_eq!(counts.statistics_of(|bin| bin == 1).sd_over_mean, None);
         assert_eq!(
             (some.bins, some.mean, some.min, some.max, some.empty),
             (3, 4.0, 0, 8, 1)

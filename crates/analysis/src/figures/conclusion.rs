@@ -33,7 +33,7 @@ pub(super) fn conclusions(scans: &AnalyzedScans) -> String {
 
 fn of_one(scan: &AnalyzedScan) -> String {
     let percent = |share: Option<f64>| format!("{:.1} %", 100.0 * share.unwrap_or(0.0));
-    let sphere = percent(scan.counts.statistics().coverage());
+    let sphere = percent(scan.counts.statistics().coverage);
     let hole = format!("{:.2}\u{b0}", scan.hole_deg);
     match &scan.in_view {
         Some(seen) => {
@@ -43,7 +43,7 @@ fn of_one(scan: &AnalyzedScan) -> String {
             };
             format!(
                 "covers {sphere} of the sphere and {} of what it could see; its largest hole in view has a radius of {within}, anywhere {hole}.",
-                percent(seen.statistics.coverage())
+                percent(seen.statistics.coverage)
             )
         }
         None => format!(
@@ -63,7 +63,7 @@ fn of_all(scans: &[AnalyzedScan]) -> Option<String> {
         even.name,
         farthest(even)?
     );
-    let uneven = |scan: &AnalyzedScan| scan.in_view.as_ref()?.statistics.sd_over_mean();
+    let uneven = |scan: &AnalyzedScan| scan.in_view.as_ref()?.statistics.sd_over_mean;
     if let Some(best) = least(scans, uneven) {
         let value = short(uneven(best).unwrap_or(0.0));
         sentence += &format!(

@@ -157,12 +157,12 @@ fn summary(scans: &AnalyzedScans) -> String {
         vec![
             scan.points.to_string(),
             scan.scan_s.map_or(NONE.to_owned(), short),
-            percent(all.coverage()),
-            percent(seen.and_then(|seen| seen.statistics.coverage())),
+            percent(all.coverage),
+            percent(seen.and_then(|seen| seen.statistics.coverage)),
             format!("{:.3}", scan.hole_deg),
             three(seen.and_then(|seen| seen.hole_deg)),
-            three(all.sd_over_mean()),
-            three(seen.and_then(|seen| seen.statistics.sd_over_mean())),
+            three(all.sd_over_mean),
+            three(seen.and_then(|seen| seen.statistics.sd_over_mean)),
             farthest(scan).map_or(NONE.to_owned(), |d| format!("{d:.5}")),
         ]
     });

@@ -281,17 +281,14 @@ fn the_page_reports_values_and_warnings_of_a_view() {
         hole_deg: Some(3.25),
     });
     still.warnings.push("the origin <0,0,0> is far".to_owned());
-    let (all, uneven) = (
-        still.counts.statistics(),
-        statistics.sd_over_mean().unwrap(),
-    );
+    let (all, uneven) = (still.counts.statistics(), statistics.sd_over_mean.unwrap());
     let page = page(&scans);
     let glance = page.split("id=\"summary\"").nth(1).unwrap();
     let glance = glance.split("</section>").next().unwrap();
     for words in [
         format!(
             "<b>still</b> covers {:.1} % of the sphere; its largest hole anywhere has a radius of 55.50",
-            100.0 * all.coverage().unwrap()
+            100.0 * all.coverage.unwrap()
         ),
         "What it could see is not known".to_owned(),
         "its largest hole in view has a radius of 3.25\u{b0}, anywhere 55.50\u{b0}".to_owned(),
@@ -303,7 +300,7 @@ fn the_page_reports_values_and_warnings_of_a_view() {
         // A scan with an unknown view has no hole and no evenness there.
         format!(
             "<td>55.500</td><td>-</td><td>{:.3}</td><td>-</td>",
-            all.sd_over_mean().unwrap()
+            all.sd_over_mean.unwrap()
         ),
     ] {
         assert!(glance.contains(&words), "no {words:?} in:\n{glance}");

@@ -60,8 +60,8 @@ impl Folder {
             points: pattern.points,
             scan_s: pattern.scan_s,
             hole_deg: pattern.hole.radius_deg,
-            in_view: pattern.density_in_view.map(|bins| InView {
-                statistics: bins.statistics,
+            in_view: pattern.density_in_view.map(|statistics| InView {
+                statistics,
                 hole_deg: pattern.hole_in_view.map(|hole| hole.radius_deg),
             }),
             warnings: pattern.warnings.clone(),

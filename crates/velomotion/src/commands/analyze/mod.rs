@@ -26,8 +26,7 @@ use glam::DVec3;
 use sim::patterns::{AXIS, FieldOfView, Pattern};
 
 pub use report::{
-    AnalyzeReport, BinReport, Blind, Density, DeviceReport, GapReport, HoleReport, KReport,
-    PatternReport,
+    AnalyzeReport, Blind, Density, DeviceReport, GapReport, HoleReport, KReport, PatternReport,
 };
 pub use view::Seen;
 
@@ -221,12 +220,12 @@ impl Measure {
             without_numbers: input.without_numbers,
             view: input.view,
             density: Density {
-                bins: BinReport::new(counts.statistics()),
+                bins: counts.statistics(),
                 level: self.level,
                 histogram: counts.histogram(CLASSES),
                 counts,
             },
-            density_in_view: in_view.map(BinReport::new),
+            density_in_view: in_view,
             hole,
             hole_in_view: hole_in_view.as_ref().map(hole_report),
             gaps,

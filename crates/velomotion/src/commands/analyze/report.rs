@@ -34,7 +34,7 @@ pub struct PatternReport {
     /// Points per bin, over all bins.
     pub density: Density,
     /// Points per bin, over bins whose centre is in view; null if the view is unknown.
-    pub density_in_view: Option<BinReport>,
+    pub density_in_view: Option<Statistics>,
     /// The largest circle without a point.
     pub hole: HoleReport,
     /// The largest circle whose centre is in view; null if the view is unknown.
@@ -58,7 +58,7 @@ pub struct PatternReport {
 pub struct Density {
     /// Statistics.
     #[serde(flatten)]
-    pub bins: BinReport,
+    pub bins: Statistics,
     /// Subdivisions of the icosahedron.
     pub level: u32,
     /// Bins by their points.
@@ -66,30 +66,6 @@ pub struct Density {
     /// Points in each bin, for figures.
     #[serde(skip)]
     pub counts: BinCounts,
-}
-
-/// Statistics of the points in some bins.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct BinReport {
-    /// Mean, standard deviation and so on.
-    #[serde(flatten)]
-    pub statistics: Statistics,
-    /// Standard deviation over mean; null without a point.
-    pub sd_over_mean: Option<f64>,
-    /// Share of bins that hold a point; null without bins.
-    pub coverage: Option<f64>,
-}
-
-impl BinReport {
-    /// Creates the report of these bins.
-    #[must_use]
-    pub fn new(statistics: Statistics) -> Self {
-        Self {
-            statistics,
-            sd_over_mean: statistics.sd_over_mean(),
-            coverage: statistics.coverage(),
-        }
-    }
 }
 
 /// The largest circle without a point.

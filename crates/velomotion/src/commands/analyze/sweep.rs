@@ -146,7 +146,7 @@ fn measured(
         hole_deg: hole.map_or(180.0, |hole| hole.hole.radius_rad.to_degrees()),
         gap_deg: gap.map_or(180.0, f64::to_degrees),
         // A scan without points in view counts as maximally uneven.
-        sd_over_mean_in_view: statistics.sd_over_mean().unwrap_or(f64::MAX),
+        sd_over_mean_in_view: statistics.sd_over_mean.unwrap_or(f64::MAX),
         best_hole: false,
         best_gap: false,
         best_evenness: false,

@@ -2,12 +2,10 @@
 
 use std::fmt::{Display, Write};
 
-use analysis::density::{EmptyBand, HistogramClass};
+use analysis::density::{EmptyBand, HistogramClass, Statistics};
 use analysis::device::VisibleRange;
 
-use super::report::{
-    AnalyzeReport, BAND_DEG, BinReport, DeviceReport, HoleReport, KReport, PatternReport,
-};
+use super::report::{AnalyzeReport, BAND_DEG, DeviceReport, HoleReport, KReport, PatternReport};
 
 const WIDTH: usize = 80;
 
@@ -38,7 +36,7 @@ impl AnalyzeReport {
             aligned(below, WIDTHS)
         );
         for pattern in &self.patterns {
-            let s = &pattern.density.bins.statistics;
+            let s = &pattern.density.bins;
             let hole = pattern.hole_in_view.as_ref();
             if long {
                 let _ = writeln!(text, "{}", pattern.name);
@@ -85,7 +83,7 @@ const WIDTHS: [usize; 8] = [9, 6, 7, 8, 6, 7, 7, 8];
 
 impl PatternReport {
     fn describe(&self, text: &mut String) {
-        let s = &self.density.bins.statistics;
+        let s = &self.density.bins;
         let _ = writeln!(text, "{}", self.name);
         for line in self.lines() {
             let wrapped = textwrap::fill(
@@ -125,9 +123,9 @@ impl PatternReport {
         lines.push(self.gaps_line());
         lines.extend(self.blind_line());
         lines.extend(self.band_line());
-        lines.extend(self.density.bins.line("all"));
+        lines.extend(bins_line("all", &self.density.bins));
         let in_view = self.density_in_view.as_ref();
-        lines.extend(in_view.and_then(|bins| bins.line("in view")));
+        lines.extend(in_view.and_then(|bins| bins_line("in view", bins)));
         lines.push(self.k.line());
         if let Some(device) = &self.device {
             lines.extend(device.lines());
@@ -184,18 +182,15 @@ impl PatternReport {
     }
 }
 
-impl BinReport {
-    /// Coverage and evenness of some bins.
-    fn line(&self, which: &str) -> Option<String> {
-        let (coverage, uneven) = (self.coverage?, self.sd_over_mean?);
-        let s = &self.statistics;
-        Some(format!(
-            "bins {which}: {} of {} hold a point ({:.1} %), sd / mean {uneven:.3}",
-            s.bins.saturating_sub(s.empty),
-            s.bins,
-            100.0 * coverage,
-        ))
-    }
+/// Coverage and evenness of some bins.
+fn bins_line(which: &str, s: &Statistics) -> Option<String> {
+    let (coverage, uneven) = (s.coverage?, s.sd_over_mean?);
+    Some(format!(
+        "bins {which}: {} of {} hold a point ({:.1} %), sd / mean {uneven:.3}",
+        s.bins.saturating_sub(s.empty),
+        s.bins,
+        100.0 * coverage,
+    ))
 }
 
 impl KReport {
