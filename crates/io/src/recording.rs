@@ -6,8 +6,7 @@
 //! recordings and failed system calls.
 //!
 //! Datagrams of a lidar are recognised by content ([`DatagramKind`]), on any port and from any
-//! address; other packets are counted. Checksums are not verified. [`Sensors`] distinguishes
-//! several sensors.
+//! address; other packets are counted. Checksums are not verified.
 
 mod classify;
 mod counts;
@@ -20,7 +19,6 @@ mod pcap;
 mod pcapng;
 mod reassembly;
 mod resync;
-mod sensors;
 mod window;
 
 use std::fs::File;
@@ -36,8 +34,6 @@ pub use error::{End, PacketFault, RecordingError};
 pub use input::{RecordingInput, SPOOL_LIMIT};
 pub use lidar::DatagramKind;
 pub use pace::{Gap, PaceError, Pacer, Wait};
-
-pub use sensors::{Sensor, Sensors};
 
 use link::LinkType;
 pub(crate) use link::{RS232_NAME, USB_NAME};

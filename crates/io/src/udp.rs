@@ -11,7 +11,7 @@ mod socket;
 use std::io;
 use std::net::{Ipv4Addr, SocketAddrV4};
 
-pub use listener::{GATHER, LidarListener, ListenConfig, ListenCounts, listen};
+pub use listener::{GATHER, LidarListener, ListenConfig, ListenCounts};
 pub use socket::LidarSocket;
 
 /// Failure to open or read a socket.

@@ -111,7 +111,6 @@ fn since(now: ListenCounts, before: ListenCounts) -> ListenCounts {
         without_kernel_time: now
             .without_kernel_time
             .saturating_sub(before.without_kernel_time),
-        foreign: now.foreign.saturating_sub(before.foreign),
         unwanted: now.unwanted.saturating_sub(before.unwanted),
     }
 }

@@ -1,6 +1,6 @@
 //! What a log or recording holds.
 
-use io::recording::{DatagramKind, Sensor};
+use io::recording::DatagramKind;
 use lidar::{Decoder, Options, Stats, UtcClock, UtcState};
 use protocol::record::{DriveLink, Record, Wire};
 use protocol::vlp16::{PositionPacket, Pps, ReturnMode};
@@ -10,7 +10,7 @@ use scanner::{ScanConfig, Survey};
 use super::failures::scan_failure;
 use crate::failure::Failure;
 use crate::reconstruct::report::{Contents, Gps, PacketCounts, SensorReport, TiltReport};
-use crate::reconstruct::source::{self as recordings, Pass, Source};
+use crate::reconstruct::source::{Pass, SensorAddress, Source};
 
 /// Reads the whole recording and lists what it holds, with the error of a file that ends early.
 ///
@@ -163,10 +163,6 @@ impl SensorSurveys {
         for survey in &mut self.sensors {
             survey.decoder.finish(&mut |_| {});
         }
-        let sensor = |survey: &SensorSurvey| -> Option<Sensor> {
-            let known = |s: &&Sensor| s.source == survey.source && s.data_port == survey.port;
-            pass.sensors.iter().find(known).cloned()
-        };
         let empty = Stats::default();
         let first = self.first();
         let mut contents = contents(
@@ -186,18 +182,7 @@ impl SensorSurveys {
             ));
         }
         if self.sensors.len() > 1 {
-            contents.sensors = self
-                .sensors
-                .iter()
-                .filter_map(|survey| {
-                    let name = recordings::name(&sensor(survey)?).to_string();
-                    Some(SensorReport::new(
-                        name,
-                        survey.decoder.stats(),
-                        survey.gps(),
-                    ))
-                })
-                .collect();
+            contents.sensors = self.sensors.iter().map(SensorSurvey::report).collect();
         }
         contents
     }
@@ -216,6 +201,24 @@ impl SensorSurvey {
         if let Ok(packet) = PositionPacket::new(payload) {
             self.pps = Some(packet.pps());
             self.utc.position(record.host, &packet);
+        }
+    }
+
+    fn report(&self) -> SensorReport {
+        let name = SensorAddress {
+            address: self.source.into(),
+            port: self.port,
+        };
+        let stats = self.decoder.stats();
+        SensorReport {
+            name: name.to_string(),
+            model: stats.model.map(|model| model.name.to_owned()),
+            return_mode: stats.return_mode.map(return_mode_name),
+            data: stats.data,
+            returns: stats.returns,
+            lost_packets: stats.lost_packets,
+            rpm: stats.rpm,
+            gps: self.gps(),
         }
     }
 

@@ -59,23 +59,6 @@ pub struct SensorReport {
     pub gps: Option<Gps>,
 }
 
-impl SensorReport {
-    /// Creates a report from a decoder's statistics.
-    #[must_use]
-    pub fn new(name: String, stats: &lidar::Stats, gps: Option<Gps>) -> Self {
-        Self {
-            name,
-            model: stats.model.map(|model| model.name.to_owned()),
-            return_mode: stats.return_mode.map(super::contents::return_mode_name),
-            data: stats.data,
-            returns: stats.returns,
-            lost_packets: stats.lost_packets,
-            rpm: stats.rpm,
-            gps,
-        }
-    }
-}
-
 /// Contents of a file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Contents {

@@ -1,6 +1,7 @@
 //! Recordings as a source of records: passes over a file or pipe, the selected sensor, the log's
 //! configuration.
 
+use std::collections::BTreeSet;
 use std::fmt;
 use std::io::ErrorKind;
 use std::net::Ipv4Addr;
@@ -9,7 +10,6 @@ use std::str::FromStr;
 
 use io::recording::{
     DatagramKind, End, Recording, RecordingCounts, RecordingError, RecordingInput, SPOOL_LIMIT,
-    Sensor, Sensors,
 };
 use protocol::record::{Record, Wire};
 use scanner::ScanConfig;
@@ -25,10 +25,10 @@ pub struct Source {
 }
 
 /// Name of a sensor: its address, and its data port if one address has several.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct SensorAddress {
-    address: Ipv4Addr,
-    port: Option<u16>,
+    pub(super) address: Ipv4Addr,
+    pub(super) port: Option<u16>,
 }
 
 /// Result of one pass over a recording.
@@ -38,8 +38,6 @@ pub struct Pass {
     pub counts: RecordingCounts,
     /// Where and why the file ends early.
     pub truncated: Option<String>,
-    /// All sensors in the recording.
-    pub sensors: Vec<Sensor>,
 }
 
 impl FromStr for SensorAddress {
@@ -73,20 +71,16 @@ impl fmt::Display for SensorAddress {
     }
 }
 
-/// Name of a sensor.
-#[must_use]
-pub fn name(sensor: &Sensor) -> SensorAddress {
-    SensorAddress {
-        address: Ipv4Addr::from(sensor.source),
-        port: sensor.data_port,
-    }
-}
+/// Limit of the sensors that are told apart, which bounds memory.
+const MAX_SENSORS: usize = 256;
 
 /// Selects the records of one sensor; by default of the first that sends data.
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 struct Filter {
     source: Option<[u8; 4]>,
     port: Option<u16>,
+    /// Sensors that send data.
+    sensors: BTreeSet<SensorAddress>,
 }
 
 impl Filter {
@@ -101,6 +95,12 @@ impl Filter {
         };
         match DatagramKind::of(payload) {
             DatagramKind::Data => {
+                if self.sensors.len() < MAX_SENSORS {
+                    self.sensors.insert(SensorAddress {
+                        address: source.into(),
+                        port: Some(port),
+                    });
+                }
                 *self.source.get_or_insert(source) == source
                     && *self.port.get_or_insert(port) == port
             }
@@ -186,7 +186,7 @@ impl Source {
             }
             Ok(())
         })?;
-        self.check(&pass.sensors)?;
+        self.check(&filter.sensors)?;
         Ok(pass)
     }
 
@@ -209,6 +209,7 @@ impl Source {
         Filter {
             source: self.wanted.map(|wanted| wanted.address.octets()),
             port: self.wanted.and_then(|wanted| wanted.port),
+            sensors: BTreeSet::new(),
         }
     }
 
@@ -221,35 +222,29 @@ impl Source {
         mut take: impl FnMut(&Record<'_>) -> Result<(), Failure>,
     ) -> Result<Pass, Failure> {
         let mut recording = self.recording()?;
-        let mut sensors = Sensors::default();
         while let Some(record) = recording.next_record().map_err(|error| failure(&error))? {
-            sensors.observe(&record);
             take(&record)?;
         }
         Ok(Pass {
             counts: recording.counts().clone(),
             truncated: recording.end().and_then(cut_off),
-            sensors: sensors.list(),
         })
     }
 
     /// Checks that the selection names exactly one sensor that is present.
-    fn check(&self, sensors: &[Sensor]) -> Result<(), Failure> {
-        let sending = || sensors.iter().filter(|sensor| sensor.data > 0);
+    fn check(&self, sensors: &BTreeSet<SensorAddress>) -> Result<(), Failure> {
         let list = || {
-            let names: Vec<String> = sending().map(|sensor| name(sensor).to_string()).collect();
+            let names: Vec<String> = sensors.iter().map(ToString::to_string).collect();
             names.join(", ")
         };
-        let is_meant = |sensor: &&Sensor| {
+        let is_meant = |sensor: &&SensorAddress| {
             self.wanted.is_none_or(|wanted| {
-                wanted.address.octets() == sensor.source
-                    && wanted
-                        .port
-                        .is_none_or(|port| sensor.data_port == Some(port))
+                wanted.address == sensor.address
+                    && wanted.port.is_none_or(|port| sensor.port == Some(port))
             })
         };
         let path = self.path.display();
-        match (sending().filter(is_meant).count(), self.wanted) {
+        match (sensors.iter().filter(is_meant).count(), self.wanted) {
             (1, _) | (0, None) => Ok(()),
             (0, Some(wanted)) => Err(Failure::new(
                 Kind::BadInput,

@@ -1,7 +1,7 @@
 //! Parsing of captured packets: link, network and transport headers by etherparse, CAN frames by
 //! hand.
 
-use std::net::Ipv6Addr;
+use std::net::{Ipv4Addr, Ipv6Addr};
 use std::ops::Range;
 
 use etherparse::err::LenError;
@@ -14,7 +14,6 @@ use protocol::record::{Direction, DriveLink};
 
 use super::PacketFault;
 use super::reassembly::{DatagramId, Fragment};
-use super::sensors::source_of;
 
 /// Bytes of a `struct can_frame`: identifier (big-endian), length, three reserved, eight of data.
 pub(super) const CAN_FRAME_LEN: usize = 16;
@@ -170,7 +169,7 @@ fn content(sliced: &SlicedPacket<'_>, data: &[u8]) -> Content {
         Some(NetSlice::Ipv4(ip)) if ip.is_payload_fragmented() => return fragment(ip, data),
         Some(NetSlice::Ipv6(ip)) if ip.is_payload_fragmented() => return Content::OtherFragment,
         Some(NetSlice::Ipv4(ip)) => ip.header().source(),
-        Some(NetSlice::Ipv6(ip)) => source_of(Ipv6Addr::from(ip.header().source()).into()),
+        Some(NetSlice::Ipv6(ip)) => source_of(ip.header().source().into()),
         _ => return Content::Other,
     };
     match &sliced.transport {
@@ -180,6 +179,25 @@ fn content(sliced: &SlicedPacket<'_>, data: &[u8]) -> Content {
             payload: within(data, udp.payload()),
         },
         _ => Content::Other,
+    }
+}
+
+/// The source of a record for an IPv6 address.
+///
+/// Lidars of this family use IPv4. A mapped address (`::ffff:a.b.c.d`) gives its IPv4 address.
+/// Others, of relays, give 28 bits of their FNV-1a hash within 240.0.0.0/4, which RFC 1112 reserves.
+pub(super) fn source_of(address: Ipv6Addr) -> [u8; 4] {
+    match address.to_ipv4_mapped() {
+        Some(v4) => v4.octets(),
+        None => {
+            let hash = address
+                .octets()
+                .iter()
+                .fold(0x811C_9DC5_u32, |hash, &byte| {
+                    (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193)
+                });
+            Ipv4Addr::from_bits(0xF000_0000 | (hash >> 4)).octets()
+        }
     }
 }
 
@@ -340,5 +358,16 @@ mod tests {
         );
         assert_eq!(LinkType::from_number(147, Some("eth0")), None);
         assert_eq!(LinkType::from_number(147, None), None);
+    }
+
+    #[test]
+    fn ipv6_sources_are_reserved_addresses() {
+        let of = |text: &str| source_of(text.parse().unwrap());
+        assert_eq!(of("::ffff:192.168.1.201"), [192, 168, 1, 201]);
+        let sources = ["fe80::1", "fe80::2", "2001:db8::1", "::"].map(of);
+        for (n, source) in sources.iter().enumerate() {
+            assert_eq!(source[0] >> 4, 15, "class E");
+            assert!(!sources[..n].contains(source));
+        }
     }
 }

@@ -13,7 +13,6 @@ use tokio::runtime::{Builder, Runtime};
 
 use super::batch::Batch;
 use super::{LidarSocket, UdpError};
-use crate::recording::{Sensor, Sensors};
 
 /// Longest time until a stop is noticed.
 const STOP_INTERVAL: Duration = Duration::from_millis(20);
@@ -68,8 +67,6 @@ pub struct ListenCounts {
     pub dropped: u64,
     /// Datagrams without a kernel time; their host time is that of the read.
     pub without_kernel_time: u64,
-    /// Datagrams of `data` and `position` whose content is not a lidar's.
-    pub foreign: u64,
     /// Datagrams from unwanted sources: in no other count, and not delivered.
     pub unwanted: u64,
 }
@@ -86,21 +83,8 @@ pub struct LidarListener {
     sources: Vec<Ipv4Addr>,
     runtime: Runtime,
     counts: ListenCounts,
-    sensors: Sensors,
     longest_gather: Duration,
     gather: Duration,
-}
-
-/// Binds, listens until `stop`, and passes each datagram to `sink` as a record.
-///
-/// # Errors
-/// [`UdpError`].
-pub fn listen(
-    config: &ListenConfig,
-    stop: &AtomicBool,
-    sink: impl FnMut(&Record<'_>),
-) -> Result<ListenCounts, UdpError> {
-    LidarListener::bind(config)?.run(stop, sink)
 }
 
 impl LidarListener {
@@ -145,7 +129,6 @@ impl LidarListener {
             sources: config.sources.clone(),
             runtime,
             counts: ListenCounts::default(),
-            sensors: Sensors::default(),
             longest_gather: GATHER,
             gather: GATHER,
         })
@@ -165,12 +148,6 @@ impl LidarListener {
             21..=GATHERED => self.gather,
             _ => (self.gather / 2).max(GATHER.min(self.longest_gather)),
         };
-    }
-
-    /// The sensors seen so far.
-    #[must_use]
-    pub fn sensors(&self) -> Vec<Sensor> {
-        self.sensors.list()
     }
 
     /// The sockets: data first, then position if it has its own.
@@ -272,9 +249,6 @@ impl LidarListener {
             self.counts.position += 1;
         } else {
             self.counts.data += 1;
-        }
-        if !self.sensors.observe(&record) {
-            self.counts.foreign += 1;
         }
         sink(&record);
     }
