@@ -24,7 +24,8 @@ const JSON: u64 = 64 << 20;
 /// Client of one daemon.
 #[derive(Clone, Debug)]
 pub struct Client {
-    socket: PathBuf,
+    /// Its socket.
+    pub socket: PathBuf,
 }
 
 /// An answer whose body is unread.
@@ -110,12 +111,6 @@ impl Client {
     #[must_use]
     pub const fn at(socket: PathBuf) -> Self {
         Self { socket }
-    }
-
-    /// Its socket.
-    #[must_use]
-    pub fn socket(&self) -> &Path {
-        &self.socket
     }
 
     /// `GET`, in JSON.

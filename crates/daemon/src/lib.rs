@@ -29,6 +29,7 @@ use engine::config::Config;
 use engine::devices::profile;
 use engine::failure::{Failure, Kind};
 use engine::service::{DeviceService, DeviceThread, Environment, Lifetime, ServiceOptions};
+use engine::spawn;
 use http::server::{self, Server, UnixSocket};
 use limits::Waits;
 use scans::Scans;
@@ -123,10 +124,14 @@ impl Daemon {
         }
         drop(jobs);
         let building = Arc::clone(&state);
-        let cloud_builder = thread("clouds", move || cloud_builder::run(&building, &queue))?;
+        let cloud_builder = spawn("clouds", "clouds", move || {
+            cloud_builder::run(&building, &queue);
+        })?;
         let (health_monitor_end, end) = channel();
         let monitored = Arc::clone(&state);
-        let health_monitor = thread("health", move || health_monitor::run(&monitored, &end))?;
+        let health_monitor = spawn("health", "health", move || {
+            health_monitor::run(&monitored, &end);
+        })?;
         let server = http::serve(&state, (tcp, address), unix, options.waits)?;
         Ok(Self {
             state,
@@ -195,12 +200,4 @@ impl Daemon {
         }
         Ok(())
     }
-}
-
-fn thread(name: &str, run: impl FnOnce() + Send + 'static) -> Result<JoinHandle<()>, Failure> {
-    let builder = std::thread::Builder::new().name(name.to_owned());
-    builder.spawn(run).map_err(|error| {
-        Failure::new(Kind::NoDevice, format!("no thread for {name}: {error}"))
-            .help("end other programs; see ulimit -u")
-    })
 }

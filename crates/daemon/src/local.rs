@@ -16,8 +16,10 @@ use crate::sockets;
 
 /// A device service of one command.
 pub struct LocalService {
-    service: Arc<DeviceService>,
-    thread: DeviceThread,
+    /// The service.
+    pub service: Arc<DeviceService>,
+    /// Its thread, with the warning about the port.
+    pub thread: DeviceThread,
     server: Option<Server>,
 }
 
@@ -59,18 +61,6 @@ impl LocalService {
             thread,
             server,
         })
-    }
-
-    /// The devices.
-    #[must_use]
-    pub fn service(&self) -> &Arc<DeviceService> {
-        &self.service
-    }
-
-    /// Warning about the drive's port.
-    #[must_use]
-    pub fn port_warning(&self) -> Option<&str> {
-        self.thread.port_warning.as_deref()
     }
 
     /// Closes the devices and the socket, after the answers under way.

@@ -12,5 +12,7 @@ pub mod failure;
 pub mod output;
 pub mod reconstruct;
 pub mod service;
+mod threads;
 
 pub use failure::{Failure, Kind};
+pub use threads::{no_resource, spawn};

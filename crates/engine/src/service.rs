@@ -219,33 +219,18 @@ impl DeviceService {
     /// # Errors
     /// [`LeaseError`] where the drive is not connected.
     pub fn require_drive(&self) -> Result<(), LeaseError> {
-        let state = self.state.borrow();
-        let drive = &state.drive;
-        if drive.state != DeviceHealth::Absent {
-            return Ok(());
-        }
-        Err(LeaseError::Failure(drive.problem.clone().unwrap_or_else(
-            || {
-                Failure::new(Kind::NoDevice, "the drive is not connected yet")
-                    .help("wait a moment, and look at the status")
-            },
-        )))
+        let drive = &self.state.borrow().drive;
+        let is_ready = drive.state != DeviceHealth::Absent;
+        require(is_ready, &drive.problem, "the drive is not connected yet")
     }
 
     /// # Errors
     /// [`LeaseError`] where the lidar sends nothing.
     pub fn require_lidar(&self) -> Result<(), LeaseError> {
-        let state = self.state.borrow();
-        let lidar = &state.lidar;
-        if lidar.state == DeviceHealth::Connected {
-            return Ok(());
-        }
-        Err(LeaseError::Failure(lidar.problem.clone().unwrap_or_else(
-            || {
-                Failure::new(Kind::NoDevice, "no packet of the lidar has arrived yet")
-                    .help("wait a moment, and look at the status")
-            },
-        )))
+        let lidar = &self.state.borrow().lidar;
+        let is_ready = lidar.state == DeviceHealth::Connected;
+        let missing = "no packet of the lidar has arrived yet";
+        require(is_ready, &lidar.problem, missing)
     }
 
     /// Begins a capture with the axis leased. It goes on if the receiver is dropped.
@@ -462,6 +447,16 @@ impl DeviceService {
         // Joins its thread, without the lock.
         drop(old);
     }
+}
+
+/// Refuses a device that is not ready: with its problem, or as `missing`.
+fn require(is_ready: bool, problem: &Option<Failure>, missing: &str) -> Result<(), LeaseError> {
+    if is_ready {
+        return Ok(());
+    }
+    Err(LeaseError::Failure(problem.clone().unwrap_or_else(|| {
+        Failure::new(Kind::NoDevice, missing).help("wait a moment, and look at the status")
+    })))
 }
 
 /// The failure of a capture during which the machine was suspended, from the total time suspended

@@ -6,7 +6,7 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use engine::config::ros2::Ros2 as Ros2Config;
-use engine::failure::{Failure, Kind};
+use engine::failure::Failure;
 use engine::service::events::MessageLevel;
 use tokio::runtime::{Builder, Runtime};
 
@@ -72,10 +72,7 @@ impl Bridge {
                 ..failure
             })?;
         }
-        let no_thread = |error: std::io::Error| {
-            Failure::new(Kind::NoDevice, format!("no thread for ROS 2: {error}"))
-                .help("end other programs; see ulimit -u")
-        };
+        let no_thread = |error| engine::no_resource("thread", "ROS 2", &error);
         let runtimes = [
             runtime().map_err(no_thread)?,
             runtime().map_err(no_thread)?,
@@ -88,10 +85,7 @@ impl Bridge {
             counts,
             stop: stop.clone(),
         };
-        let builder = std::thread::Builder::new().name("ros2".to_owned());
-        let thread = builder
-            .spawn(move || run(&context, &runtimes))
-            .map_err(no_thread)?;
+        let thread = engine::spawn("ros2", "ROS 2", move || run(&context, &runtimes))?;
         Ok(Self { stop, thread })
     }
 

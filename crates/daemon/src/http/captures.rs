@@ -115,19 +115,13 @@ fn run(
     let jobs = state.cloud_jobs().ok_or_else(ending)?;
     let (begun, capture) = mpsc::channel::<tokio::sync::oneshot::Receiver<_>>();
     let (own_state, own_id, accuracy) = (Arc::clone(state), id.to_owned(), plan.accuracy);
-    std::thread::Builder::new()
-        .name("scan".to_owned())
-        .spawn(move || {
-            if let Ok(end) = capture.recv()
-                && let Ok(result) = end.blocking_recv()
-            {
-                own_state.capture_ended(&own_id, accuracy, result, &jobs);
-            }
-        })
-        .map_err(|error| {
-            Failure::new(Kind::NoDevice, format!("no thread for the scan: {error}"))
-                .help("end other programs; see ulimit -u")
-        })?;
+    engine::spawn("scan", "the scan", move || {
+        if let Ok(end) = capture.recv()
+            && let Ok(result) = end.blocking_recv()
+        {
+            own_state.capture_ended(&own_id, accuracy, result, &jobs);
+        }
+    })?;
     // The thread waits for it.
     let _ = begun.send(state.service.capture(lease, plan)?);
     Ok(())

@@ -104,11 +104,7 @@ pub struct Server {
 }
 
 fn no_runtime(error: std::io::Error) -> Failure {
-    Failure::new(
-        Kind::NoDevice,
-        format!("no runtime for the server: {error}"),
-    )
-    .help("end other programs; see ulimit -u")
+    engine::no_resource("runtime", "the server", &error)
 }
 
 impl Server {

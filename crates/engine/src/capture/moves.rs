@@ -85,9 +85,10 @@ pub fn steps(
 }
 
 /// Progress of the moves.
+#[derive(Clone, Copy, Debug)]
 pub enum MoveProgress<'a> {
-    /// A step begins.
-    Step(&'a Step),
+    /// A step begins; its number counts from 1.
+    Step(usize, &'a Step),
     /// An event of the drive client.
     Event(&'a DriveEvent),
 }
@@ -107,8 +108,8 @@ pub fn run<P: Port>(
     };
     execute(DriveCommand::Connect, on_progress)?;
     execute(DriveCommand::Home, on_progress)?;
-    for step in steps {
-        on_progress(MoveProgress::Step(step));
+    for (step, number) in steps.iter().zip(1..) {
+        on_progress(MoveProgress::Step(number, step));
         let to = drive::MoveCommand {
             to: step.plan.to,
             speed: step.plan.speed,

@@ -7,17 +7,16 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use drive::{CommandProgress, DriveClient, DriveEvent, ShaftSample};
+use drive::DriveClient;
 use io::port::{Port, RecordingPort};
 use io::udp::ListenConfig;
 use protocol::record::{DriveLink, Record};
 use scanner::ScanConfig;
 use sim::Truth;
-use units::{Degrees, Host, Stamp};
 
 use crate::capture::completeness::{self, SilenceWatch};
 use crate::capture::log_recorder::{CaptureCounts, CaptureLog};
-use crate::capture::moves::{self, MoveProgress, Step};
+use crate::capture::moves::{self, MoveProgress};
 use crate::capture::request::CapturePlan;
 use crate::devices::drive_session::{Session, SessionError};
 use crate::devices::lidar_receiver::LidarReceiver;
@@ -57,24 +56,8 @@ pub struct CaptureJob<'a> {
 pub enum CaptureEvent<'a> {
     /// The lidar sends packets; the moves begin.
     Started,
-    /// A move begins.
-    Move {
-        /// Its number, from 0.
-        number: usize,
-        /// The move.
-        step: &'a Step,
-    },
-    /// The axis moved.
-    Moved {
-        /// Time of the drive's answer.
-        at: Stamp<Host>,
-        /// Angle.
-        angle: Degrees,
-        /// Lidar packets of this capture so far.
-        packets: u64,
-    },
-    /// Progress of the drive client.
-    Progress(&'a CommandProgress),
+    /// Progress of the moves, and the lidar packets of this capture so far.
+    Motion(MoveProgress<'a>, u64),
     /// The last move has ended.
     MotionEnded,
     /// The log is being written to disk; sent every few milliseconds.
@@ -142,31 +125,14 @@ pub fn record(
     });
     let client = DriveClient::new(plan.axis.clone(), job.link);
     let mut session = Session::new(client, port, Arc::clone(interrupt));
-    let gearing = plan.axis.gearing;
-    let mut number = 0;
     let mut watch = SilenceWatch::new(recorder.packets());
-    let motion = moves::run(&mut session, &plan.steps, &mut |event| {
-        if recorder.failed() || watch.silent(recorder.packets()) {
+    let motion = moves::run(&mut session, &plan.steps, &mut |progress| {
+        let packets = recorder.packets();
+        if recorder.failed() || watch.silent(packets) {
             // A sweep that is not recorded is not worth making.
             interrupt.store(true, Ordering::Relaxed);
         }
-        match event {
-            MoveProgress::Step(step) => {
-                on_event(CaptureEvent::Move { number, step });
-                number += 1;
-            }
-            MoveProgress::Event(DriveEvent::Sample(ShaftSample {
-                answer, position, ..
-            })) => on_event(CaptureEvent::Moved {
-                at: *answer,
-                angle: gearing.angle(*position),
-                packets: recorder.packets(),
-            }),
-            MoveProgress::Event(DriveEvent::Progress(step)) => {
-                on_event(CaptureEvent::Progress(step))
-            }
-            MoveProgress::Event(event) => tracing::debug!(?event),
-        }
+        on_event(CaptureEvent::Motion(progress, packets));
     });
     on_event(CaptureEvent::MotionEnded);
     drop(session);

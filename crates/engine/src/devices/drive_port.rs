@@ -135,7 +135,7 @@ pub fn open(device: &Device, place: &Path) -> Result<Opened, Failure> {
     Ok(match device.kind {
         DeviceKind::Sim | DeviceKind::Usb => {
             let port = serial(USB_BAUD)?;
-            let warning = slow_answers(port.latency_timer());
+            let warning = slow_answers(port.latency);
             Opened {
                 warning,
                 ..opened(Box::new(port), DriveLink::Usb)

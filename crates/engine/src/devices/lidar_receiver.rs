@@ -16,6 +16,7 @@ use protocol::record::{Record, Wire};
 use crate::devices::lidar_sockets::{DATA_PORT, LidarSockets, POSITION_PORT};
 use crate::devices::simulated::LidarPorts;
 use crate::failure::{Failure, Kind};
+use crate::threads::spawn;
 
 /// Time for which packets are collected without a log: their times are the kernel's, and rates are
 /// read every second.
@@ -67,13 +68,8 @@ impl LidarReceiver {
     pub fn start(sockets: LidarSockets, onlooker: PacketTap) -> Result<Self, Failure> {
         let shared = Arc::new(ReceiverState::default());
         let theirs = Arc::clone(&shared);
-        let thread = std::thread::Builder::new()
-            .name("lidar".to_owned())
-            .spawn(move || listen(sockets, onlooker, &theirs))
-            .map_err(|error| {
-                Failure::new(Kind::NoDevice, format!("no thread for the lidar: {error}"))
-                    .help("end other programs; see ulimit -u")
-            })?;
+        let run = move || listen(sockets, onlooker, &theirs);
+        let thread = spawn("lidar", "the lidar", run)?;
         Ok(Self {
             shared,
             thread: Some(thread),
@@ -153,7 +149,10 @@ impl Drop for LidarReceiver {
 }
 
 fn listen(sockets: LidarSockets, mut onlooker: PacketTap, shared: &ReceiverState) {
-    let (mut listener, ports) = sockets.into_parts();
+    let LidarSockets {
+        mut listener,
+        ports,
+    } = sockets;
     let mut log = None;
     while !shared.stop.load(Ordering::Acquire) {
         listener.gather(match log {
@@ -250,7 +249,7 @@ mod tests {
             ..ListenConfig::default()
         };
         let sockets = LidarSockets::bind(&config).unwrap();
-        let to = sockets.ports().data;
+        let to = sockets.ports.data;
         let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
         socket.connect((Ipv4Addr::LOCALHOST, to)).unwrap();
         (

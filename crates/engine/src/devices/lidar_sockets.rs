@@ -14,8 +14,9 @@ pub const POSITION_PORT: u16 = 8308;
 
 /// The lidar's bound sockets.
 pub struct LidarSockets {
-    listener: LidarListener,
-    ports: LidarPorts,
+    pub(crate) listener: LidarListener,
+    /// The local ports.
+    pub ports: LidarPorts,
 }
 
 /// Network settings of a device's lidar.
@@ -45,16 +46,5 @@ impl LidarSockets {
             position: local.next().unwrap_or(POSITION_PORT),
         };
         Ok(Self { listener, ports })
-    }
-
-    /// The local ports.
-    #[must_use]
-    pub fn ports(&self) -> LidarPorts {
-        self.ports
-    }
-
-    /// The sockets and their local ports.
-    pub(crate) fn into_parts(self) -> (LidarListener, LidarPorts) {
-        (self.listener, self.ports)
     }
 }

@@ -2,7 +2,7 @@
 //! answers on a pseudo-terminal and sends lidar packets over loopback.
 
 use std::net::{Ipv4Addr, UdpSocket};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -30,7 +30,8 @@ pub struct LidarPorts {
 
 /// A running software scanner.
 pub struct Simulated {
-    port: PathBuf,
+    /// Serial port of the software drive.
+    pub port: PathBuf,
     stop: Arc<AtomicBool>,
     requests: Sender<SimulatorRequest>,
     thread: JoinHandle<Result<Truth, SimulatorError>>,
@@ -86,12 +87,6 @@ impl Simulated {
             requests,
             thread,
         })
-    }
-
-    /// The serial port of the software drive.
-    #[must_use]
-    pub fn port(&self) -> &Path {
-        &self.port
     }
 
     /// The truth so far; `None` if the devices have failed.

@@ -66,8 +66,7 @@ struct FrameBuilder<'a> {
     cutter: FrameCutter,
     points: Points,
     grid: OrganisedFrame,
-    placed: PlacementCounts,
-    without_utc: u64,
+    totals: FrameTotals,
     /// Completed frames with their row counts, not written yet.
     ended: Vec<(RevolutionFrame, Points, u64)>,
     error: Option<Failure>,
@@ -124,8 +123,7 @@ impl<'a> FrameWriter<'a> {
                 cutter,
                 points: Points::new(plan.fields),
                 grid: OrganisedFrame::new(),
-                placed: PlacementCounts::default(),
-                without_utc: 0,
+                totals: FrameTotals::default(),
                 ended: Vec::new(),
                 error: None,
                 received: None,
@@ -137,11 +135,7 @@ impl<'a> FrameWriter<'a> {
     ///
     /// # Errors
     /// A cloud cannot be written, or the lidar's model changes within a frame.
-    pub fn observe(
-        &mut self,
-        record: &Record<'_>,
-        totals: &mut FrameTotals,
-    ) -> Result<(), Failure> {
+    pub fn observe(&mut self, record: &Record<'_>) -> Result<(), Failure> {
         let Wire::Lidar { payload, .. } = record.wire else {
             return Ok(());
         };
@@ -149,36 +143,36 @@ impl<'a> FrameWriter<'a> {
         builder.received = Some(record.host);
         self.decoder
             .packet(record.host, payload, &mut |firing| builder.firing(firing));
-        self.write(totals)
+        self.write()
     }
 
-    /// Writes the last frame. Returns the target that holds all frames, not committed yet.
+    /// Writes the last frame. Returns the totals, and the target that holds all frames, not committed
+    /// yet.
     ///
     /// # Errors
     /// As [`FrameWriter::observe`].
-    pub fn finish(mut self, totals: &mut FrameTotals) -> Result<(Stats, Option<Target>), Failure> {
+    pub fn finish(mut self) -> Result<(FrameTotals, Stats, Option<Target>), Failure> {
         let builder = &mut self.builder;
         self.decoder.finish(&mut |firing| builder.firing(firing));
         if let Some(frame) = self.builder.cutter.finish() {
             self.builder.end(frame);
         }
-        self.write(totals)?;
-        totals.placed = self.builder.placed;
-        totals.without_utc = self.builder.without_utc;
-        Ok((self.decoder.stats().clone(), self.mcap))
+        self.write()?;
+        let stats = self.decoder.stats().clone();
+        Ok((self.builder.totals, stats, self.mcap))
     }
 
-    fn write(&mut self, totals: &mut FrameTotals) -> Result<(), Failure> {
+    fn write(&mut self) -> Result<(), Failure> {
         if let Some(error) = self.builder.error.take() {
             return Err(error);
         }
         for (frame, points, rows) in std::mem::take(&mut self.builder.ended) {
+            self.builder.totals.clouds += 1;
             if let Some(target) = &mut self.mcap {
                 let sink = target.sink();
                 sink.points(&points)
                     .and_then(|()| sink.revolution())
                     .map_err(|error| sink_failure(&self.plan.output, &error))?;
-                totals.clouds += 1;
                 continue;
             }
             let path = name(&self.plan.output, frame.index);
@@ -200,7 +194,6 @@ impl<'a> FrameWriter<'a> {
                 .and_then(|()| sink.points(&points))
                 .map_err(|error| sink_failure(&path, &error))?;
             target.commit()?;
-            totals.clouds += 1;
         }
         Ok(())
     }
@@ -233,7 +226,7 @@ impl FrameBuilder<'_> {
         }
         if self.organised {
             if self.utc.is_some_and(|clock| !has_utc(clock, firing)) {
-                self.without_utc += firing.points().count() as u64;
+                self.totals.without_utc += firing.points().count() as u64;
                 return;
             }
             if let Err(error) = self.grid.push(firing) {
@@ -246,7 +239,7 @@ impl FrameBuilder<'_> {
         for seen in firing.points() {
             match self.alignment.place_received(&seen, self.received) {
                 Some(point) => self.push(point),
-                None => self.placed.outside += 1,
+                None => self.totals.placed.outside += 1,
             }
         }
     }
@@ -255,18 +248,18 @@ impl FrameBuilder<'_> {
     fn push(&mut self, mut point: Point) {
         if let Some(clock) = self.utc {
             let Some(time) = in_utc(clock, point.device_time) else {
-                self.without_utc += 1;
+                self.totals.without_utc += 1;
                 return;
             };
             point.time = time;
         }
-        self.placed.points += 1;
+        self.totals.placed.points += 1;
         self.points.push(point);
     }
 
     /// Completes the frame; frames without points are dropped.
     fn end(&mut self, frame: RevolutionFrame) {
-        let before = self.placed.points;
+        let before = self.totals.placed.points;
         let fields = self.points.fields();
         let mut rows = 1;
         if self.organised {
@@ -276,7 +269,7 @@ impl FrameBuilder<'_> {
         }
         let points = std::mem::replace(&mut self.points, Points::new(fields));
         let any = if self.organised {
-            self.placed.points > before
+            self.totals.placed.points > before
         } else {
             !points.is_empty()
         };
@@ -297,8 +290,8 @@ impl FrameBuilder<'_> {
                     let placed =
                         seen.and_then(|seen| alignment.place_received(seen, self.received));
                     match (seen, placed) {
-                        (_, Some(_)) => self.placed.points += 1,
-                        (Some(_), None) => self.placed.outside += 1,
+                        (_, Some(_)) => self.totals.placed.points += 1,
+                        (Some(_), None) => self.totals.placed.outside += 1,
                         (None, None) => {}
                     }
                     let empty_cell = || empty_cell(alignment, self.received, grid, ring, column);

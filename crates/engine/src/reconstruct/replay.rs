@@ -19,7 +19,7 @@ use units::{Host, Span, Stamp};
 
 use super::contents::contents;
 use super::failures::scan_failure;
-use super::frames::{FramePlan, FrameTotals, FrameWriter};
+use super::frames::{FramePlan, FrameWriter};
 use super::warnings::{angle_warnings, incomplete_sweeps};
 use crate::failure::{Failure, Kind};
 use crate::output::{Target, sink_failure};
@@ -171,7 +171,7 @@ pub fn scan(
     };
     let mut in_utc = InUtc::new(sink, utc);
     let (mut placed, stats) = place(request, &first_pass, &mut in_utc, output)?;
-    let without = in_utc.without();
+    let without = in_utc.without;
     placed.points -= without;
     if placed.points == 0 {
         return Err(utc_never_locked(request));
@@ -258,15 +258,14 @@ pub fn frames(request: &Reconstruction<'_>, plan: &FramePlan) -> Result<ScanRepo
     let options = request.options.clone();
     let utc = first_pass.utc.as_ref();
     let mut writer = FrameWriter::new(plan, &first_pass.alignment, utc, options, metadata)?;
-    let mut written = FrameTotals::default();
     request.recording.read(|record| {
         if let Some(pace) = &mut pace {
             wait_until_due(pace, record, request.interrupt);
         }
-        writer.observe(record, &mut written)?;
+        writer.observe(record)?;
         check_interrupt(request)
     })?;
-    let (stats, target) = writer.finish(&mut written)?;
+    let (written, stats, target) = writer.finish()?;
     if written.placed.points == 0 && written.without_utc > 0 {
         return Err(utc_never_locked(request));
     }

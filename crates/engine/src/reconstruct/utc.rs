@@ -44,7 +44,8 @@ pub struct InUtc<'a> {
     sink: &'a mut dyn Sink,
     clock: UtcClock,
     batch: Points,
-    without: u64,
+    /// Points omitted because the lidar's clock was not locked.
+    pub without: u64,
 }
 
 impl<'a> InUtc<'a> {
@@ -57,12 +58,6 @@ impl<'a> InUtc<'a> {
             batch,
             without: 0,
         }
-    }
-
-    /// Points omitted because the lidar's clock was not locked.
-    #[must_use]
-    pub const fn without(&self) -> u64 {
-        self.without
     }
 }
 

@@ -25,6 +25,7 @@ use crate::devices::drive_port;
 use crate::devices::drive_session::SessionError;
 use crate::devices::simulated::Simulated;
 use crate::failure::{Failure, Kind};
+use crate::threads::spawn;
 
 /// Between two reads of the drive's state while the axis is idle.
 const POLL_INTERVAL: Duration = Duration::from_secs(2);
@@ -74,19 +75,10 @@ impl DeviceThread {
         let lifetime = service.lifetime.clone();
         // A port cannot leave the thread that has opened it.
         let (opened, port_warning) = mpsc::channel();
-        let handle = std::thread::Builder::new()
-            .name("devices".to_owned())
-            .spawn(move || match lifetime {
-                Lifetime::Resident => worker.run_resident(),
-                Lifetime::Command { lidar, .. } => worker.run_command(lidar, &opened),
-            })
-            .map_err(|error| {
-                Failure::new(
-                    Kind::NoDevice,
-                    format!("no thread for the devices: {error}"),
-                )
-                .help("end other programs; see ulimit -u")
-            })?;
+        let handle = spawn("devices", "the devices", move || match lifetime {
+            Lifetime::Resident => worker.run_resident(),
+            Lifetime::Command { lidar, .. } => worker.run_command(lidar, &opened),
+        })?;
         let port_warning = match service.lifetime {
             Lifetime::Resident => None,
             Lifetime::Command { .. } => port_warning

@@ -13,6 +13,7 @@ use super::motion_reporter::MotionReporter;
 use super::status::DeviceHealth;
 use super::{CaptureEnd, CaptureResult, Lifetime, suspension};
 use crate::capture::jog::{self, AxisReport, DriveFault, Homing};
+use crate::capture::moves::MoveProgress;
 use crate::capture::request::CapturePlan;
 use crate::capture::run::{self, CaptureEvent, CaptureJob, Outcome};
 use crate::devices::drive_port;
@@ -51,18 +52,12 @@ impl Worker {
             true => Homing::First,
             false => Homing::AsAsked,
         };
-        let gearing = service.axis.gearing;
         let mut motion = MotionReporter::new(service);
-        let done = jog::run(&mut session, commands, homing, &mut |event| match event {
-            DriveEvent::Sample(sample) => {
-                motion.moved(sample.answer, gearing.angle(sample.position), 0);
-            }
-            DriveEvent::Progress(CommandProgress::Moving(plan)) => {
-                tracing::debug!(?event);
+        let done = jog::run(&mut session, commands, homing, &mut |event| {
+            if let DriveEvent::Progress(CommandProgress::Moving(plan)) = event {
                 motion.begin(plan, 0, 0);
             }
-            DriveEvent::Progress(step) => motion.progress(step, &gearing),
-            event => tracing::debug!(?event),
+            motion.event(event, 0);
         });
         motion.end();
         drop(session);
@@ -179,9 +174,12 @@ impl Worker {
             };
             run::record(job, &mut |event| match event {
                 CaptureEvent::Started => service.send_status(),
-                CaptureEvent::Move { number, step } => motion.begin(&step.plan, number + 1, steps),
-                CaptureEvent::Moved { at, angle, packets } => motion.moved(at, angle, packets),
-                CaptureEvent::Progress(step) => motion.progress(step, &service.axis.gearing),
+                CaptureEvent::Motion(MoveProgress::Step(number, step), _) => {
+                    motion.begin(&step.plan, number, steps);
+                }
+                CaptureEvent::Motion(MoveProgress::Event(event), packets) => {
+                    motion.event(event, packets);
+                }
                 CaptureEvent::MotionEnded => motion.end(),
                 CaptureEvent::Saving => service.heartbeat(),
             })

@@ -2,8 +2,8 @@
 
 use std::time::{Duration, Instant};
 
-use drive::{CommandProgress, MovePlan};
-use units::{Degrees, Gearing, Host, Stamp};
+use drive::{CommandProgress, DriveEvent, MovePlan};
+use units::{Degrees, Host, Stamp};
 
 use super::DeviceService;
 use super::events::Event;
@@ -31,23 +31,30 @@ impl<'a> MotionReporter<'a> {
         }
     }
 
-    /// Takes in the drive client's progress, except the start of a move.
-    pub(super) fn progress(&mut self, step: &CommandProgress, gearing: &Gearing) {
-        match step {
-            CommandProgress::Homing => {
+    /// Takes in an event of the drive client, except the start of a move. `packets` counts those of
+    /// the lidar in this capture.
+    pub(super) fn event(&mut self, event: &DriveEvent, packets: u64) {
+        let gearing = self.service.axis.gearing;
+        match event {
+            DriveEvent::Sample(sample) => {
+                self.moved(sample.answer, gearing.angle(sample.position), packets);
+            }
+            DriveEvent::Progress(CommandProgress::Homing) => {
                 self.referenced = self.service.is_referenced();
                 self.service
                     .update_activity(|activity| activity.homes = true);
                 self.service.send_status();
             }
             // The demand counts from the old zero, which must be known.
-            CommandProgress::Searching { at, demand } if self.referenced => {
+            DriveEvent::Progress(CommandProgress::Searching { at, demand }) if self.referenced => {
                 let packets = self.service.activity().packets;
                 self.moved(*at, gearing.angle(*demand), packets);
             }
-            step => {
-                self.service.heartbeat();
-                tracing::debug!(?step);
+            event => {
+                if matches!(event, DriveEvent::Progress(_)) {
+                    self.service.heartbeat();
+                }
+                tracing::debug!(?event);
             }
         }
     }
@@ -70,7 +77,7 @@ impl<'a> MotionReporter<'a> {
     }
 
     /// Takes in the axis's angle at a time.
-    pub(super) fn moved(&mut self, at: Stamp<Host>, angle: Degrees, packets: u64) {
+    fn moved(&mut self, at: Stamp<Host>, angle: Degrees, packets: u64) {
         let mut speed = 0.0;
         if let Some((reported, before, from)) = self.last {
             if reported.elapsed() < INTERVAL {

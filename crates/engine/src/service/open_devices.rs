@@ -88,7 +88,7 @@ impl Worker {
         };
         let sockets = LidarSockets::bind(&config)?;
         if service.simulated() {
-            let started = Simulated::start(rig(&service), sockets.ports())?;
+            let started = Simulated::start(rig(&service), sockets.ports)?;
             if let Some(old) = self.simulated.replace(started) {
                 drop(old.stop());
             }
@@ -101,7 +101,7 @@ impl Worker {
     pub(super) fn open_drive(&self) -> Result<DriveConnection, Failure> {
         let service = &self.service;
         let place = match &self.simulated {
-            Some(devices) => devices.port().to_owned(),
+            Some(devices) => devices.port.clone(),
             None if service.device.kind == DeviceKind::Sim => {
                 return Err(
                     Failure::new(Kind::NoDevice, "the software devices do not run")

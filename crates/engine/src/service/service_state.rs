@@ -136,41 +136,33 @@ impl DeviceService {
 
     /// Changes the drive's status and reports a change of its state.
     pub(super) fn update_drive(&self, change: impl FnOnce(&mut DriveSnapshot)) {
-        let mut changed = None;
-        self.state.send_modify(|state| {
-            let drive = &mut state.drive;
-            let before = (drive.state, drive.problem.clone());
-            change(drive);
-            let after = (drive.state, drive.problem.clone());
-            if before != after {
-                state.reported_at = None;
-                changed = Some(after);
-            }
-        });
-        self.report_device("drive", changed);
+        let health = |state: &ServiceState| (state.drive.state, state.drive.problem.clone());
+        self.update_device("drive", health, |state| change(&mut state.drive));
     }
 
     /// Changes the lidar's status and reports a change of its state.
     pub(super) fn update_lidar(&self, change: impl FnOnce(&mut LidarStatus)) {
+        let health = |state: &ServiceState| (state.lidar.state, state.lidar.problem.clone());
+        self.update_device("lidar", health, |state| change(&mut state.lidar));
+    }
+
+    /// Changes a device's part of the state; a change of its health is sent and logged.
+    fn update_device(
+        &self,
+        device: &str,
+        health: impl Fn(&ServiceState) -> (DeviceHealth, Option<Failure>),
+        change: impl FnOnce(&mut ServiceState),
+    ) {
         let mut changed = None;
         self.state.send_modify(|state| {
-            let lidar = &mut state.lidar;
-            let before = (lidar.state, lidar.problem.clone());
-            change(lidar);
-            let after = (lidar.state, lidar.problem.clone());
+            let before = health(state);
+            change(state);
+            let after = health(state);
             if before != after {
                 state.reported_at = None;
                 changed = Some(after);
             }
         });
-        self.report_device("lidar", changed);
-    }
-
-    pub(super) fn report_device(
-        &self,
-        device: &str,
-        changed: Option<(DeviceHealth, Option<Failure>)>,
-    ) {
         let Some((state, problem)) = changed else {
             return;
         };

@@ -83,21 +83,10 @@ impl<P: Port> Slcan<P> {
         Ok(channel)
     }
 
-    /// Whether the adapter answers commands. One that does not cannot report a refused frame.
-    #[must_use]
-    pub const fn answers(&self) -> bool {
-        self.answers
-    }
-
     /// Lines that were neither frames nor answers: a sign of a wrong baud rate or lost bytes.
     #[must_use]
     pub const fn noise(&self) -> u64 {
         self.noise
-    }
-
-    /// The port inside.
-    pub const fn port(&self) -> &P {
-        &self.port
     }
 
     fn since(&self, begin: Stamp<Host>) -> Span {

@@ -38,7 +38,8 @@ pub enum LatencyTimer {
 pub struct SerialPort {
     tty: TTYPort,
     name: String,
-    latency: LatencyTimer,
+    /// Latency timer of the USB adapter.
+    pub latency: LatencyTimer,
     timeout: Duration,
 }
 
@@ -64,18 +65,6 @@ impl SerialPort {
             name,
             timeout: Duration::ZERO,
         })
-    }
-
-    /// The path it was opened by.
-    #[must_use]
-    pub fn name(&self) -> &str {
-        &self.name
-    }
-
-    /// State of the adapter's latency timer.
-    #[must_use]
-    pub fn latency_timer(&self) -> LatencyTimer {
-        self.latency
     }
 
     fn set_timeout(&mut self, timeout: Duration) {

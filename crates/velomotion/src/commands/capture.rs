@@ -85,7 +85,7 @@ fn record_locally(
 ) -> Result<CaptureEnd, Failure> {
     let device = (plan.name.clone(), plan.device.clone());
     let local = LocalService::start(config, device, true, interrupt)?;
-    if let Some(warning) = local.port_warning() {
+    if let Some(warning) = &local.thread.port_warning {
         progress.say(&format!("warning: {warning}"));
     }
     let recorded = LocalCapture::begin(&local, plan.clone())

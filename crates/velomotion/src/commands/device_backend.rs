@@ -128,7 +128,7 @@ impl<'a> LocalCapture<'a> {
     /// # Errors
     /// Where the axis cannot be moved.
     pub fn begin(local: &'a LocalService, plan: CapturePlan) -> Result<Self, Failure> {
-        let service = local.service();
+        let service = &local.service;
         let lease = service.lease(AxisTask::Capturing).map_err(lease_failure)?;
         let result = service.capture(lease, plan).map_err(lease_failure)?;
         Ok(Self {
@@ -141,7 +141,7 @@ impl<'a> LocalCapture<'a> {
 
 impl CaptureBackend for LocalCapture<'_> {
     fn poll(&mut self, _: &CapturePlan) -> Result<CaptureProgress, Failure> {
-        let service = self.local.service();
+        let service = &self.local.service;
         match self.result.try_recv() {
             Ok(result) => {
                 let end = result?;
@@ -276,7 +276,7 @@ impl CaptureBackend for DaemonCapture<'_> {
 /// # Errors
 /// Where the axis cannot be moved, or the motion failed.
 pub fn jog_locally(local: &LocalService, verb: TiltVerb) -> Result<StopAnswer, Failure> {
-    let answer = local.service().jog(verb.into()).map_err(lease_failure)?;
+    let answer = local.service.jog(verb.into()).map_err(lease_failure)?;
     let report = answer
         .blocking_recv()
         .unwrap_or_else(|_| Err(thread_gone()))?;
@@ -317,7 +317,7 @@ pub fn jog_by_daemon(
                     Kind::Interrupted,
                     format!(
                         "the daemon at {} has not answered",
-                        client.socket().display()
+                        client.socket.display()
                     ),
                 )
                 .help("tilt status reports the axis; switch the motor's supply off if it moves and must not"));

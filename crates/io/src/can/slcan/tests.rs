@@ -128,7 +128,7 @@ fn the_channel_is_configured_opened_and_closed() {
     for behaviour in [Behaviour::Lawicel, Behaviour::Silent] {
         let adapter = Adapter::start(behaviour, b"");
         let mut can = Slcan::open(adapter.port(), Bitrate::Kbit1000).unwrap();
-        assert_eq!(can.answers(), behaviour == Behaviour::Lawicel);
+        assert_eq!(can.answers, behaviour == Behaviour::Lawicel);
         let before = can.write_frame(&request()).unwrap();
         let (frame, host) = can.read(Span::from_secs(5)).unwrap().unwrap();
         assert_eq!(frame, answered());

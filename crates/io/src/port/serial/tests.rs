@@ -33,8 +33,8 @@ fn all_byte_values_pass_both_ways() {
     pty.write_frame(&all).unwrap();
     assert_eq!(read_all(&mut port, 256), all);
     assert!(before <= wrote && wrote <= clock::now());
-    assert_eq!(port.latency_timer(), LatencyTimer::Unknown);
-    assert_eq!(port.name(), pty.path().to_str().unwrap());
+    assert_eq!(port.latency, LatencyTimer::Unknown);
+    assert_eq!(port.name, pty.path().to_str().unwrap());
 }
 
 #[test]
