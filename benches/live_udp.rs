@@ -206,9 +206,9 @@ fn receive(seconds: u64, log: Option<PathBuf>) -> Result<(), Box<dyn Error>> {
     let ports: Vec<u16> = listener
         .sockets()
         .iter()
-        .map(|s| s.address().port())
+        .map(|s| s.address.port())
         .collect();
-    let granted = listener.sockets().first().map_or(0, |s| s.receive_buffer());
+    let granted = listener.sockets().first().map_or(0, |s| s.receive_buffer);
     let &[data, position] = ports.as_slice() else {
         return Err("two sockets were to be bound".into());
     };

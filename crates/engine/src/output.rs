@@ -36,7 +36,8 @@ impl Target {
     /// [`Kind::BadInput`] if the file cannot be created.
     pub fn open(path: &Path, fields: Fields, force: bool) -> Result<Self, Failure> {
         if path == Path::new("-") {
-            let scratch = ::io::files::scratch().map_err(|error| {
+            let scratch = ::io::files::scratch_in(&::io::files::scratch_folder());
+            let scratch = scratch.map_err(|error| {
                 Failure::new(Kind::BadInput, format!("cannot write to stdout: {error}"))
                     .help("set TMPDIR to a folder with enough space, or name a file with -o")
             })?;

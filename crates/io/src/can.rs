@@ -13,7 +13,7 @@ use std::io;
 use protocol::canopen::CanFrame;
 use units::{Host, Span, Stamp};
 
-pub use interfaces::{CanInterface, interfaces};
+pub use interfaces::{CanInterface, interfaces, up_command};
 pub use slcan::Slcan;
 pub use socket::SocketCan;
 
@@ -46,28 +46,6 @@ pub trait CanPort {
     /// Simulated ports have their own.
     fn now(&self) -> Stamp<Host> {
         crate::clock::steady()
-    }
-}
-
-impl<P: CanPort + ?Sized> CanPort for Box<P> {
-    fn write_frame(&mut self, frame: &CanFrame) -> Result<Stamp<Host>, CanError> {
-        (**self).write_frame(frame)
-    }
-
-    fn read(&mut self, timeout: Span) -> Result<Option<(CanFrame, Stamp<Host>)>, CanError> {
-        (**self).read(timeout)
-    }
-
-    fn dropped(&self) -> u64 {
-        (**self).dropped()
-    }
-
-    fn name(&self) -> &str {
-        (**self).name()
-    }
-
-    fn now(&self) -> Stamp<Host> {
-        (**self).now()
     }
 }
 
@@ -185,12 +163,9 @@ impl From<CanError> for PortError {
                 action,
                 source,
             },
-            error @ (CanError::NoCan { .. } | CanError::NotCan { .. }) => {
+            error => {
                 let what = error.to_string();
                 io("CAN", "open", io::ErrorKind::Unsupported, what)
-            }
-            error @ (CanError::Refused { .. } | CanError::NotSent) => {
-                io("SLCAN", "write", io::ErrorKind::Other, error.to_string())
             }
         }
     }

@@ -20,10 +20,6 @@ pub struct UsbIdentity {
     pub vendor: u16,
     /// Product number.
     pub product: u16,
-    /// Product name, if the device has one.
-    pub name: Option<String>,
-    /// Serial number, if the device has one.
-    pub serial_number: Option<String>,
 }
 
 /// A serial port of this machine.
@@ -38,8 +34,6 @@ pub struct SerialPortFound {
 /// An EPOS2 on USB.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Epos2Found {
-    /// Its descriptor.
-    pub usb: UsbIdentity,
     /// Position on the bus, such as `1-4.2`.
     pub bus_place: String,
     /// Its serial port; `None` without a driver.
@@ -88,8 +82,6 @@ fn serial_port(found: serialport::SerialPortInfo) -> SerialPortFound {
         SerialPortType::UsbPort(usb) => Some(UsbIdentity {
             vendor: usb.vid,
             product: usb.pid,
-            name: usb.product,
-            serial_number: usb.serial_number,
         }),
         _ => None,
     };
@@ -111,10 +103,8 @@ fn find_epos2(devices: &Path) -> std::io::Result<Vec<Epos2Found>> {
     for entry in entries {
         let device = entry?.path();
         let number = |file| u16::from_str_radix(&attribute(&device, file)?, 16).ok();
-        let (Some(vendor), Some(product)) = (number("idVendor"), number("idProduct")) else {
-            continue; // an interface or a port of a hub
-        };
-        if (vendor, product) != (EPOS2_VENDOR, EPOS2_PRODUCT) {
+        let identity = (number("idVendor"), number("idProduct"));
+        if identity != (Some(EPOS2_VENDOR), Some(EPOS2_PRODUCT)) {
             continue;
         }
         let bus_place = device
@@ -123,12 +113,6 @@ fn find_epos2(devices: &Path) -> std::io::Result<Vec<Epos2Found>> {
             .to_string_lossy()
             .into_owned();
         units.push(Epos2Found {
-            usb: UsbIdentity {
-                vendor,
-                product,
-                name: attribute(&device, "product"),
-                serial_number: attribute(&device, "serial"),
-            },
             port: port_of(&device, &bus_place),
             bus_place,
         });
@@ -213,8 +197,6 @@ mod tests {
                 ("2-1", Some(Path::new("/dev/ttyACM3"))),
             ]
         );
-        assert_eq!(found[0].usb.name.as_deref(), Some("maxon motor EPOS2"));
-        assert_eq!(found[0].usb.serial_number.as_deref(), Some("123456"));
     }
 
     #[test]

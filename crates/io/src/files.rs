@@ -243,18 +243,10 @@ fn create_temporary(path: &Path, folder: &Path) -> io::Result<NamedTempFile> {
         .tempfile_in(folder)
 }
 
-/// An unnamed file for data that does not fit memory, in [`scratch_folder`].
+/// An unnamed file in `folder`, such as [`scratch_folder`], for data that does not fit memory.
 ///
 /// # Errors
 /// The system's; the message names the folder.
-pub fn scratch() -> io::Result<File> {
-    scratch_in(&scratch_folder())
-}
-
-/// An unnamed file in `folder`.
-///
-/// # Errors
-/// As [`scratch`].
 pub fn scratch_in(folder: &Path) -> io::Result<File> {
     tempfile::tempfile_in(folder).map_err(|error| {
         io::Error::new(

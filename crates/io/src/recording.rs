@@ -271,7 +271,7 @@ impl<R: Read> Recording<R> {
                 FileItem::Skip { length } => self.consumed = length,
                 FileItem::Malformed { length, fault } => {
                     self.consumed = length;
-                    self.counts.packet();
+                    self.counts.records += 1;
                     self.counts.malformed(offset, fault);
                 }
                 FileItem::Damaged {
@@ -279,14 +279,14 @@ impl<R: Read> Recording<R> {
                     bytes,
                     fault,
                 } => {
-                    self.counts.packet();
+                    self.counts.records += 1;
                     self.counts.malformed(offset, fault);
                     self.counts.damaged += 1;
                     self.counts.damaged_bytes += bytes;
                 }
                 FileItem::Packet(packet) => {
                     self.consumed = packet.length;
-                    self.counts.packet();
+                    self.counts.records += 1;
                     if let Some(found) = self.classify(&packet, offset) {
                         return Ok(Some(found));
                     }

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicI64, Ordering};
 use std::sync::{Arc, Mutex};
 
 use daemon::Options;
-use io::discover::{ConnectedDevices, EPOS2_PRODUCT, EPOS2_VENDOR, Epos2Found, UsbIdentity};
+use io::discover::{ConnectedDevices, Epos2Found};
 use serde_json::json;
 use units::Span;
 
@@ -94,12 +94,6 @@ fn a_drive_is_found_on_any_port_after_reconnecting() {
     });
     let plug = |port: Option<PathBuf>| {
         *units.lock().unwrap() = vec![Epos2Found {
-            usb: UsbIdentity {
-                vendor: EPOS2_VENDOR,
-                product: EPOS2_PRODUCT,
-                name: None,
-                serial_number: None,
-            },
             bus_place: "1-4".to_owned(),
             port,
         }];

@@ -40,7 +40,7 @@ impl LidarSockets {
     /// or the address is not this machine's.
     pub fn bind(config: &ListenConfig) -> Result<Self, Failure> {
         let listener = LidarListener::bind(config).map_err(|error| lidar_failure(&error))?;
-        let mut local = listener.sockets().iter().map(|s| s.address().port());
+        let mut local = listener.sockets().iter().map(|s| s.address.port());
         let ports = LidarPorts {
             data: local.next().unwrap_or(DATA_PORT),
             position: local.next().unwrap_or(POSITION_PORT),

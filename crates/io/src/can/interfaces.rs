@@ -17,14 +17,6 @@ pub struct CanInterface {
     pub up: bool,
 }
 
-impl CanInterface {
-    /// The command that brings the interface up, as administrator.
-    #[must_use]
-    pub fn up_command(&self) -> String {
-        up_command(&self.name)
-    }
-}
-
 /// The CAN interfaces in order of their names.
 #[must_use]
 pub fn interfaces() -> Vec<CanInterface> {
@@ -57,8 +49,9 @@ fn read(file: &Path) -> Option<String> {
     Some(fs::read_to_string(file).ok()?.trim().to_owned())
 }
 
-/// A virtual bus has no bit rate; the EPOS2's factory setting is 1 Mbit/s.
-pub(super) fn up_command(name: &str) -> String {
+/// The command that brings the interface up, as administrator.
+#[must_use]
+pub fn up_command(name: &str) -> String {
     if name.starts_with("vcan") {
         format!("sudo ip link set {name} up")
     } else {
@@ -90,10 +83,10 @@ mod tests {
         });
         assert_eq!(found, [can0.clone(), vcan0.clone()]);
         assert_eq!(
-            can0.up_command(),
+            up_command(&can0.name),
             "sudo ip link set can0 up type can bitrate 1000000"
         );
-        assert_eq!(vcan0.up_command(), "sudo ip link set vcan0 up");
+        assert_eq!(up_command(&vcan0.name), "sudo ip link set vcan0 up");
         assert_eq!(interfaces_in(&sysfs.path().join("none")), []);
     }
 }

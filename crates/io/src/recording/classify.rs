@@ -35,7 +35,7 @@ impl<R> Recording<R> {
             }
             Ok(Content::Fragment(fragment)) => self.fragment(packet, &fragment, offset)?,
             Ok(Content::Serial { link, direction }) => {
-                self.counts.drive(direction);
+                self.counts.drive += 1;
                 FoundWire::Serial {
                     link,
                     direction,
@@ -43,7 +43,7 @@ impl<R> Recording<R> {
                 }
             }
             Ok(Content::Can { direction, frame }) => {
-                self.counts.drive(direction);
+                self.counts.drive += 1;
                 self.can_frame = frame;
                 FoundWire::Can { direction }
             }
@@ -80,9 +80,9 @@ impl<R> Recording<R> {
         };
         let bytes = bytes.unwrap_or_default();
         if DatagramKind::of(bytes).is_lidar() {
-            self.counts.lidar(port, bytes.len());
+            self.counts.datagrams += 1;
         } else {
-            self.counts.foreign(port, bytes.len());
+            self.counts.other += 1;
             if !self.keep_foreign {
                 return None;
             }

@@ -103,11 +103,13 @@ impl LidarListener {
                 action: "wait",
                 source,
             })?;
-        let bind = |port| match config.group {
-            Some(group) => {
-                LidarSocket::bind_group(group, config.address, port, config.receive_buffer)
-            }
-            None => LidarSocket::bind(address_of(port), config.receive_buffer),
+        let bind = |port| {
+            let (address, group) = match config.group {
+                Some(group) => (Ipv4Addr::UNSPECIFIED, Some((group, config.address))),
+                None => (config.address, None),
+            };
+            let address = SocketAddrV4::new(address, port);
+            LidarSocket::open(address, config.receive_buffer, group)
         };
         let mut position = None;
         let sockets = {
@@ -240,7 +242,7 @@ impl LidarListener {
             host: received.host,
             wire: Wire::Lidar {
                 source: received.source.octets(),
-                port: socket.address().port(),
+                port: socket.address.port(),
                 payload,
             },
         };

@@ -18,32 +18,19 @@ use crate::ancillary::{self, DropCounter};
 #[derive(Debug)]
 pub struct LidarSocket {
     socket: UdpSocket,
-    address: SocketAddrV4,
-    receive_buffer: usize,
+    /// The bound address.
+    pub address: SocketAddrV4,
+    /// Size of the receive buffer that the kernel granted, bytes.
+    pub receive_buffer: usize,
     dropped: DropCounter,
 }
 
 impl LidarSocket {
     /// Binds `address` (port 0: any free port) and requests a receive buffer of `receive_buffer`
-    /// bytes. Must run inside a tokio runtime with I/O enabled.
-    pub(super) fn bind(address: SocketAddrV4, receive_buffer: usize) -> Result<Self, UdpError> {
-        Self::open(address, receive_buffer, None)
-    }
-
-    /// Binds `port` on every interface and joins a multicast group on the interface with the
-    /// address `interface` (0.0.0.0: the interface of the route). Other programs may share the
-    /// port. Unicast and broadcast datagrams to the port arrive as well.
-    pub(super) fn bind_group(
-        group: Ipv4Addr,
-        interface: Ipv4Addr,
-        port: u16,
-        receive_buffer: usize,
-    ) -> Result<Self, UdpError> {
-        let address = SocketAddrV4::new(Ipv4Addr::UNSPECIFIED, port);
-        Self::open(address, receive_buffer, Some((group, interface)))
-    }
-
-    fn open(
+    /// bytes. Must run inside a tokio runtime with I/O enabled. A `group` is a multicast group and
+    /// the address of the interface that joins it (0.0.0.0: the interface of the route). Other
+    /// programs may share its port; unicast and broadcast datagrams to the port arrive as well.
+    pub(super) fn open(
         address: SocketAddrV4,
         receive_buffer: usize,
         group: Option<(Ipv4Addr, Ipv4Addr)>,
@@ -90,19 +77,6 @@ impl LidarSocket {
             receive_buffer: granted,
             dropped: DropCounter::default(),
         })
-    }
-
-    /// The bound address.
-    #[must_use]
-    pub fn address(&self) -> SocketAddrV4 {
-        self.address
-    }
-
-    /// Bytes of receive buffer that the kernel granted. They include its overhead: 2300 bytes for a
-    /// packet of 1206, so one second of a VLP-16 (754 packets) takes 1.7 MB.
-    #[must_use]
-    pub fn receive_buffer(&self) -> usize {
-        self.receive_buffer
     }
 
     /// Datagrams that the kernel dropped because the receive buffer was full. The count arrives

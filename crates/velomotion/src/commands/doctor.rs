@@ -145,7 +145,7 @@ fn can_interfaces(interfaces: &[CanInterface]) -> Vec<Finding> {
                 finding(what, Verdict::Ok, "up")
             } else {
                 finding(what, Verdict::Problem, "down")
-                    .todo(format!("as root: {}", interface.up_command()))
+                    .todo(format!("as root: {}", io::can::up_command(&interface.name)))
             }
         })
         .collect()
@@ -241,17 +241,10 @@ fn text(report: &Findings) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use io::discover::UsbIdentity;
     use std::path::PathBuf;
 
     fn unit(port: Option<&str>) -> Epos2Found {
         Epos2Found {
-            usb: UsbIdentity {
-                vendor: 0x0403,
-                product: 0xA8B0,
-                name: None,
-                serial_number: None,
-            },
             bus_place: "1-4".to_owned(),
             port: port.map(PathBuf::from),
         }

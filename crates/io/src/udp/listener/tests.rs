@@ -37,10 +37,10 @@ fn payload_of(record: &OwnedRecord) -> (u16, Vec<u8>) {
 #[test]
 fn both_ports_deliver_with_kernel_times() {
     let mut listener = LidarListener::bind(&local(1 << 20)).unwrap();
-    let data = listener.sockets()[0].address();
-    let position = listener.sockets()[1].address();
+    let data = listener.sockets()[0].address;
+    let position = listener.sockets()[1].address;
     assert_ne!(data.port(), position.port());
-    assert!(listener.sockets()[0].receive_buffer() > 0);
+    assert!(listener.sockets()[0].receive_buffer > 0);
     let stop = Arc::new(AtomicBool::new(false));
     let (sender, inbox) = channel();
     let listening = {
@@ -92,7 +92,7 @@ fn both_ports_deliver_with_kernel_times() {
 #[test]
 fn kernel_times_do_not_depend_on_the_read() {
     let mut listener = LidarListener::bind(&local(1 << 20)).unwrap();
-    let to = listener.sockets()[0].address();
+    let to = listener.sockets()[0].address;
     let sender = UdpSocket::bind("127.0.0.1:0").unwrap();
     sender.send_to(b"early", to).unwrap();
     let sent = clock::now();
@@ -112,7 +112,7 @@ fn kernel_times_do_not_depend_on_the_read() {
 #[test]
 fn drops_of_the_kernel_are_counted_exactly() {
     let mut listener = LidarListener::bind(&local(4096)).unwrap();
-    let to = listener.sockets()[0].address();
+    let to = listener.sockets()[0].address;
     let sender = UdpSocket::bind("127.0.0.1:0").unwrap();
     let stop = AtomicBool::new(true);
     // More than the buffer holds, without a reader.
@@ -193,7 +193,7 @@ fn received(listener: &mut LidarListener) -> Vec<([u8; 4], u16, usize)> {
 #[test]
 fn datagrams_of_several_ports_are_delivered_in_order_of_time() {
     let mut listener = LidarListener::bind(&local(4 << 20)).unwrap();
-    let [data, position] = [0, 1].map(|n: usize| listener.sockets()[n].address());
+    let [data, position] = [0, 1].map(|n: usize| listener.sockets()[n].address);
     let sender = UdpSocket::bind("127.0.0.1:0").unwrap();
     // Several batches, most of them of one port; the longest datagram and an empty one are among
     // them.
@@ -228,7 +228,7 @@ fn datagrams_of_several_ports_are_delivered_in_order_of_time() {
 #[test]
 fn drops_are_counted_after_batches_without_drops() {
     let mut listener = LidarListener::bind(&local(65_536)).unwrap();
-    let to = listener.sockets()[0].address();
+    let to = listener.sockets()[0].address;
     let sender = UdpSocket::bind("127.0.0.1:0").unwrap();
     let mut sent = 0;
     // The third and fifth bursts exceed the buffer.
@@ -247,7 +247,7 @@ fn drops_are_counted_after_batches_without_drops() {
 #[test]
 fn sensors_are_distinguished_by_source_and_port() {
     let mut listener = LidarListener::bind(&local(1 << 20)).unwrap();
-    let [data, position] = [0, 1].map(|n: usize| listener.sockets()[n].address());
+    let [data, position] = [0, 1].map(|n: usize| listener.sockets()[n].address);
     let sensors = ["127.0.0.2:0", "127.0.0.3:0"].map(|at| UdpSocket::bind(at).unwrap());
     sensors[0].send_to(&data_packet(), data).unwrap();
     sensors[1].send_to(&data_packet(), data).unwrap();
@@ -281,7 +281,7 @@ fn only_wanted_sources_are_delivered() {
         ..local(1 << 20)
     };
     let mut listener = LidarListener::bind(&config).unwrap();
-    let data = listener.sockets()[0].address();
+    let data = listener.sockets()[0].address;
     for from in ["127.0.0.2:0", "127.0.0.3:0", "127.0.0.4:0"] {
         let sensor = UdpSocket::bind(from).unwrap();
         sensor.send_to(&data_packet(), data).unwrap();
@@ -302,7 +302,7 @@ fn multicast_groups_are_joined_on_the_given_interface() {
         ..local(1 << 20)
     };
     let mut listener = LidarListener::bind(&config).unwrap();
-    let port = listener.sockets()[0].address().port();
+    let port = listener.sockets()[0].address.port();
     let sender = socket2::Socket::new(socket2::Domain::IPV4, socket2::Type::DGRAM, None).unwrap();
     sender.set_multicast_if_v4(&Ipv4Addr::LOCALHOST).unwrap();
     let sender = UdpSocket::from(sender);
@@ -357,7 +357,7 @@ fn a_stop_interrupts_the_gathering() {
     listener.gather(Duration::from_secs(600));
     (0..20).for_each(|_| listener.adapt(0));
     assert_eq!(listener.gather, Duration::from_secs(600));
-    let to = listener.sockets()[0].address();
+    let to = listener.sockets()[0].address;
     let stop = Arc::new(AtomicBool::new(false));
     let stopping = Arc::clone(&stop);
     let listening = thread::spawn(move || listener.run(&stopping, |_| {}));
