@@ -16,8 +16,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use engine::config::AxisSettings;
 use engine::devices::profile as devices;
 use engine::devices::simulated;
-use engine::devices::simulated_drive::{self as software_drive, Interface};
-use firmware_sim::epos2::SlcanServer;
+use engine::devices::simulated_drive::{self as software_drive, SoftwarePort};
 use serde_json::Value;
 use sim::Attachment;
 use velomotion_tests::capture::{Captured, Setting};
@@ -180,8 +179,12 @@ fn python_canopen_runs_our_software_drive_over_slcan() {
     let axis = devices::axis(&AxisSettings::default()).unwrap();
     let node = simulated::node(&axis);
     let drive = std::thread::spawn(move || {
-        let interface = Interface::Slcan(SlcanServer::new(), pty);
-        software_drive::run(node, interface, &stopping)
+        software_drive::run(
+            node,
+            Attachment::Slcan,
+            SoftwarePort::Serial(pty),
+            &stopping,
+        )
     });
     let seen = run_script("canopen_master.py", &[&port, Path::new("-10000")]);
     stop.store(true, Ordering::Relaxed);

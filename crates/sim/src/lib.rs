@@ -48,5 +48,5 @@ pub mod simulate;
 pub use firmware_sim::vlp16::{DATA_PORT, POSITION_PORT};
 pub use gear_ripple::GearRipple;
 pub use packet_maker::{HeadRotation, TruePoint};
-pub use rig::{Attachment, Datagram, DriveOutput, Rig, RigConfig, RigLidar, Truth};
+pub use rig::{Attachment, Datagram, DriveOutput, DriveServer, Rig, RigConfig, RigLidar, Truth};
 pub use scene::{Hit, Scene};

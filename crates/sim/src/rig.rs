@@ -25,10 +25,9 @@ use crate::packet_maker::{HeadRotation, Lidar, PacketMaker};
 use crate::scene::Scene;
 use crate::scenes;
 use crate::sensor::{LidarMount, LidarSensor, ReturnMode};
-use attachment::DriveServer;
 use shaft::{CYCLE, ShaftCourse};
 
-pub use attachment::Attachment;
+pub use attachment::{Attachment, DriveServer};
 pub use truth::Truth;
 
 /// Configuration of the virtual world.

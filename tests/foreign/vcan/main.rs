@@ -19,8 +19,7 @@ use std::thread::JoinHandle;
 use engine::config::AxisSettings;
 use engine::devices::profile as devices;
 use engine::devices::simulated;
-use engine::devices::simulated_drive::{self as software_drive, Interface, SoftwareDriveError};
-use firmware_sim::epos2::CanServer;
+use engine::devices::simulated_drive::{self as software_drive, SoftwareDriveError, SoftwarePort};
 use io::can::SocketCan;
 use io::clock;
 use protocol::canopen::emcy::Emergency;
@@ -31,6 +30,7 @@ use protocol::canopen::{CanFrame, CommunicationObject, NodeId, PdoNumber};
 use protocol::epos2::cia402::{DeviceState, control};
 use protocol::epos2::objects::{self, Address};
 use protocol::epos2::{CommError, DeviceError};
+use sim::Attachment;
 use tempfile::TempDir;
 use units::Span;
 
@@ -114,8 +114,9 @@ impl SoftwareDrive {
         let stop = Arc::new(AtomicBool::new(false));
         let stopping = Arc::clone(&stop);
         let node = simulated::node(&devices::axis(&AxisSettings::default()).unwrap());
-        let interface = Interface::Can(CanServer::new(), SocketCan::open(BUS).unwrap());
-        let thread = std::thread::spawn(move || software_drive::run(node, interface, &stopping));
+        let port = SoftwarePort::Can(SocketCan::open(BUS).unwrap());
+        let run = move || software_drive::run(node, Attachment::Can, port, &stopping);
+        let thread = std::thread::spawn(run);
         Self { stop, thread }
     }
 

@@ -3,24 +3,21 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use firmware_sim::epos2::{CanServer, Node, NodeConfig, Rs232Server, SlcanServer, UsbServer};
+use firmware_sim::epos2::{Node, NodeConfig};
 use io::can::{CanError, CanPort, SocketCan};
 use io::port::{Port, PortError, Pty};
-use protocol::canopen::CanFrame;
+use protocol::canopen::{CanFrame, SOCKETCAN_LEN};
 use protocol::epos2::DeviceError;
+use sim::{Attachment, DriveServer};
 use thiserror::Error;
 use units::{Host, Span, Stamp};
 
-/// Protocol and port of the drive.
-pub enum Interface {
-    /// EPOS2 USB frames on a pseudo-terminal.
-    Usb(UsbServer, Pty),
-    /// EPOS2 RS232 frames on a pseudo-terminal.
-    Rs232(Rs232Server, Pty),
-    /// CANopen behind an SLCAN adapter on a pseudo-terminal.
-    Slcan(SlcanServer, Pty),
-    /// CANopen on an interface of the kernel.
-    Can(CanServer, SocketCan),
+/// Port of the drive.
+pub enum SoftwarePort {
+    /// A pseudo-terminal.
+    Serial(Pty),
+    /// An interface of the kernel.
+    Can(SocketCan),
 }
 
 /// Why the drive stopped.
@@ -40,23 +37,33 @@ const LONGEST_PAUSE: Span = Span::from_secs(1);
 /// Bus frames per cycle: more than 1 Mbit/s carries in a millisecond.
 const FRAMES_A_CYCLE: usize = 32;
 
-/// Runs the drive until `stop`.
+/// Seed of the drive's own numbers.
+const SEED: u64 = 1;
+
+/// Runs the drive at `port` until `stop`.
 ///
 /// # Errors
 /// Returns the failure of its port.
 pub fn run(
     config: NodeConfig,
-    mut interface: Interface,
+    attachment: Attachment,
+    mut port: SoftwarePort,
     stop: &AtomicBool,
 ) -> Result<(), SoftwareDriveError> {
+    let mut server = DriveServer::new(attachment, SEED);
     let mut node = Node::new(NodeConfig {
-        fault_at_power_on: interface.fault_at_power_on(),
+        // The error of a unit without a CAN bus.
+        fault_at_power_on: match attachment {
+            Attachment::Usb | Attachment::Rs232 => DeviceError::CAN_PASSIVE,
+            Attachment::Slcan | Attachment::Can => DeviceError::NONE,
+        },
         ..config
     });
     let mut cycle: Stamp<Host> = io::clock::now();
+    let mut out = Vec::new();
     while !stop.load(Ordering::Relaxed) {
         let wait = (cycle + CYCLE).saturating_since(io::clock::now());
-        let received = interface.receive(wait.clamp(Span::ZERO, CYCLE))?;
+        let received = port.receive(wait.clamp(Span::ZERO, CYCLE))?;
         let now = io::clock::now();
         if now.saturating_since(cycle) > LONGEST_PAUSE || now < cycle {
             cycle = now;
@@ -64,47 +71,34 @@ pub fn run(
         while now.saturating_since(cycle) >= CYCLE {
             node.tick();
             cycle += CYCLE;
-            interface.poll(&mut node)?;
+            server.poll(&mut node, &mut |bytes| out.extend_from_slice(bytes));
+            port.send(&mut out)?;
         }
         let phase_us = now.saturating_since(cycle).as_nanos() / 1_000;
         node.set_phase_us(u32::try_from(phase_us).unwrap_or(0));
-        interface.answer(&mut node, &received)?;
+        server.input(&mut node, &received, &mut |bytes| {
+            out.extend_from_slice(bytes);
+        });
+        port.send(&mut out)?;
     }
     Ok(())
 }
 
-/// Input: bytes of a serial line, or frames of a bus.
-#[derive(Default)]
-struct Received {
-    bytes: Vec<u8>,
-    frames: Vec<CanFrame>,
-}
-
-impl Interface {
-    /// The error at power-on of a unit without a CAN bus.
-    fn fault_at_power_on(&self) -> DeviceError {
+impl SoftwarePort {
+    /// Waits for bytes of the host; those of a bus are whole frames.
+    fn receive(&mut self, mut wait: Span) -> Result<Vec<u8>, SoftwareDriveError> {
+        let mut received = Vec::new();
         match self {
-            Self::Usb(..) | Self::Rs232(..) => DeviceError::CAN_PASSIVE,
-            Self::Slcan(..) | Self::Can(..) => DeviceError::NONE,
-        }
-    }
-
-    fn receive(&mut self, wait: Span) -> Result<Received, SoftwareDriveError> {
-        let mut received = Received::default();
-        match self {
-            Self::Usb(_, pty) | Self::Rs232(_, pty) | Self::Slcan(_, pty) => {
+            Self::Serial(pty) => {
                 let mut buffer = [0; 512];
                 let count = pty.read(&mut buffer, wait)?.map_or(0, |(count, _)| count);
-                received
-                    .bytes
-                    .extend(buffer.get(..count).unwrap_or_default());
+                received.extend_from_slice(buffer.get(..count).unwrap_or_default());
             }
-            Self::Can(_, bus) => {
-                let mut wait = wait;
+            Self::Can(bus) => {
                 while let Some((frame, _)) = bus.read(wait)? {
-                    received.frames.push(frame);
+                    received.extend_from_slice(&frame.to_socketcan());
                     wait = Span::ZERO;
-                    if received.frames.len() >= FRAMES_A_CYCLE {
+                    if received.len() >= FRAMES_A_CYCLE * SOCKETCAN_LEN {
                         break;
                     }
                 }
@@ -113,66 +107,24 @@ impl Interface {
         Ok(received)
     }
 
-    fn answer(&mut self, node: &mut Node, received: &Received) -> Result<(), SoftwareDriveError> {
-        let mut out = Vec::new();
-        let mut bytes = |bytes: &[u8]| out.extend_from_slice(bytes);
+    /// Sends and clears `bytes`.
+    fn send(&mut self, bytes: &mut Vec<u8>) -> Result<(), SoftwareDriveError> {
         match self {
-            Self::Usb(server, pty) => {
-                server.input(node, &received.bytes, &mut bytes);
-                send(pty, &out)?;
-            }
-            Self::Rs232(server, pty) => {
-                server.input(node, &received.bytes, &mut bytes);
-                send(pty, &out)?;
-            }
-            Self::Slcan(server, pty) => {
-                server.input(node, &received.bytes, &mut bytes);
-                send(pty, &out)?;
-            }
-            Self::Can(server, bus) => {
-                let mut frames = Vec::new();
-                for frame in &received.frames {
-                    server.input(node, frame, &mut |answer: &CanFrame| frames.push(*answer));
+            Self::Serial(_) if bytes.is_empty() => {}
+            Self::Serial(pty) => match pty.write_frame(bytes) {
+                // A client that does not read loses its answers, as on a real line.
+                Ok(_) | Err(PortError::WriteTimeout { .. }) => {}
+                Err(error) => return Err(error.into()),
+            },
+            Self::Can(bus) => {
+                for frame in bytes.chunks(SOCKETCAN_LEN) {
+                    if let Ok(frame) = CanFrame::from_socketcan(frame) {
+                        bus.write_frame(&frame)?;
+                    }
                 }
-                transmit(bus, &frames)?;
             }
         }
+        bytes.clear();
         Ok(())
     }
-
-    /// Sends unsolicited frames of the drive after a control cycle.
-    fn poll(&mut self, node: &mut Node) -> Result<(), SoftwareDriveError> {
-        match self {
-            Self::Usb(..) | Self::Rs232(..) => {}
-            Self::Slcan(server, pty) => {
-                let mut out = Vec::new();
-                server.poll(node, &mut |bytes: &[u8]| out.extend_from_slice(bytes));
-                send(pty, &out)?;
-            }
-            Self::Can(server, bus) => {
-                let mut frames = Vec::new();
-                server.poll(node, &mut |frame: &CanFrame| frames.push(*frame));
-                transmit(bus, &frames)?;
-            }
-        }
-        Ok(())
-    }
-}
-
-fn send(pty: &mut Pty, bytes: &[u8]) -> Result<(), PortError> {
-    if bytes.is_empty() {
-        return Ok(());
-    }
-    match pty.write_frame(bytes) {
-        // A client that does not read loses its answers, as on a real line.
-        Ok(_) | Err(PortError::WriteTimeout { .. }) => Ok(()),
-        Err(error) => Err(error),
-    }
-}
-
-fn transmit(bus: &mut SocketCan, frames: &[CanFrame]) -> Result<(), CanError> {
-    for frame in frames {
-        bus.write_frame(frame)?;
-    }
-    Ok(())
 }

@@ -22,14 +22,20 @@ pub enum Attachment {
 
 /// The unit's side of the interface.
 #[derive(Clone, Debug)]
-pub(crate) enum DriveServer {
+pub enum DriveServer {
+    /// The server of the USB port.
     Usb(UsbServer),
+    /// The server of the RS232 port.
     Rs232(Rs232Server),
+    /// The server behind a serial CAN adapter.
     Slcan(SlcanServer),
+    /// The server on a CAN bus.
     Can(CanServer),
 }
 
 impl DriveServer {
+    /// The server of an interface, whose numbers follow from `seed`.
+    #[must_use]
     pub fn new(attachment: Attachment, seed: u64) -> Self {
         match attachment {
             Attachment::Usb => Self::Usb(UsbServer::new(seed)),

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use firmware_sim::epos2::{CanServer, Rs232Server, SlcanServer, UsbServer};
 use io::can::SocketCan;
 use io::port::Pty;
+use sim::Attachment;
 
 use super::CommandOutput;
 use crate::cli::{self, Common};
@@ -15,7 +15,7 @@ use crate::signals;
 use engine::config;
 use engine::devices::profile as devices;
 use engine::devices::simulated;
-use engine::devices::simulated_drive::{self as software_drive, Interface};
+use engine::devices::simulated_drive::{self as software_drive, SoftwarePort};
 use engine::failure::{Failure, Kind};
 
 /// Runs the command. The first line on stdout is the port. It ends at SIGTERM, Ctrl-C, or when
@@ -28,22 +28,28 @@ pub fn run(arguments: &cli::FirmwareSim, common: &Common) -> Result<CommandOutpu
     let axis = devices::axis(&config.axis)?;
     let stop = signals::interrupt_flag()?;
     until_stdin_closes(&stop)?;
-    let (interface, link) = match &arguments.can {
+    let (port, link) = match &arguments.can {
         Some(name) => {
             let bus = SocketCan::open(name).map_err(|error| failed(&error))?;
             announce(Path::new(name))?;
-            (Interface::Can(CanServer::new(), bus), None)
+            (SoftwarePort::Can(bus), None)
         }
         None => on_terminal(arguments)?,
     };
-    let ended = software_drive::run(simulated::node(&axis), interface, &stop);
+    let attachment = match arguments {
+        cli::FirmwareSim { can: Some(_), .. } => Attachment::Can,
+        cli::FirmwareSim { rs232: true, .. } => Attachment::Rs232,
+        cli::FirmwareSim { slcan: true, .. } => Attachment::Slcan,
+        _ => Attachment::Usb,
+    };
+    let ended = software_drive::run(simulated::node(&axis), attachment, port, &stop);
     drop(link);
     ended.map_err(|error| failed(&error))?;
     Ok(CommandOutput::default())
 }
 
 /// Opens a pseudo-terminal with its optional link.
-fn on_terminal(arguments: &cli::FirmwareSim) -> Result<(Interface, Option<Link>), Failure> {
+fn on_terminal(arguments: &cli::FirmwareSim) -> Result<(SoftwarePort, Option<Link>), Failure> {
     let pty = Pty::open().map_err(|error| failed(&error))?;
     let link = arguments
         .link
@@ -51,14 +57,7 @@ fn on_terminal(arguments: &cli::FirmwareSim) -> Result<(Interface, Option<Link>)
         .map(|link| Link::make(link, pty.path()))
         .transpose()?;
     announce(pty.path())?;
-    let interface = if arguments.rs232 {
-        Interface::Rs232(Rs232Server::new(1), pty)
-    } else if arguments.slcan {
-        Interface::Slcan(SlcanServer::new(), pty)
-    } else {
-        Interface::Usb(UsbServer::new(1), pty)
-    };
-    Ok((interface, link))
+    Ok((SoftwarePort::Serial(pty), link))
 }
 
 fn failed(error: &dyn std::fmt::Display) -> Failure {
