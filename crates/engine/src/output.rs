@@ -45,7 +45,7 @@ impl Target {
             return Ok(Self {
                 path: path.to_owned(),
                 file: None,
-                sink: Box::new(PlyPipe::new(stdio::stdout(), scratch).with_fields(fields)),
+                sink: Box::new(PlyPipe::new(stdio::stdout(), scratch, fields)),
             });
         }
         let format = Format::from_path(path).map_err(|error| {
@@ -63,7 +63,7 @@ impl Target {
     /// As [`Target::open`].
     pub fn organised(path: &Path, fields: Fields, force: bool, rows: u64) -> Result<Self, Failure> {
         Self::file(path, force, |file| {
-            Box::new(PcdWriter::organised(Buffered::new(file), rows).with_fields(fields))
+            Box::new(PcdWriter::organised(Buffered::new(file), rows, fields))
         })
     }
 
@@ -73,8 +73,7 @@ impl Target {
     /// As [`Target::open`].
     pub fn turns(path: &Path, fields: Fields, force: bool) -> Result<Self, Failure> {
         Self::file(path, force, |file| {
-            let writer = McapWriter::new(Buffered::new(file));
-            Box::new(writer.with_fields(fields).by_revolution())
+            Box::new(McapWriter::new(Buffered::new(file), fields).by_revolution())
         })
     }
 

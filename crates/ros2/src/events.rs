@@ -91,13 +91,11 @@ impl Publisher<'_> {
     }
 
     fn send_points(&mut self, frame: &PreviewFrame) -> Result<(), Error> {
-        self.cloud.clear();
         let name = self.frames.of_clouds(true);
         self.cloud
             .push(&frame.points, 0..frame.points.len(), name)?;
         if self.cloud.points() > 0 {
-            let message = self.cloud.message();
-            self.link.send(Topic::LivePoints, message.bytes())?;
+            self.link.send(Topic::LivePoints, self.cloud.finish())?;
         }
         Ok(())
     }

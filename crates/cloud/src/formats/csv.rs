@@ -22,13 +22,14 @@ pub(super) struct CsvEncoder<W> {
 }
 
 impl<W: Write> CsvWriter<W> {
-    /// A writer into `output` with the columns of [`Fields::FILE`].
-    pub(super) fn new(output: W) -> Self {
-        Self::of(CsvEncoder {
+    /// A writer into `output` with the columns `fields`.
+    pub(super) fn new(output: W, fields: Fields) -> Self {
+        let encoder = CsvEncoder {
             output,
-            fields: Fields::FILE,
+            fields,
             text: Vec::new(),
-        })
+        };
+        Self::of(encoder, fields)
     }
 }
 
@@ -68,8 +69,7 @@ impl<W: Write> Encoder for CsvEncoder<W> {
         "csv"
     }
 
-    fn begin(&mut self, fields: Fields, metadata: &Metadata) -> Result<(), EncodeFault> {
-        self.fields = fields;
+    fn begin(&mut self, metadata: &Metadata) -> Result<(), EncodeFault> {
         for line in metadata.lines() {
             writeln!(self.text, "# {line}")?;
         }
@@ -107,7 +107,7 @@ mod tests {
     use crate::{Sink, SinkError};
 
     fn written(fields: Fields, points: &Points) -> String {
-        let mut writer = CsvWriter::new(vec![]).with_fields(fields);
+        let mut writer = CsvWriter::new(vec![], fields);
         writer.begin(&metadata()).unwrap();
         writer.points(points).unwrap();
         assert_eq!(writer.finish().unwrap(), points.summary());
@@ -164,7 +164,7 @@ mod tests {
 
     #[test]
     fn a_full_disk_is_an_error_with_the_number_of_points() {
-        let mut writer = CsvWriter::new(SmallDisk::new(20_000));
+        let mut writer = CsvWriter::new(SmallDisk::new(20_000), Fields::FILE);
         writer.begin(&metadata()).unwrap();
         writer.points(&cloud(10)).unwrap();
         let error = writer.points(&cloud(1000)).unwrap_err();

@@ -41,6 +41,7 @@ pub(super) type E57Writer<W> = FileSink<E57Encoder<W>>;
 
 /// Encoder of [`E57Writer`].
 pub(super) struct E57Encoder<W: Read + Write + Seek + Send + 'static> {
+    fields: Fields,
     fault: WriteFault,
     output: Option<FallibleOutput<W>>,
     worker: Option<EncoderThread>,
@@ -56,17 +57,19 @@ struct EncoderThread {
 }
 
 impl<W: Read + Write + Seek + Send + 'static> E57Writer<W> {
-    /// A writer into `output`, which is empty, with the columns of [`Fields::FILE`].
-    pub(super) fn new(output: W) -> Self {
+    /// A writer into `output`, which is empty, with the columns `fields`.
+    pub(super) fn new(output: W, fields: Fields) -> Self {
         let (output, fault) = FallibleOutput::new(output);
-        Self::of(E57Encoder {
+        let encoder = E57Encoder {
+            fields,
             fault,
             output: Some(output),
             worker: None,
             description: Vec::new(),
             start: None,
             end: None,
-        })
+        };
+        Self::of(encoder, fields)
     }
 }
 
@@ -118,12 +121,12 @@ impl<W: Read + Write + Seek + Send + 'static> Encoder for E57Encoder<W> {
         Some(f32::MAX.into())
     }
 
-    fn begin(&mut self, fields: Fields, metadata: &Metadata) -> Result<(), EncodeFault> {
+    fn begin(&mut self, metadata: &Metadata) -> Result<(), EncodeFault> {
         self.description = metadata.lines();
         let Some(output) = self.output.take() else {
             return Ok(());
         };
-        let attributes = PointAttributes::new(fields);
+        let attributes = PointAttributes::new(self.fields);
         let about = worker::CloudDescription::new(metadata);
         let (orders, receiver) = sync_channel(QUEUE);
         let thread = thread::Builder::new()

@@ -21,7 +21,7 @@ pub trait Encoder {
     ///
     /// # Errors
     /// [`EncodeFault`] if the output or the library fails.
-    fn begin(&mut self, fields: Fields, metadata: &Metadata) -> Result<(), EncodeFault>;
+    fn begin(&mut self, metadata: &Metadata) -> Result<(), EncodeFault>;
 
     /// Writes a batch that has the columns.
     ///
@@ -84,19 +84,13 @@ pub struct FileSink<E> {
 
 impl<E: Encoder> FileSink<E> {
     /// A file with the columns of [`Fields::FILE`].
-    pub(super) fn of(encoder: E) -> Self {
+    pub(super) fn of(encoder: E, fields: Fields) -> Self {
         Self {
             encoder,
-            fields: Fields::FILE,
+            fields,
             stage: Stage::default(),
             summary: Summary::default(),
         }
-    }
-
-    /// Sets the columns; only before [`Sink::begin`].
-    #[must_use]
-    pub fn with_fields(self, fields: Fields) -> Self {
-        Self { fields, ..self }
     }
 
     fn error(&self, fault: EncodeFault) -> SinkError {
@@ -128,7 +122,7 @@ impl<E: Encoder> Sink for FileSink<E> {
 
     fn begin(&mut self, metadata: &Metadata) -> Result<(), SinkError> {
         self.stage.begin(self.encoder.format())?;
-        let begun = self.encoder.begin(self.fields, metadata);
+        let begun = self.encoder.begin(metadata);
         begun.map_err(|fault| self.error(fault))?;
         self.stage.opened();
         Ok(())

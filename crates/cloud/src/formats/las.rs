@@ -60,26 +60,27 @@ pub(super) struct LasEncoder<W: Write + Seek + Send + Sync + 'static> {
 }
 
 impl<W: Write + Seek + Send + Sync + 'static> LasWriter<W> {
-    /// A writer of uncompressed LAS into `output` with the columns of [`Fields::FILE`].
-    pub(super) fn las(output: W) -> Self {
-        Self::new("las", output)
+    /// A writer of uncompressed LAS into `output` with the columns `fields`.
+    pub(super) fn las(output: W, fields: Fields) -> Self {
+        Self::new("las", output, fields)
     }
 
-    /// A writer of LAZ into `output` with the columns of [`Fields::FILE`].
-    pub(super) fn laz(output: W) -> Self {
-        Self::new("laz", output)
+    /// A writer of LAZ into `output` with the columns `fields`.
+    pub(super) fn laz(output: W, fields: Fields) -> Self {
+        Self::new("laz", output, fields)
     }
 
-    fn new(format: &'static str, output: W) -> Self {
+    fn new(format: &'static str, output: W, fields: Fields) -> Self {
         let (output, fault) = FallibleOutput::new(output);
-        Self::of(LasEncoder {
+        let encoder = LasEncoder {
             format,
-            extras: Vec::new(),
+            extras: extra_bytes::layout(fields),
             flags: 0,
             fault,
             output: Some(output),
             open: None,
-        })
+        };
+        Self::of(encoder, fields)
     }
 
     /// Returns the output at its start; `None` if writing the header failed.
@@ -181,8 +182,7 @@ impl<W: Write + Seek + Send + Sync + 'static> Encoder for LasEncoder<W> {
         Some(LIMIT_M)
     }
 
-    fn begin(&mut self, fields: Fields, metadata: &Metadata) -> Result<(), EncodeFault> {
-        self.extras = extra_bytes::layout(fields);
+    fn begin(&mut self, metadata: &Metadata) -> Result<(), EncodeFault> {
         self.flags = if metadata.simulated { SYNTHETIC } else { 0 };
         let header = self.header(metadata).map_err(EncodeFault::library)?;
         let slab = PointDataBuilder::new().for_header(&header).build();

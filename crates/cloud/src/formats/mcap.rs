@@ -82,11 +82,11 @@ enum McapState<W: Write + Seek> {
 impl<W: Write + Seek> McapWriter<W> {
     /// A writer into `output` with the columns of [`Fields::FILE`] without the tilt, one cloud per
     /// sweep.
-    pub fn new(output: W) -> Self {
+    pub fn new(output: W, fields: Fields) -> Self {
         let (output, fault) = FallibleOutput::new(output);
         Self {
             stage: Stage::default(),
-            clouds: Cutting::new(FORMAT, Fields::FILE, Frames::default()),
+            clouds: Cutting::new(FORMAT, fields, Frames::default()),
             log: McapLog {
                 fault,
                 state: McapState::Idle(output),
@@ -101,18 +101,11 @@ impl<W: Write + Seek> McapWriter<W> {
         }
     }
 
-    /// Adds columns to x, y, z, intensity, ring and time; only before [`Sink::begin`].
-    #[must_use]
-    pub fn with_fields(mut self, fields: Fields) -> Self {
-        self.clouds = self.clouds.with_fields(fields);
-        self
-    }
-
     /// Writes one cloud per revolution of the lidar, which [`Sink::revolution`] ends; only before
     /// [`Sink::begin`].
     #[must_use]
     pub fn by_revolution(mut self) -> Self {
-        self.clouds = self.clouds.by_revolution();
+        self.clouds.by_revolution = true;
         self
     }
 
@@ -292,7 +285,7 @@ impl<W: Write + Seek> Sink for McapWriter<W> {
             self.stage.cut();
             return Err(error);
         }
-        self.log.points = self.clouds.summary().points;
+        self.log.points = self.clouds.summary.points;
         Ok(())
     }
 
@@ -346,7 +339,7 @@ impl<W: Write + Seek> Sink for McapWriter<W> {
             }
         }
         self.log.finish()?;
-        Ok(self.clouds.summary())
+        Ok(self.clouds.summary)
     }
 }
 

@@ -124,13 +124,13 @@ impl Format {
         W: Read + Write + Seek + Send + Sync + 'static,
     {
         match self {
-            Self::Ply => Box::new(ply::PlyWriter::new(output).with_fields(fields)),
-            Self::Pcd => Box::new(pcd::PcdWriter::new(output).with_fields(fields)),
-            Self::Las => Box::new(las::LasWriter::las(output).with_fields(fields)),
-            Self::Laz => Box::new(las::LasWriter::laz(output).with_fields(fields)),
-            Self::E57 => Box::new(e57::E57Writer::new(output).with_fields(fields)),
-            Self::Mcap => Box::new(mcap::McapWriter::new(output).with_fields(fields)),
-            Self::Csv => Box::new(csv::CsvWriter::new(output).with_fields(fields)),
+            Self::Ply => Box::new(ply::PlyWriter::new(output, fields)),
+            Self::Pcd => Box::new(pcd::PcdWriter::new(output, fields)),
+            Self::Las => Box::new(las::LasWriter::las(output, fields)),
+            Self::Laz => Box::new(las::LasWriter::laz(output, fields)),
+            Self::E57 => Box::new(e57::E57Writer::new(output, fields)),
+            Self::Mcap => Box::new(mcap::McapWriter::new(output, fields)),
+            Self::Csv => Box::new(csv::CsvWriter::new(output, fields)),
         }
     }
 }

@@ -26,19 +26,20 @@ pub struct PcdEncoder<W> {
 }
 
 impl<W: Write + Seek> PcdWriter<W> {
-    /// A writer into `output` from its current position, with the columns of [`Fields::FILE`].
-    pub fn new(output: W) -> Self {
-        Self::organised(output, 1)
+    /// A writer into `output` from its current position, with the columns `fields`.
+    pub fn new(output: W, fields: Fields) -> Self {
+        Self::organised(output, 1, fields)
     }
 
     /// A writer of an organised cloud of `rows` rows (at least one), whose points come row by row.
-    pub fn organised(output: W, rows: u64) -> Self {
-        Self::of(PcdEncoder {
+    pub fn organised(output: W, rows: u64, fields: Fields) -> Self {
+        let encoder = PcdEncoder {
             output,
-            layout: RowLayout::new(Fields::FILE),
+            layout: RowLayout::new(fields),
             counts_at: 0,
             rows: rows.max(1),
-        })
+        };
+        Self::of(encoder, fields)
     }
 }
 
@@ -65,8 +66,7 @@ impl<W: Write + Seek> Encoder for PcdEncoder<W> {
         "pcd"
     }
 
-    fn begin(&mut self, fields: Fields, metadata: &Metadata) -> Result<(), EncodeFault> {
-        self.layout = RowLayout::new(fields);
+    fn begin(&mut self, metadata: &Metadata) -> Result<(), EncodeFault> {
         let mut head = String::from("# .PCD v0.7 - Point Cloud Data file format\n");
         for line in metadata.lines() {
             head += &format!("# {line}\n");
@@ -115,7 +115,7 @@ mod tests {
     use crate::tests::samples::{cloud, metadata};
 
     fn written(rows: u64, points: &Points) -> Vec<u8> {
-        let mut pcd = PcdWriter::organised(Cursor::new(Vec::new()), rows);
+        let mut pcd = PcdWriter::organised(Cursor::new(Vec::new()), rows, Fields::FILE);
         pcd.begin(&metadata()).unwrap();
         pcd.points(points).unwrap();
         pcd.finish().unwrap();
@@ -171,7 +171,7 @@ mod tests {
         let (head, _) = parsed(&written(4, &cloud(12)));
         assert!(head.contains(&("WIDTH".to_owned(), "3".to_owned())));
         assert!(head.contains(&("HEIGHT".to_owned(), "4".to_owned())));
-        let mut pcd = PcdWriter::organised(Cursor::new(Vec::new()), 5);
+        let mut pcd = PcdWriter::organised(Cursor::new(Vec::new()), 5, Fields::FILE);
         pcd.begin(&metadata()).unwrap();
         pcd.points(&cloud(12)).unwrap();
         let error = pcd.finish().unwrap_err().to_string();

@@ -75,13 +75,14 @@ fn count_lines(points: u64) -> String {
 }
 
 impl<W: Write + Seek> PlyWriter<W> {
-    /// A writer into `output` from its current position, with the columns of [`Fields::FILE`].
-    pub fn new(output: W) -> Self {
-        Self::of(PlyEncoder {
+    /// A writer into `output` from its current position, with the columns `fields`.
+    pub fn new(output: W, fields: Fields) -> Self {
+        let encoder = PlyEncoder {
             output,
-            layout: RowLayout::new(Fields::FILE),
+            layout: RowLayout::new(fields),
             count_at: 0,
-        })
+        };
+        Self::of(encoder, fields)
     }
 
     /// Returns the output.
@@ -95,8 +96,7 @@ impl<W: Write + Seek> Encoder for PlyEncoder<W> {
         "ply"
     }
 
-    fn begin(&mut self, fields: Fields, metadata: &Metadata) -> Result<(), EncodeFault> {
-        self.layout = RowLayout::new(fields);
+    fn begin(&mut self, metadata: &Metadata) -> Result<(), EncodeFault> {
         let head = head(metadata);
         self.count_at = self.output.stream_position()? + head.len() as u64;
         let header = head + &count_lines(0) + &tail(&self.layout);
@@ -117,14 +117,15 @@ impl<W: Write + Seek> Encoder for PlyEncoder<W> {
 }
 
 impl<W: Write, S: Read + Write + Seek> PlyPipe<W, S> {
-    /// A writer into `output` with the columns of [`Fields::FILE`]; `scratch` is empty.
-    pub fn new(output: W, scratch: S) -> Self {
-        Self::of(PipeEncoder {
+    /// A writer into `output` with the columns `fields`; `scratch` is empty.
+    pub fn new(output: W, scratch: S, fields: Fields) -> Self {
+        let encoder = PipeEncoder {
             output,
             scratch,
-            layout: RowLayout::new(Fields::FILE),
+            layout: RowLayout::new(fields),
             head: String::new(),
-        })
+        };
+        Self::of(encoder, fields)
     }
 
     #[cfg(test)]
@@ -138,8 +139,7 @@ impl<W: Write, S: Read + Write + Seek> Encoder for PipeEncoder<W, S> {
         "ply"
     }
 
-    fn begin(&mut self, fields: Fields, metadata: &Metadata) -> Result<(), EncodeFault> {
-        self.layout = RowLayout::new(fields);
+    fn begin(&mut self, metadata: &Metadata) -> Result<(), EncodeFault> {
         self.head = head(metadata);
         Ok(())
     }

@@ -89,11 +89,6 @@ impl Cdr {
         self.bytes.get_mut(start..).unwrap_or_default()
     }
 
-    /// Removes the last byte.
-    pub(super) fn pop(&mut self) {
-        self.bytes.pop();
-    }
-
     /// Replaces the number written at `offset`.
     pub(super) fn set_u32(&mut self, offset: usize, value: u32) {
         if let Some(place) = self.bytes.get_mut(offset..offset + 4) {

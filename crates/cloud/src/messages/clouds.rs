@@ -1,13 +1,18 @@
 //! A scan as `sensor_msgs/PointCloud2` messages, one per sweep, for networks and recordings. One
 //! message is held at a time.
 
-use units::{Host, Stamp};
+use std::ops::Range;
 
-use super::cutter::Cutter;
+use units::{Host, Span, Stamp};
+
 use super::{CloudMessage, CloudMessageError, Frames};
 use crate::{Fields, Points, Sink, SinkError, Summary, TiltTrack};
 
 const FORMAT: &str = "ros2";
+/// Greatest number of points of a message: 23 MB, four seconds of a VLP-16.
+pub const MOST_POINTS: u32 = 1 << 20;
+/// Greatest duration of a message: the f32 times of its points then have steps of 0.5 us.
+pub const MOST_SPAN: Span = Span::from_secs(8);
 
 /// A whole message.
 #[derive(Clone, Copy, Debug)]
@@ -26,9 +31,15 @@ pub(crate) struct Cutting {
     format: &'static str,
     frames: Frames,
     tilts: bool,
-    cutter: Cutter,
+    /// Whether the caller ends clouds, one per revolution of the lidar; set before the first batch.
+    pub(crate) by_revolution: bool,
+    /// Ends of the sweeps, in order of time.
+    sweep_ends: Vec<Stamp<Host>>,
+    /// Number of ends that points have passed.
+    passed: usize,
     cloud: CloudMessage,
-    summary: Summary,
+    /// Summary of all batches so far.
+    pub(crate) summary: Summary,
 }
 
 impl Cutting {
@@ -39,22 +50,12 @@ impl Cutting {
             format,
             frames,
             tilts: false,
-            cutter: Cutter::default(),
+            by_revolution: false,
+            sweep_ends: Vec::new(),
+            passed: 0,
             cloud: CloudMessage::new(fields),
             summary: Summary::default(),
         }
-    }
-
-    /// Sets the columns; only before the first batch.
-    pub(crate) fn with_fields(self, fields: Fields) -> Self {
-        let cloud = CloudMessage::new(fields);
-        Self { cloud, ..self }
-    }
-
-    /// Makes one cloud per revolution of the lidar; only before the first batch.
-    pub(crate) fn by_revolution(self) -> Self {
-        let cutter = Cutter::by_revolution();
-        Self { cutter, ..self }
     }
 
     /// The columns that batches must have.
@@ -62,15 +63,12 @@ impl Cutting {
         self.cloud.fields()
     }
 
-    /// Summary of all batches so far.
-    pub(crate) const fn summary(&self) -> Summary {
-        self.summary
-    }
-
     /// Sets the track of the tilt: the frame of the clouds, and their ends.
     pub(crate) fn tilt(&mut self, track: &TiltTrack) {
         self.tilts = track.mount.is_some();
-        self.cutter.sweep(&track.sweeps);
+        if !self.by_revolution {
+            self.sweep_ends = track.sweeps.iter().map(|sweep| sweep.1).collect();
+        }
     }
 
     /// Ends a revolution of the lidar.
@@ -78,7 +76,7 @@ impl Cutting {
         &mut self,
         take: impl FnOnce(Cloud<'_>) -> Result<(), SinkError>,
     ) -> Result<(), SinkError> {
-        match self.cutter.is_by_revolution() {
+        match self.by_revolution {
             true => self.end(take),
             false => Ok(()),
         }
@@ -99,12 +97,12 @@ impl Cutting {
     ) -> Result<(), SinkError> {
         let mut rows = 0..batch.len();
         while let Some(time) = batch.time().get(rows.start).copied() {
-            let end = self.cutter.end(&self.cloud, batch.time(), &rows);
+            let end = self.cloud_end(batch.time(), &rows);
             if end == rows.start && self.cloud.points() > 0 {
                 self.end(&mut *take)?;
                 continue;
             }
-            if end == rows.start && self.cutter.go_on_to(time) {
+            if end == rows.start && self.go_on_to(time) {
                 continue;
             }
             // A point always fits into an empty message.
@@ -127,15 +125,39 @@ impl Cutting {
         if points == 0 {
             return Ok(());
         }
-        let message = self.cloud.message();
-        let taken = take(Cloud {
-            bytes: message.bytes(),
+        take(Cloud {
+            bytes: self.cloud.finish(),
             points,
             times,
-        });
-        drop(message);
-        self.cloud.clear();
-        taken
+        })
+    }
+
+    /// End of those of `rows` that belong to the current cloud.
+    fn cloud_end(&self, times: &[Stamp<Host>], rows: &Range<usize>) -> usize {
+        let room = MOST_POINTS.saturating_sub(self.cloud.points()) as usize;
+        let end = rows.end.min(rows.start.saturating_add(room));
+        let part = times.get(rows.start..end).unwrap_or_default();
+        let first = match self.cloud.points() {
+            0 => part.first().copied(),
+            _ => Some(self.cloud.times().0),
+        };
+        let Some(first) = first else {
+            return end;
+        };
+        let mut latest = first.saturating_add(MOST_SPAN);
+        if let Some(sweep_end) = self.sweep_ends.get(self.passed) {
+            latest = latest.min(*sweep_end);
+        }
+        let over = part.iter().position(|time| *time > latest);
+        over.map_or(end, |over| rows.start + over)
+    }
+
+    /// Advances to the sweep of `time`, or the next one; returns whether a sweep ended.
+    fn go_on_to(&mut self, time: Stamp<Host>) -> bool {
+        let before = self.passed;
+        let ends = self.sweep_ends.iter().skip(before);
+        self.passed += ends.take_while(|end| **end < time).count();
+        self.passed > before
     }
 
     fn encoding(&self, error: CloudMessageError) -> SinkError {
@@ -185,7 +207,7 @@ impl<F: FnMut(Cloud<'_>) -> Result<(), SinkError>> Sink for Clouds<F> {
 
     fn finish(&mut self) -> Result<Summary, SinkError> {
         self.cutting.end(&mut self.take)?;
-        Ok(self.cutting.summary())
+        Ok(self.cutting.summary)
     }
 }
 
@@ -229,7 +251,7 @@ mod tests {
     /// The messages equal those of a recording, bit for bit, for any batches.
     #[test]
     fn clouds_equal_those_of_a_recording() {
-        let mut writer = McapWriter::new(Cursor::new(Vec::new()));
+        let mut writer = McapWriter::new(Cursor::new(Vec::new()), Fields::FILE);
         feed(&mut writer, 100);
         let bytes = writer.into_inner().unwrap().into_inner();
         let recorded: Vec<Vec<u8>> = MessageStream::new(&bytes)

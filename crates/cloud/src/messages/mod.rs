@@ -7,7 +7,6 @@
 
 pub mod cdr;
 mod clouds;
-pub(crate) mod cutter;
 mod definitions;
 mod diagnostics;
 mod joint_state;
@@ -20,11 +19,10 @@ use units::{Host, Stamp};
 use self::cdr::Cdr;
 
 pub(crate) use clouds::Cutting;
-pub use clouds::{Cloud, Clouds};
-pub use cutter::{MOST_POINTS, MOST_SPAN};
+pub use clouds::{Cloud, Clouds, MOST_POINTS, MOST_SPAN};
 pub use diagnostics::diagnostic_array;
 pub use joint_state::joint_state;
-pub use point_cloud2::{CloudMessage, CloudMessageError, FinishedMessage, fields_of};
+pub use point_cloud2::{CloudMessage, CloudMessageError, fields_of};
 pub use transforms::{Frames, Rotation, Transform, tf_message};
 pub use trigger::{TRIGGER, trigger_response};
 

@@ -104,18 +104,10 @@ impl CloudMessage {
         self.points
     }
 
-    /// The header's stamp, which is the time of the earliest point, and the time of the last. 0 for
-    /// an empty cloud.
+    /// The header's stamp, which is the time of the earliest point, and the time of the last.
     #[must_use]
     pub const fn times(&self) -> (Stamp<Host>, Stamp<Host>) {
         (self.first, self.last)
-    }
-
-    /// Removes the points and keeps the memory.
-    pub fn clear(&mut self) {
-        self.points = 0;
-        self.first = Stamp::from_nanos(0);
-        self.last = Stamp::from_nanos(0);
     }
 
     /// Adds `rows` of a batch. The first batch sets the header's stamp and `frame`.
@@ -157,18 +149,20 @@ impl CloudMessage {
         Ok(())
     }
 
-    /// The complete message. More points may follow, for a longer one.
-    pub fn message(&mut self) -> FinishedMessage<'_> {
+    /// Completes the message and returns its bytes, encapsulation header included. The next points
+    /// begin a new message.
+    pub fn finish(&mut self) -> &[u8] {
+        let points = std::mem::take(&mut self.points);
         let bytes = u32::try_from(self.point_bytes)
             .unwrap_or(u32::MAX)
-            .saturating_mul(self.points);
+            .saturating_mul(points);
         let places = self.places;
-        self.cdr.set_u32(places.width, self.points);
+        self.cdr.set_u32(places.width, points);
         self.cdr.set_u32(places.row_bytes, bytes);
         self.cdr.set_u32(places.length, bytes);
         // is_dense: every point has a place.
         self.cdr.u8(1);
-        FinishedMessage(&mut self.cdr)
+        self.cdr.bytes()
     }
 
     /// Writes everything before the points.
@@ -201,24 +195,6 @@ impl CloudMessage {
         self.places.row_bytes = place(cdr);
         self.places.length = place(cdr);
         Ok(())
-    }
-}
-
-/// A complete message; its ending is removed on drop.
-#[derive(Debug)]
-pub struct FinishedMessage<'a>(&'a mut Cdr);
-
-impl FinishedMessage<'_> {
-    /// Its bytes, encapsulation header included.
-    #[must_use]
-    pub fn bytes(&self) -> &[u8] {
-        self.0.bytes()
-    }
-}
-
-impl Drop for FinishedMessage<'_> {
-    fn drop(&mut self) {
-        self.0.pop();
     }
 }
 
@@ -309,8 +285,7 @@ mod tests {
             message.push(&cloud, rows, "lidar").unwrap();
         }
         assert_eq!(message.points(), 100);
-        let whole = message.message();
-        let (fields, data, step) = read(whole.bytes());
+        let (fields, data, step) = read(message.finish());
         let names: Vec<_> = fields
             .iter()
             .map(|(n, o, d)| (n.as_str(), *o, *d))
@@ -344,8 +319,7 @@ mod tests {
         let cloud = samples::cloud_from(3, START_NS);
         let mut message = CloudMessage::new(Fields::ALL);
         message.push(&cloud, 0..3, "lidar").unwrap();
-        let whole = message.message();
-        let (fields, data, step) = read(whole.bytes());
+        let (fields, data, step) = read(message.finish());
         assert_eq!(step, 22 + 1 + 8 + 4 + 1);
         assert!(!fields.iter().any(|(name, ..)| name == "tilt"));
         for (row, point) in data.chunks(step).zip(cloud.iter()) {
@@ -360,19 +334,18 @@ mod tests {
     }
 
     #[test]
-    fn a_message_can_grow_and_be_reused() {
+    fn a_message_can_be_reused() {
         let cloud = samples::cloud_from(10, START_NS);
         let mut message = CloudMessage::new(Fields::FILE);
-        message.push(&cloud, 0..4, "lidar").unwrap();
-        drop(message.message());
-        message.push(&cloud, 4..10, "lidar").unwrap();
-        let grown = message.message().bytes().to_vec();
-        message.clear();
-        assert_eq!((message.points(), message.times().1.as_nanos()), (0, 0));
+        for rows in [0..4, 4..10] {
+            message.push(&cloud, rows, "lidar").unwrap();
+        }
+        let grown = message.finish().to_vec();
+        assert_eq!(message.points(), 0);
         message.push(&cloud, 0..10, "lidar").unwrap();
-        assert_eq!(message.message().bytes(), grown);
         let (first, last) = message.times();
         assert_eq!((first.as_nanos(), last), (START_NS, cloud.time()[9]));
+        assert_eq!(message.finish(), grown);
     }
 
     #[test]

@@ -173,22 +173,10 @@ impl<'a> PcdReader<'a> {
     }
 
     fn binary(&self) -> Result<Positions, ReadError> {
-        let rows = self.text.bytes.get(self.start..).unwrap_or_default();
-        if self
-            .points
-            .checked_mul(self.row)
-            .is_none_or(|size| size > rows.len())
-        {
-            return Err(self.short(rows.len(), "bytes"));
-        }
-        let read = |row: &[u8], column: PcdColumn| {
-            let bytes = row.get(column.byte..).unwrap_or_default();
-            column.number.read(bytes, false).unwrap_or(f64::NAN)
-        };
-        let rows = rows.chunks_exact(self.row.max(1)).take(self.points);
-        Ok(rows
-            .map(|row| self.columns.map(|column| read(row, column)))
-            .collect())
+        let columns = self.columns.map(|column| (column.byte, column.number));
+        let size = (self.points, self.row);
+        let table = self.text.table(self.start, size, columns, false);
+        table.map_err(|got| self.short(got, "bytes"))
     }
 
     /// Two sizes, then column by column.

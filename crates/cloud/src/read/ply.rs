@@ -175,43 +175,28 @@ fn vertices(
     start: usize,
     big_endian: bool,
 ) -> Result<Positions, ReadError> {
-    let mut columns = [(0, SourceNumber::F32); 3];
-    for (column, name) in columns.iter_mut().zip(["x", "y", "z"]) {
-        let mut offset = 0;
-        for (own, property) in element
-            .properties
-            .iter()
-            .take(place(text, element, name)? + 1)
-        {
-            let PlyProperty::One(number) = property else {
-                return Err(text.wrong(0, "vertices without lists", format!("a list {own}")));
-            };
-            *column = (offset, *number);
-            offset += number.bytes();
-        }
+    const AXES: [&str; 3] = ["x", "y", "z"];
+    for name in AXES {
+        place(text, element, name)?;
     }
+    let mut columns = [None; 3];
     let mut row = 0_usize;
     for (own, property) in &element.properties {
         let PlyProperty::One(number) = property else {
             return Err(text.wrong(0, "vertices without lists", format!("a list {own}")));
         };
+        for (column, name) in columns.iter_mut().zip(AXES) {
+            if own == name {
+                column.get_or_insert((row, *number));
+            }
+        }
         row += number.bytes();
     }
-    let rows = text.bytes.get(start..).unwrap_or_default();
-    if element
-        .count
-        .checked_mul(row)
-        .is_none_or(|size| size > rows.len())
-    {
+    // Every axis has been found above.
+    let columns = columns.map(|column| column.unwrap_or((0, SourceNumber::F32)));
+    let table = text.table(start, (element.count, row), columns, big_endian);
+    table.map_err(|got| {
         let expected = format!("{} vertices of {row} bytes", element.count);
-        return Err(text.wrong(start, expected, format!("{} bytes", rows.len())));
-    }
-    let read = |row: &[u8], (offset, number): (usize, SourceNumber)| {
-        let bytes = row.get(offset..).unwrap_or_default();
-        number.read(bytes, big_endian).unwrap_or(f64::NAN)
-    };
-    let rows = rows.chunks_exact(row.max(1)).take(element.count);
-    Ok(rows
-        .map(|bytes| columns.map(|column| read(bytes, column)))
-        .collect())
+        text.wrong(start, expected, format!("{got} bytes"))
+    })
 }

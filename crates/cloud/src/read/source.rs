@@ -106,6 +106,32 @@ impl<'a> SourceFile<'a> {
         }
     }
 
+    /// Positions in a table of `count` binary rows at `start`, by offset and type of x, y and z. An
+    /// error is the number of bytes of a file that is too short.
+    pub(super) fn table(
+        &self,
+        start: usize,
+        (count, row_bytes): (usize, usize),
+        columns: [(usize, SourceNumber); 3],
+        big_endian: bool,
+    ) -> Result<Positions, usize> {
+        let rows = self.bytes.get(start..).unwrap_or_default();
+        if !count
+            .checked_mul(row_bytes)
+            .is_some_and(|size| size <= rows.len())
+        {
+            return Err(rows.len());
+        }
+        let read = |row: &[u8], (offset, number): (usize, SourceNumber)| {
+            let bytes = row.get(offset..).unwrap_or_default();
+            number.read(bytes, big_endian).unwrap_or(f64::NAN)
+        };
+        let rows = rows.chunks_exact(row_bytes.max(1)).take(count);
+        Ok(rows
+            .map(|row| columns.map(|column| read(row, column)))
+            .collect())
+    }
+
     /// Points as text, one per line from `offset` on, separated by `separated`, with the columns of
     /// x, y and z. Empty lines and `#` are skipped.
     pub(super) fn rows(

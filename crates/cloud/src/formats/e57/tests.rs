@@ -9,7 +9,7 @@ use crate::{Sink, SinkError};
 
 fn written(fields: Fields, batches: &[Points]) -> Vec<u8> {
     let file = SharedOutput::default();
-    let mut writer = E57Writer::new(file.clone()).with_fields(fields);
+    let mut writer = E57Writer::new(file.clone(), fields);
     writer.begin(&metadata()).unwrap();
     for batch in batches {
         writer.points(batch).unwrap();
@@ -144,7 +144,7 @@ fn equal_points_give_equal_bytes_and_different_points_another_identifier() {
 #[test]
 fn metadata_cannot_break_the_description() {
     let file = SharedOutput::default();
-    let mut writer = E57Writer::new(file.clone());
+    let mut writer = E57Writer::new(file.clone(), Fields::FILE);
     let metadata = Metadata {
         source: "]]></description>".into(),
         comments: vec!["<&>]]>".into()],
@@ -160,7 +160,7 @@ fn metadata_cannot_break_the_description() {
 #[test]
 fn invalid_positions_are_refused_and_earlier_batches_kept() {
     let file = SharedOutput::default();
-    let mut writer = E57Writer::new(file.clone());
+    let mut writer = E57Writer::new(file.clone(), Fields::FILE);
     writer.begin(&metadata()).unwrap();
     writer.points(&cloud_from(10, NOW_NS)).unwrap();
     let mut nowhere = Points::new(Fields::FILE);
@@ -191,7 +191,7 @@ fn a_full_disk_is_an_error_at_every_byte_and_never_a_panic() {
     let cloud = cloud_from(200, NOW_NS);
     let whole = written(Fields::FILE, std::slice::from_ref(&cloud)).len() as u64;
     for room in (0..=whole + 100).step_by(97) {
-        let mut writer = E57Writer::new(SmallDisk::new(room));
+        let mut writer = E57Writer::new(SmallDisk::new(room), Fields::FILE);
         let result = writer
             .begin(&metadata())
             .and_then(|()| writer.points(&cloud))
@@ -211,7 +211,7 @@ fn a_full_disk_is_an_error_at_every_byte_and_never_a_panic() {
 #[test]
 fn a_dropped_writer_leaves_no_cloud() {
     let file = SharedOutput::default();
-    let mut writer = E57Writer::new(file.clone());
+    let mut writer = E57Writer::new(file.clone(), Fields::FILE);
     writer.begin(&metadata()).unwrap();
     writer.points(&cloud_from(10_000, NOW_NS)).unwrap();
     drop(writer);

@@ -27,8 +27,8 @@ fn points_of(reader: &mut Reader) -> impl Iterator<Item = las::Result<las::Point
 fn both(batches: &[Points]) -> [Vec<u8>; 2] {
     let empty = || Cursor::new(vec![]);
     [
-        written(LasWriter::las(empty()), &metadata(), batches),
-        written(LasWriter::laz(empty()), &metadata(), batches),
+        written(LasWriter::las(empty(), Fields::FILE), &metadata(), batches),
+        written(LasWriter::laz(empty(), Fields::FILE), &metadata(), batches),
     ]
 }
 
@@ -101,7 +101,11 @@ fn a_real_cloud_is_not_marked_simulated() {
         simulated: false,
         ..metadata()
     };
-    let bytes = written(LasWriter::laz(Cursor::new(vec![])), &metadata, &[cloud(3)]);
+    let bytes = written(
+        LasWriter::laz(Cursor::new(vec![]), Fields::FILE),
+        &metadata,
+        &[cloud(3)],
+    );
     assert!(!bytes.windows(9).any(|window| window == b"SIMULATED"));
     let mut reader = Reader::new(Cursor::new(bytes)).unwrap();
     assert!(points_of(&mut reader).all(|point| !point.unwrap().is_synthetic));
@@ -111,7 +115,7 @@ fn a_real_cloud_is_not_marked_simulated() {
 fn every_set_of_columns_can_be_requested() {
     let given = cloud(20);
     for (fields, extra) in [(Fields::NONE, 0), (Fields::ALL, 27)] {
-        let writer = LasWriter::laz(Cursor::new(vec![])).with_fields(fields);
+        let writer = LasWriter::laz(Cursor::new(vec![]), fields);
         let bytes = written(writer, &metadata(), std::slice::from_ref(&given));
         let mut reader = Reader::new(Cursor::new(bytes)).unwrap();
         for (got, expected) in points_of(&mut reader).map(Result::unwrap).zip(given.iter()) {
@@ -151,8 +155,8 @@ fn long_and_non_ascii_names_are_shortened() {
         ..metadata()
     };
     for writer in [
-        LasWriter::las(Cursor::new(vec![])),
-        LasWriter::laz(Cursor::new(vec![])),
+        LasWriter::las(Cursor::new(vec![]), Fields::FILE),
+        LasWriter::laz(Cursor::new(vec![]), Fields::FILE),
     ] {
         let bytes = written(writer, &metadata, &[cloud(5)]);
         let mut reader = Reader::new(Cursor::new(bytes)).unwrap();
@@ -179,7 +183,7 @@ fn coordinates_out_of_range_are_reported() {
             position_m: [0.0, bad, 0.0],
             ..Point::default()
         });
-        let mut writer = LasWriter::las(Cursor::new(vec![]));
+        let mut writer = LasWriter::las(Cursor::new(vec![]), Fields::FILE);
         writer.begin(&metadata()).unwrap();
         writer.points(&cloud(10)).unwrap();
         let result = writer.points(&batch);
@@ -209,7 +213,7 @@ fn a_full_disk_is_an_error_at_every_byte_and_never_a_panic() {
     for make in [LasWriter::las, LasWriter::laz] {
         let [las, laz] = both(&[cloud(20)]).map(|bytes| bytes.len() as u64);
         for room in (0..las.max(laz)).step_by(3) {
-            let mut writer = make(SmallDisk::new(room));
+            let mut writer = make(SmallDisk::new(room), Fields::FILE);
             let result = writer
                 .begin(&metadata())
                 .and_then(|()| writer.points(&cloud(20)))
@@ -222,7 +226,7 @@ fn a_full_disk_is_an_error_at_every_byte_and_never_a_panic() {
                 }
             }
         }
-        let mut writer = make(SmallDisk::new(100));
+        let mut writer = make(SmallDisk::new(100), Fields::FILE);
         assert!(writer.begin(&metadata()).is_err());
         assert!(matches!(
             writer.points(&cloud(1)),
@@ -234,7 +238,7 @@ fn a_full_disk_is_an_error_at_every_byte_and_never_a_panic() {
 #[test]
 fn a_file_truncated_by_a_full_disk_cannot_be_finished() {
     let header = both(&[])[0].len() as u64;
-    let mut writer = LasWriter::las(SmallDisk::new(header + 500));
+    let mut writer = LasWriter::las(SmallDisk::new(header + 500), Fields::FILE);
     writer.begin(&metadata()).unwrap();
     writer.points(&cloud(10)).unwrap();
     let error = writer.points(&cloud(10)).unwrap_err();
@@ -256,7 +260,7 @@ fn a_file_truncated_by_a_full_disk_cannot_be_finished() {
 #[test]
 fn a_dropped_writer_leaves_a_file_of_its_batches() {
     let file = crate::tests::samples::SharedOutput::default();
-    let mut writer = LasWriter::laz(file.clone());
+    let mut writer = LasWriter::laz(file.clone(), Fields::FILE);
     writer.begin(&metadata()).unwrap();
     writer.points(&cloud(12)).unwrap();
     drop(writer);

@@ -107,7 +107,7 @@ fn written(
 }
 
 fn new() -> McapWriter<Cursor<Vec<u8>>> {
-    McapWriter::new(Cursor::new(Vec::new()))
+    McapWriter::new(Cursor::new(Vec::new()), Fields::FILE)
 }
 
 #[test]
@@ -241,7 +241,7 @@ fn a_full_disk_is_an_error_at_every_byte_and_never_a_panic() {
     let cloud = cloud_from(50, NOW_NS);
     let whole = written(new(), Some(&track()), std::slice::from_ref(&cloud)).len() as u64;
     for room in (0..=whole + 10).step_by(7) {
-        let mut writer = McapWriter::new(SmallDisk::new(room));
+        let mut writer = McapWriter::new(SmallDisk::new(room), Fields::FILE);
         let result = writer
             .begin(&metadata())
             .and_then(|()| writer.tilt(&track()))
@@ -261,7 +261,7 @@ fn a_full_disk_is_an_error_at_every_byte_and_never_a_panic() {
 #[test]
 fn an_aborted_file_has_its_complete_chunks() {
     let file = SharedOutput::default();
-    let mut writer = McapWriter::new(file.clone());
+    let mut writer = McapWriter::new(file.clone(), Fields::FILE);
     writer.begin(&metadata()).unwrap();
     writer.tilt(&track()).unwrap();
     let mut before = 0;

@@ -72,8 +72,8 @@ fn read(bytes: &[u8]) -> Read {
 }
 
 fn written(fields: Fields, batches: &[Points]) -> (Vec<u8>, Vec<u8>) {
-    let mut file = PlyWriter::new(Cursor::new(vec![])).with_fields(fields);
-    let mut pipe = PlyPipe::new(vec![], Cursor::new(vec![])).with_fields(fields);
+    let mut file = PlyWriter::new(Cursor::new(vec![]), fields);
+    let mut pipe = PlyPipe::new(vec![], Cursor::new(vec![]), fields);
     let mut both = (&mut file, &mut pipe);
     both.begin(&metadata()).unwrap();
     for batch in batches {
@@ -208,7 +208,7 @@ fn a_full_disk_leaves_a_valid_file_of_earlier_batches() {
     let whole = written(Fields::FILE, &[cloud(10), cloud(10)]).0.len() as u64;
     let mut reached = std::collections::BTreeSet::new();
     for room in 0..whole {
-        let mut writer = PlyWriter::new(SmallDisk::new(room));
+        let mut writer = PlyWriter::new(SmallDisk::new(room), Fields::FILE);
         if let Err(error) = writer.begin(&metadata()) {
             assert!(
                 matches!(error, SinkError::Write { points: 0, .. }),
@@ -239,7 +239,7 @@ fn a_full_disk_leaves_a_valid_file_of_earlier_batches() {
 
 #[test]
 fn calls_out_of_order_are_refused() {
-    let mut writer = PlyWriter::new(Cursor::new(vec![]));
+    let mut writer = PlyWriter::new(Cursor::new(vec![]), Fields::FILE);
     assert!(matches!(
         writer.points(&cloud(1)),
         Err(SinkError::Order {
@@ -268,7 +268,7 @@ fn calls_out_of_order_are_refused() {
 fn a_file_may_start_at_an_offset_of_the_output() {
     let mut output = Cursor::new(vec![]);
     output.write_all(b"before").unwrap();
-    let mut writer = PlyWriter::new(output);
+    let mut writer = PlyWriter::new(output, Fields::FILE);
     writer.begin(&metadata()).unwrap();
     writer.points(&cloud(3)).unwrap();
     writer.finish().unwrap();
