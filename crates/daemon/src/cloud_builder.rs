@@ -19,9 +19,7 @@ use sim::Truth;
 use engine::capture::run;
 use engine::failure::{Failure, Kind};
 use engine::output::{Buffered, Target, file_failure};
-use engine::reconstruct::replay::{self, Reconstruction};
 use engine::reconstruct::report::ScanReport;
-use engine::reconstruct::source::Source;
 use engine::service::events::MessageLevel;
 use engine::service::scan_record::ScanState;
 
@@ -139,8 +137,7 @@ fn build(state: &Arc<DaemonState>, job: &CloudJob) {
     if made.is_ok()
         && let Err(failure) = store_thumbnail(&thumbnail, &state.scans.place(id).join(THUMBNAIL))
     {
-        let events = state.events();
-        events.message(MessageLevel::Warning, failure.message, failure.help);
+        state.events().failure(MessageLevel::Warning, failure);
     }
     let waits = made.is_err() && quota.refused().is_some();
     let no_cloud = made.as_ref().err().map(run::no_cloud);
@@ -208,13 +205,16 @@ fn cloud(
         let file = Buffered::new(QuotaFile::new(file, Arc::clone(quota)));
         Box::new((Format::Ply.writer(file, Fields::FILE), thumbnail.clone()))
     })?;
-    let source = Source::open(&state.log(&job.id), None)?;
-    let request = Reconstruction {
-        truth: job.truth.as_ref(),
-        lost_records: job.lost_records,
-        ..Reconstruction::of_log(&source, job.accuracy, &state.abandon)
-    };
-    replay::make(&request, target).map_err(|failure| match quota.refused() {
+    let log = state.log(&job.id);
+    let log = (log.as_path(), job.accuracy);
+    let made = run::cloud(
+        log,
+        job.truth.as_ref(),
+        job.lost_records,
+        &state.abandon,
+        target,
+    );
+    made.map_err(|failure| match quota.refused() {
         Some(full) => full.clone(),
         None => failure,
     })

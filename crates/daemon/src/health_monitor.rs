@@ -50,8 +50,7 @@ fn check_disk(state: &DaemonState) {
     if free < reserve {
         let failure = disk_full(free, reserve);
         if state.service.stop(Some(failure.clone())) {
-            let events = state.events();
-            events.message(MessageLevel::Error, failure.message, failure.help);
+            state.events().failure(MessageLevel::Error, failure);
         }
     }
 }

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use engine::config::daemon::DaemonConfig;
 use engine::failure::Failure;
 use engine::service::events::{Event, Events, MessageLevel};
-use engine::service::scan_record::{ScanRecord, ScanState};
+use engine::service::scan_record::{ScanRecord, ScanState, ScanView};
 use engine::service::status::DiskStatus;
 use engine::service::{CaptureEnd, CaptureResult, DeviceService};
 use scanner::Accuracy;
@@ -146,11 +146,7 @@ impl DaemonState {
 
     fn capture_failed(&self, id: &str, failure: Failure) {
         Counters::count(&self.counters.failed);
-        self.events().message(
-            MessageLevel::Error,
-            failure.message.clone(),
-            failure.help.clone(),
-        );
+        self.events().failure(MessageLevel::Error, failure.clone());
         self.change_scan(id, |record| {
             record.state = ScanState::Failed;
             record.why = Some(failure);
@@ -175,16 +171,18 @@ impl DaemonState {
     /// Changes a scan and reports it. The list has a change that the disk does not take.
     pub fn change_scan(&self, id: &str, change: impl FnOnce(&mut ScanRecord)) {
         let changed = self.scans.change(id, change).unwrap_or_else(|failure| {
-            let events = self.events();
-            events.message(MessageLevel::Error, failure.message, failure.help);
+            self.events().failure(MessageLevel::Error, failure);
             self.scans.view(id)
         });
         if let Some(scan) = changed {
-            self.events().send(Event::Scan {
-                scan: Box::new(scan),
-                deleted: false,
-            });
+            self.send_scan(scan, false);
         }
+    }
+
+    /// Sends a scan that has changed or was deleted.
+    pub(crate) fn send_scan(&self, scan: ScanView, deleted: bool) {
+        let scan = Box::new(scan);
+        self.events().send(Event::Scan { scan, deleted });
     }
 
     /// Deletes the oldest scans beyond the configured number and size.
@@ -199,10 +197,7 @@ impl DaemonState {
                 ),
                 None,
             );
-            self.events().send(Event::Scan {
-                scan: Box::new(scan),
-                deleted: true,
-            });
+            self.send_scan(scan, true);
         }
     }
 

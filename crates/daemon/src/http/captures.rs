@@ -9,7 +9,6 @@ use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::Response;
 use engine::capture_request::CaptureRequest;
 use engine::failure::{Failure, Kind};
-use engine::service::events::Event;
 use engine::service::scan_record::check_name;
 use engine::service::status::AxisTask;
 use engine::service::{AxisLease, DeviceService, LeaseError};
@@ -93,10 +92,7 @@ pub fn start(state: &Arc<DaemonState>, request: &CaptureRequest) -> Result<Strin
     }
     Counters::count(&state.counters.captures);
     if let Some(scan) = state.scans.view(&id) {
-        state.events().send(Event::Scan {
-            scan: Box::new(scan),
-            deleted: false,
-        });
+        state.send_scan(scan, false);
     }
     Ok(id)
 }

@@ -10,7 +10,6 @@ use serde::Serialize;
 use super::Api;
 use super::refusal::Refusal;
 use engine::failure::{Failure, Kind};
-use engine::service::events::Event;
 use engine::service::scan_record::ScanView;
 
 /// `GET /scans`.
@@ -52,9 +51,6 @@ pub async fn delete(
         Failure { kind, ..failure }
     })?;
     let scan = deleted.ok_or_else(|| Refusal::no_scan(&id))?;
-    api.state.events().send(Event::Scan {
-        scan: Box::new(scan),
-        deleted: true,
-    });
+    api.state.send_scan(scan, true);
     Ok(StatusCode::NO_CONTENT)
 }

@@ -11,7 +11,7 @@ use drive::DriveClient;
 use io::port::{Port, RecordingPort};
 use io::udp::ListenConfig;
 use protocol::record::{DriveLink, Record};
-use scanner::ScanConfig;
+use scanner::{Accuracy, ScanConfig};
 use sim::Truth;
 
 use crate::capture::completeness::{self, SilenceWatch};
@@ -190,22 +190,22 @@ pub fn silence(config: &ListenConfig) -> Failure {
     ))
 }
 
-/// Makes the cloud of a recorded capture.
+/// Makes the cloud of a capture from its log.
 ///
 /// # Errors
 /// As [`replay::make`].
 pub fn cloud(
-    plan: &CapturePlan,
+    (log, accuracy): (&Path, Accuracy),
     truth: Option<&Truth>,
     lost_records: u64,
     interrupt: &AtomicBool,
     target: Target,
 ) -> Result<ScanReport, Failure> {
-    let source = Source::open(&plan.log, None)?;
+    let source = Source::open(log, None)?;
     let request = Reconstruction {
         truth,
         lost_records,
-        ..Reconstruction::of_log(&source, plan.accuracy, interrupt)
+        ..Reconstruction::of_log(&source, accuracy, interrupt)
     };
     replay::make(&request, target)
 }

@@ -24,7 +24,9 @@ use super::warnings::{angle_warnings, incomplete_sweeps};
 use crate::failure::{Failure, Kind};
 use crate::output::{Target, sink_failure};
 use crate::reconstruct::diagnostics as checks;
-use crate::reconstruct::report::{self, ScanReport, StepReport, SyncReport, ToleranceReport};
+use crate::reconstruct::report::{
+    self, ScanReport, StepReport, SyncReport, ToleranceReport, TruthErrors,
+};
 use crate::reconstruct::source::{Pass, Source};
 use crate::reconstruct::utc::{InUtc, UtcSurvey};
 
@@ -91,8 +93,13 @@ pub fn make(request: &Reconstruction<'_>, mut target: Target) -> Result<ScanRepo
             let mut comparison = Comparison::new(|time: units::Stamp<units::Lidar>, laser| {
                 truth.point(time.as_nanos(), laser)
             });
-            let written = scan(request, &mut (target.sink(), &mut comparison), &output)?;
-            written.with_truth(comparison.report())
+            let mut written = scan(request, &mut (target.sink(), &mut comparison), &output)?;
+            let errors = comparison.report();
+            written.truth = Some(TruthErrors {
+                rms_m: errors.rms_m,
+                worst_m: errors.worst_m,
+            });
+            written
         }
     };
     target.commit()?;

@@ -283,15 +283,3 @@ impl SweepReport {
         }
     }
 }
-
-impl ScanReport {
-    /// Adds the comparison with the truth.
-    #[must_use]
-    pub fn with_truth(mut self, report: analysis::truth::TruthReport) -> Self {
-        self.truth = Some(TruthErrors {
-            rms_m: report.rms_m,
-            worst_m: report.worst_m,
-        });
-        self
-    }
-}

@@ -15,6 +15,7 @@ pub use tokio::sync::broadcast::error::RecvError;
 use super::live_preview::PreviewFrame;
 use super::scan_record::ScanView;
 use super::status::ServiceStatus;
+use crate::failure::Failure;
 
 /// Event clients at once (docs/src/daemon.md).
 pub const SUBSCRIBERS: usize = 32;
@@ -142,6 +143,11 @@ impl Events {
             MessageLevel::Error => tracing::error!("{line}"),
         }
         self.send(Event::Message { level, text, help });
+    }
+
+    /// Sends a failure as a message, with its help.
+    pub fn failure(&self, level: MessageLevel, failure: Failure) {
+        self.message(level, failure.message, failure.help);
     }
 
     /// Whether anything subscribes.

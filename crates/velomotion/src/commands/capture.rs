@@ -55,7 +55,7 @@ pub fn run(arguments: &cli::Capture, common: &Common) -> Result<CommandOutput, F
     let stdout = target.is_stdout();
     let CaptureEnd { outcome, truth } = recording;
     let mut made = run::cloud(
-        &plan,
+        (&plan.log, plan.accuracy),
         truth.as_ref(),
         outcome.lost_records,
         &interrupt,
