@@ -120,13 +120,7 @@ fn build(state: &Arc<DaemonState>, job: &CloudJob) {
     let quota = DiskQuota::of_scan(state);
     let thumbnail = Thumbnail::default();
     let made = catch_unwind(AssertUnwindSafe(|| cloud(state, job, &quota, &thumbnail)));
-    let made = made.unwrap_or_else(|_| {
-        Err(Failure::new(
-            Kind::Incomplete,
-            "a defect of the program ended the making of the cloud",
-        )
-        .help("run velomotion replay on the log with -vv and report the messages"))
-    });
+    let made = made.unwrap_or_else(|_| Err(defect()));
     if state.abandon.load(Ordering::Acquire) {
         return;
     }
@@ -176,6 +170,15 @@ fn build(state: &Arc<DaemonState>, job: &CloudJob) {
             record.why = Some(why);
         }
     });
+}
+
+/// The failure of a cloud whose making panicked.
+pub(crate) fn defect() -> Failure {
+    Failure::new(
+        Kind::Incomplete,
+        "a defect of the program ended the making of the cloud",
+    )
+    .help("run velomotion replay on the log with -vv and report the messages")
 }
 
 /// Draws and stores a thumbnail. A panic in it is a failure.

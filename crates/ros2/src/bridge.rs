@@ -72,7 +72,7 @@ impl Bridge {
                 ..failure
             })?;
         }
-        let no_thread = |error| engine::no_resource("thread", "ROS 2", &error);
+        let no_thread = |error: std::io::Error| engine::no_resource("thread", "ROS 2", &error);
         let runtimes = [
             runtime().map_err(no_thread)?,
             runtime().map_err(no_thread)?,

@@ -22,6 +22,7 @@ use tokio::sync::OwnedSemaphorePermit;
 
 use super::Api;
 use super::refusal::Refusal;
+use crate::cloud_builder::defect;
 use crate::disk_quota::{self, DiskQuota, QuotaFile};
 use crate::plan;
 use crate::scans::{LOG, THUMBNAIL};
@@ -97,13 +98,7 @@ pub async fn cloud(
             &interrupt,
         )
     });
-    let file = made.await.map_err(|_| {
-        Failure::new(
-            Kind::Incomplete,
-            "a defect of the program ended the making of the cloud",
-        )
-        .help("run velomotion replay on the log with -vv and report the messages")
-    })??;
+    let file = made.await.map_err(|_| defect())??;
     drop(client);
     stream(file, &id, format.extension(), permit)
 }

@@ -5,15 +5,13 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use axum::extract::State;
-use axum::http::{StatusCode, header};
+use axum::http::header;
 use axum::response::{IntoResponse, Response};
 use prometheus_client::collector::Collector;
 use prometheus_client::encoding::{DescriptorEncoder, EncodeMetric, text};
 use prometheus_client::metrics::counter::ConstCounter;
 use prometheus_client::metrics::gauge::ConstGauge;
 use prometheus_client::registry::Registry;
-
-use engine::failure::Kind;
 
 use super::Api;
 use super::refusal::Refusal;
@@ -25,14 +23,8 @@ pub async fn metrics(State(api): State<Arc<Api>>) -> Result<Response, Refusal> {
     let mut registry = Registry::with_prefix("velomotion");
     registry.register_collector(Box::new(Figures(Arc::clone(&api.state))));
     let mut metrics = String::new();
-    text::encode(&mut metrics, &registry).map_err(|error| {
-        Refusal::new(
-            StatusCode::INTERNAL_SERVER_ERROR,
-            Kind::Incomplete,
-            error.to_string(),
-            "this is a defect of the program",
-        )
-    })?;
+    text::encode(&mut metrics, &registry)
+        .map_err(|error| Refusal::defect(error.to_string(), "this is a defect of the program"))?;
     let content = "application/openmetrics-text; version=1.0.0; charset=utf-8";
     Ok(([(header::CONTENT_TYPE, content)], metrics).into_response())
 }

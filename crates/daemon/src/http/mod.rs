@@ -178,12 +178,8 @@ pub async fn with_disk<T: Send + 'static>(
     what: impl FnOnce() -> T + Send + 'static,
 ) -> Result<T, Refusal> {
     tokio::task::spawn_blocking(what).await.map_err(|_| {
-        Refusal::new(
-            StatusCode::INTERNAL_SERVER_ERROR,
-            Kind::Incomplete,
-            "a defect of the program",
-            "run the daemon with -vv and report the messages",
-        )
+        let help = "run the daemon with -vv and report the messages";
+        Refusal::defect("a defect of the program", help)
     })
 }
 
@@ -197,13 +193,10 @@ pub fn json(status: StatusCode, body: &impl serde::Serialize) -> Response {
             ];
             (status, headers, body).into_response()
         }
-        Err(error) => Refusal::new(
-            StatusCode::INTERNAL_SERVER_ERROR,
-            Kind::Incomplete,
-            format!("the answer has no JSON form: {error}"),
-            "this is a defect of the program",
-        )
-        .into_response(),
+        Err(error) => {
+            let error = format!("the answer has no JSON form: {error}");
+            Refusal::defect(error, "this is a defect of the program").into_response()
+        }
     }
 }
 

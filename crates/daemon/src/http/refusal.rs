@@ -71,6 +71,17 @@ impl Refusal {
         )
     }
 
+    /// An answer that cannot be made.
+    #[must_use]
+    pub fn defect(error: impl Into<String>, help: &str) -> Self {
+        Self::new(
+            StatusCode::INTERNAL_SERVER_ERROR,
+            Kind::Incomplete,
+            error,
+            help,
+        )
+    }
+
     /// No such scan.
     #[must_use]
     pub fn no_scan(id: &str) -> Self {

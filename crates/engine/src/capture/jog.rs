@@ -5,6 +5,7 @@ use io::port::Port;
 use serde::{Deserialize, Serialize};
 use units::{DegPerS, DegPerS2, Degrees};
 
+use crate::capture::moves;
 use crate::config::{Config, Device};
 use crate::devices::drive_session::{Session, SessionError};
 use crate::devices::profile as devices;
@@ -129,14 +130,9 @@ pub fn commands(
                     DegPerS2(accel),
                 )
                 .map_err(|error| Failure::new(Kind::Usage, error.to_string()).help(error.help()))?;
-            let to = drive::MoveCommand {
-                to: plan.to,
-                speed: plan.speed,
-                acceleration: plan.acceleration,
-            };
             vec![
                 DriveCommand::Connect,
-                DriveCommand::Goto(to),
+                DriveCommand::Goto(moves::command(&plan)),
                 DriveCommand::Brake,
             ]
         }

@@ -84,6 +84,15 @@ pub fn steps(
     Ok(steps)
 }
 
+/// The drive client's command for a planned move.
+pub(super) fn command(plan: &MovePlan) -> drive::MoveCommand {
+    drive::MoveCommand {
+        to: plan.to,
+        speed: plan.speed,
+        acceleration: plan.acceleration,
+    }
+}
+
 /// Progress of the moves.
 #[derive(Clone, Copy, Debug)]
 pub enum MoveProgress<'a> {
@@ -110,11 +119,7 @@ pub fn run<P: Port>(
     execute(DriveCommand::Home, on_progress)?;
     for (step, number) in steps.iter().zip(1..) {
         on_progress(MoveProgress::Step(number, step));
-        let to = drive::MoveCommand {
-            to: step.plan.to,
-            speed: step.plan.speed,
-            acceleration: step.plan.acceleration,
-        };
+        let to = command(&step.plan);
         let command = if step.sweep {
             DriveCommand::Sweep(to)
         } else {

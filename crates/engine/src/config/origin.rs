@@ -1,6 +1,5 @@
 //! Origin of a web page: scheme, host and port (RFC 6454), as in the header `Origin`.
 
-use std::fmt;
 use std::str::FromStr;
 
 use serde::Deserialize;
@@ -76,13 +75,6 @@ impl TryFrom<String> for Origin {
     }
 }
 
-impl fmt::Display for Origin {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let scheme = if self.secure { "https" } else { "http" };
-        write!(f, "{scheme}://{}:{}", self.host, self.port)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -101,7 +93,6 @@ mod tests {
             Origin::of_host("a.example:8016"),
             Some(of("http://a.example:8016"))
         );
-        assert_eq!(of("https://a.example").to_string(), "https://a.example:443");
     }
 
     #[test]

@@ -5,8 +5,7 @@
 //! waits for the disk, since it may control the motor: when the queue is full, the record is
 //! dropped and counted. A finished log is synced to disk.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, Write};
 use std::sync::Arc;
@@ -165,36 +164,13 @@ impl LogRecorder {
     }
 }
 
-/// A held record, ordered by time, then by arrival.
-#[derive(Debug)]
-struct HeldRecord {
-    key: (Stamp<Host>, u64),
-    record: OwnedRecord,
-}
-
-impl PartialEq for HeldRecord {
-    fn eq(&self, other: &Self) -> bool {
-        self.key == other.key
-    }
-}
-impl Eq for HeldRecord {}
-impl PartialOrd for HeldRecord {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-impl Ord for HeldRecord {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        self.key.cmp(&other.key)
-    }
-}
-
 /// State of the thread. At the end of each period of [`HOLD`], all records up to the latest one of
 /// the period before are written. So no record is held for more than two periods, whatever steps
 /// the clock makes.
 struct Sorter<W> {
     writer: LogWriter<W>,
-    held: BinaryHeap<Reverse<HeldRecord>>,
+    /// Records by time and order of arrival.
+    held: BTreeMap<(Stamp<Host>, u64), OwnedRecord>,
     arrivals: u64,
     latest_this_period: Option<Stamp<Host>>,
     latest_last_period: Option<Stamp<Host>>,
@@ -206,7 +182,7 @@ impl<W: Write> Sorter<W> {
     fn new(writer: LogWriter<W>) -> Self {
         Self {
             writer,
-            held: BinaryHeap::new(),
+            held: BTreeMap::new(),
             arrivals: 0,
             latest_this_period: None,
             latest_last_period: None,
@@ -245,10 +221,7 @@ impl<W: Write> Sorter<W> {
     fn hold(&mut self, record: OwnedRecord) {
         let host = record.host();
         self.latest_this_period = self.latest_this_period.max(Some(host));
-        self.held.push(Reverse(HeldRecord {
-            key: (host, self.arrivals),
-            record,
-        }));
+        self.held.insert((host, self.arrivals), record);
         self.arrivals += 1;
     }
 
@@ -262,14 +235,12 @@ impl<W: Write> Sorter<W> {
 
     /// Writes the held records up to `limit`, or all of them.
     fn write_held(&mut self, limit: Option<Stamp<Host>>) -> Result<(), LogError> {
-        while let Some(Reverse(first)) = self.held.peek() {
-            if limit.is_some_and(|limit| first.key.0 > limit) {
+        while let Some(first) = self.held.first_entry() {
+            let host = first.key().0;
+            if limit.is_some_and(|limit| host > limit) {
                 break;
             }
-            let Some(Reverse(held)) = self.held.pop() else {
-                break;
-            };
-            match self.writer.write(&held.record.as_record()) {
+            match self.writer.write(&first.remove().as_record()) {
                 Ok(()) => {}
                 Err(LogError::TooLong { .. } | LogError::Time { .. }) => {
                     self.counts.refused += 1;
@@ -277,10 +248,10 @@ impl<W: Write> Sorter<W> {
                 }
                 Err(e) => return Err(e),
             }
-            if self.last_written > Some(held.key.0) {
+            if self.last_written > Some(host) {
                 self.counts.out_of_order += 1;
             } else {
-                self.last_written = Some(held.key.0);
+                self.last_written = Some(host);
             }
         }
         Ok(())

@@ -7,12 +7,13 @@ use std::time::Duration;
 use sd_notify::NotifyState;
 
 use super::CommandOutput;
+use super::device_backend::thread_gone;
 use crate::cli::{self, Common};
 use crate::signals;
 use crate::terminal::to_stderr;
 use daemon::{Daemon, Options};
 use engine::config;
-use engine::failure::{Failure, Kind};
+use engine::failure::Failure;
 
 /// Between two polls of signals.
 const SIGNAL_POLL: Duration = Duration::from_millis(100);
@@ -45,8 +46,7 @@ pub fn run(arguments: &cli::DaemonArguments, common: &Common) -> Result<CommandO
     ]);
     end(daemon, &interrupt)?;
     if broken {
-        return Err(Failure::new(Kind::DeviceFault, "the device thread is gone")
-            .help("check that the axis is at rest; run with -vv and report the messages"));
+        return Err(thread_gone());
     }
     Ok(CommandOutput::default())
 }

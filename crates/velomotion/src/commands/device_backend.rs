@@ -291,7 +291,7 @@ fn lease_failure(error: LeaseError) -> Failure {
     }
 }
 
-fn thread_gone() -> Failure {
+pub(super) fn thread_gone() -> Failure {
     Failure::new(Kind::DeviceFault, "the device thread is gone")
         .help("check that the axis is at rest; run with -vv and report the messages")
 }
