@@ -49,10 +49,7 @@ pub(super) fn positions(bytes: &[u8]) -> Result<Positions, ReadError> {
                 rest = later;
             }
             LinearReadEvent::Record { data, opcode } => {
-                clouds.record(opcode, data).map_err(|unread| match unread {
-                    RecordError::File(error) => bad(error),
-                    RecordError::Message(error) => error,
-                })?
+                clouds.record(opcode, data, bad)?;
             }
         }
     }
@@ -69,18 +66,17 @@ struct CloudCollector {
     positions: Positions,
 }
 
-/// Why a record cannot be read.
-enum RecordError {
-    File(McapError),
-    Message(ReadError),
-}
-
 impl CloudCollector {
-    fn record(&mut self, opcode: u8, data: &[u8]) -> Result<(), RecordError> {
+    fn record(
+        &mut self,
+        opcode: u8,
+        data: &[u8],
+        bad: impl Fn(McapError) -> ReadError,
+    ) -> Result<(), ReadError> {
         if !matches!(opcode, op::SCHEMA | op::CHANNEL | op::MESSAGE) {
             return Ok(());
         }
-        match mcap::parse_record(opcode, data).map_err(RecordError::File)? {
+        match mcap::parse_record(opcode, data).map_err(bad)? {
             Record::Schema { header, .. } if header.name == Topic::Points.message_type().name => {
                 self.schemas.insert(header.id);
             }
@@ -91,7 +87,7 @@ impl CloudCollector {
                 self.channels.insert(channel.id);
             }
             Record::Message { header, data } if self.channels.contains(&header.channel_id) => {
-                cloud(&data, &mut self.positions).map_err(RecordError::Message)?;
+                cloud(&data, &mut self.positions)?;
             }
             _ => {}
         }

@@ -24,13 +24,11 @@ pub const FRAME_POINTS: usize = 16_384;
 /// Records that may wait for the preview.
 pub const WAITING_RECORDS: usize = 8_192;
 /// Columns of a frame besides positions.
-const FIELDS: [Fields; 5] = [
-    Fields::INTENSITY,
-    Fields::RING,
-    Fields::TIME,
-    Fields::TILT,
-    Fields::SD,
-];
+const FIELDS: Fields = Fields::INTENSITY
+    .union(Fields::RING)
+    .union(Fields::TIME)
+    .union(Fields::TILT)
+    .union(Fields::SD);
 /// Age of the first point at which a frame is sent.
 const FRAME_INTERVAL: Duration = Duration::from_millis(50);
 /// Bytes of a frame before its columns.
@@ -203,7 +201,7 @@ impl FrameSink {
             scan: id.into(),
             events: Arc::clone(events),
             left_out: Arc::clone(left_out),
-            points: Points::new(fields()),
+            points: Points::new(FIELDS),
             since: Instant::now(),
             number: 0,
         }
@@ -213,7 +211,7 @@ impl FrameSink {
         if self.points.is_empty() {
             return;
         }
-        let points = std::mem::replace(&mut self.points, Points::new(fields()));
+        let points = std::mem::replace(&mut self.points, Points::new(FIELDS));
         let left_out = self.left_out.load(Ordering::Relaxed);
         self.events.send(Event::Points(Box::new(PreviewFrame {
             scan: Arc::clone(&self.scan),
@@ -224,12 +222,6 @@ impl FrameSink {
         })));
         self.number += 1;
     }
-}
-
-fn fields() -> Fields {
-    FIELDS
-        .into_iter()
-        .fold(Fields::NONE, |all, field| all | field)
 }
 
 impl Sink for FrameSink {
@@ -253,7 +245,7 @@ impl Sink for FrameSink {
     }
 
     fn fields(&self) -> Fields {
-        fields()
+        FIELDS
     }
 }
 
@@ -265,7 +257,7 @@ mod tests {
 
     #[test]
     fn the_binary_layout_matches_its_documentation() {
-        let mut points = Points::new(fields());
+        let mut points = Points::new(FIELDS);
         for number in 0..5_u8 {
             points.push(Point {
                 position_m: [f64::from(number), 0.5, -2.0],
