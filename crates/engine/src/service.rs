@@ -263,7 +263,7 @@ impl DeviceService {
         let commands = jog::commands(request, &self.config, &self.device)?;
         let task = match request {
             JogRequest::Home => AxisTask::Homing,
-            JogRequest::Goto { .. } => AxisTask::Moving,
+            JogRequest::Goto(_) => AxisTask::Moving,
             JogRequest::Status | JogRequest::Stop | JogRequest::ClearFaults => AxisTask::Stopping,
         };
         let lease = self.lease(task)?;

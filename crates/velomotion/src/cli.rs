@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use cloud::Fields;
-use engine::capture::jog::JogRequest;
+use engine::capture::jog::{GotoRequest, JogRequest};
 use engine::capture_request::CaptureRequest;
 use engine::reconstruct::decoder_options::DecoderRequest;
 use engine::reconstruct::replay;
@@ -286,11 +286,11 @@ impl From<TiltVerb> for JogRequest {
             TiltVerb::Faults { clear: true } => Self::ClearFaults,
             TiltVerb::Stop => Self::Stop,
             TiltVerb::Home => Self::Home,
-            TiltVerb::Goto { to, speed, accel } => Self::Goto {
+            TiltVerb::Goto { to, speed, accel } => Self::Goto(GotoRequest {
                 to_deg: to,
                 speed_deg_s: speed,
                 accel_deg_s2: accel,
-            },
+            }),
         }
     }
 }

@@ -109,7 +109,7 @@ impl<E: Encoder> Sink for FileSink<E> {
             batch.check_coordinates(format, limit_m, self.summary.points)?;
         }
         if let Err(fault) = self.encoder.points(batch) {
-            self.stage.cut();
+            self.stage = Stage::Cut;
             return Err(self.error(fault));
         }
         self.summary.add(batch.summary());
@@ -124,7 +124,7 @@ impl<E: Encoder> Sink for FileSink<E> {
         self.stage.begin(self.encoder.format())?;
         let begun = self.encoder.begin(metadata);
         begun.map_err(|fault| self.error(fault))?;
-        self.stage.opened();
+        self.stage = Stage::Open;
         Ok(())
     }
 

@@ -282,7 +282,7 @@ impl<W: Write + Seek> Sink for McapWriter<W> {
         self.clouds.check(batch)?;
         let mut take = |cloud: Cloud<'_>| self.log.write_cloud(cloud);
         if let Err(error) = self.clouds.points(batch, &mut take) {
-            self.stage.cut();
+            self.stage = Stage::Cut;
             return Err(error);
         }
         self.log.points = self.clouds.summary.points;
@@ -296,7 +296,7 @@ impl<W: Write + Seek> Sink for McapWriter<W> {
     fn begin(&mut self, metadata: &Metadata) -> Result<(), SinkError> {
         self.stage.begin(FORMAT)?;
         self.log.begin(metadata)?;
-        self.stage.opened();
+        self.stage = Stage::Open;
         Ok(())
     }
 

@@ -17,7 +17,7 @@ pub(super) enum Stage {
 }
 
 impl Stage {
-    /// Begins; nothing else may follow before [`Stage::opened`].
+    /// Begins; nothing else may follow before it is [`Stage::Open`].
     pub(super) fn begin(&mut self, format: &'static str) -> Result<(), SinkError> {
         match self {
             Self::New => {
@@ -29,10 +29,6 @@ impl Stage {
         }
     }
 
-    pub(super) fn opened(&mut self) {
-        *self = Self::Open;
-    }
-
     pub(super) fn points(self, format: &'static str) -> Result<(), SinkError> {
         match self {
             Self::Open => Ok(()),
@@ -40,10 +36,6 @@ impl Stage {
             Self::Cut => Err(order(format, "finish after a failed batch", "points")),
             Self::Closed => Err(order(format, "nothing more", "points")),
         }
-    }
-
-    pub(super) fn cut(&mut self) {
-        *self = Self::Cut;
     }
 
     pub(super) fn finish(&mut self, format: &'static str) -> Result<(), SinkError> {

@@ -8,31 +8,12 @@ use axum::http::{HeaderMap, StatusCode};
 use axum::response::Response;
 use engine::capture::jog::JogRequest;
 use engine::service::DeviceService;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use super::captures::body;
 use super::refusal::Refusal;
 
 type Service = State<Arc<DeviceService>>;
-
-/// Body of `POST /tilt/goto`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Goto {
-    /// Target, degrees.
-    pub to_deg: f64,
-    /// Speed, degrees per second.
-    #[serde(default = "default_speed")]
-    pub speed_deg_s: f64,
-    /// Acceleration, degrees per second squared; the device's own by default.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub accel_deg_s2: Option<f64>,
-}
-
-/// The default of `tilt goto --speed`.
-const fn default_speed() -> f64 {
-    10.0
-}
 
 fn ok(answer: &impl Serialize) -> Response {
     super::json(StatusCode::OK, answer)
@@ -62,13 +43,7 @@ pub async fn goto(
     headers: HeaderMap,
     bytes: Bytes,
 ) -> Result<Response, Refusal> {
-    let target: Goto = body(&headers, &bytes)?;
-    let request = JogRequest::Goto {
-        to_deg: target.to_deg,
-        speed_deg_s: target.speed_deg_s,
-        accel_deg_s2: target.accel_deg_s2,
-    };
-    jog(&service, request).await
+    jog(&service, JogRequest::Goto(body(&headers, &bytes)?)).await
 }
 
 /// `POST /tilt/stop`: stops any motion and sets the brake.

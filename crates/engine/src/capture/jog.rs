@@ -75,6 +75,25 @@ pub enum StopAnswer {
     Command(StoppedCommand),
 }
 
+/// A move to an angle; the body of `POST /tilt/goto`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GotoRequest {
+    /// Target, degrees.
+    pub to_deg: f64,
+    /// Speed, degrees per second.
+    #[serde(default = "default_speed")]
+    pub speed_deg_s: f64,
+    /// Acceleration, degrees per second squared; the device's own by default.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub accel_deg_s2: Option<f64>,
+}
+
+/// The default of `tilt goto --speed`.
+const fn default_speed() -> f64 {
+    10.0
+}
+
 /// A request to read the drive or move the axis outside a capture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum JogRequest {
@@ -83,14 +102,7 @@ pub enum JogRequest {
     /// Find the zero position at the limit switch.
     Home,
     /// Move to an angle.
-    Goto {
-        /// Target, degrees.
-        to_deg: f64,
-        /// Speed, degrees per second.
-        speed_deg_s: f64,
-        /// Acceleration, degrees per second squared; the device's own without it.
-        accel_deg_s2: Option<f64>,
-    },
+    Goto(GotoRequest),
     /// Stop now and set the brake.
     Stop,
     /// Leave the fault state; the fault history stays.
@@ -115,18 +127,14 @@ pub fn commands(
             DriveCommand::Home,
             DriveCommand::Brake,
         ],
-        JogRequest::Goto {
-            to_deg,
-            speed_deg_s,
-            accel_deg_s2,
-        } => {
+        JogRequest::Goto(to) => {
             let axis = devices::axis(&config.axis)?;
-            let accel = accel_deg_s2.unwrap_or(device.accel_deg_s2);
+            let accel = to.accel_deg_s2.unwrap_or(device.accel_deg_s2);
             let plan = axis
                 .plan(
                     Degrees(config.axis.homing.to_deg),
-                    Degrees(to_deg),
-                    DegPerS(speed_deg_s),
+                    Degrees(to.to_deg),
+                    DegPerS(to.speed_deg_s),
                     DegPerS2(accel),
                 )
                 .map_err(|error| Failure::new(Kind::Usage, error.to_string()).help(error.help()))?;

@@ -8,9 +8,8 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use daemon::client::Client;
-use daemon::http::tilt::Goto;
 use daemon::local::LocalService;
-use engine::capture::jog::StopAnswer;
+use engine::capture::jog::{JogRequest, StopAnswer};
 use engine::capture::request::CapturePlan;
 use engine::capture::run::Outcome;
 use engine::capture_request::CaptureRequest;
@@ -24,7 +23,6 @@ use io::files::NewFile;
 use tokio::sync::oneshot;
 use units::{Degrees, Span, Stamp};
 
-use crate::cli::TiltVerb;
 use crate::terminal::Progress;
 
 /// Between two polls of a capture's progress.
@@ -275,8 +273,8 @@ impl CaptureBackend for DaemonCapture<'_> {
 ///
 /// # Errors
 /// Where the axis cannot be moved, or the motion failed.
-pub fn jog_locally(local: &LocalService, verb: TiltVerb) -> Result<StopAnswer, Failure> {
-    let answer = local.service.jog(verb.into()).map_err(lease_failure)?;
+pub fn jog_locally(local: &LocalService, jog: JogRequest) -> Result<StopAnswer, Failure> {
+    let answer = local.service.jog(jog).map_err(lease_failure)?;
     let report = answer
         .blocking_recv()
         .unwrap_or_else(|_| Err(thread_gone()))?;
@@ -303,12 +301,12 @@ pub(super) fn thread_gone() -> Failure {
 /// As without a daemon.
 pub fn jog_by_daemon(
     client: &Client,
-    verb: TiltVerb,
+    jog: JogRequest,
     interrupt: &AtomicBool,
 ) -> Result<StopAnswer, Failure> {
     let own = client.clone();
-    let request = std::thread::spawn(move || send(&own, verb));
-    let moves = matches!(verb, TiltVerb::Home | TiltVerb::Goto { .. });
+    let request = std::thread::spawn(move || send(&own, jog));
+    let moves = matches!(jog, JogRequest::Home | JogRequest::Goto(_));
     let mut stop: Option<JoinHandle<Result<StopAnswer, Failure>>> = None;
     while !request.is_finished() {
         if interrupt.swap(false, Ordering::Relaxed) {
@@ -323,7 +321,7 @@ pub fn jog_by_daemon(
                 .help("tilt status reports the axis; switch the motor's supply off if it moves and must not"));
             }
             let own = client.clone();
-            stop = Some(std::thread::spawn(move || send(&own, TiltVerb::Stop)));
+            stop = Some(std::thread::spawn(move || send(&own, JogRequest::Stop)));
         }
         if let Some(stop) = stop.take_if(|stop| stop.is_finished()) {
             joined(stop)?;
@@ -342,19 +340,12 @@ fn joined(request: JoinHandle<Result<StopAnswer, Failure>>) -> Result<StopAnswer
     })
 }
 
-fn send(client: &Client, verb: TiltVerb) -> Result<StopAnswer, Failure> {
-    match verb {
-        TiltVerb::Status | TiltVerb::Faults { clear: false } => client.get("/api/v1/tilt"),
-        TiltVerb::Faults { clear: true } => client.post("/api/v1/tilt/clear", &()),
-        TiltVerb::Home => client.post("/api/v1/tilt/home", &()),
-        TiltVerb::Stop => client.post("/api/v1/tilt/stop", &()),
-        TiltVerb::Goto { to, speed, accel } => {
-            let goto = Goto {
-                to_deg: to,
-                speed_deg_s: speed,
-                accel_deg_s2: accel,
-            };
-            client.post("/api/v1/tilt/goto", &goto)
-        }
+fn send(client: &Client, request: JogRequest) -> Result<StopAnswer, Failure> {
+    match request {
+        JogRequest::Status => client.get("/api/v1/tilt"),
+        JogRequest::ClearFaults => client.post("/api/v1/tilt/clear", &()),
+        JogRequest::Home => client.post("/api/v1/tilt/home", &()),
+        JogRequest::Stop => client.post("/api/v1/tilt/stop", &()),
+        JogRequest::Goto(goto) => client.post("/api/v1/tilt/goto", &goto),
     }
 }

@@ -22,16 +22,17 @@ pub fn run(arguments: &cli::TiltArguments, common: &Common) -> Result<CommandOut
     let config = config::load(common.config.as_deref())?;
     let (name, device) = profile::choose(&config, common.device.as_deref())?;
     // Refused before a device is opened.
-    jog::commands(verb.into(), &config, &device)?;
+    let request = verb.into();
+    jog::commands(request, &config, &device)?;
     let interrupt = signals::interrupt_flag()?;
     let (answer, simulated) = match Client::find(&name, &device) {
         Some(client) => (
-            jog_by_daemon(&client, verb, &interrupt)?,
+            jog_by_daemon(&client, request, &interrupt)?,
             "a software drive, the daemon's",
         ),
         None => {
             let local = LocalService::start(config, (name, device), false, &interrupt)?;
-            let answer = jog_locally(&local, verb);
+            let answer = jog_locally(&local, request);
             local.stop();
             (answer?, "a software drive, switched on a moment ago")
         }
