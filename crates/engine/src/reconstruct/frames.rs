@@ -146,8 +146,7 @@ impl<'a> FrameWriter<'a> {
         self.write()
     }
 
-    /// Writes the last frame. Returns the totals, and the target that holds all frames, not committed
-    /// yet.
+    /// Writes the last frame. Returns the totals, and the uncommitted target that holds all frames.
     ///
     /// # Errors
     /// As [`FrameWriter::observe`].

@@ -185,7 +185,8 @@ fn content(sliced: &SlicedPacket<'_>, data: &[u8]) -> Content {
 /// The source of a record for an IPv6 address.
 ///
 /// Lidars of this family use IPv4. A mapped address (`::ffff:a.b.c.d`) gives its IPv4 address.
-/// Others, of relays, give 28 bits of their FNV-1a hash within 240.0.0.0/4, which RFC 1112 reserves.
+/// Others, of relays, give 28 bits of their FNV-1a hash within 240.0.0.0/4, which RFC 1112
+/// reserves.
 pub(super) fn source_of(address: Ipv6Addr) -> [u8; 4] {
     match address.to_ipv4_mapped() {
         Some(v4) => v4.octets(),
