@@ -25,9 +25,13 @@ pub struct AxisConfig {
     /// Quick stop deceleration (6085).
     pub quick_stop: RpmPerS,
     /// Max following error (6065).
-    pub max_following_error: Quadcounts,
+    pub max_following_error: Degrees,
     /// Largest distance from the target at which a move has arrived.
-    pub arrival_tolerance: Quadcounts,
+    pub arrival_tolerance: Degrees,
+    /// Spread of the positions of an axis at rest: the dither of encoder and servo.
+    pub standstill_spread: Degrees,
+    /// Largest deviations of a moving axis from its plan.
+    pub guard: MotionGuardConfig,
     /// Inputs of the limit switches.
     pub limit_switches: LimitSwitchConfig,
     /// The holding brake; `None` leaves the outputs unchanged.
@@ -38,6 +42,22 @@ pub struct AxisConfig {
     pub timing: AxisTiming,
     /// Heartbeats on a CAN bus; unused on other links.
     pub can: CanHeartbeats,
+}
+
+/// Largest deviations of a moving axis from its plan before it is stopped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotionGuardConfig {
+    /// How far the axis may lag behind its plan at low speed.
+    pub behind: Degrees,
+    /// Lag of the servo, added to `behind` in proportion to the speed.
+    pub servo_lag: Span,
+    /// How far the axis may be ahead of its plan, beyond its target, or away from a position that
+    /// it holds: the overshoot of the servo.
+    pub ahead: Degrees,
+    /// How far the axis may be beyond its limits.
+    pub beyond_limits: Degrees,
+    /// How far homing may move beyond the range between the limits and the home offset.
+    pub homing_margin: Degrees,
 }
 
 /// Heartbeats on a CAN bus.
@@ -146,8 +166,10 @@ impl Default for AxisConfig {
             max_speed: Rpm(1_500),
             max_acceleration: RpmPerS(20_000),
             quick_stop: RpmPerS(20_000),
-            max_following_error: Quadcounts(2_000),
-            arrival_tolerance: Quadcounts(20),
+            max_following_error: Degrees(3.0),
+            arrival_tolerance: Degrees(0.03),
+            standstill_spread: Degrees(0.03),
+            guard: MotionGuardConfig::default(),
             limit_switches: LimitSwitchConfig::default(),
             brake: Some(BrakeConfig::default()),
             homing: HomingConfig::default(),
@@ -162,6 +184,21 @@ const DEFAULT_GEARING: Gearing = match Gearing::new(500, 120, 1) {
     Ok(gearing) => gearing,
     Err(_) => unreachable!(),
 };
+
+impl Default for MotionGuardConfig {
+    /// At 56.25 deg/s the lag allowed is 3.3 deg, just above the drive's own following error of
+    /// 3 deg. A servo with a damping ratio of 0.5 and a bandwidth of 10 Hz overshoots a stop from
+    /// 1000 deg/s2 by less than 0.2 deg.
+    fn default() -> Self {
+        Self {
+            behind: Degrees(0.5),
+            servo_lag: Span::from_millis(50),
+            ahead: Degrees(0.5),
+            beyond_limits: Degrees(0.1),
+            homing_margin: Degrees(10.0),
+        }
+    }
+}
 
 impl Default for CanHeartbeats {
     /// Heartbeats every 50 ms. The drive tolerates three missing ones, as the host's threads may be
@@ -266,9 +303,19 @@ impl AxisConfig {
         ] {
             within(field, acceleration.0, 1, u32::MAX)?;
         }
-        let error = self.max_following_error.0;
-        within("max_following_error", error, 1, i32::MAX)?;
-        within("arrival_tolerance", self.arrival_tolerance.0, 0, i32::MAX)?;
+        let guard = &self.guard;
+        for (field, angle, min) in [
+            ("max_following_error", self.max_following_error, 0.01),
+            ("arrival_tolerance", self.arrival_tolerance, 0.0),
+            ("standstill_spread", self.standstill_spread, 0.001),
+            ("guard.behind", guard.behind, 0.01),
+            ("guard.ahead", guard.ahead, 0.01),
+            ("guard.beyond_limits", guard.beyond_limits, 0.0),
+            ("guard.homing_margin", guard.homing_margin, 0.0),
+        ] {
+            within(field, angle.0, min, 360.0)?;
+        }
+        within_ms("guard.servo_lag", guard.servo_lag, 0, MAX_SPAN_MS)?;
         self.limits_qc()?;
         self.limit_switches.check()?;
         if let Some(brake) = self.brake {
@@ -310,6 +357,15 @@ impl AxisConfig {
             return Err(invalid("limits", "min below max".into(), got));
         }
         Ok(LimitsQc { min, max })
+    }
+
+    /// A tolerance in quadcounts, at least one.
+    pub(crate) fn tolerance_qc(&self, tolerance: Degrees) -> Quadcounts {
+        let counts = self
+            .gearing
+            .position(tolerance)
+            .unwrap_or(Quadcounts(i32::MAX));
+        Quadcounts(counts.0.max(1))
     }
 
     /// A configured angle in quadcounts.
@@ -413,7 +469,8 @@ fn within<T: PartialOrd + Display>(
     min: T,
     max: T,
 ) -> Result<(), DriveError> {
-    if value < min || value > max {
+    // Written so that NaN is refused.
+    if !(value >= min && value <= max) {
         return Err(invalid(field, format!("{min} to {max}"), value));
     }
     Ok(())

@@ -234,13 +234,44 @@ pub enum DriveError {
         /// Whether the drive reported target reached (bit 10).
         reached: bool,
     },
+    /// The samples show another motion than the plan.
+    #[error("the axis {deviation}: expected {:.2} deg, got {:.2} deg", expected.0, got.0)]
+    OffPlan {
+        /// How the motion differs.
+        deviation: Deviation,
+        /// The nearest angle that the plan has at that time, or the limit.
+        expected: Degrees,
+        /// The angle of the sample.
+        got: Degrees,
+    },
+    /// Homing moved further than the range of the axis without finding its reference.
+    #[error("homing by method {method} moved the axis by {:.1} deg: expected its reference within {:.1} deg", travelled.0, bound.0)]
+    HomingTravel {
+        /// Homing method.
+        method: i8,
+        /// Distance from the start.
+        travelled: Degrees,
+        /// The range between the limits, the home offset and the margin.
+        bound: Degrees,
+    },
+    /// A limit switch was pressed during a move, and the drive did not react.
+    #[error("the {} limit switch is pressed (2071:1 is {inputs:#06X}) and the drive moves on", if *positive { "positive" } else { "negative" })]
+    LimitSwitch {
+        /// The positive switch, else the negative one.
+        positive: bool,
+        /// The inputs (2071:1).
+        inputs: u16,
+    },
     /// The axis does not stop.
-    #[error("the axis still moves {:.2} s after the stop: at {} qc", waited.as_secs_f64(), position.0)]
+    #[error("the axis still moves {:.2} s after the stop: at {} qc{}", waited.as_secs_f64(), position.0,
+        if *power_off { ", though its power was switched off" } else { "" })]
     StillMoving {
         /// Last position.
         position: Quadcounts,
         /// Time since the quick stop was sent.
         waited: Span,
+        /// Whether the power stage was switched off, too.
+        power_off: bool,
     },
     /// A move failed, and no stop of the axis could be confirmed.
     #[error("{cause}; and stopping the axis failed: {stop}")]
@@ -250,6 +281,30 @@ pub enum DriveError {
         /// Cause of the failed stop.
         stop: Box<DriveError>,
     },
+}
+
+/// How a motion differs from its plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Deviation {
+    /// It goes in the opposite direction.
+    WrongWay,
+    /// It is ahead of the plan, or beyond its target.
+    Ahead,
+    /// It is behind the plan, or does not move.
+    Behind,
+    /// It is beyond the limits of the axis.
+    BeyondLimits,
+}
+
+impl fmt::Display for Deviation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::WrongWay => "moves in the wrong direction",
+            Self::Ahead => "is ahead of its plan",
+            Self::Behind => "is behind its plan",
+            Self::BeyondLimits => "is beyond its limits",
+        })
+    }
 }
 
 /// Read or write of an object, for messages.
@@ -379,7 +434,14 @@ impl DriveError {
                 "Check the enable input and the supply of the power stage, then try again."
             }
             Self::NotReferenced { .. } => "Home the axis first.",
-            Self::Homing { .. } | Self::HomingTime { .. } => {
+            Self::OffPlan { .. } => {
+                "Check encoder, coupling and gear, their settings (2210), and that nothing blocks or \
+                 drives the axis; then home again. [axis] guard has the tolerances."
+            }
+            Self::LimitSwitch { .. } => {
+                "Check the switch, its input and the drive's limit settings (2071:4), then home again."
+            }
+            Self::Homing { .. } | Self::HomingTime { .. } | Self::HomingTravel { .. } => {
                 "Check the switch the method searches for and its input, the homing direction and \
                  speeds, and that nothing blocks the axis."
             }

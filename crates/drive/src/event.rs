@@ -218,6 +218,8 @@ pub struct StopReport {
     pub fault: bool,
     /// Whether an output of the drive controls a brake.
     pub brake: bool,
+    /// Whether the quick stop failed, and switching the power off stopped the axis.
+    pub quick_stop_failed: bool,
 }
 
 /// Validity of the position of an axis at rest.

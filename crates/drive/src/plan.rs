@@ -45,6 +45,33 @@ pub(crate) struct ValidatedMove {
     pub acceleration: RpmPerS,
 }
 
+impl MovePlan {
+    /// Distance from the start at a time after the start, degrees: the area under the trapezoid.
+    #[must_use]
+    pub fn travelled(&self, since_start: Span) -> Degrees {
+        let (ramp, cruising) = (self.ramp.as_secs_f64(), self.cruising.as_secs_f64());
+        let t = since_start
+            .as_secs_f64()
+            .clamp(0.0, self.duration.as_secs_f64());
+        // A ramp of no duration covers no distance.
+        let on_ramp = |t: f64| {
+            if ramp > 0.0 {
+                self.cruise.0 * t * t / (2.0 * ramp)
+            } else {
+                0.0
+            }
+        };
+        let left = 2.0 * ramp + cruising - t;
+        Degrees(if t < ramp {
+            on_ramp(t)
+        } else if left > ramp {
+            self.cruise.0 * (t - ramp / 2.0)
+        } else {
+            self.cruise.0 * (ramp + cruising) - on_ramp(left.max(0.0))
+        })
+    }
+}
+
 impl AxisConfig {
     /// Plans a move at a cruise speed and an acceleration in degrees of tilt.
     ///
@@ -244,6 +271,32 @@ mod tests {
             );
         }
         assert!(plan(60.0, 10.0, 100.0).is_ok());
+    }
+
+    #[test]
+    fn the_distance_travelled_is_the_area_under_the_speed() {
+        for to in [45.0, 1.0] {
+            let plan = plan(to, 56.25, 500.0).unwrap();
+            let (steps, mut area) = (20_000, 0.0);
+            let step = plan.duration.as_secs_f64() / f64::from(steps);
+            let ramp = plan.ramp.as_secs_f64();
+            for n in 0..steps {
+                let t = (f64::from(n) + 0.5) * step;
+                let left = plan.duration.as_secs_f64() - t;
+                area += step * plan.cruise.0 * (t / ramp).min(left / ramp).min(1.0);
+                let travelled = plan
+                    .travelled(Span::from_secs_f64(f64::from(n + 1) * step))
+                    .0;
+                assert!((travelled - area).abs() < 1e-5, "{t} s: {travelled} {area}");
+            }
+        }
+    }
+
+    #[test]
+    fn no_distance_is_travelled_before_the_start_and_all_after_the_end() {
+        let plan = plan(45.0, 56.25, 500.0).unwrap();
+        assert_eq!(plan.travelled(Span::from_secs(-1)), Degrees(0.0));
+        assert!((plan.travelled(Span::from_secs(9)).0 - 45.0).abs() < 1e-9);
     }
 
     proptest! {

@@ -8,7 +8,7 @@ use tracing::{Level, Metadata};
 use tracing_subscriber::EnvFilter;
 use tracing_subscriber::fmt::MakeWriter;
 
-use crate::terminal::to_stderr;
+use crate::terminal::{self, to_stderr};
 use engine::failure::Failure;
 
 /// Priority of an error (syslog(3)).
@@ -43,7 +43,7 @@ pub fn start(level: &str) {
             .init();
     } else {
         log.with_ansi(io::stderr().is_terminal())
-            .with_writer(io::stderr)
+            .with_writer(|| LogLine)
             .init();
     }
 }
@@ -114,12 +114,27 @@ impl Write for JournalLine {
     /// Receives an event in a single call.
     fn write(&mut self, text: &[u8]) -> io::Result<usize> {
         let lines = with_priority(self.priority, &String::from_utf8_lossy(text));
-        io::stderr().write_all(lines.as_bytes())?;
+        terminal::queue(lines.into_bytes());
         Ok(text.len())
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        io::stderr().flush()
+        Ok(())
+    }
+}
+
+/// Writer of one event without a priority.
+struct LogLine;
+
+impl Write for LogLine {
+    /// Receives an event in a single call.
+    fn write(&mut self, text: &[u8]) -> io::Result<usize> {
+        terminal::queue(text.to_vec());
+        Ok(text.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
     }
 }
 

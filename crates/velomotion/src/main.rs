@@ -8,11 +8,17 @@ use engine::failure::{Failure, Kind};
 use velomotion::cli::{Cli, Common};
 use velomotion::commands::CommandOutput;
 use velomotion::logging;
-use velomotion::terminal::to_stderr;
+use velomotion::signals;
+use velomotion::terminal::{flush, to_stderr};
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
     keep_words_whole();
+    // The default hook would block the device thread on a stderr that no program reads.
+    std::panic::set_hook(Box::new(|panic| {
+        let backtrace = std::backtrace::Backtrace::capture();
+        to_stderr(&format!("{panic}\n{backtrace}"));
+    }));
     start_log(&cli.common);
     let (output, failure) = match velomotion::run(&cli) {
         Ok(mut output) => {
@@ -21,6 +27,9 @@ fn main() -> ExitCode {
         }
         Err(failure) => (None, Some(failure)),
     };
+    signals::end_process_on_signal();
+    // Messages come before the result.
+    flush();
     let printed = print(&cli.common, output, failure.as_ref());
     let failure = failure.or_else(|| match printed {
         // A closed pipe is not a failure.
@@ -33,14 +42,16 @@ fn main() -> ExitCode {
         ),
         _ => None,
     });
-    match failure {
+    let code = match failure {
         None => ExitCode::SUCCESS,
         Some(failure) => {
             let code = failure.kind.exit_code();
             logging::failed(failure);
             ExitCode::from(code)
         }
-    }
+    };
+    flush();
+    code
 }
 
 /// Breaks lines at spaces only, since messages contain paths and units.

@@ -1,21 +1,39 @@
 //! Termination signals as a flag.
 
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, LazyLock};
 
 use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
 
 use engine::failure::{Failure, Kind};
 
+/// Exit code after a signal.
+const INTERRUPTED: i32 = 130;
+
+/// Set once every device is closed.
+static DEVICES_CLOSED: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
+
+/// From here on a signal ends the process at once: nothing moves, and a result that no program reads
+/// must not keep the process alive.
+pub fn end_process_on_signal() {
+    DEVICES_CLOSED.store(true, Ordering::Relaxed);
+}
+
 /// Returns a flag that SIGINT, SIGTERM, SIGQUIT and SIGHUP set. No signal ends the process
-/// directly: the axis is stopped first, and every wait has a limit.
+/// directly before [`end_process_on_signal`]: the axis is stopped first, and every wait has a limit.
 ///
 /// # Errors
 /// The system refuses a signal handler.
 pub fn interrupt_flag() -> Result<Arc<AtomicBool>, Failure> {
     let flag = Arc::new(AtomicBool::new(false));
     for signal in [SIGINT, SIGTERM, SIGQUIT, SIGHUP] {
-        signal_hook::flag::register(signal, Arc::clone(&flag)).map_err(|error| {
+        let registered = signal_hook::flag::register_conditional_shutdown(
+            signal,
+            INTERRUPTED,
+            Arc::clone(&DEVICES_CLOSED),
+        )
+        .and_then(|_| signal_hook::flag::register(signal, Arc::clone(&flag)));
+        registered.map_err(|error| {
             Failure::new(Kind::NoDevice, format!("cannot watch for Ctrl-C: {error}"))
                 .help("the motor could not be stopped without it; run where signals can be handled")
         })?;

@@ -1,6 +1,12 @@
 //! Messages and progress bars on stderr.
+//!
+//! A thread of its own writes to stderr. A terminal or pipe that nobody reads blocks that thread
+//! alone: the axis, the recording and signals do not wait for it. Its queue is bounded; what does
+//! not fit is dropped.
 
 use std::io::{IsTerminal, Write};
+use std::sync::LazyLock;
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::Duration;
 
 use drive::MovePlan;
@@ -9,22 +15,104 @@ use units::{Degrees, Host, Stamp};
 
 use crate::cli::Common;
 
-/// Output to the terminal.
+/// Messages that may wait for stderr.
+const QUEUE: usize = 1024;
+/// Longest wait for stderr at the end of the program.
+const FLUSH_TIMEOUT: Duration = Duration::from_secs(1);
+const MILLISECONDS: i64 = 1_000_000;
+
+/// The queue of the thread that writes to stderr.
+static STDERR: LazyLock<SyncSender<Message>> = LazyLock::new(|| {
+    let (sender, receiver) = sync_channel(QUEUE);
+    // Without the thread the receiver is dropped and messages are lost, but no scan.
+    let _ = std::thread::Builder::new()
+        .name("stderr".to_owned())
+        .spawn(move || write_messages(&receiver));
+    sender
+});
+
+/// What the thread does next.
+enum Message {
+    /// Writes these bytes, above the bar if there is one.
+    Text(Vec<u8>),
+    /// Draws a new bar of a length with a template.
+    Begin(u64, &'static str),
+    /// Moves the bar to a position; changes its message if there is a new one.
+    Update(u64, Option<String>),
+    /// Removes the bar.
+    End,
+    /// Answers once everything before is written.
+    Flush(SyncSender<()>),
+}
+
+fn write_messages(messages: &Receiver<Message>) {
+    let mut bar: Option<ProgressBar> = None;
+    for message in messages {
+        match (message, &bar) {
+            (Message::Text(text), Some(bar)) => bar.suspend(|| write(&text)),
+            (Message::Text(text), None) => write(&text),
+            (Message::Begin(length, template), _) => {
+                let target = ProgressDrawTarget::stderr_with_hz(20);
+                let new = ProgressBar::with_draw_target(Some(length.max(1)), target);
+                bar = Some(match ProgressStyle::with_template(template) {
+                    Ok(style) => new.with_style(style),
+                    Err(_) => new,
+                });
+            }
+            (Message::Update(position, text), Some(bar)) => {
+                bar.set_position(position);
+                if let Some(text) = text {
+                    bar.set_message(text);
+                }
+            }
+            (Message::End, Some(old)) => {
+                old.finish_and_clear();
+                bar = None;
+            }
+            (Message::Update(..) | Message::End, None) => {}
+            // The program may have stopped waiting.
+            (Message::Flush(done), _) => drop(done.try_send(())),
+        }
+    }
+}
+
+/// A closed stderr must not lose a scan; `eprint!` would panic.
+fn write(text: &[u8]) {
+    let _ = std::io::stderr().write_all(text);
+}
+
+/// Queues bytes for stderr.
+pub fn queue(text: Vec<u8>) {
+    let _ = STDERR.try_send(Message::Text(text));
+}
+
+/// Queues a line for stderr.
+pub fn to_stderr(line: &str) {
+    queue(format!("{line}\n").into_bytes());
+}
+
+/// Waits until stderr has everything, or does not take it within a second.
+pub fn flush() {
+    let (done, is_done) = sync_channel(1);
+    if STDERR.try_send(Message::Flush(done)).is_ok() {
+        let _ = is_done.recv_timeout(FLUSH_TIMEOUT);
+    }
+}
+
+/// Progress on the terminal.
 pub struct Progress {
     quiet: bool,
     terminal: bool,
     sweep: Option<MoveBar>,
-    run: Option<ProgressBar>,
+    /// Position of the bar of a simulation or of items.
+    run: Option<u64>,
 }
 
 /// A move in progress.
 struct MoveBar {
-    bar: ProgressBar,
     plan: MovePlan,
     started: Option<Stamp<Host>>,
 }
-
-const MILLISECONDS: i64 = 1_000_000;
 
 impl Progress {
     /// Creates an output that is quiet with `--quiet` and draws bars only on a terminal.
@@ -41,10 +129,7 @@ impl Progress {
     /// Prints a line unless quiet.
     pub fn say(&self, line: &str) {
         if !self.quiet {
-            match &self.sweep {
-                Some(sweep) if self.terminal => sweep.bar.suspend(|| to_stderr(line)),
-                _ => to_stderr(line),
-            }
+            to_stderr(line);
         }
     }
 
@@ -52,26 +137,21 @@ impl Progress {
     pub fn begin_move(&mut self, plan: &MovePlan) {
         self.end_move();
         let length = plan.duration.as_nanos() / MILLISECONDS;
-        self.sweep = self
-            .bar(length.unsigned_abs(), "{bar:40} {msg}")
-            .map(|bar| MoveBar {
-                bar,
+        if self.begin_bar(length.unsigned_abs(), "{bar:40} {msg}") {
+            self.sweep = Some(MoveBar {
                 plan: *plan,
                 started: None,
             });
+        }
     }
 
-    /// A bar, if there is a terminal to draw it on.
-    fn bar(&self, length: u64, template: &str) -> Option<ProgressBar> {
-        if self.quiet || !self.terminal {
-            return None;
+    /// Starts a bar if there is a terminal to draw it on; returns whether there is.
+    fn begin_bar(&self, length: u64, template: &'static str) -> bool {
+        let draws = !self.quiet && self.terminal;
+        if draws {
+            let _ = STDERR.try_send(Message::Begin(length, template));
         }
-        let target = ProgressDrawTarget::stderr_with_hz(20);
-        let bar = ProgressBar::with_draw_target(Some(length.max(1)), target);
-        match ProgressStyle::with_template(template) {
-            Ok(style) => Some(bar.with_style(style)),
-            Err(_) => Some(bar),
-        }
+        draws
     }
 
     /// Updates the bar: the axis is at `angle` at `now`, and `packets` lidar packets were received.
@@ -84,43 +164,43 @@ impl Progress {
         let left = Duration::from_nanos(
             u64::try_from((sweep.plan.duration - passed).as_nanos()).unwrap_or(0),
         );
-        sweep
-            .bar
-            .set_position((passed.as_nanos() / MILLISECONDS).unsigned_abs());
-        sweep.bar.set_message(format!(
+        let position = (passed.as_nanos() / MILLISECONDS).unsigned_abs();
+        let text = format!(
             "{:8.3} deg, {packets} packets, {:.1} s left",
             angle.0,
             left.as_secs_f64()
-        ));
+        );
+        let _ = STDERR.try_send(Message::Update(position, Some(text)));
     }
 
     /// Starts the bar of a simulation of `seconds`.
     pub fn begin_run(&mut self, seconds: f64) {
         self.end_run();
-        self.run = self.bar((seconds * 1e3) as u64, "{bar:40} {msg}, {eta} left");
+        let begun = self.begin_bar((seconds * 1e3) as u64, "{bar:40} {msg}, {eta} left");
+        self.run = begun.then_some(0);
     }
 
     /// Updates the bar of a simulation.
     pub fn ran(&mut self, seconds: f64) {
-        if let Some(bar) = &self.run {
-            let milliseconds = (seconds * 1e3) as u64;
-            if milliseconds > bar.position() {
-                bar.set_position(milliseconds);
-                bar.set_message(format!("{seconds:.1} s simulated"));
-            }
+        let milliseconds = (seconds * 1e3) as u64;
+        if let Some(position) = self.run.as_mut().filter(|at| **at < milliseconds) {
+            *position = milliseconds;
+            let text = format!("{seconds:.1} s simulated");
+            let _ = STDERR.try_send(Message::Update(milliseconds, Some(text)));
         }
     }
 
     /// Starts the bar of `count` items.
     pub fn begin_count(&mut self, count: u64) {
         self.end_run();
-        self.run = self.bar(count, "{bar:40} {pos} of {len}, {eta} left");
+        let begun = self.begin_bar(count, "{bar:40} {pos} of {len}, {eta} left");
+        self.run = begun.then_some(0);
     }
 
     /// Updates the bar of items.
     pub fn counted(&mut self, done: u64) {
-        match &self.run {
-            Some(bar) => bar.set_position(done),
+        match self.run {
+            Some(_) => drop(STDERR.try_send(Message::Update(done, None))),
             // Without a bar, prints a line now and then.
             None if done.is_multiple_of(16) => self.say(&format!("{done} done")),
             None => {}
@@ -129,22 +209,17 @@ impl Progress {
 
     /// Removes the bar of a simulation or of items.
     pub fn end_run(&mut self) {
-        if let Some(bar) = self.run.take() {
-            bar.finish_and_clear();
+        if self.run.take().is_some() {
+            let _ = STDERR.try_send(Message::End);
         }
     }
 
     /// Removes the bar of a move.
     pub fn end_move(&mut self) {
-        if let Some(sweep) = self.sweep.take() {
-            sweep.bar.finish_and_clear();
+        if self.sweep.take().is_some() {
+            let _ = STDERR.try_send(Message::End);
         }
     }
-}
-
-/// Prints a line to stderr. A closed stderr must not lose a scan; `eprintln!` would panic.
-pub fn to_stderr(line: &str) {
-    let _ = writeln!(std::io::stderr(), "{line}");
 }
 
 impl Drop for Progress {

@@ -213,6 +213,62 @@ fn ctrl_c_in_mid_sweep_saves_the_partial_cloud_and_exits_130() {
     assert!(place.path("scan.pcapng").is_file(), "the log is gone");
 }
 
+/// A command whose stdout and stderr are full pipes that no program reads, such as a terminal after
+/// Ctrl-S or at the end of a dead connection.
+fn with_unread_output(place: &Place, line: &str) -> std::process::Child {
+    // A pipe of Linux holds 64 KiB (pipe(7)).
+    let script = "head -c 65536 /dev/zero; head -c 65536 /dev/zero >&2; exec \"$0\" \"$@\"";
+    Command::new("sh")
+        .args(["-c", script, env!("CARGO_BIN_EXE_velomotion")])
+        .args(line.split_whitespace())
+        .current_dir(place.0.path())
+        .env("XDG_CONFIG_HOME", place.0.path())
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap()
+}
+
+fn send(signal: &str, process: &std::process::Child) {
+    let sent = Command::new("kill").args([signal, &process.id().to_string()]);
+    assert!({ sent }.status().unwrap().success());
+}
+
+#[test]
+fn a_capture_ends_as_planned_though_no_program_reads_its_output() {
+    let place = Place::new();
+    let mut capture = with_unread_output(&place, "capture --speed 56.25 -o scan.ply -vv");
+    crate::daemon::rig::wait("the cloud", || {
+        assert_eq!(
+            capture.try_wait().unwrap(),
+            None,
+            "the result has no reader"
+        );
+        place.path("scan.ply").is_file().then_some(())
+    });
+    // The devices are closed: a signal ends the process.
+    send("-TERM", &capture);
+    assert!(capture.wait().unwrap().code().is_some());
+    assert!(place.run("info scan.pcapng").status.success());
+}
+
+#[test]
+fn a_signal_stops_a_sweep_though_no_program_reads_the_output() {
+    let place = Place::new();
+    let mut capture = with_unread_output(&place, "capture --speed 2 -o scan.ply -vv");
+    // The log grows by several records per millisecond once the axis is sampled.
+    crate::daemon::rig::wait("the log of a sweep", || {
+        let log = std::fs::metadata(place.path("scan.pcapng")).ok()?;
+        (log.len() > 3_000_000).then_some(())
+    });
+    send("-TERM", &capture);
+    assert_eq!(capture.wait().unwrap().code(), Some(130));
+    assert!(
+        place.path("scan.ply").is_file(),
+        "the cloud of the part is gone"
+    );
+}
+
 #[test]
 fn invalid_speeds_and_angles_are_refused_before_anything_moves() {
     let place = Place::new();

@@ -25,7 +25,10 @@ pub(super) async fn configure(ops: &Ops) -> Result<(), DriveError> {
     configure_software_limits(ops).await?;
     set_mode(ops, mode::PROFILE_POSITION).await?;
     let acceleration = config.max_acceleration.0;
-    let following_error = config.max_following_error.0.unsigned_abs();
+    let following_error = config
+        .tolerance_qc(config.max_following_error)
+        .0
+        .unsigned_abs();
     for (object, value) in [
         (objects::MAX_PROFILE_VELOCITY, config.max_speed.0),
         (

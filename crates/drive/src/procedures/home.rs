@@ -2,8 +2,9 @@
 
 use protocol::epos2::cia402::{control, mode, status};
 use protocol::epos2::objects;
-use units::Quadcounts;
+use units::{Degrees, Host, Quadcounts, Stamp};
 
+use crate::config::AxisConfig;
 use crate::error::DriveError;
 use crate::event::{CommandOutcome, CommandProgress};
 use crate::ops::Ops;
@@ -75,6 +76,7 @@ async fn wait_until_attained(ops: &mut Ops) -> Result<(), DriveError> {
     const DONE: u16 = status::TARGET_REACHED | status::HOMING_ATTAINED;
     let homing = ops.config.homing;
     let limit = ops.now().saturating_add(homing.time_limit);
+    let mut travel = HomingTravel::default();
     loop {
         ops.sleep(ops.config.timing.status_period).await;
         let requested = ops.now();
@@ -88,8 +90,9 @@ async fn wait_until_attained(ops: &mut Ops) -> Result<(), DriveError> {
         if got & DONE == DONE {
             return Ok(());
         }
-        // For display only: an error here does not end homing. A lost link fails the next check.
+        // An error here does not end homing. A lost link fails the next check.
         if let Ok((demand, reply)) = ops.read_timed(objects::POSITION_DEMAND).await {
+            travel.check(&ops.config, demand, reply.answer)?;
             ops.report(CommandProgress::Searching {
                 at: reply.answer,
                 demand: Quadcounts(demand),
@@ -102,6 +105,49 @@ async fn wait_until_attained(ops: &mut Ops) -> Result<(), DriveError> {
                 got,
             });
         }
+    }
+}
+
+/// Distance that homing has moved the demand. The position itself is not read: its reads would count
+/// as samples, though the axis may lose its zero at any time.
+#[derive(Default)]
+struct HomingTravel {
+    last: Option<(i32, Stamp<Host>)>,
+    travelled: i64,
+}
+
+impl HomingTravel {
+    /// Adds the demand and compares the distance from the start with the range of the axis.
+    fn check(
+        &mut self,
+        config: &AxisConfig,
+        demand: i32,
+        at: Stamp<Host>,
+    ) -> Result<(), DriveError> {
+        if let Some((last, since)) = self.last.replace((demand, at)) {
+            let moved = i64::from(demand) - i64::from(last);
+            // Where the drive sets its zero the demand jumps, further than the axis can move.
+            let seconds = at.saturating_since(since).as_secs_f64();
+            let fastest = Degrees(2.0 * config.gearing.rate(config.max_speed).0 * seconds + 1.0);
+            if moved.unsigned_abs() <= u64::from(config.tolerance_qc(fastest).0.unsigned_abs()) {
+                self.travelled += moved;
+            }
+        }
+        let qc = self
+            .travelled
+            .unsigned_abs()
+            .min(i32::MAX.unsigned_abs().into()) as i32;
+        let travelled = config.gearing.angle(Quadcounts(qc));
+        let range = config.limits.max.0 - config.limits.min.0;
+        let bound = range + config.homing.offset.0.abs() + config.guard.homing_margin.0;
+        if travelled.0 > bound {
+            return Err(DriveError::HomingTravel {
+                method: config.homing.method,
+                travelled,
+                bound: Degrees(bound),
+            });
+        }
+        Ok(())
     }
 }
 
@@ -147,5 +193,6 @@ async fn settled_position(ops: &mut Ops) -> Result<Quadcounts, DriveError> {
 /// Whether a position is within the limits and the arrival tolerance.
 fn is_inside(ops: &Ops, position: Quadcounts) -> Result<bool, DriveError> {
     let limits = ops.config.limits_qc()?;
-    Ok(limits.contains(position, ops.config.arrival_tolerance))
+    let tolerance = ops.config.tolerance_qc(ops.config.arrival_tolerance);
+    Ok(limits.contains(position, tolerance))
 }

@@ -6,6 +6,7 @@
 
 mod configure;
 mod connect;
+mod guard;
 mod home;
 mod motion;
 mod network;

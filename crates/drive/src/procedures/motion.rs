@@ -4,15 +4,16 @@
 //! polls the position and periodically checks the statusword.
 
 use protocol::epos2::cia402::{control, mode, status};
-use protocol::epos2::objects;
+use protocol::epos2::objects::{self, input};
 use units::{Host, Quadcounts, Span, Stamp};
 
 use crate::error::DriveError;
-use crate::event::{CommandOutcome, CommandProgress, MoveReport};
+use crate::event::{CommandOutcome, CommandProgress, MoveReport, ShaftSample};
 use crate::ops::Ops;
 use crate::plan::{MovePlan, ValidatedMove};
 
 use super::configure::verify_safety;
+use super::guard::MotionGuard;
 use super::network;
 use super::power::{check_enabled, enable, is_fault, is_referenced, set_mode, wait_for};
 use super::stop::make_safe;
@@ -39,7 +40,7 @@ pub(crate) async fn hold(mut ops: Ops, until: Stamp<Host>) -> Result<CommandOutc
 
 /// Samples an axis that may be disabled.
 async fn sample_until_fault(ops: &mut Ops, until: Stamp<Host>) -> Result<(), DriveError> {
-    let mut check = PeriodicCheck::new(ops);
+    let mut check = PeriodicCheck::new(ops, STATUS_CHECKS);
     while ops.now() < until {
         ops.next_sample().await?;
         if check.is_due(ops.now()) && is_fault(ops.read(objects::STATUSWORD).await?) {
@@ -75,8 +76,8 @@ async fn run(ops: &mut Ops, target: ValidatedMove, hold: Span) -> Result<MoveRep
     sample_for(ops, hold).await?;
     let from = ops.next_sample().await?.position;
     let plan = ops.config.plan_move(from, target);
-    let started = start(ops, plan).await?;
-    let (position, arrived) = sample_until_arrival(ops, target.target, &plan, started).await?;
+    let (mut guard, started) = start(ops, plan).await?;
+    let (position, arrived) = sample_until_arrival(ops, target.target, &mut guard, started).await?;
     ops.is_moving = false;
     sample_for(ops, hold).await?;
     network::disarm(ops).await?;
@@ -109,18 +110,20 @@ async fn configure(ops: &Ops, target: ValidatedMove) -> Result<(), DriveError> {
     .map(drop)
 }
 
-/// Starts the move; returns when.
-async fn start(ops: &mut Ops, plan: MovePlan) -> Result<Stamp<Host>, DriveError> {
+/// Starts the move; returns its guard, and when the drive confirmed the start.
+async fn start(ops: &mut Ops, plan: MovePlan) -> Result<(MotionGuard, Stamp<Host>), DriveError> {
     ops.is_moving = true;
+    let sent = ops.now();
     ops.write(objects::CONTROLWORD, control::START_ABSOLUTE)
         .await?;
     let started = ops.now();
+    let mut guard = MotionGuard::new(&ops.config, plan, sent, started);
     ops.report(CommandProgress::Moving(plan));
     let limit = started.saturating_add(ops.config.timing.state_limit);
     loop {
         // The axis accelerates and only samples show how: each other request goes between two of
         // them.
-        ops.next_sample().await?;
+        guarded_sample(ops, &mut guard).await?;
         let requested = ops.now();
         let got = check_enabled(ops).await?;
         if got & status::SETPOINT_ACKNOWLEDGE != 0 {
@@ -133,30 +136,40 @@ async fn start(ops: &mut Ops, plan: MovePlan) -> Result<Stamp<Host>, DriveError>
             });
         }
     }
-    ops.next_sample().await?;
+    guarded_sample(ops, &mut guard).await?;
     ops.write(objects::CONTROLWORD, control::ENABLE_OPERATION)
         .await?;
-    Ok(started)
+    Ok((guard, started))
+}
+
+/// The next sample, compared with the plan.
+async fn guarded_sample(ops: &mut Ops, guard: &mut MotionGuard) -> Result<ShaftSample, DriveError> {
+    let sample = ops.next_sample().await?;
+    guard.check(&sample, ops.config.gearing.angle(sample.position))?;
+    Ok(sample)
 }
 
 /// Samples until the axis is at its target; returns its position and when.
 async fn sample_until_arrival(
     ops: &mut Ops,
     target: Quadcounts,
-    plan: &MovePlan,
+    guard: &mut MotionGuard,
     started: Stamp<Host>,
 ) -> Result<(Quadcounts, Stamp<Host>), DriveError> {
     let limit = started
-        .saturating_add(plan.duration)
+        .saturating_add(guard.plan().duration)
         .saturating_add(ops.config.timing.arrival_margin);
-    let tolerance = ops.config.arrival_tolerance.0.unsigned_abs();
-    let mut check = PeriodicCheck::new(ops);
+    let tolerance = ops.config.tolerance_qc(ops.config.arrival_tolerance);
+    let tolerance = tolerance.0.unsigned_abs();
+    let mut check = PeriodicCheck::new(ops, STATUS_CHECKS);
+    let mut switches = PeriodicCheck::new(ops, SWITCH_CHECKS);
+    let pressed_before = ops.read(objects::INPUT_STATE).await?;
     let mut reached = false;
     // Set when the statusword was requested after the limit. Only a position requested after that
     // proves a failure, as a delayed host may have missed the arrival.
     let mut is_overdue = false;
     loop {
-        let sample = ops.next_sample().await?;
+        let sample = guarded_sample(ops, guard).await?;
         if reached && sample.position.0.abs_diff(target.0) <= tolerance {
             return Ok((sample.position, sample.answer));
         }
@@ -171,14 +184,32 @@ async fn sample_until_arrival(
         is_overdue = ops.now() > limit;
         if is_overdue || check.is_due(ops.now()) {
             reached = check_enabled(ops).await? & status::TARGET_REACHED != 0;
+        } else if switches.is_due(ops.now()) {
+            check_switches(ops, pressed_before).await?;
         }
     }
+}
+
+/// Fails if a limit switch was pressed since the start of the move. A healthy drive stops by
+/// itself.
+async fn check_switches(ops: &Ops, pressed_before: u16) -> Result<(), DriveError> {
+    let inputs = ops.read(objects::INPUT_STATE).await?;
+    let pressed = inputs & !pressed_before & ops.config.limit_switches.mask();
+    if pressed == 0 {
+        return Ok(());
+    }
+    // The drive's own reaction has a better reason than this.
+    check_enabled(ops).await?;
+    Err(DriveError::LimitSwitch {
+        positive: pressed & input::POSITIVE_LIMIT != 0,
+        inputs,
+    })
 }
 
 /// Samples an enabled axis at standstill.
 async fn sample_for(ops: &mut Ops, span: Span) -> Result<(), DriveError> {
     let until = ops.now().saturating_add(span);
-    let mut check = PeriodicCheck::new(ops);
+    let mut check = PeriodicCheck::new(ops, STATUS_CHECKS);
     while ops.now() < until {
         ops.next_sample().await?;
         if check.is_due(ops.now()) {
@@ -188,15 +219,21 @@ async fn sample_for(ops: &mut Ops, span: Span) -> Result<(), DriveError> {
     Ok(())
 }
 
-/// Timer of the statusword checks.
+/// Status periods between two checks of the statusword.
+const STATUS_CHECKS: i64 = 1;
+/// Status periods between two checks of the limit switches.
+const SWITCH_CHECKS: i64 = 5;
+
+/// Timer of repeated checks.
 struct PeriodicCheck {
     next: Stamp<Host>,
     period: Span,
 }
 
 impl PeriodicCheck {
-    fn new(ops: &Ops) -> Self {
-        let period = ops.config.timing.status_period;
+    fn new(ops: &Ops, status_periods: i64) -> Self {
+        let period = ops.config.timing.status_period.as_nanos();
+        let period = Span::from_nanos(period.saturating_mul(status_periods));
         Self {
             next: ops.now().saturating_add(period),
             period,

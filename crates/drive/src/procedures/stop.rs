@@ -1,16 +1,22 @@
 //! Stop and brake: axis at rest and observed to be, power off, brake set.
 //!
 //! The encoder decides about standstill. The velocity (606C) is too coarse: one count per control
-//! cycle is 30 rpm at 2000 qc per revolution. A position that varies by a few counts for 50 ms is
-//! at rest.
+//! cycle is 30 rpm at 2000 qc per revolution. The axis is at rest if its positions of 50 ms spread
+//! little and their mean does not drift.
+//!
+//! A quick stop that does not bring the axis to rest is followed by power off, which also closes
+//! the brake; so is a quick stop without a reply, as the drive may still receive.
+
+use std::collections::VecDeque;
 
 use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::control;
 use protocol::epos2::objects;
-use units::{Quadcounts, Span};
+use units::Span;
 
+use crate::config::AxisConfig;
 use crate::error::DriveError;
-use crate::event::{CommandOutcome, CommandProgress, PositionValidity, StopReport};
+use crate::event::{CommandOutcome, CommandProgress, PositionValidity, ShaftSample, StopReport};
 use crate::ops::Ops;
 
 use super::configure::has_lost_settings;
@@ -18,8 +24,9 @@ use super::network;
 use super::power::{is_fault, is_off, is_referenced, wait_for};
 use super::report::newest_error;
 
-/// Counts by which the position of a shaft at rest may vary.
-const STANDSTILL_QC: u32 = 3;
+/// Share of the standstill spread by which the mean position may drift within the window: 0.3 deg/s
+/// with the defaults.
+const DRIFT_SHARE: f64 = 0.25;
 
 /// Runs [`crate::DriveCommand::Stop`].
 pub(crate) async fn stop(mut ops: Ops) -> Result<CommandOutcome, DriveError> {
@@ -60,17 +67,68 @@ pub(super) async fn make_safe(ops: &mut Ops, cause: DriveError) -> DriveError {
 /// Quick stop, then power off. Harmless in every state: a drive that is off or in fault stays so.
 pub(super) async fn halt(ops: &mut Ops) -> Result<StopReport, DriveError> {
     ops.is_moving = true;
-    ops.write_urgent(objects::CONTROLWORD, control::QUICK_STOP)
-        .await?;
-    disable_at_standstill(ops).await
+    let quick_stop = ops
+        .write_urgent(objects::CONTROLWORD, control::QUICK_STOP)
+        .await;
+    let stopped = match quick_stop {
+        Ok(()) => disable_at_standstill(ops).await,
+        Err(error) => Err(error),
+    };
+    match stopped {
+        Ok(report) => Ok(report),
+        Err(error) => cut_power(ops, error).await,
+    }
 }
 
 /// Like [`halt`] on a link without (undamaged) replies: fails soon, so that the caller soon knows.
 async fn halt_on_lost_link(ops: &mut Ops) -> Result<StopReport, DriveError> {
     ops.is_moving = true;
-    ops.write_last_attempt(objects::CONTROLWORD, control::QUICK_STOP)
-        .await?;
-    disable_at_standstill(ops).await
+    match ops
+        .write_last_attempt(objects::CONTROLWORD, control::QUICK_STOP)
+        .await
+    {
+        Ok(()) => match disable_at_standstill(ops).await {
+            Ok(report) => Ok(report),
+            Err(error) => cut_power(ops, error).await,
+        },
+        Err(error) => {
+            // The drive may have received the quick stop: its ramp comes before power off.
+            ops.aborts_on_alarm = false;
+            ops.sleep(quick_stop_ramp(ops)).await;
+            cut_power(ops, error).await
+        }
+    }
+}
+
+/// Switches the power off after a quick stop that failed with `error`; the brake closes at once.
+/// Returns `error` if this has no reply either.
+async fn cut_power(ops: &mut Ops, error: DriveError) -> Result<StopReport, DriveError> {
+    let off = ops
+        .write_last_attempt(objects::CONTROLWORD, control::DISABLE_VOLTAGE)
+        .await;
+    if off.is_err() {
+        return Err(error);
+    }
+    match disable_at_standstill(ops).await {
+        Ok(report) => Ok(StopReport {
+            quick_stop_failed: true,
+            ..report
+        }),
+        Err(DriveError::StillMoving {
+            position, waited, ..
+        }) => Err(DriveError::StillMoving {
+            position,
+            waited,
+            power_off: true,
+        }),
+        Err(_) => Err(error),
+    }
+}
+
+/// Duration of a quick stop from the highest speed.
+fn quick_stop_ramp(ops: &Ops) -> Span {
+    let config = &ops.config;
+    Span::from_secs_f64(f64::from(config.max_speed.0) / f64::from(config.quick_stop.0))
 }
 
 /// Completes an error once the axis is at rest: which fault, and whether the drive has restarted.
@@ -79,6 +137,8 @@ async fn diagnose(ops: &Ops, cause: DriveError) -> DriveError {
         DriveError::Fault { error } => error,
         DriveError::State { .. } | DriveError::NotReferenced { .. } => None,
         DriveError::NotTaken { .. } | DriveError::Restarted { error: None } => None,
+        // A fault or a restart explains the motion.
+        DriveError::OffPlan { .. } | DriveError::LimitSwitch { .. } => None,
         other => return other,
     };
     let newest = match known {
@@ -90,6 +150,11 @@ async fn diagnose(ops: &Ops, cause: DriveError) -> DriveError {
         DriveError::Restarted { .. } => DriveError::Restarted { error: newest },
         _ if has_lost_settings(ops).await == Ok(true) => DriveError::Restarted { error: newest },
         DriveError::Fault { .. } => DriveError::Fault { error: newest },
+        DriveError::OffPlan { .. } | DriveError::LimitSwitch { .. }
+            if ops.read(objects::STATUSWORD).await.is_ok_and(is_fault) =>
+        {
+            DriveError::Fault { error: newest }
+        }
         other => other,
     }
 }
@@ -121,6 +186,7 @@ async fn disable_at_standstill(ops: &mut Ops) -> Result<StopReport, DriveError> 
         angle: (validity == PositionValidity::Valid).then(|| ops.config.gearing.angle(position)),
         fault,
         brake: brake.is_some(),
+        quick_stop_failed: false,
     })
 }
 
@@ -147,34 +213,133 @@ fn invalidates_position(error: DeviceError) -> bool {
 }
 
 async fn wait_for_standstill(ops: &mut Ops) -> Result<(), DriveError> {
-    let timing = ops.config.timing;
-    let ramp_s = f64::from(ops.config.max_speed.0) / f64::from(ops.config.quick_stop.0);
     let began = ops.now();
     let limit = began
-        .saturating_add(Span::from_secs_f64(ramp_s))
-        .saturating_add(timing.state_limit);
-    let mut reference: Option<Quadcounts> = None;
-    let mut since = began;
+        .saturating_add(quick_stop_ramp(ops))
+        .saturating_add(ops.config.timing.state_limit);
+    let mut window = StandstillWindow::new(&ops.config);
     let mut is_overdue = false;
     loop {
         let sample = ops.next_sample().await?;
-        let is_constant =
-            reference.is_some_and(|qc| qc.0.abs_diff(sample.position.0) <= STANDSTILL_QC);
-        if is_constant {
-            if sample.request.saturating_since(since) >= timing.standstill {
-                return Ok(());
-            }
-            continue;
+        if window.is_at_rest_with(&sample) {
+            return Ok(());
         }
         // Both positions were requested after the limit: a delayed host may have missed the stop.
-        if is_overdue {
+        if is_overdue && !window.is_steady() {
             return Err(DriveError::StillMoving {
                 position: sample.position,
                 waited: ops.now().saturating_since(began),
+                power_off: false,
             });
         }
         is_overdue = sample.request > limit;
-        reference = Some(sample.position);
-        since = sample.answer;
+    }
+}
+
+/// The latest positions, and whether they show an axis at rest.
+struct StandstillWindow {
+    /// Time that the window covers at least.
+    span: Span,
+    /// Largest spread of the positions, qc.
+    spread: f64,
+    samples: VecDeque<ShaftSample>,
+}
+
+impl StandstillWindow {
+    fn new(config: &AxisConfig) -> Self {
+        Self {
+            span: config.timing.standstill,
+            spread: f64::from(config.tolerance_qc(config.standstill_spread).0),
+            samples: VecDeque::new(),
+        }
+    }
+
+    /// Adds a sample; returns whether the axis was at rest throughout the window.
+    fn is_at_rest_with(&mut self, sample: &ShaftSample) -> bool {
+        self.samples.push_back(*sample);
+        // The window begins with the newest sample that is old enough.
+        while let Some(second) = self.samples.get(1)
+            && sample.request.saturating_since(second.answer) >= self.span
+        {
+            self.samples.pop_front();
+        }
+        let covers = self
+            .samples
+            .front()
+            .is_some_and(|first| sample.request.saturating_since(first.answer) >= self.span);
+        covers && self.is_steady()
+    }
+
+    /// Whether the positions spread little and their mean does not drift.
+    fn is_steady(&self) -> bool {
+        let positions = || {
+            self.samples
+                .iter()
+                .map(|sample| f64::from(sample.position.0))
+        };
+        let lowest = positions().fold(f64::INFINITY, f64::min);
+        let highest = positions().fold(f64::NEG_INFINITY, f64::max);
+        let half = self.samples.len() / 2;
+        let mean = |sum: f64| sum / half.max(1) as f64;
+        let drift = mean(positions().rev().take(half).sum()) - mean(positions().take(half).sum());
+        highest - lowest <= self.spread && drift.abs() <= (self.spread * DRIFT_SHARE).max(3.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::event::SampleTrigger;
+    use units::{Quadcounts, Stamp};
+
+    /// Milliseconds until rest is found in positions polled every `period_ms`.
+    fn found_after(period_ms: i64, position: impl Fn(i64) -> f64) -> Option<i64> {
+        let mut window = StandstillWindow::new(&AxisConfig::default());
+        (0..2_000).step_by(period_ms as usize).find(|ms| {
+            let at = Stamp::from_nanos(ms * 1_000_000);
+            window.is_at_rest_with(&ShaftSample {
+                request: at,
+                answer: at,
+                position: Quadcounts(position(*ms).round() as i32),
+                trigger: SampleTrigger::Request,
+                device_us: None,
+            })
+        })
+    }
+
+    #[test]
+    fn an_axis_at_rest_is_found_after_the_window() {
+        assert_eq!(found_after(1, |_| 7.0), Some(50));
+        assert_eq!(found_after(10, |_| 7.0), Some(50));
+    }
+
+    /// An encoder at the edge of a count, and a servo that hunts by 8 qc.
+    #[test]
+    fn dither_is_rest() {
+        for period_ms in [1, 2, 8, 15] {
+            let dither = |ms: i64| 8.0 * (ms as f64 * 0.7).sin();
+            let found = found_after(period_ms, dither).unwrap();
+            assert!(found <= 150, "{period_ms} ms: {found} ms");
+        }
+    }
+
+    /// The spread of a slow axis is small, too: its drift shows the motion.
+    #[test]
+    fn slow_motion_is_not_rest() {
+        for deg_s in [0.4, 1.0, 56.25] {
+            let qc_per_ms = deg_s / 0.0015 / 1e3;
+            assert_eq!(
+                found_after(1, |ms| ms as f64 * qc_per_ms),
+                None,
+                "{deg_s} deg/s"
+            );
+        }
+    }
+
+    #[test]
+    fn rest_is_found_after_motion() {
+        let stops = |ms: i64| (ms.min(200) * 40) as f64;
+        let found = found_after(1, stops).unwrap();
+        assert!((248..=255).contains(&found), "{found}");
     }
 }

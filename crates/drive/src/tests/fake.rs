@@ -1,5 +1,5 @@
-//! A scripted drive: an object dictionary, the states that the client uses, an axis of constant
-//! speed, and hooks that lose, delay, damage or repeat any reply. It shares only the frame format
+//! A scripted drive: an object dictionary, the states that the client uses, an axis that follows
+//! its profile exactly, and hooks that lose, delay, damage or repeat any reply. It shares only the frame format
 //! with the client.
 
 use std::collections::BTreeMap;
@@ -43,6 +43,8 @@ struct Motion {
     began: Stamp<Host>,
     /// qc per second.
     speed: f64,
+    /// qc per second squared.
+    acceleration: f64,
 }
 
 pub struct Fake {
@@ -70,6 +72,8 @@ pub struct Fake {
     /// The axis does not follow.
     pub blocked: bool,
     pub deaf_to_quick_stop: bool,
+    /// Switching the power off does not stop the axis either.
+    pub deaf_to_power_off: bool,
     /// A fault at this time.
     pub fault_at: Option<(Stamp<Host>, u16)>,
     pub faults_that_stay: bool,
@@ -170,6 +174,7 @@ impl Fake {
             homing_time: Span::from_millis(700),
             blocked: false,
             deaf_to_quick_stop: false,
+            deaf_to_power_off: false,
             fault_at: None,
             faults_that_stay: false,
             stubborn: Vec::new(),
@@ -253,9 +258,25 @@ impl Fake {
         let Some(m) = self.motion else {
             return self.place;
         };
-        let way = m.speed * (now - m.began).as_secs_f64();
-        let left = m.to - m.from;
-        m.from + left.signum() * way.min(left.abs())
+        let (seconds, distance) = ((now - m.began).as_secs_f64(), (m.to - m.from).abs());
+        // The speed is limited by what was gained since the start and must be lost before the end.
+        let ramp = (m.speed / m.acceleration).min((distance / m.acceleration).sqrt());
+        let peak = ramp * m.acceleration;
+        let gained = |t: f64| match t.max(0.0) {
+            t if t < ramp => peak * t * t / (2.0 * ramp),
+            t => peak * (t - ramp / 2.0),
+        };
+        let left = if peak > 0.0 {
+            distance / peak + ramp - seconds
+        } else {
+            f64::INFINITY
+        };
+        let way = if left < ramp {
+            distance - gained(left.max(0.0))
+        } else {
+            gained(seconds)
+        };
+        m.from + (m.to - m.from).signum() * way.clamp(0.0, distance)
     }
 
     fn serve(&mut self, request: &SerialRequest, now: Stamp<Host>) -> SerialFrame {
@@ -433,7 +454,9 @@ impl Fake {
             return;
         }
         if word & 2 == 0 {
-            self.freeze(now);
+            if !self.deaf_to_power_off {
+                self.freeze(now);
+            }
             self.state = DISABLED;
         } else if word & 4 == 0 {
             if self.state == ENABLED && !self.deaf_to_quick_stop {
@@ -471,6 +494,7 @@ impl Fake {
             } else {
                 f64::from(self.objects[&(0x6081, 0)]) * 2000.0 / 60.0
             },
+            acceleration: f64::from(self.objects[&(0x6083, 0)].max(1)) * 2000.0 / 60.0,
         });
     }
 }

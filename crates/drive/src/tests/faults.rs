@@ -3,10 +3,11 @@
 use protocol::epos2::CommError;
 use protocol::epos2::DeviceError;
 use protocol::epos2::message::SerialRequest;
-use units::{Quadcounts, Span};
+use units::{Degrees, Quadcounts, Span};
 
 use super::fake::{DISABLED, FAULT, Fate};
 use super::rig::{Rig, to};
+use crate::error::Deviation;
 use crate::{AxisConfig, CommandOutcome, CommandProgress, DriveCommand, DriveError};
 
 fn made_safe(rig: &Rig) -> bool {
@@ -57,24 +58,23 @@ fn a_fault_in_mid_sweep_is_named_and_the_axis_is_made_safe() {
 }
 
 #[test]
-fn a_move_of_a_blocked_axis_fails_after_the_planned_time() {
+fn a_blocked_axis_is_stopped_once_it_is_behind_its_plan() {
     let mut rig = Rig::homed();
     rig.fake.blocked = true;
     let began = rig.now;
     let error = rig.run(DriveCommand::Goto(to(45.0))).unwrap_err();
-    let DriveError::NotArrived {
-        target,
-        position,
-        reached,
+    let DriveError::OffPlan {
+        deviation: Deviation::Behind,
+        got,
         ..
     } = error
     else {
         panic!("{error:?}")
     };
-    assert_eq!((target.0, position.0, reached), (30_000, -40_000, false));
-    // 105 deg at 56.25 deg/s with 112.5 ms of ramp, and the margin of 1 s.
+    assert_eq!(got, Degrees(-60.0));
+    // 3.3 deg of the plan take 115 ms; the rest is preparation.
     let took = (rig.now - began).as_secs_f64();
-    assert!((2.9..3.5).contains(&took), "{took}");
+    assert!(took < 0.5, "{took}");
     assert!(made_safe(&rig));
     assert_eq!(rig.fake.state, DISABLED);
 }
@@ -240,7 +240,7 @@ fn stop_of_an_idle_or_faulty_drive_is_harmless() {
 }
 
 #[test]
-fn an_axis_that_does_not_stop_is_reported() {
+fn power_off_follows_a_quick_stop_that_does_not_stop() {
     let mut config = AxisConfig::default();
     config.timing.state_limit = Span::from_millis(100);
     let mut rig = Rig::new(config);
@@ -255,7 +255,40 @@ fn an_axis_that_does_not_stop_is_reported() {
     assert_eq!(rig.run_for(Span::from_millis(500)), None);
     rig.fake.deaf_to_quick_stop = true;
     rig.client.start(DriveCommand::Stop).unwrap();
-    assert!(matches!(rig.finish(), Err(DriveError::StillMoving { .. })));
+    let Ok(CommandOutcome::Stopped(report)) = rig.finish() else {
+        panic!("{:?}", rig.events)
+    };
+    assert!(report.quick_stop_failed);
+    assert_eq!(rig.fake.state, DISABLED);
+}
+
+#[test]
+fn an_axis_that_power_off_does_not_stop_is_reported() {
+    let mut config = AxisConfig::default();
+    config.timing.state_limit = Span::from_millis(100);
+    let mut rig = Rig::new(config);
+    rig.run(DriveCommand::Connect).unwrap();
+    rig.run(DriveCommand::Home).unwrap();
+    rig.client
+        .start(DriveCommand::Goto(crate::MoveCommand {
+            speed: units::Rpm(200),
+            ..to(45.0)
+        }))
+        .unwrap();
+    assert_eq!(rig.run_for(Span::from_millis(500)), None);
+    (rig.fake.deaf_to_quick_stop, rig.fake.deaf_to_power_off) = (true, true);
+    rig.client.start(DriveCommand::Stop).unwrap();
+    let error = rig.finish().unwrap_err();
+    assert!(
+        matches!(
+            error,
+            DriveError::StillMoving {
+                power_off: true,
+                ..
+            }
+        ),
+        "{error}"
+    );
 }
 
 #[test]

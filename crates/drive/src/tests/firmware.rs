@@ -505,10 +505,11 @@ fn a_cut_cable_in_mid_sweep_is_reported_and_stops_the_axis_on_can() {
         let error = world.finish().unwrap_err();
         assert!(matches!(error, DriveError::NotStopped { .. }), "{error}");
         let replies = world.now - world.quick_stops.first().copied().unwrap_or(world.now);
-        assert!(replies < Span::from_millis(100), "{link:?}: {replies:?}");
-        assert!(world.now - at < Span::from_millis(400), "{link:?}");
+        // Quick stop, its ramp, and power off, each without a reply.
+        assert!(replies < Span::from_millis(240), "{link:?}: {replies:?}");
+        assert!(world.now - at < Span::from_millis(550), "{link:?}");
         if link == DriveLink::Can {
-            while world.now - at < Span::from_millis(300) {
+            while world.now - at < Span::from_millis(600) {
                 world.now = world.next_tick;
                 world.wait();
             }

@@ -1,0 +1,205 @@
+//! Comparison of the moving axis with its plan.
+//!
+//! The drive generates the profile from its own counts. A wrong encoder polarity, a slipping
+//! coupling, a frozen position or a defective drive shows only in the samples, so every sample is
+//! compared with the plan. The time of a sample and the start of the profile are known as ranges;
+//! the expected positions are those of all times in these ranges.
+
+use units::{Degrees, Host, Span, Stamp};
+
+use crate::config::AxisConfig;
+use crate::error::{Deviation, DriveError};
+use crate::event::ShaftSample;
+use crate::plan::MovePlan;
+
+/// Longest time from the receipt of the command to the start of the profile: some control cycles.
+const START_DELAY: Span = Span::from_millis(10);
+/// Share by which the drive's clock may differ from the host's, in progress of the move.
+const CLOCK_SHARE: f64 = 0.002;
+
+/// Compares samples with the plan of a move.
+pub(super) struct MotionGuard {
+    plan: MovePlan,
+    /// The profile starts between these times.
+    sent: Stamp<Host>,
+    acknowledged: Stamp<Host>,
+    behind: f64,
+    ahead: f64,
+    lowest: f64,
+    highest: f64,
+    /// The previous sample deviated.
+    is_suspicious: bool,
+}
+
+impl MotionGuard {
+    /// A guard of a move whose command was sent and acknowledged at these times.
+    pub fn new(
+        config: &AxisConfig,
+        plan: MovePlan,
+        sent: Stamp<Host>,
+        acknowledged: Stamp<Host>,
+    ) -> Self {
+        let guard = &config.guard;
+        let dither = config.standstill_spread.0;
+        Self {
+            plan,
+            sent,
+            acknowledged: acknowledged.saturating_add(START_DELAY),
+            behind: guard.behind.0 + plan.cruise.0 * guard.servo_lag.as_secs_f64() + dither,
+            ahead: guard.ahead.0 + dither,
+            // A move may begin beyond a limit, where homing or a person has left the axis.
+            lowest: config.limits.min.0.min(plan.from.0) - guard.beyond_limits.0 - dither,
+            highest: config.limits.max.0.max(plan.from.0) + guard.beyond_limits.0 + dither,
+            is_suspicious: false,
+        }
+    }
+
+    /// The plan of the move.
+    pub fn plan(&self) -> &MovePlan {
+        &self.plan
+    }
+
+    /// Compares a sample at an angle with the plan.
+    ///
+    /// # Errors
+    /// [`DriveError::OffPlan`] at the second deviating sample in a row: a single one may be a
+    /// damaged reply.
+    pub fn check(&mut self, sample: &ShaftSample, angle: Degrees) -> Result<(), DriveError> {
+        let deviation = self.deviation(sample, angle.0);
+        let was_suspicious = std::mem::replace(&mut self.is_suspicious, deviation.is_some());
+        match deviation {
+            Some((deviation, expected)) if was_suspicious => Err(DriveError::OffPlan {
+                deviation,
+                expected: Degrees(expected),
+                got: angle,
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// The deviation of a sample, with the angle expected.
+    fn deviation(&self, sample: &ShaftSample, angle: f64) -> Option<(Deviation, f64)> {
+        let plan = &self.plan;
+        let direction = if plan.to.0 < plan.from.0 { -1.0 } else { 1.0 };
+        let at = |travelled: f64| plan.from.0 + direction * travelled;
+        let progress = (angle - plan.from.0) * direction;
+        let most = plan.travelled(sample.answer.saturating_since(self.sent)).0;
+        let least = plan
+            .travelled(sample.request.saturating_since(self.acknowledged))
+            .0;
+        if angle < self.lowest {
+            Some((Deviation::BeyondLimits, self.lowest))
+        } else if angle > self.highest {
+            Some((Deviation::BeyondLimits, self.highest))
+        } else if progress < -self.ahead {
+            Some((Deviation::WrongWay, at(least)))
+        } else if progress > most * (1.0 + CLOCK_SHARE) + self.ahead {
+            Some((Deviation::Ahead, at(most)))
+        } else if progress < least * (1.0 - CLOCK_SHARE) - self.behind {
+            Some((Deviation::Behind, at(least)))
+        } else {
+            None
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::event::SampleTrigger;
+    use units::{DegPerS, DegPerS2, Quadcounts};
+
+    /// 45 deg at 56.25 deg/s from time zero.
+    fn guard(from: f64, to: f64) -> MotionGuard {
+        let config = AxisConfig::default();
+        let plan = config
+            .plan(Degrees(from), Degrees(to), DegPerS(56.25), DegPerS2(500.0))
+            .unwrap();
+        let at = Stamp::from_nanos(0);
+        MotionGuard::new(&config, plan, at, at)
+    }
+
+    /// Checks two samples of this angle, a millisecond apart.
+    fn deviation(guard: &mut MotionGuard, ms: i64, angle: f64) -> Option<Deviation> {
+        let mut result = Ok(());
+        for ms in [ms, ms + 1] {
+            let at = Stamp::from_nanos(ms * 1_000_000);
+            let sample = ShaftSample {
+                request: at,
+                answer: at,
+                position: Quadcounts(0),
+                trigger: SampleTrigger::Request,
+                device_us: None,
+            };
+            result = guard.check(&sample, Degrees(angle));
+        }
+        match result {
+            Err(DriveError::OffPlan { deviation, .. }) => Some(deviation),
+            _ => None,
+        }
+    }
+
+    #[test]
+    fn an_axis_on_its_plan_passes() {
+        let mut guard = guard(-45.0, 0.0);
+        for ms in 0..2_000 {
+            let angle = -45.0 + guard.plan.travelled(Span::from_millis(ms)).0;
+            assert_eq!(deviation(&mut guard, ms, angle), None, "{ms} ms");
+            // A servo that lags by 40 ms, and overshoots by 0.3 deg.
+            let lagging = -45.0 + guard.plan.travelled(Span::from_millis(ms - 40)).0;
+            assert_eq!(deviation(&mut guard, ms, lagging), None, "{ms} ms");
+            assert_eq!(deviation(&mut guard, ms, angle + 0.3), None, "{ms} ms");
+        }
+    }
+
+    #[test]
+    fn each_deviation_is_found_in_both_directions() {
+        for sign in [1.0, -1.0] {
+            let mut guard = guard(-45.0 * sign, 0.0);
+            let mut found = |ms, angle: f64| deviation(&mut guard, ms, angle * sign);
+            assert_eq!(found(100, -45.6), Some(Deviation::WrongWay));
+            assert_eq!(found(900, 0.7), Some(Deviation::Ahead));
+            assert_eq!(found(400, -20.0), Some(Deviation::Ahead), "it jumps");
+            assert_eq!(
+                found(400, -45.0),
+                Some(Deviation::Behind),
+                "it stands still"
+            );
+            assert_eq!(found(900, 60.2), Some(Deviation::BeyondLimits));
+        }
+    }
+
+    #[test]
+    fn a_single_deviating_sample_is_ignored() {
+        let mut guard = guard(-45.0, 0.0);
+        let sample = |ms: i64| ShaftSample {
+            request: Stamp::from_nanos(ms * 1_000_000),
+            answer: Stamp::from_nanos(ms * 1_000_000),
+            position: Quadcounts(0),
+            trigger: SampleTrigger::Request,
+            device_us: None,
+        };
+        let on_plan = Degrees(-45.0 + guard.plan.travelled(Span::from_millis(300)).0);
+        for (ms, angle) in [(300, Degrees(40.0)), (301, on_plan), (302, Degrees(-60.0))] {
+            assert_eq!(guard.check(&sample(ms), angle), Ok(()), "{ms} ms");
+        }
+    }
+
+    #[test]
+    fn a_late_answer_widens_the_expected_range() {
+        let mut guard = guard(-45.0, 0.0);
+        let sample = ShaftSample {
+            request: Stamp::from_nanos(300_000_000),
+            answer: Stamp::from_nanos(500_000_000),
+            position: Quadcounts(0),
+            trigger: SampleTrigger::Request,
+            device_us: None,
+        };
+        for ms in [300, 400, 500] {
+            let angle = Degrees(-45.0 + guard.plan.travelled(Span::from_millis(ms)).0);
+            for _ in 0..2 {
+                assert_eq!(guard.check(&sample, angle), Ok(()), "{ms} ms");
+            }
+        }
+    }
+}
