@@ -2,6 +2,7 @@
 
 use std::io::Write;
 use std::process::ExitCode;
+use std::time::Duration;
 
 use clap::Parser;
 use engine::failure::{Failure, Kind};
@@ -10,6 +11,9 @@ use velomotion::commands::CommandOutput;
 use velomotion::logging;
 use velomotion::signals;
 use velomotion::terminal::{flush, to_stderr};
+
+/// Longest wait for a reader of the result after a signal.
+const LAST_WORDS: Duration = Duration::from_secs(1);
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
@@ -92,9 +96,19 @@ fn print(
         to_stderr(&line);
         return Ok(());
     }
-    let mut stdout = std::io::stdout().lock();
-    writeln!(stdout, "{line}")?;
-    stdout.flush()
+    let (done, printed) = std::sync::mpsc::sync_channel(1);
+    std::thread::spawn(move || {
+        let mut stdout = std::io::stdout().lock();
+        let result = writeln!(stdout, "{line}").and_then(|()| stdout.flush());
+        // The program may have stopped waiting.
+        let _ = done.send(result);
+    });
+    let gone = || std::io::ErrorKind::BrokenPipe.into();
+    // After a signal the process ends even if no program reads its result.
+    match failure.map(|failure| failure.kind) {
+        Some(Kind::Interrupted) => printed.recv_timeout(LAST_WORDS).unwrap_or(Ok(())),
+        _ => printed.recv().unwrap_or_else(|_| Err(gone())),
+    }
 }
 
 fn error_object(failure: &Failure) -> serde_json::Value {
