@@ -230,8 +230,9 @@ fn with_unread_output(place: &Place, line: &str) -> std::process::Child {
 }
 
 fn send(signal: &str, process: &std::process::Child) {
-    let sent = Command::new("kill").args([signal, &process.id().to_string()]);
-    assert!({ sent }.status().unwrap().success());
+    let mut kill = Command::new("kill");
+    kill.args([signal, &process.id().to_string()]);
+    assert!(kill.status().unwrap().success());
 }
 
 #[test]

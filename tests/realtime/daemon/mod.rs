@@ -9,7 +9,7 @@ mod events;
 mod limits;
 mod panics;
 mod rapid_requests;
-mod rig;
+pub mod rig;
 mod scans;
 mod service;
 mod silent_drive;
