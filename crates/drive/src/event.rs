@@ -79,6 +79,8 @@ pub enum CommandProgress {
         /// Position demand value (6062), relative to the zero before homing.
         demand: Quadcounts,
     },
+    /// A quick stop did not bring the axis to rest; switching its power off did.
+    PowerCut,
     /// A command failed and the axis was stopped; the failure follows.
     MadeSafe(StopReport),
 }
@@ -218,8 +220,6 @@ pub struct StopReport {
     pub fault: bool,
     /// Whether an output of the drive controls a brake.
     pub brake: bool,
-    /// Whether the quick stop failed, and switching the power off stopped the axis.
-    pub quick_stop_failed: bool,
 }
 
 /// Validity of the position of an axis at rest.

@@ -193,8 +193,13 @@ async fn sample_until_arrival(
 /// Fails if a limit switch was pressed since the start of the move. A healthy drive stops by
 /// itself.
 async fn check_switches(ops: &Ops, pressed_before: u16) -> Result<(), DriveError> {
-    let inputs = ops.read(objects::INPUT_STATE).await?;
-    let pressed = inputs & !pressed_before & ops.config.limit_switches.mask();
+    let switches = ops.config.limit_switches.mask() & !pressed_before;
+    let mut inputs = ops.read(objects::INPUT_STATE).await?;
+    if inputs & switches != 0 {
+        // A single reply may be that to an earlier request.
+        inputs = ops.read(objects::INPUT_STATE).await?;
+    }
+    let pressed = inputs & switches;
     if pressed == 0 {
         return Ok(());
     }

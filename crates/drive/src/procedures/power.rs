@@ -147,11 +147,16 @@ pub(super) async fn enable(ops: &Ops) -> Result<(), DriveError> {
 /// # Errors
 /// [`DriveError::Fault`] without its cause, or [`DriveError::State`].
 pub(super) async fn check_enabled(ops: &Ops) -> Result<u16, DriveError> {
-    let got = ops.read(objects::STATUSWORD).await?;
+    let is_enabled = |got| DeviceState::from_statusword(got) == Some(DeviceState::OperationEnabled);
+    let mut got = ops.read(objects::STATUSWORD).await?;
+    if !is_enabled(got) {
+        // A single reply may be that to an earlier request.
+        got = ops.read(objects::STATUSWORD).await?;
+    }
     if is_fault(got) {
         return Err(DriveError::Fault { error: None });
     }
-    if DeviceState::from_statusword(got) != Some(DeviceState::OperationEnabled) {
+    if !is_enabled(got) {
         return Err(DriveError::State {
             expected: "operation enabled",
             got,

@@ -110,10 +110,10 @@ async fn cut_power(ops: &mut Ops, error: DriveError) -> Result<StopReport, Drive
         return Err(error);
     }
     match disable_at_standstill(ops).await {
-        Ok(report) => Ok(StopReport {
-            quick_stop_failed: true,
-            ..report
-        }),
+        Ok(report) => {
+            ops.report(CommandProgress::PowerCut);
+            Ok(report)
+        }
         Err(DriveError::StillMoving {
             position, waited, ..
         }) => Err(DriveError::StillMoving {
@@ -186,7 +186,6 @@ async fn disable_at_standstill(ops: &mut Ops) -> Result<StopReport, DriveError> 
         angle: (validity == PositionValidity::Valid).then(|| ops.config.gearing.angle(position)),
         fault,
         brake: brake.is_some(),
-        quick_stop_failed: false,
     })
 }
 

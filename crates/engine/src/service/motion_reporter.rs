@@ -6,7 +6,7 @@ use drive::{CommandProgress, DriveEvent, MovePlan};
 use units::{Degrees, Host, Stamp};
 
 use super::DeviceService;
-use super::events::Event;
+use super::events::{Event, MessageLevel};
 
 /// Between two reports.
 const INTERVAL: Duration = Duration::from_millis(50);
@@ -49,6 +49,15 @@ impl<'a> MotionReporter<'a> {
             DriveEvent::Progress(CommandProgress::Searching { at, demand }) if self.referenced => {
                 let packets = self.service.activity().packets;
                 self.moved(*at, gearing.angle(*demand), packets);
+            }
+            DriveEvent::Progress(CommandProgress::PowerCut) => {
+                let help =
+                    "check the drive's settings and what moves the axis before it moves again";
+                self.service.events().message(
+                    MessageLevel::Warning,
+                    "the quick stop did not stop the axis; switching its power off did",
+                    Some(help.to_owned()),
+                );
             }
             event => {
                 if matches!(event, DriveEvent::Progress(_)) {
