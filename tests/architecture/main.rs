@@ -29,9 +29,7 @@ const INDEPENDENT: [(&str, &[&str]); 3] = [
 const OPTIONAL_PACKAGES: [&str; 2] = ["zenoh", "xxhash-rust"];
 
 /// Ceilings of the figures; they may only fall.
-const MAX_REPEATED_TYPES: usize = 24;
-const MAX_LONG_COMMENTS: usize = 0;
-const MAX_CYCLES_ACROSS_FOLDERS: usize = 1;
+const MAX_REPEATED_TYPES: usize = 13;
 
 #[test]
 fn crates_depend_only_on_what_the_table_allows() {
@@ -144,18 +142,14 @@ fn counts() {
 #[test]
 fn modules_of_different_folders_do_not_import_each_other_in_cycles() {
     let counts = counts_of_sources();
-    assert!(
-        counts.cycles.len() <= MAX_CYCLES_ACROSS_FOLDERS,
-        "{:#?}",
-        counts.cycles
-    );
+    assert!(counts.cycles.is_empty(), "{:#?}", counts.cycles);
 }
 
 #[test]
 fn comments_are_wrapped_at_100_columns() {
     let counts = counts_of_sources();
     assert!(
-        counts.long_comments.len() <= MAX_LONG_COMMENTS,
+        counts.long_comments.is_empty(),
         "{:#?}",
         counts.long_comments
     );

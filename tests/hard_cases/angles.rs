@@ -332,7 +332,7 @@ fn samples_that_end_in_mid_sweep_give_no_angle_after() {
 fn a_fit_of_the_cruise_alone_reports_its_condition() {
     let whole = REFERENCE.sweep(TODAY);
     let samples = REFERENCE.polls(TODAY, 400.0, 0.2e-3);
-    let conditions: Vec<f64> = [Method::Profile, Method::ProfileServo, Method::ProfileSwing]
+    let conditions: Vec<f64> = [Method::Profile, Method::ProfileServo, Method::ProfileServo2]
         .into_iter()
         .map(|method| {
             let fit = through(samples.clone(), whole, Some(method));

@@ -80,7 +80,7 @@ impl Client {
         match UnixStream::connect(&socket) {
             Ok(_) => return Some(Self { socket }),
             Err(error) if error.kind() == ErrorKind::PermissionDenied => tracing::warn!(
-                "a daemon may have the device, and not everybody may speak to it: {}; \
+                "a daemon may have the device, and denies access to it: {}; \
                  join the group that owns its socket (adduser YOU velomotion), and log in again",
                 socket.display()
             ),

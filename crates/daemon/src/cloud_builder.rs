@@ -176,7 +176,7 @@ fn build(state: &Arc<DaemonState>, job: &CloudJob) {
 pub(crate) fn defect() -> Failure {
     Failure::new(
         Kind::Incomplete,
-        "a defect of the program ended the making of the cloud",
+        "an internal error ended the cloud's reconstruction",
     )
     .help("run velomotion replay on the log with -vv and report the messages")
 }

@@ -95,7 +95,7 @@ impl DiskQuota {
 fn full(free: u64) -> Failure {
     let message = format!("the disk is full: {} MB free", free / 1_000_000);
     Failure::new(Kind::Incomplete, message)
-        .help("free some space on the disk of the scans, or delete scans: the cloud is made then")
+        .help("free some space on the disk of the scans, or delete scans: then the daemon makes the cloud")
 }
 
 /// A file with a quota, which is checked again as the file grows.

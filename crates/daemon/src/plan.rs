@@ -71,11 +71,11 @@ pub fn estimate(
     let sweeps_s: f64 = sweeps().map(seconds).sum();
     let first = sweeps().next().map(|step| step.plan);
     let packets_s = match lidar.packets_per_s {
-        heard if heard > 0.0 => heard,
+        rate if rate > 0.0 => rate,
         _ => PACKETS_S,
     };
     let log_s = match lidar.packets_per_s {
-        heard if heard > 0.0 => heard * PACKET_BYTES + DRIVE_BYTES_S,
+        rate if rate > 0.0 => rate * PACKET_BYTES + DRIVE_BYTES_S,
         _ => LOG_BYTES_S,
     };
     let bytes = (moves_s + BEFORE_S) * log_s + sweeps_s * packets_s * CHANNELS * ROW_BYTES;

@@ -71,7 +71,7 @@ impl Target {
     ///
     /// # Errors
     /// As [`Target::open`].
-    pub fn turns(path: &Path, fields: Fields, force: bool) -> Result<Self, Failure> {
+    pub fn by_revolution(path: &Path, fields: Fields, force: bool) -> Result<Self, Failure> {
         Self::file(path, force, |file| {
             Box::new(McapWriter::new(Buffered::new(file), fields).by_revolution())
         })
@@ -183,7 +183,7 @@ pub fn two_files(log: &Path, cloud: &Path) -> Result<(), Failure> {
 ///
 /// # Errors
 /// [`Kind::Usage`].
-pub fn not_over(input: &Path, output: &Path) -> Result<(), Failure> {
+pub fn refuse_overwrite(input: &Path, output: &Path) -> Result<(), Failure> {
     if same_file(input, output) {
         return Err(Failure::new(
             Kind::Usage,
@@ -226,13 +226,13 @@ pub fn one_for_stdout(cloud: Option<&Path>, json: bool) -> Result<(), Failure> {
 }
 
 /// An older file, renamed until its replacement is complete.
-pub struct Aside {
+pub struct Backup {
     path: PathBuf,
     aside: Option<PathBuf>,
 }
 
-impl Aside {
-    /// Renames `path` if it exists. Dropping the guard restores it, unless [`Aside::replaced`] was
+impl Backup {
+    /// Renames `path` if it exists. Dropping the guard restores it, unless [`Backup::replaced`] was
     /// called.
     ///
     /// # Errors
@@ -266,7 +266,7 @@ impl Aside {
     }
 }
 
-impl Drop for Aside {
+impl Drop for Backup {
     fn drop(&mut self) {
         if let Some(aside) = self.aside.take() {
             let _ = std::fs::rename(aside, &self.path);

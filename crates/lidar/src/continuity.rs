@@ -5,7 +5,7 @@
 //! no such multiple. Once a jump inside a packet has revealed the blind sector, missing packets are
 //! counted by azimuth without it.
 
-use crate::plan::{AzimuthSteps, CONTIGUOUS_NS, REVOLUTION_CDEG, Successor, rotation};
+use crate::block_timing::{AzimuthSteps, CONTIGUOUS_NS, REVOLUTION_CDEG, Successor, rotation};
 
 /// Tolerance of a sector's edges: the azimuths of blocks at a gap vary by a step or two.
 const EDGE_CDEG: i32 = 150;

@@ -1,13 +1,14 @@
 //! Decoding of payloads into firing blocks or firings: order, loss and model.
 //!
 //! A packet is decoded when its successor arrives, 1.3 ms later. Only then are the rotor's rate in
-//! its last block, the length of a gap inside it and sometimes its model facts.
+//! its last block, the length of a gap inside it and sometimes its model known.
 
 use core::ptr;
 
 use protocol::vlp16::{DATA_LEN, DataPacket, Model, PositionPacket, ReturnMode};
 use units::{Host, Lidar, Span, Stamp};
 
+use crate::block_timing::{AzimuthSteps, BlockTiming, Successor, SuccessorLink, first_azimuth};
 use crate::continuity::{BlindSector, missing};
 use crate::fast::UnpackedPacket;
 use crate::fast::{AzimuthSines, PaceCache};
@@ -15,7 +16,6 @@ use crate::fast::{BlockReturns, FiringBlock, ReturnLayer};
 use crate::firing::{Echo, Firing};
 use crate::geometry::{Geometry, fits};
 use crate::options::Options;
-use crate::plan::{AzimuthSteps, BlockTiming, Successor, SuccessorLink, first_azimuth};
 use crate::stats::Stats;
 use crate::timekeeper::Timekeeper;
 
@@ -250,7 +250,7 @@ impl Decoder {
 }
 
 impl PacketDecoder {
-    /// Emits the firings of a packet. `next` is its successor by device time, if facts.
+    /// Emits the firings of a packet. `next` is its successor by device time, if known.
     fn decode(
         &mut self,
         packet: &DataPacket<'_>,
@@ -325,11 +325,11 @@ impl PacketDecoder {
         self.stats.firings += tables.geometry.model.firings_per_block as u64;
         let offsets = tables
             .pace_cache
-            .offsets(&tables.geometry.channels, slot.pace_cdeg);
+            .offsets(&tables.geometry.channels, slot.step_per_block_cdeg);
         emit(&FiringBlock {
             start: pending.start + slot.after,
             azimuth_cdeg: slot.azimuth_cdeg,
-            pace_cdeg: slot.pace_cdeg,
+            step_per_block_cdeg: slot.step_per_block_cdeg,
             geometry: &tables.geometry,
             azimuth: tables.sine_table.azimuth(slot.azimuth_cdeg),
             offsets,
@@ -337,7 +337,7 @@ impl PacketDecoder {
         });
     }
 
-    /// Updates the blind_sector sector, which is reset when the sensor fires there.
+    /// Updates the blind sector, which is reset when the sensor fires there.
     fn update_blind_sector(&mut self, steps: &AzimuthSteps, measured: bool) {
         if measured && let Some(blind_sector) = steps.jump() {
             self.blind_sector = Some(blind_sector);

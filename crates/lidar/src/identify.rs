@@ -23,7 +23,7 @@ const LONGEST: Span = Span::from_millis(100);
 const MAX_LOST: i64 = 8;
 /// Consecutive spacings that fit another model without loss, and the named model only with loss,
 /// that identify the other model. Regular loss of every second packet without a single spacing of
-/// the named model does not occur.
+/// the named model is assumed not to occur.
 const REGULAR_SPACINGS: u8 = 4;
 
 /// Whether two blocks of this packet share a firing.

@@ -32,6 +32,7 @@
 //! assert_eq!(points, 384);
 //! ```
 
+mod block_timing;
 pub mod calibration;
 mod continuity;
 mod corrections;
@@ -44,7 +45,6 @@ mod hours;
 mod identify;
 mod options;
 mod organised;
-mod plan;
 mod stats;
 mod timekeeper;
 mod utc;

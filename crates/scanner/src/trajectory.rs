@@ -49,7 +49,7 @@ pub enum Method {
     /// The commanded motion behind a servo of first order.
     ProfileServo,
     /// The commanded motion behind a servo of second order, which may overshoot.
-    ProfileSwing,
+    ProfileServo2,
 }
 
 impl Method {
@@ -60,7 +60,7 @@ impl Method {
         Self::Hermite,
         Self::Profile,
         Self::ProfileServo,
-        Self::ProfileSwing,
+        Self::ProfileServo2,
         Self::Spline,
     ];
 
@@ -75,7 +75,7 @@ impl Method {
             Self::Spline => "spline",
             Self::Profile => "profile",
             Self::ProfileServo => "profile+servo",
-            Self::ProfileSwing => "profile+servo2",
+            Self::ProfileServo2 => "profile+servo2",
         }
     }
 
@@ -84,7 +84,7 @@ impl Method {
     pub const fn is_fit(self) -> bool {
         matches!(
             self,
-            Self::Spline | Self::Profile | Self::ProfileServo | Self::ProfileSwing
+            Self::Spline | Self::Profile | Self::ProfileServo | Self::ProfileServo2
         )
     }
 }

@@ -37,7 +37,7 @@ macro_rules! effect {
             ) -> Result<(), super::settings::InvalidSetting> {
                 let new: fn(&Self, u64) -> Result<$effect, super::settings::InvalidSetting> = $new;
                 let effect = $pointer::new(new(self, seed)?);
-                effects.$($list).+.push(crate::effects::Listed::new(effect, stopwatch));
+                effects.$($list).+.push(crate::effects::MeteredEffect::new(effect, stopwatch));
                 Ok(())
             }
         }

@@ -14,8 +14,8 @@
 //! | [`LinkEffect`] | arrival and loss of packets and answers | per message |
 //!
 //! All lasers of a firing go in together, never point by point. `()` is the absence of any effect:
-//! code instantiated for it contains no code of effects. A `Vec` of [`Listed`] holds the effects
-//! that a scene file configures.
+//! code instantiated for it contains no code of effects. A `Vec` of [`MeteredEffect`] holds the
+//! effects that a scene file configures.
 //!
 //! The first five are shared by threads that take firings in any order. Their results depend only
 //! on their arguments and their [`Source`](crate::random::Source), so one seed gives the same bytes
@@ -27,7 +27,7 @@ use units::{Degrees, Gearing};
 
 use crate::firing::{Echoes, Firing, Surroundings};
 
-pub use listed::{ConfiguredEffects, EffectUsage, Listed, Stopwatch, UsageCounts};
+pub use listed::{ConfiguredEffects, EffectUsage, MeteredEffect, Stopwatch, UsageCounts};
 
 /// Seconds per step of the mechanism; it moves linearly in between.
 pub const STEP_S: f64 = 250e-6;

@@ -17,7 +17,7 @@ use crate::sensor::{LidarMount, MAX_LASERS, RayTable};
 
 pub use body::Body;
 pub use echo::{Echo, Echoes};
-pub use surroundings::{Met, Surroundings};
+pub use surroundings::{SurfaceHit, Surroundings};
 
 /// A firing.
 #[derive(Clone, Debug)]

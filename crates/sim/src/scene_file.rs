@@ -16,7 +16,7 @@ use toml::Spanned;
 use units::{Host, Stamp};
 
 use crate::effect_models::{EffectsConfig, MovingObjects};
-use crate::effects::{ConfiguredEffects, Listed, Stopwatch};
+use crate::effects::{ConfiguredEffects, MeteredEffect, Stopwatch};
 use crate::scenery::{
     FilePosition, InvalidValue, MaterialTable, ObjectTable, line_of_value, no_files,
 };
@@ -113,7 +113,7 @@ impl SceneEffects {
     fn set_moving_objects(&mut self, all: MovingObjects, line: usize, stopwatch: Stopwatch) {
         let name = MovingObjects::NAME;
         // No other effect moves objects.
-        self.effects.firings.objects = vec![Listed::new(Arc::new(all), stopwatch)];
+        self.effects.firings.objects = vec![MeteredEffect::new(Arc::new(all), stopwatch)];
         if self.lines.iter().any(|other| other.name == name) {
             return;
         }

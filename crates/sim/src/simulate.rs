@@ -31,7 +31,7 @@ use course::AxisCourse;
 /// A simulation.
 #[derive(Clone, Debug)]
 pub struct Simulation {
-    /// What beams meet.
+    /// Objects that beams can hit.
     pub scene: Arc<Scene>,
     /// The lidar.
     pub sensor: LidarSensor,

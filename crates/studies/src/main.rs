@@ -74,7 +74,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let selected = tradeoff::select(&STUDIES, &arguments.only)?;
     let machine = Machine::current(|path| std::fs::read_to_string(path).ok());
     let report = StudyReport::measure(&selected, machine, bench)
-        .map_err(|(study, error)| format!("study {}: {error}", study.name))?;
+        .map_err(|(name, error)| format!("study {name}: {error}"))?;
     if let Some(folder) = arguments.markdown {
         std::fs::create_dir_all(folder.join(BOOK.name))?;
         for (path, content) in BOOK.files(&report) {

@@ -13,14 +13,15 @@ const INTERRUPTED: i32 = 130;
 /// Set once every device is closed.
 static DEVICES_CLOSED: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
 
-/// From here on a signal ends the process at once: nothing moves, and a result that no program reads
-/// must not keep the process alive.
+/// From here on a signal ends the process at once: nothing moves, and a result that no program
+/// reads must not keep the process alive.
 pub fn end_process_on_signal() {
     DEVICES_CLOSED.store(true, Ordering::Relaxed);
 }
 
 /// Returns a flag that SIGINT, SIGTERM, SIGQUIT and SIGHUP set. No signal ends the process
-/// directly before [`end_process_on_signal`]: the axis is stopped first, and every wait has a limit.
+/// directly before [`end_process_on_signal`]: the axis is stopped first, and every wait has a
+/// limit.
 ///
 /// # Errors
 /// The system refuses a signal handler.

@@ -22,7 +22,7 @@ const FLUSH_TIMEOUT: Duration = Duration::from_secs(1);
 const MILLISECONDS: i64 = 1_000_000;
 
 /// The queue of the thread that writes to stderr.
-static STDERR: LazyLock<SyncSender<Message>> = LazyLock::new(|| {
+static STDERR: LazyLock<SyncSender<StderrMessage>> = LazyLock::new(|| {
     let (sender, receiver) = sync_channel(QUEUE);
     // Without the thread the receiver is dropped and messages are lost, but no scan.
     let _ = std::thread::Builder::new()
@@ -32,7 +32,7 @@ static STDERR: LazyLock<SyncSender<Message>> = LazyLock::new(|| {
 });
 
 /// What the thread does next.
-enum Message {
+enum StderrMessage {
     /// Writes these bytes, above the bar if there is one.
     Text(Vec<u8>),
     /// Draws a new bar of a length with a template.
@@ -45,13 +45,13 @@ enum Message {
     Flush(SyncSender<()>),
 }
 
-fn write_messages(messages: &Receiver<Message>) {
+fn write_messages(messages: &Receiver<StderrMessage>) {
     let mut bar: Option<ProgressBar> = None;
     for message in messages {
         match (message, &bar) {
-            (Message::Text(text), Some(bar)) => bar.suspend(|| write(&text)),
-            (Message::Text(text), None) => write(&text),
-            (Message::Begin(length, template), _) => {
+            (StderrMessage::Text(text), Some(bar)) => bar.suspend(|| write(&text)),
+            (StderrMessage::Text(text), None) => write(&text),
+            (StderrMessage::Begin(length, template), _) => {
                 let target = ProgressDrawTarget::stderr_with_hz(20);
                 let new = ProgressBar::with_draw_target(Some(length.max(1)), target);
                 bar = Some(match ProgressStyle::with_template(template) {
@@ -59,19 +59,19 @@ fn write_messages(messages: &Receiver<Message>) {
                     Err(_) => new,
                 });
             }
-            (Message::Update(position, text), Some(bar)) => {
+            (StderrMessage::Update(position, text), Some(bar)) => {
                 bar.set_position(position);
                 if let Some(text) = text {
                     bar.set_message(text);
                 }
             }
-            (Message::End, Some(old)) => {
+            (StderrMessage::End, Some(old)) => {
                 old.finish_and_clear();
                 bar = None;
             }
-            (Message::Update(..) | Message::End, None) => {}
+            (StderrMessage::Update(..) | StderrMessage::End, None) => {}
             // The program may have stopped waiting.
-            (Message::Flush(done), _) => drop(done.try_send(())),
+            (StderrMessage::Flush(done), _) => drop(done.try_send(())),
         }
     }
 }
@@ -83,7 +83,7 @@ fn write(text: &[u8]) {
 
 /// Queues bytes for stderr.
 pub fn queue(text: Vec<u8>) {
-    let _ = STDERR.try_send(Message::Text(text));
+    let _ = STDERR.try_send(StderrMessage::Text(text));
 }
 
 /// Queues a line for stderr.
@@ -94,7 +94,7 @@ pub fn to_stderr(line: &str) {
 /// Waits until stderr has everything, or does not take it within a second.
 pub fn flush() {
     let (done, is_done) = sync_channel(1);
-    if STDERR.try_send(Message::Flush(done)).is_ok() {
+    if STDERR.try_send(StderrMessage::Flush(done)).is_ok() {
         let _ = is_done.recv_timeout(FLUSH_TIMEOUT);
     }
 }
@@ -149,7 +149,7 @@ impl Progress {
     fn begin_bar(&self, length: u64, template: &'static str) -> bool {
         let draws = !self.quiet && self.terminal;
         if draws {
-            let _ = STDERR.try_send(Message::Begin(length, template));
+            let _ = STDERR.try_send(StderrMessage::Begin(length, template));
         }
         draws
     }
@@ -170,7 +170,7 @@ impl Progress {
             angle.0,
             left.as_secs_f64()
         );
-        let _ = STDERR.try_send(Message::Update(position, Some(text)));
+        let _ = STDERR.try_send(StderrMessage::Update(position, Some(text)));
     }
 
     /// Starts the bar of a simulation of `seconds`.
@@ -186,7 +186,7 @@ impl Progress {
         if let Some(position) = self.run.as_mut().filter(|at| **at < milliseconds) {
             *position = milliseconds;
             let text = format!("{seconds:.1} s simulated");
-            let _ = STDERR.try_send(Message::Update(milliseconds, Some(text)));
+            let _ = STDERR.try_send(StderrMessage::Update(milliseconds, Some(text)));
         }
     }
 
@@ -200,7 +200,7 @@ impl Progress {
     /// Updates the bar of items.
     pub fn counted(&mut self, done: u64) {
         match self.run {
-            Some(_) => drop(STDERR.try_send(Message::Update(done, None))),
+            Some(_) => drop(STDERR.try_send(StderrMessage::Update(done, None))),
             // Without a bar, prints a line now and then.
             None if done.is_multiple_of(16) => self.say(&format!("{done} done")),
             None => {}
@@ -210,14 +210,14 @@ impl Progress {
     /// Removes the bar of a simulation or of items.
     pub fn end_run(&mut self) {
         if self.run.take().is_some() {
-            let _ = STDERR.try_send(Message::End);
+            let _ = STDERR.try_send(StderrMessage::End);
         }
     }
 
     /// Removes the bar of a move.
     pub fn end_move(&mut self) {
         if self.sweep.take().is_some() {
-            let _ = STDERR.try_send(Message::End);
+            let _ = STDERR.try_send(StderrMessage::End);
         }
     }
 }

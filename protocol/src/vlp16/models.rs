@@ -234,15 +234,15 @@ const fn lasers<const N: usize>(
 }
 
 /// Checks the firing period against the printed recharge time.
-const fn adds_up(model: &Model, groups: u32, recharge_ns: u32) -> bool {
+const fn timing_is_consistent(model: &Model, groups: u32, recharge_ns: u32) -> bool {
     groups * model.laser_period_ns + recharge_ns == model.firing_period_ns
         && model.lasers.len() * model.firings_per_block == CHANNELS
 }
 
-const _: () = assert!(adds_up(&VLP_16, 16, 18_432));
-const _: () = assert!(adds_up(&PUCK_HI_RES, 16, 18_432));
-const _: () = assert!(adds_up(&HDL_32E, 32, 9_216));
-const _: () = assert!(adds_up(&VLP_32C, 16, 18_432));
+const _: () = assert!(timing_is_consistent(&VLP_16, 16, 18_432));
+const _: () = assert!(timing_is_consistent(&PUCK_HI_RES, 16, 18_432));
+const _: () = assert!(timing_is_consistent(&HDL_32E, 32, 9_216));
+const _: () = assert!(timing_is_consistent(&VLP_32C, 16, 18_432));
 const _: () = assert!(VLP_16.block_period_ns() == 110_592);
 // HDL-32E, appendix E: from a packet's first laser to its last.
 const _: () = assert!(11 * HDL_32E.block_period_ns() + HDL_32E_LASERS[31].delay_ns == 542_592);

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use scanner::TiltSource;
-use sim::effects::{BeamEffect, Effect, Listed};
+use sim::effects::{BeamEffect, Effect, MeteredEffect};
 use sim::firing::{Echo, Echoes, Firing, Surroundings};
 use sim::scene_file::EffectLine;
 
@@ -86,7 +86,7 @@ fn every_model_round_trips() {
 fn both_returns_of_a_pulse_are_decoded() {
     for (model, name, unit_mm) in MODELS {
         let scene = Simulated::new(&scene(model, "dual"), |scene| {
-            let listed = Listed::new(Arc::new(Pane) as Arc<_>, None);
+            let listed = MeteredEffect::new(Arc::new(Pane) as Arc<_>, None);
             scene.effects.effects.firings.beam.push(listed);
             let (name, line) = ("pane", 1);
             scene.effects.lines.push(EffectLine { name, line });

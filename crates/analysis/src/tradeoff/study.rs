@@ -506,12 +506,12 @@ impl StudyReport {
     /// Measures studies one after the other.
     ///
     /// # Errors
-    /// The first study that fails, with its error.
+    /// The name of the first study that fails, and its error.
     pub fn measure(
         studies: &[Study],
         machine: Machine,
         bench: Bench<'_>,
-    ) -> Result<Self, (Study, StudyError)> {
+    ) -> Result<Self, (&'static str, StudyError)> {
         let mut findings = Vec::with_capacity(studies.len());
         for (index, &study) in studies.iter().enumerate() {
             (bench.say)(&format!(
@@ -525,7 +525,8 @@ impl StudyReport {
                 effort: bench.effort,
                 say: &mut |line| (bench.say)(&format!("  {line}")),
             };
-            let (about, rows) = (study.measure)(&mut indented).map_err(|error| (study, error))?;
+            let (about, rows) =
+                (study.measure)(&mut indented).map_err(|error| (study.name, error))?;
             findings.push(StudyFindings { study, about, rows });
         }
         Ok(Self {

@@ -62,9 +62,9 @@ const DEFAULT_ROW_BYTES: usize = 29;
 /// The default columns, row by row in one pass: faster, and most files have them.
 fn default_rows(rows: &mut RowBuffer, batch: &Points) {
     let (x, y, z) = (batch.x_m(), batch.y_m(), batch.z_m());
-    let reflected = batch.intensity().iter().zip(batch.ring());
-    let stood = batch.time().iter().zip(batch.tilt_deg());
-    let columns = x.iter().zip(y).zip(z).zip(reflected).zip(stood);
+    let intensity_ring = batch.intensity().iter().zip(batch.ring());
+    let time_tilt = batch.time().iter().zip(batch.tilt_deg());
+    let columns = x.iter().zip(y).zip(z).zip(intensity_ring).zip(time_tilt);
     for (row, (((xy, z), (intensity, ring)), (time, tilt))) in
         rows.each::<DEFAULT_ROW_BYTES>().zip(columns)
     {

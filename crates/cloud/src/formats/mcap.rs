@@ -154,7 +154,7 @@ impl<W: Write + Seek> McapLog<W> {
     }
 
     /// Writes all messages up to `at`; the first time also the static ones.
-    fn go_on_to(&mut self, at: Stamp<Host>) -> Result<(), SinkError> {
+    fn write_until(&mut self, at: Stamp<Host>) -> Result<(), SinkError> {
         if self.now.is_none() {
             let first = self.track.samples.first().map(|sample| sample.0);
             self.write_mount(first.map_or(at, |first| first.min(at)))?;
@@ -199,9 +199,9 @@ impl<W: Write + Seek> McapLog<W> {
     fn write_cloud(&mut self, cloud: Cloud<'_>) -> Result<(), SinkError> {
         let (first, last) = cloud.times;
         if self.now.is_none() {
-            self.go_on_to(first)?;
+            self.write_until(first)?;
         }
-        self.go_on_to(last)?;
+        self.write_until(last)?;
         self.write_bytes(Topic::Points, self.now.unwrap_or(last), cloud.bytes)
     }
 
@@ -233,7 +233,7 @@ impl<W: Write + Seek> McapLog<W> {
             // Without messages there is no time.
             return Ok(());
         };
-        self.go_on_to(end)?;
+        self.write_until(end)?;
         let stamp = self.time(end)?;
         diagnostic_array(&mut self.cdr, stamp, &self.hardware, diagnostics);
         self.write(Topic::Diagnostics, end)
@@ -335,7 +335,7 @@ impl<W: Write + Seek> Sink for McapWriter<W> {
         if whole {
             self.end_cloud()?;
             if let Some((last, _)) = self.log.track.samples.last().copied() {
-                self.log.go_on_to(last)?;
+                self.log.write_until(last)?;
             }
         }
         self.log.finish()?;

@@ -102,7 +102,7 @@ impl Cutting {
                 self.end(&mut *take)?;
                 continue;
             }
-            if end == rows.start && self.go_on_to(time) {
+            if end == rows.start && self.write_until(time) {
                 continue;
             }
             // A point always fits into an empty message.
@@ -153,7 +153,7 @@ impl Cutting {
     }
 
     /// Advances to the sweep of `time`, or the next one; returns whether a sweep ended.
-    fn go_on_to(&mut self, time: Stamp<Host>) -> bool {
+    fn write_until(&mut self, time: Stamp<Host>) -> bool {
         let before = self.passed;
         let ends = self.sweep_ends.iter().skip(before);
         self.passed += ends.take_while(|end| **end < time).count();

@@ -116,9 +116,9 @@ impl<'a> SourceFile<'a> {
         big_endian: bool,
     ) -> Result<Positions, usize> {
         let rows = self.bytes.get(start..).unwrap_or_default();
-        if !count
+        if count
             .checked_mul(row_bytes)
-            .is_some_and(|size| size <= rows.len())
+            .is_none_or(|size| size > rows.len())
         {
             return Err(rows.len());
         }

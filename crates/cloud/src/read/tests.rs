@@ -23,7 +23,7 @@ fn written(format: Format, points: &crate::Points) -> Vec<u8> {
 }
 
 #[test]
-fn messages_round_trip() {
+fn files_round_trip() {
     let points = cloud(3_000);
     for format in Format::ALL {
         let bytes = written(format, &points);

@@ -59,7 +59,7 @@ pub async fn cloud(
     let record = record.ok_or_else(|| Refusal::no_scan(&id))?;
     if !record.state.is_final() {
         return Err(Failure::new(Kind::Incomplete, "the scan is being made")
-            .help("wait until its state says that it is over")
+            .help("wait until its state is whole, partial or failed")
             .into());
     }
     let permit = downloading(&api)?;

@@ -46,7 +46,7 @@ impl Sessions {
     /// Signs a browser in: the cookie to set.
     ///
     /// # Errors
-    /// Where the system gives no random bytes.
+    /// Where the system provides no random bytes.
     pub fn begin(&self) -> std::io::Result<String> {
         let mut random = [0; SECRET_BYTES];
         std::fs::File::open("/dev/urandom")?.read_exact(&mut random)?;

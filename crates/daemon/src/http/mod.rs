@@ -115,7 +115,7 @@ pub(crate) fn command_router(service: &Arc<DeviceService>, waits: Waits) -> Rout
 /// Serves a daemon over TCP and its Unix socket.
 ///
 /// # Errors
-/// Where the system gives no threads.
+/// Where the system cannot create threads.
 pub(crate) fn serve(
     state: &Arc<DaemonState>,
     (tcp, address): (TcpListener, SocketAddr),

@@ -150,7 +150,7 @@ pub async fn login(
         Refusal::new(
             StatusCode::CONFLICT,
             Kind::Incomplete,
-            format!("the system gives no random bytes: {error}"),
+            format!("cannot get random bytes from the system: {error}"),
             "use Authorization: Bearer TOKEN",
         )
     })?;

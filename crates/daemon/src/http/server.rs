@@ -111,7 +111,7 @@ impl Server {
     /// Starts the runtime.
     ///
     /// # Errors
-    /// Where the system gives no threads.
+    /// Where the system cannot create threads.
     pub(crate) fn start(waits: Waits) -> Result<Self, Failure> {
         let runtime = Builder::new_multi_thread()
             .worker_threads(2)

@@ -108,8 +108,8 @@ async fn wait_until_attained(ops: &mut Ops) -> Result<(), DriveError> {
     }
 }
 
-/// Distance that homing has moved the demand. The position itself is not read: its reads would count
-/// as samples, though the axis may lose its zero at any time.
+/// Distance that homing has moved the demand. The position itself is not read: its reads would
+/// count as samples, though the axis may lose its zero at any time.
 #[derive(Default)]
 struct HomingTravel {
     last: Option<(i32, Stamp<Host>)>,

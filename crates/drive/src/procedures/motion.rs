@@ -121,7 +121,7 @@ async fn start(ops: &mut Ops, plan: MovePlan) -> Result<(MotionGuard, Stamp<Host
     ops.report(CommandProgress::Moving(plan));
     let limit = started.saturating_add(ops.config.timing.state_limit);
     loop {
-        // The axis accelerates and only samples show how: each other request goes between two of
+        // The axis accelerates and only samples show how: every other request goes between two of
         // them.
         guarded_sample(ops, &mut guard).await?;
         let requested = ops.now();

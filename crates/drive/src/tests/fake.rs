@@ -1,6 +1,6 @@
 //! A scripted drive: an object dictionary, the states that the client uses, an axis that follows
-//! its profile exactly, and hooks that lose, delay, damage or repeat any reply. It shares only the frame format
-//! with the client.
+//! its profile exactly, and hooks that lose, delay, damage or repeat any reply. It shares only the
+//! frame format with the client.
 
 use std::collections::BTreeMap;
 

@@ -30,7 +30,7 @@ use crate::reconstruct::source::Source;
 /// Wait for the first packet. A lidar in rotation sends 754 packets per second: one that sends none
 /// in this time will send none during the sweep.
 const LIDAR_WAIT: Duration = Duration::from_secs(2);
-/// Between two looks for the first packet.
+/// Between two polls for the first packet.
 const LIDAR_POLL: Duration = Duration::from_millis(5);
 
 /// What a capture works with.

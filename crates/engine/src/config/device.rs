@@ -44,7 +44,7 @@ pub struct Device {
     /// UDP port of position packets; the factory's without it.
     pub position_port: Option<u16>,
     /// Acceleration used without `--accel`, degrees per second squared.
-    #[serde(default = "gentle")]
+    #[serde(default = "default_acceleration")]
     pub accel_deg_s2: f64,
 }
 
@@ -89,7 +89,7 @@ impl Device {
         Self {
             kind: DeviceKind::Usb,
             lidar: any_address(),
-            accel_deg_s2: gentle(),
+            accel_deg_s2: default_acceleration(),
             ..Self::simulator()
         }
     }
@@ -106,7 +106,7 @@ fn any_address() -> Ipv4Addr {
 }
 
 /// Factory setting of the drive behind a 120:1 gear: 10,000 rpm/s.
-fn gentle() -> f64 {
+fn default_acceleration() -> f64 {
     500.0
 }
 
@@ -185,7 +185,7 @@ impl Device {
         }
         if self.lidar.is_multicast() {
             return Err(format!(
-                "lidar: expected an address of this machine, got the multicast address {}, which belongs into lidar_group",
+                "lidar: expected an address of this machine, got the multicast address {}, which belongs in lidar_group",
                 self.lidar
             ));
         }

@@ -68,7 +68,7 @@ pub struct Session<P: Port> {
 }
 
 /// Longest time between two checks of the interrupt flag.
-const LOOK_UP: Span = Span::from_millis(20);
+const INTERRUPT_POLL: Span = Span::from_millis(20);
 /// Attempts of a stop before it counts as failed; each takes some tenths of a second.
 const STOP_TRIES: u32 = 5;
 /// Time that a session dropped in motion waits for the axis to stop.
@@ -102,7 +102,7 @@ impl<P: Port> Session<P> {
                 Some(stop) => SessionError::NotStopped(stop),
             });
         }
-        self.unsafe_to_leave |= powers(kind);
+        self.unsafe_to_leave |= may_leave_power_on(kind);
         let ended = self.pump(on_event, true, None)?;
         match ended {
             Ended::Done(outcome) => {
@@ -182,8 +182,8 @@ impl<P: Port> Session<P> {
             let wait = self
                 .client
                 .poll_timeout()
-                .map_or(LOOK_UP, |at| at.saturating_since(now))
-                .clamp(Span::ZERO, LOOK_UP);
+                .map_or(INTERRUPT_POLL, |at| at.saturating_since(now))
+                .clamp(Span::ZERO, INTERRUPT_POLL);
             match self.port.read(&mut buffer, wait)? {
                 // The stamp of these bytes comes from a clock that may step; the log has it.
                 Some((count, _)) => {
@@ -197,7 +197,7 @@ impl<P: Port> Session<P> {
 }
 
 /// Whether a command can leave the power stage on.
-fn powers(kind: CommandKind) -> bool {
+fn may_leave_power_on(kind: CommandKind) -> bool {
     matches!(
         kind,
         CommandKind::Home | CommandKind::Goto | CommandKind::Sweep | CommandKind::Hold

@@ -65,10 +65,10 @@ impl LidarReceiver {
     ///
     /// # Errors
     /// Returns [`Kind::NoDevice`] if the system provides no thread.
-    pub fn start(sockets: LidarSockets, onlooker: PacketTap) -> Result<Self, Failure> {
+    pub fn start(sockets: LidarSockets, tap: PacketTap) -> Result<Self, Failure> {
         let shared = Arc::new(ReceiverState::default());
         let theirs = Arc::clone(&shared);
-        let run = move || listen(sockets, onlooker, &theirs);
+        let run = move || listen(sockets, tap, &theirs);
         let thread = spawn("lidar", "the lidar", run)?;
         Ok(Self {
             shared,
@@ -118,7 +118,7 @@ impl LidarReceiver {
             }
             requests.waiting.push(CountsRequest { log, answer });
         }
-        self.come_round();
+        self.wake_thread();
         counts.recv_timeout(TURN_LIMIT).unwrap_or_else(|_| {
             Err(
                 Failure::new(Kind::Incomplete, "the lidar's thread does not answer")
@@ -129,7 +129,7 @@ impl LidarReceiver {
 }
 
 impl LidarReceiver {
-    fn come_round(&self) {
+    fn wake_thread(&self) {
         self.shared.turn.store(true, Ordering::Release);
         if let Some(thread) = &self.thread {
             thread.thread().unpark();
@@ -140,7 +140,7 @@ impl LidarReceiver {
 impl Drop for LidarReceiver {
     fn drop(&mut self) {
         self.shared.stop.store(true, Ordering::Release);
-        self.come_round();
+        self.wake_thread();
         if let Some(thread) = self.thread.take() {
             // A panic of that thread has been reported by the requests for its counts.
             let _ = thread.join();
@@ -148,7 +148,7 @@ impl Drop for LidarReceiver {
     }
 }
 
-fn listen(sockets: LidarSockets, mut onlooker: PacketTap, shared: &ReceiverState) {
+fn listen(sockets: LidarSockets, mut tap: PacketTap, shared: &ReceiverState) {
     let LidarSockets {
         mut listener,
         ports,
@@ -159,7 +159,7 @@ fn listen(sockets: LidarSockets, mut onlooker: PacketTap, shared: &ReceiverState
             Some(_) => GATHER,
             None => UNRECORDED,
         });
-        let heard = turn(&mut listener, ports, log.as_ref(), &mut onlooker, shared);
+        let heard = receive_until_request(&mut listener, ports, log.as_ref(), &mut tap, shared);
         // Reset before the requests are read: a later request sets it again.
         shared.turn.store(false, Ordering::Release);
         let mut requests = shared.requests();
@@ -182,11 +182,11 @@ fn listen(sockets: LidarSockets, mut onlooker: PacketTap, shared: &ReceiverState
 }
 
 /// Receives until a request arrives.
-fn turn(
+fn receive_until_request(
     listener: &mut LidarListener,
     ports: LidarPorts,
     log: Option<&RecorderHandle>,
-    onlooker: &mut PacketTap,
+    tap: &mut PacketTap,
     shared: &ReceiverState,
 ) -> Result<ListenCounts, UdpError> {
     listener.run(&shared.turn, |record| {
@@ -195,7 +195,7 @@ fn turn(
         if let Some(log) = log {
             log.record(&record);
         }
-        onlooker(&record);
+        tap(&record);
     })
 }
 

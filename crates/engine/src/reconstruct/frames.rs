@@ -205,7 +205,7 @@ fn open_mcap(
     in_utc: bool,
     metadata: &Metadata,
 ) -> Result<Target, Failure> {
-    let mut target = Target::turns(&plan.output, plan.fields, plan.force)?;
+    let mut target = Target::by_revolution(&plan.output, plan.fields, plan.force)?;
     let mut track = tilt_track(alignment);
     if in_utc {
         // Samples carry host times, points carry UTC.

@@ -4,7 +4,7 @@ use scanner::{Alignment, ScanConfig};
 
 /// Angle bound above which a warning is due: 17 mm at 10 m.
 const WARNING_BOUND_DEG: f64 = 0.1;
-/// Distance from the planned end above which a sweep counts as cut incomplete_sweeps.
+/// Distance from the planned end above which a sweep counts as cut short.
 const CUT_SHORT_DEG: f64 = 0.1;
 
 /// Warnings about angles: slow or missing polls, sweeps that deviate from the plan.
@@ -32,7 +32,7 @@ pub(super) fn angle_warnings(alignment: &Alignment) -> Vec<String> {
     warnings
 }
 
-/// Planned sweeps that are cut incomplete_sweeps or absent. Empty for a log without a plan or
+/// Planned sweeps that are cut short or absent. Empty for a log without a plan or
 /// without any sweep.
 pub(super) fn incomplete_sweeps(config: &ScanConfig, alignment: &Alignment) -> Vec<String> {
     let Some(plan) = config.sweep.filter(|_| !alignment.sweeps.is_empty()) else {

@@ -50,7 +50,7 @@ pub(super) enum Order {
     },
     /// Opens the devices again after a suspension.
     Reopen,
-    /// Looks whether the service is ending.
+    /// Checks whether the service is ending.
     Wake,
 }
 
@@ -283,7 +283,7 @@ impl Worker {
             && connect.left().is_zero()
             && let Ok(lease) = AxisLease::take(&self.service, AxisTask::Connecting, None)
         {
-            let connected = self.jog(connection, &[DriveCommand::Connect], lease.stop());
+            let connected = self.run_commands(connection, &[DriveCommand::Connect], lease.stop());
             drop(lease);
             match connected {
                 Ok(_) => *connect = Backoff::new(),
@@ -342,8 +342,9 @@ impl Worker {
                 answer,
             } => {
                 let stop = lease.stop().clone();
-                let done =
-                    catch_unwind(AssertUnwindSafe(|| self.jog(connection, &commands, &stop)));
+                let done = catch_unwind(AssertUnwindSafe(|| {
+                    self.run_commands(connection, &commands, &stop)
+                }));
                 let (result, lost) = match done {
                     Ok(Ok(report)) => (Ok(report), None),
                     Ok(Err(error)) => {

@@ -46,8 +46,8 @@ impl DriveConnection {
         }
     }
 
-    /// Takes in the end of an order that `connected` to the drive or did not.
-    pub(super) const fn order_ended(&mut self, connected: bool, error: Option<&SessionError>) {
+    /// Records the end of a command that `connected` to the drive or did not.
+    pub(super) const fn command_ended(&mut self, connected: bool, error: Option<&SessionError>) {
         match error {
             Some(error) if error.may_move() => self.axis = AxisKnowledge::MayMove,
             None if connected => self.axis = AxisKnowledge::AtRest,

@@ -27,11 +27,11 @@ impl Worker {
         &self,
         connection: &mut DriveConnection,
     ) -> Result<AxisReport, SessionError> {
-        self.jog(connection, &[], &StopSignal::default())
+        self.run_commands(connection, &[], &StopSignal::default())
     }
 
     /// Runs commands and reads the drive's state.
-    pub(super) fn jog(
+    pub(super) fn run_commands(
         &self,
         connection: &mut DriveConnection,
         commands: &[DriveCommand],
@@ -47,7 +47,7 @@ impl Worker {
             _ => Arc::clone(stop.flag()),
         };
         let mut session = Session::new(client, &mut *opened.port, interrupt);
-        // A software drive was switched on with its service.
+        // A simulated drive starts with its service, and is not homed.
         let homing = match service.simulated() && !service.is_referenced() {
             true => Homing::First,
             false => Homing::AsAsked,
@@ -62,7 +62,7 @@ impl Worker {
         motion.end();
         drop(session);
         let could_move = connection.axis == AxisKnowledge::MayMove;
-        self.order_ended(
+        self.command_ended(
             connection,
             commands.contains(&DriveCommand::Connect),
             done.as_ref().err(),
@@ -82,13 +82,13 @@ impl Worker {
         }
     }
 
-    fn order_ended(
+    fn command_ended(
         &self,
         connection: &mut DriveConnection,
         connected: bool,
         error: Option<&SessionError>,
     ) {
-        connection.order_ended(connected, error);
+        connection.command_ended(connected, error);
         let may_move = connection.axis == AxisKnowledge::MayMove;
         let state = &self.service.state;
         state.send_modify(|state| state.may_move = may_move);
@@ -204,7 +204,7 @@ impl Worker {
         };
         let port_failed = recorded.port_failed();
         connection.failed = true;
-        self.order_ended(connection, true, recorded.motion_error());
+        self.command_ended(connection, true, recorded.motion_error());
         let at_rest = recorded.at_rest();
         let mut outcome = recorded.outcome();
         for warning in &outcome.warnings {
@@ -280,7 +280,7 @@ pub(super) fn lost_port(error: &SessionError) -> Option<ConnectionLoss> {
 pub(super) fn panic_failure() -> Failure {
     Failure::new(
         Kind::DeviceFault,
-        "a defect of the program ended the motion; the axis was told to stop",
+        "an internal error ended the motion; a stop was sent to the axis",
     )
     .help("check that the axis is at rest; run with -vv and report the messages")
 }

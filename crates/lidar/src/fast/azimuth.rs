@@ -103,12 +103,16 @@ impl PaceCache {
 
     /// Offsets at a pace in hundredths of a degree per block period.
     #[inline]
-    pub(crate) fn offsets(&mut self, channels: &ChannelTable, pace_cdeg: f64) -> &PaceOffsets {
+    pub(crate) fn offsets(
+        &mut self,
+        channels: &ChannelTable,
+        step_per_block_cdeg: f64,
+    ) -> &PaceOffsets {
         // Neighbouring whole paces use different slots.
-        let slot = pace_cdeg as i64 as usize % PACES;
+        let slot = step_per_block_cdeg as i64 as usize % PACES;
         let cached = &mut self.paces[slot];
-        if cached.pace != pace_cdeg.to_bits() {
-            *cached = PaceOffsets::new(channels, pace_cdeg);
+        if cached.pace != step_per_block_cdeg.to_bits() {
+            *cached = PaceOffsets::new(channels, step_per_block_cdeg);
         }
         cached
     }
@@ -116,9 +120,9 @@ impl PaceCache {
 
 impl PaceOffsets {
     #[cold]
-    fn new(channels: &ChannelTable, pace_cdeg: f64) -> Self {
+    fn new(channels: &ChannelTable, step_per_block_cdeg: f64) -> Self {
         let mut offsets = Self {
-            pace: pace_cdeg.to_bits(),
+            pace: step_per_block_cdeg.to_bits(),
             sin: [0.0; CHANNELS],
             cos: [0.0; CHANNELS],
         };
@@ -127,7 +131,7 @@ impl PaceOffsets {
         for (((sin, cos), (part, offset_deg)), out_per_count) in
             sines_and_cosines.zip(angles).zip(&channels.out_per_count)
         {
-            let degrees = pace_cdeg / 100.0 * part + offset_deg;
+            let degrees = step_per_block_cdeg / 100.0 * part + offset_deg;
             (*sin, *cos) = degrees.to_radians().sin_cos();
             *sin *= out_per_count;
             *cos *= out_per_count;
@@ -160,12 +164,16 @@ mod tests {
             let channels = Geometry::new(model, true, None).channels;
             let mut cache = PaceCache::new(&channels);
             // Paces that share a slot, recur, are zero, negative or fractional.
-            for pace_cdeg in [
+            for step_per_block_cdeg in [
                 39.0, 40.0, 47.0, 39.0, 0.0, -0.0, -40.0, 39.818, 36_000.0, 40.0,
             ] {
-                let new = PaceOffsets::new(&channels, pace_cdeg);
-                let cached = cache.offsets(&channels, pace_cdeg);
-                assert_eq!((cached.sin, cached.cos), (new.sin, new.cos), "{pace_cdeg}");
+                let new = PaceOffsets::new(&channels, step_per_block_cdeg);
+                let cached = cache.offsets(&channels, step_per_block_cdeg);
+                assert_eq!(
+                    (cached.sin, cached.cos),
+                    (new.sin, new.cos),
+                    "{step_per_block_cdeg}"
+                );
             }
         }
     }

@@ -27,7 +27,7 @@ pub struct FiringBlock<'a> {
     /// Firing time of channel 0.
     pub start: Stamp<Lidar>,
     pub(crate) azimuth_cdeg: i32,
-    pub(crate) pace_cdeg: f64,
+    pub(crate) step_per_block_cdeg: f64,
     pub(crate) geometry: &'a Geometry,
     pub(crate) azimuth: SinCos,
     pub(crate) offsets: &'a PaceOffsets,
@@ -253,14 +253,14 @@ impl<'a> FiringBlock<'a> {
         let block = *self;
         let model = block.geometry.model;
         let period_ns = f64::from(model.block_period_ns());
-        let firing_cdeg = block.pace_cdeg / model.firings_per_block as f64;
+        let firing_cdeg = block.step_per_block_cdeg / model.firings_per_block as f64;
         (0..model.firings_per_block).map(move |n| {
             let after = Span::from_nanos(n as i64 * i64::from(model.firing_period_ns));
             let azimuth_cdeg = f64::from(block.azimuth_cdeg) + firing_cdeg * n as f64;
             Firing {
                 start: block.start + after,
                 azimuth_deg: (azimuth_cdeg / 100.0).rem_euclid(360.0),
-                azimuth_rate_deg_s: block.pace_cdeg / 100.0 / (period_ns * 1e-9),
+                azimuth_rate_deg_s: block.step_per_block_cdeg / 100.0 / (period_ns * 1e-9),
                 model,
                 rays: &block.geometry.rays,
                 channels: block.channels(n),

@@ -3,7 +3,7 @@
 //! Equal to [`Alignment::place`] for every point within a nanosecond and a nanometre. While a block
 //! fires the clock is a straight line and the angle a cubic, so both are looked up once per block
 //! and extrapolated to its 32 channels. Where that does not hold (edges of a sweep, ends of the
-//! trajectory, kinks of the clock) the points are counts one by one. Results depend on the block
+//! trajectory, kinks of the clock) the points are placed one by one. Results depend on the block
 //! alone, not on the blocks before it.
 
 use cloud::mount::Tilt;

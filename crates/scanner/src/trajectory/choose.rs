@@ -76,16 +76,16 @@ pub(super) struct Candidates<'a> {
 struct Candidate {
     fit: SweepFit,
     pieces: PiecewiseCubic,
-    /// Residual autocorrelation, degrees.
-    autocorrelation_deg: f64,
+    /// Part of the residual that neighbouring samples share, degrees.
+    systematic_residual_deg: f64,
     /// Whether it is a preliminary fit to few observations.
     is_preliminary: bool,
 }
 
 impl Candidate {
-    /// Whether the residual autocorrelation is less than a part of the error.
-    fn has_autocorrelation_below(&self, part: f64) -> bool {
-        self.autocorrelation_deg < part * self.fit.sd_deg
+    /// Whether the systematic residual is less than a part of the error.
+    fn has_systematic_residual_below(&self, part: f64) -> bool {
+        self.systematic_residual_deg < part * self.fit.sd_deg
     }
 }
 
@@ -116,7 +116,7 @@ impl<'a> Candidates<'a> {
         let servo = |method: Method| match method {
             Method::Profile => Some(ServoModel::None),
             Method::ProfileServo => Some(ServoModel::Lag),
-            Method::ProfileSwing => Some(ServoModel::Swing),
+            Method::ProfileServo2 => Some(ServoModel::Swing),
             _ => None,
         };
         let mut candidates: Vec<Candidate> = match method {
@@ -127,7 +127,7 @@ impl<'a> Candidates<'a> {
             }
             None => {
                 let mut all: Vec<Candidate> = Vec::new();
-                for method in [Method::Profile, Method::ProfileServo, Method::ProfileSwing] {
+                for method in [Method::Profile, Method::ProfileServo, Method::ProfileServo2] {
                     let Some(mut one) =
                         servo(method).and_then(|servo| self.preliminary_fit(servo, method))
                     else {
@@ -136,11 +136,11 @@ impl<'a> Candidates<'a> {
                     // The plain motion is quick to fit and mostly right. A preliminary fit with as
                     // much autocorrelation as error shows that it is not.
                     let threshold = if method == Method::Profile { 1.0 } else { 0.25 };
-                    if one.has_autocorrelation_below(threshold) {
+                    if one.has_systematic_residual_below(threshold) {
                         self.refit(&mut one, servo(method));
                     }
                     // Without residual autocorrelation more parameters would fit noise.
-                    let is_sufficient = one.has_autocorrelation_below(0.25);
+                    let is_sufficient = one.has_systematic_residual_below(0.25);
                     all.push(one);
                     if is_sufficient {
                         break;
@@ -151,7 +151,7 @@ impl<'a> Candidates<'a> {
                     let method = best.fit.method;
                     self.refit(best, servo(method));
                 }
-                let settled = all.iter().any(|c| c.has_autocorrelation_below(0.5));
+                let settled = all.iter().any(|c| c.has_systematic_residual_below(0.5));
                 if !settled {
                     all.extend(self.spline());
                 }
@@ -161,7 +161,7 @@ impl<'a> Candidates<'a> {
         let least_autocorrelation = candidates
             .iter()
             .filter(|c| c.fit.method != Method::Spline)
-            .map(|c| c.autocorrelation_deg)
+            .map(|c| c.systematic_residual_deg)
             .min_by(f64::total_cmp);
         let best = least(&candidates)?;
         let mut best = candidates.swap_remove(best);
@@ -306,7 +306,7 @@ impl<'a> Candidates<'a> {
             if n > 0.0 { sum / n } else { 0.0 }
         };
         let rms_deg = mean_square(&mut off.iter().map(|o| o.0)).sqrt();
-        let autocorrelation_deg = residual_autocorrelation(&off);
+        let systematic_residual_deg = residual_autocorrelation(&off);
         let scatter = mean_square(
             &mut pieces
                 .as_slice()
@@ -317,19 +317,19 @@ impl<'a> Candidates<'a> {
         let fit = SweepFit {
             method,
             rms_deg,
-            sd_deg: (scatter + autocorrelation_deg * autocorrelation_deg).sqrt(),
+            sd_deg: (scatter + systematic_residual_deg * systematic_residual_deg).sqrt(),
             delay: delay(&off),
             profile: None,
             condition: None,
             remarks: Vec::new(),
         };
         // Residual autocorrelation is an error of every point of the sweep.
-        let sd = |piece: &CubicPiece| f64::hypot(piece.sd_deg, autocorrelation_deg);
+        let sd = |piece: &CubicPiece| f64::hypot(piece.sd_deg, systematic_residual_deg);
         let with_sd = pieces.as_slice().iter().map(|p| p.with_sd(sd(p))).collect();
         Some(Candidate {
             fit,
             pieces: PiecewiseCubic::new(with_sd, pieces.span().1)?,
-            autocorrelation_deg,
+            systematic_residual_deg,
             is_preliminary: false,
         })
     }

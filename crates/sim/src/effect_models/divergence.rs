@@ -171,7 +171,7 @@ impl Divergence {
             }
             let mut mets = [None; TOGETHER];
             let directions = directions.get(..fan.len()).unwrap_or_default();
-            surroundings.meet_fan(patch.origin_m, directions, &mut mets);
+            surroundings.cast_fan(patch.origin_m, directions, &mut mets);
             for ((met, direction), ray) in mets.iter().zip(directions).zip(fan) {
                 if let (Some(met), Some(sample)) = (met, samples.get_mut(count)) {
                     let (x, y) = place(ray);

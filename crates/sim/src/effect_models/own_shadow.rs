@@ -1,8 +1,8 @@
 //! View: parts of the scanner block its view. Its frame hides azimuths of the lidar, at all tilts
 //! or at some; its base hides everything below.
 //!
-//! A hidden beam fires but never returns, because the frame is nearer than the minimum range (1 m,
-//! 63-9243). Sectors are in the lidar's own azimuths, as the frame tilts with it. Scattered light
+//! A hidden beam is emitted without a return, because the frame is nearer than the minimum range
+//! (1 m, 63-9243). Sectors are in the lidar's own azimuths, as the frame tilts with it. Scattered light
 //! of the frame is not included.
 
 use crate::effects::ViewEffect;
@@ -33,14 +33,14 @@ pub struct ShadowSector {
     /// Azimuth of its end, exclusive; across 0 where it is less than the begin.
     pub azimuth_to_deg: f64,
     /// Lowest tilt at which it is hidden, degrees; default -360.
-    #[serde(default = "all_the_way_down")]
+    #[serde(default = "lowest_tilt")]
     pub tilt_from_deg: f64,
     /// Highest tilt, degrees; default 360.
     #[serde(default = "all_the_way_up")]
     pub tilt_to_deg: f64,
 }
 
-const fn all_the_way_down() -> f64 {
+const fn lowest_tilt() -> f64 {
     -360.0
 }
 

@@ -33,9 +33,9 @@ impl RangeNoise {
     /// `seed`.
     #[must_use]
     pub fn new(sd_m: f64, seed: u64) -> Self {
-        let sound = sd_m.is_finite() && sd_m > 0.0;
+        let is_valid = sd_m.is_finite() && sd_m > 0.0;
         Self {
-            sd_m: if sound { sd_m } else { 0.0 },
+            sd_m: if is_valid { sd_m } else { 0.0 },
             random: Source::new(seed, Self::NAME),
         }
     }
@@ -56,13 +56,13 @@ impl SurfaceEffect for RangeNoise {
         let returns = echoes.all_mut();
         for (set, echoes) in returns.enumerate() {
             // A draw gives two values, for two neighbouring lasers.
-            for (pair, two) in echoes.chunks_mut(2).enumerate() {
-                if two.iter().all(|echo| !echo.is_present()) {
+            for (pair, lasers) in echoes.chunks_mut(2).enumerate() {
+                if lasers.iter().all(|echo| !echo.is_present()) {
                     continue;
                 }
                 let channel = 16 * set as u32 + pair as u32;
                 let normals = self.random.at(firing.number, channel).normals();
-                for (echo, normal) in two.iter_mut().zip(normals) {
+                for (echo, normal) in lasers.iter_mut().zip(normals) {
                     if echo.is_present() {
                         echo.range_m += self.sd_m * normal;
                         acted += 1;

@@ -80,9 +80,9 @@ impl Reflectance {
             false => head_on,
         };
         let above = light / (echo.range_m * echo.range_m * self.threshold) - 1.0;
-        let sure = self.snr * above;
+        let margin_sd = self.snr * above;
         // Beyond six standard deviations no draw is needed.
-        if sure < -6.0 || (sure < 6.0 && unit() >= normal_below(sure)) {
+        if margin_sd < -6.0 || (margin_sd < 6.0 && unit() >= normal_below(margin_sd)) {
             return Echo::NONE;
         }
         Echo {

@@ -92,7 +92,7 @@ impl Weather {
         };
         // A surface that is detected in clear air is not lost to a trace of rain, however faint.
         let least = LEAST.min(VISIBLE * clear / (echo.range_m * echo.range_m));
-        noticed(echo, light, least)
+        detected(echo, light, least)
     }
 
     /// Drops between two distances, if they are detected.
@@ -114,11 +114,11 @@ impl Weather {
             normal: glam::DVec3::ZERO,
             specular: 0.0,
         };
-        noticed(echo, light, LEAST)
+        detected(echo, light, LEAST)
     }
 }
 
-fn noticed(echo: Echo, light: f64, least: f64) -> Option<Return> {
+fn detected(echo: Echo, light: f64, least: f64) -> Option<Return> {
     let strength = light / (echo.range_m * echo.range_m);
     (strength >= least).then_some(Return { echo, strength })
 }
@@ -155,17 +155,17 @@ impl BeamEffect for Weather {
             let [_, _, last] = &mut returns;
             let draw = (firing.number, laser as u32);
             *last = self.drops(reach.min_m.max(0.1), farthest_m, draw);
-            let mut heard = [Return {
+            let mut received = [Return {
                 echo: Echo::NONE,
                 strength: 0.0,
             }; 3];
             let mut count = 0;
-            for (place, found) in heard.iter_mut().zip(returns.into_iter().flatten()) {
+            for (place, found) in received.iter_mut().zip(returns.into_iter().flatten()) {
                 *place = found;
                 count += 1;
             }
             let was = *strongest;
-            [*strongest, *other] = reported(heard.get(..count).unwrap_or_default());
+            [*strongest, *other] = reported(received.get(..count).unwrap_or_default());
             acted += u32::from(*strongest != was);
         }
         acted

@@ -18,9 +18,9 @@ use crate::firing::{Echoes, Firing, Surroundings};
 pub type Stopwatch = Option<fn() -> u64>;
 
 /// A list of effects that threads share.
-type Shared<T> = Vec<Listed<Arc<T>>>;
+type Shared<T> = Vec<MeteredEffect<Arc<T>>>;
 /// A list of effects of one thread.
-type Owned<T> = Vec<Listed<Box<T>>>;
+type Owned<T> = Vec<MeteredEffect<Box<T>>>;
 
 /// Any number of effects of any type.
 pub type ConfiguredEffects = Effects<
@@ -103,7 +103,7 @@ impl ConfiguredEffects {
 
 /// An effect in a list. `P` is an `Arc` or a `Box` of it.
 #[derive(Debug)]
-pub struct Listed<P> {
+pub struct MeteredEffect<P> {
     /// The effect.
     pub effect: P,
     meter: Meter,
@@ -116,14 +116,14 @@ struct Meter {
     stopwatch: Stopwatch,
 }
 
-impl<P: Clone> Clone for Listed<P> {
+impl<P: Clone> Clone for MeteredEffect<P> {
     /// A copy starts with counts of zero, so that they can be added to those of the original.
     fn clone(&self) -> Self {
         Self::new(self.effect.clone(), self.meter.stopwatch)
     }
 }
 
-impl<P> Listed<P> {
+impl<P> MeteredEffect<P> {
     /// An effect without any calls.
     #[must_use]
     pub fn new(effect: P, stopwatch: Stopwatch) -> Self {
@@ -171,7 +171,7 @@ impl Meter {
     }
 }
 
-impl<P: Deref<Target: Effect>> Listed<P> {
+impl<P: Deref<Target: Effect>> MeteredEffect<P> {
     fn effect_usage(&self, each: &'static str) -> EffectUsage {
         EffectUsage {
             name: self.effect.name(),
@@ -196,7 +196,7 @@ fn differs<T: PartialEq + Copy>(from: T) -> impl FnOnce(&T) -> u32 {
     move |to| u32::from(*to != from)
 }
 
-impl<P: Deref<Target: Effect> + std::fmt::Debug> Effect for Vec<Listed<P>> {
+impl<P: Deref<Target: Effect> + std::fmt::Debug> Effect for Vec<MeteredEffect<P>> {
     fn name(&self) -> &'static str {
         "list"
     }
@@ -217,7 +217,7 @@ impl<P: Deref<Target: Effect> + std::fmt::Debug> Effect for Vec<Listed<P>> {
 impl<T: ObjectsEffect + ?Sized> ObjectsEffect for Shared<T> {
     fn place(&self, time_s: f64, surroundings: &mut Surroundings) -> u32 {
         self.iter()
-            .map(|Listed { effect, meter }| {
+            .map(|MeteredEffect { effect, meter }| {
                 meter.call(|| effect.place(time_s, surroundings), count)
             })
             .sum()
@@ -227,16 +227,16 @@ impl<T: ObjectsEffect + ?Sized> ObjectsEffect for Shared<T> {
 impl<T: ViewEffect + ?Sized> ViewEffect for Shared<T> {
     fn fires(&self, azimuth_deg: f64) -> bool {
         let mut views = self.iter().filter(|listed| listed.effect.needs().azimuths);
-        views.all(|Listed { effect, meter }| {
+        views.all(|MeteredEffect { effect, meter }| {
             meter.call(|| effect.fires(azimuth_deg), |fires| u32::from(!fires))
         })
     }
 
     fn hide(&self, firing: &mut Firing) -> u32 {
-        // Effects that choose azimuths have chosen for the whole run beforehand.
+        // Effects of azimuths were applied when the run's firings were scheduled.
         self.iter()
             .filter(|listed| !listed.effect.needs().azimuths)
-            .map(|Listed { effect, meter }| meter.call(|| effect.hide(firing), count))
+            .map(|MeteredEffect { effect, meter }| meter.call(|| effect.hide(firing), count))
             .sum()
     }
 }
@@ -244,7 +244,7 @@ impl<T: ViewEffect + ?Sized> ViewEffect for Shared<T> {
 impl<T: BeamEffect + ?Sized> BeamEffect for Shared<T> {
     fn receive(&self, firing: &Firing, surroundings: &Surroundings, echoes: &mut Echoes) -> u32 {
         self.iter()
-            .map(|Listed { effect, meter }| {
+            .map(|MeteredEffect { effect, meter }| {
                 meter.call(|| effect.receive(firing, surroundings, echoes), count)
             })
             .sum()
@@ -254,16 +254,19 @@ impl<T: BeamEffect + ?Sized> BeamEffect for Shared<T> {
 impl<T: SurfaceEffect + ?Sized> SurfaceEffect for Shared<T> {
     fn reflect(&self, firing: &Firing, echoes: &mut Echoes) -> u32 {
         self.iter()
-            .map(|Listed { effect, meter }| meter.call(|| effect.reflect(firing, echoes), count))
+            .map(|MeteredEffect { effect, meter }| {
+                meter.call(|| effect.reflect(firing, echoes), count)
+            })
             .sum()
     }
 }
 
 impl<T: ClockEffect + ?Sized> ClockEffect for Shared<T> {
     fn host_ns(&self, device_ns: i64) -> i64 {
-        self.iter().fold(device_ns, |ns, Listed { effect, meter }| {
-            meter.call(|| effect.host_ns(ns), differs(ns))
-        })
+        self.iter()
+            .fold(device_ns, |ns, MeteredEffect { effect, meter }| {
+                meter.call(|| effect.host_ns(ns), differs(ns))
+            })
     }
 }
 
@@ -274,7 +277,7 @@ impl<T: MechanismEffect + ?Sized> MechanismEffect for Owned<T> {
 
     fn step(&mut self, time_s: f64, axis: &mut AxisAngles) -> bool {
         let mut any = false;
-        for Listed { effect, meter } in self {
+        for MeteredEffect { effect, meter } in self {
             any |= meter.call(|| effect.step(time_s, axis), |acted| u32::from(*acted));
         }
         any
@@ -284,7 +287,7 @@ impl<T: MechanismEffect + ?Sized> MechanismEffect for Owned<T> {
 impl<T: EncoderEffect + ?Sized> EncoderEffect for Owned<T> {
     fn read(&mut self, poll: u64, shaft: Degrees) -> Degrees {
         self.iter_mut().fold(shaft, |shaft, listed| {
-            let Listed { effect, meter } = listed;
+            let MeteredEffect { effect, meter } = listed;
             meter.call(|| effect.read(poll, shaft), differs(shaft))
         })
     }
@@ -302,11 +305,11 @@ impl<T: LinkEffect + ?Sized> LinkEffect for Owned<T> {
 
 /// Passes a message through the first link and its results through the rest.
 fn deliver_through<T: LinkEffect + ?Sized>(
-    links: &mut [Listed<Box<T>>],
+    links: &mut [MeteredEffect<Box<T>>],
     message: LinkMessage,
     arrive: &mut dyn FnMut(LinkMessage),
 ) -> u32 {
-    let Some((Listed { effect, meter }, rest)) = links.split_first_mut() else {
+    let Some((MeteredEffect { effect, meter }, rest)) = links.split_first_mut() else {
         arrive(message);
         return 0;
     };

@@ -113,7 +113,7 @@ impl Packets for FanRays<'_> {
     }
 }
 
-/// Casts rays from one origin; see [`Surroundings::meet_fan`].
+/// Casts rays from one origin; see [`Surroundings::cast_fan`].
 pub(super) fn fan(
     surroundings: &Surroundings,
     origin_m: DVec3,

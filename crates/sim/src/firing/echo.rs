@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::surroundings::Met;
+use super::surroundings::SurfaceHit;
 use crate::sensor::MAX_LASERS;
 
 /// A return of one laser.
@@ -53,7 +53,7 @@ impl Echo {
     /// The return of a whole pulse from one surface.
     #[inline]
     #[must_use]
-    pub const fn of(met: &Met) -> Self {
+    pub const fn of(met: &SurfaceHit) -> Self {
         Self {
             range_m: met.range_m,
             true_range_m: met.range_m,
@@ -65,7 +65,7 @@ impl Echo {
     }
 
     #[inline]
-    pub(super) fn from_met(met: Option<Met>) -> Self {
+    pub(super) fn from_met(met: Option<SurfaceHit>) -> Self {
         met.map_or(Self::NONE, |met| Self::of(&met))
     }
 

@@ -2,7 +2,7 @@
 //!
 //! Static objects are cast for a whole packet at once (`batch`), moving objects per firing; the
 //! nearer counts. Effects cast further rays one by one ([`Surroundings::meet`]) or several from one
-//! origin ([`Surroundings::meet_fan`]); the results are the same, bit for bit. Each thread has its
+//! origin ([`Surroundings::cast_fan`]); the results are the same, bit for bit. Each thread has its
 //! own surroundings, in which moving objects are placed.
 
 use std::sync::Arc;
@@ -29,7 +29,7 @@ pub struct Surroundings {
 
 /// The surface that a ray meets.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Met {
+pub struct SurfaceHit {
     /// Distance, metres.
     pub range_m: f64,
     /// Calibrated reflectivity: 0..=100 diffuse, above that retroreflecting.
@@ -43,7 +43,7 @@ pub struct Met {
 /// The first surface along a ray, whether it returns or not.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FirstSurface {
-    pub met: Met,
+    pub met: SurfaceHit,
     /// Whether nothing comes back.
     absorbing: bool,
 }
@@ -61,7 +61,7 @@ impl FirstSurface {
         let material = scene.material(hit)?;
         let range_m = hit.range_m;
         Some(Self {
-            met: Met {
+            met: SurfaceHit {
                 range_m,
                 reflectivity: f64::from(material.reflectivity),
                 normal: match normals {
@@ -113,19 +113,19 @@ impl Surroundings {
     /// The first surface within the sensor's range along a ray from `origin_m` in `direction`
     /// (length 1), in the frame of the base. A nearer surface blocks the ray.
     #[must_use]
-    pub fn meet(&self, origin_m: DVec3, direction: DVec3) -> Option<Met> {
+    pub fn meet(&self, origin_m: DVec3, direction: DVec3) -> Option<SurfaceHit> {
         let first = self.first_static(origin_m, direction);
         self.with_moving(origin_m, direction, first)
     }
 
     /// As [`Surroundings::meet`], without moving objects.
     #[cfg(test)]
-    pub(crate) fn meet_static(&self, origin_m: DVec3, direction: DVec3) -> Option<Met> {
+    pub(crate) fn meet_static(&self, origin_m: DVec3, direction: DVec3) -> Option<SurfaceHit> {
         self.returning(self.first_static(origin_m, direction)?)
     }
 
     /// As [`Surroundings::meet`] for each direction, up to the length of the shorter list.
-    pub fn meet_fan(&self, origin_m: DVec3, directions: &[DVec3], mets: &mut [Option<Met>]) {
+    pub fn cast_fan(&self, origin_m: DVec3, directions: &[DVec3], mets: &mut [Option<SurfaceHit>]) {
         batch::fan(self, origin_m, directions, &mut |ray, first| {
             if let (Some(met), Some(direction)) = (mets.get_mut(ray), directions.get(ray)) {
                 *met = self.with_moving(origin_m, *direction, first);
@@ -133,8 +133,13 @@ impl Surroundings {
         });
     }
 
-    /// As [`Surroundings::meet_fan`], without moving objects.
-    pub fn meet_fan_static(&self, origin_m: DVec3, directions: &[DVec3], mets: &mut [Option<Met>]) {
+    /// As [`Surroundings::cast_fan`], without moving objects.
+    pub fn cast_fan_static(
+        &self,
+        origin_m: DVec3,
+        directions: &[DVec3],
+        mets: &mut [Option<SurfaceHit>],
+    ) {
         batch::fan(self, origin_m, directions, &mut |ray, first| {
             if let Some(met) = mets.get_mut(ray) {
                 *met = first.and_then(|first| self.returning(first));
@@ -184,7 +189,7 @@ impl Surroundings {
         origin_m: DVec3,
         direction: DVec3,
         first: Option<FirstSurface>,
-    ) -> Option<Met> {
+    ) -> Option<SurfaceHit> {
         if self.bodies.is_empty() {
             return self.returning(first?);
         }
@@ -195,7 +200,7 @@ impl Surroundings {
 
     /// What returns of the first surface: nothing if it is too near or absorbing.
     #[inline]
-    pub(super) fn returning(&self, first: FirstSurface) -> Option<Met> {
+    pub(super) fn returning(&self, first: FirstSurface) -> Option<SurfaceHit> {
         let returns = first.met.range_m >= self.range.min_m && !first.absorbing;
         returns.then_some(first.met)
     }

@@ -1,6 +1,6 @@
 //! Whole packets against single rays, bit for bit; moving objects against a caster of all objects.
 
-use super::{Body, Echo, Echoes, Firing, Met, Surroundings};
+use super::{Body, Echo, Echoes, Firing, SurfaceHit, Surroundings};
 use crate::sensor::{DetectionRange, LidarMount, LidarSensor, RayTable};
 use std::sync::Arc;
 
@@ -131,10 +131,10 @@ fn a_fan_agrees_with_its_rays() {
                 };
                 let parts: Vec<DVec3> = (0..number % 19).map(part).collect();
                 let (mut mets, mut still) = (vec![None; parts.len()], vec![None; parts.len()]);
-                around.meet_fan(from, &parts, &mut mets);
-                around.meet_fan_static(from, &parts, &mut still);
+                around.cast_fan(from, &parts, &mut mets);
+                around.cast_fan_static(from, &parts, &mut still);
                 for ((part, met), still) in parts.iter().zip(&mets).zip(&still) {
-                    let echo = |met: &Option<Met>| bits(&Echo::from_met(*met));
+                    let echo = |met: &Option<SurfaceHit>| bits(&Echo::from_met(*met));
                     assert_eq!(echo(met), echo(&around.meet(from, *part)));
                     assert_eq!(echo(still), echo(&around.meet_static(from, *part)));
                     there += u32::from(met.is_some());

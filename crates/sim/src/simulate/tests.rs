@@ -6,7 +6,7 @@ use super::{
 use crate::effect_models::range_noise::RangeNoise;
 use crate::effects::{
     AxisAngles, ClockEffect, ConfiguredEffects, Effect, Effects, FiringEffectSet, FiringEffects,
-    LinkEffect, LinkMessage, Listed, MechanismEffect, Needs, SurfaceEffect, ViewEffect,
+    LinkEffect, LinkMessage, MechanismEffect, MeteredEffect, Needs, SurfaceEffect, ViewEffect,
 };
 use crate::firing::{Echoes, Firing};
 use crate::motion::Sweeps;
@@ -371,8 +371,8 @@ fn effects_in_a_list_act_in_order_and_are_counted() {
     let (pair, summary) = run_with(&simulation, &mut with((), Both(noise, Dim), ()));
     let mut configured = ConfiguredEffects::default();
     let surface = &mut configured.firings.surface;
-    surface.push(Listed::new(Arc::new(noise), None));
-    surface.push(Listed::new(Arc::new(Dim), Some(|| 5)));
+    surface.push(MeteredEffect::new(Arc::new(noise), None));
+    surface.push(MeteredEffect::new(Arc::new(Dim), Some(|| 5)));
     for times in 1..=2 {
         let (list, _) = run_with(&simulation, &mut configured);
         assert_eq!(list.datagrams, pair.datagrams);

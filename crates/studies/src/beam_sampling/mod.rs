@@ -80,7 +80,7 @@ fn measure(bench: &mut Bench<'_>) -> Result<Measured, StudyError> {
     let mut timed = Vec::new();
     for (scene, shots, edges, choices) in &scenes {
         for choice in choices {
-            let off = off(&choice.way, shots, edges);
+            let off = errors(&choice.way, shots, edges);
             timed.push(TimedChoice {
                 row: Row::new(
                     format!("{scene}, {}", choice.name),
@@ -90,7 +90,7 @@ fn measure(bench: &mut Bench<'_>) -> Result<Measured, StudyError> {
                 ),
                 scale: 1e9 / shots.count().max(1) as f64,
                 work: Box::new(|| {
-                    choice.way.act(shots, |_, echoes| {
+                    choice.way.sample(shots, |_, echoes| {
                         black_box(echoes);
                     });
                     Ok(())
@@ -155,16 +155,15 @@ fn choices(grids: &[[usize; 2]]) -> Result<Vec<SamplingChoice>, StudyError> {
         label: "1".to_owned(),
         way: SamplingMethod::Middle,
     }];
-    let ways: [(&str, &str, fn(Divergence) -> SamplingMethod); 2] = [
-        ("at edges", "", SamplingMethod::AtEdges),
-        ("everywhere", " all", SamplingMethod::Everywhere),
-    ];
-    for (place, mark, way) in ways {
+    for (place, mark) in [("at edges", ""), ("everywhere", " all")] {
         for &[columns, rows] in grids {
             choices.push(SamplingChoice {
                 name: format!("{columns} x {rows} {place}"),
                 label: format!("{columns}x{rows}{mark}"),
-                way: way(divergence(columns, rows)?),
+                way: match mark {
+                    "" => SamplingMethod::AtEdges(divergence(columns, rows)?),
+                    _ => SamplingMethod::Everywhere(divergence(columns, rows)?),
+                },
             });
         }
     }
@@ -173,7 +172,7 @@ fn choices(grids: &[[usize; 2]]) -> Result<Vec<SamplingChoice>, StudyError> {
 
 impl SamplingMethod {
     /// The echoes of every firing, one after the other.
-    fn act(&self, shots: &Shots, mut take: impl FnMut(usize, &Echoes)) {
+    fn sample(&self, shots: &Shots, mut take: impl FnMut(usize, &Echoes)) {
         let Some((_, first)) = shots.firings.first() else {
             return;
         };
@@ -226,11 +225,11 @@ fn edges(shots: &Shots) -> Result<Vec<SilhouetteEdge>, StudyError> {
     Ok(edges)
 }
 
-fn off(way: &SamplingMethod, shots: &Shots, edges: &[SilhouetteEdge]) -> SamplingError {
+fn errors(way: &SamplingMethod, shots: &Shots, edges: &[SilhouetteEdge]) -> SamplingError {
     let mut left = edges.iter().peekable();
     let (mut squares, mut worst_m, mut both) = (0.0, 0.0_f64, 0_u32);
     let (mut two, mut wrong) = (0_u32, 0_u32);
-    way.act(shots, |firing, echoes| {
+    way.sample(shots, |firing, echoes| {
         while let Some(edge) = left.next_if(|edge| edge.firing == firing) {
             let at = |echoes: &[Echo]| echoes.get(edge.laser).map_or(f64::INFINITY, |e| e.range_m);
             let got_m = [at(&echoes.strongest), at(&echoes.other)];
@@ -268,7 +267,7 @@ mod tests {
             let shots = Shots::of(scene, 48).unwrap();
             let choices = choices(&GRIDS).unwrap();
             let way = choices.iter().find(|choice| choice.label == "5x3 all");
-            way.unwrap().way.act(&shots, |number, echoes| {
+            way.unwrap().way.sample(&shots, |number, echoes| {
                 let (firing, _) = &shots.firings[number];
                 for laser in firing.alive() {
                     let footprint = ReferenceFootprint::of(firing, laser).unwrap();
@@ -293,7 +292,7 @@ mod tests {
         let choices = choices(&GRIDS).unwrap();
         let of = |label: &str| {
             let choice = choices.iter().find(|choice| choice.label == label).unwrap();
-            off(&choice.way, &shots, &edges)
+            errors(&choice.way, &shots, &edges)
         };
         let (middle, few, many) = (of("1"), of("3x3 all"), of("5x3 all"));
         assert_eq!(middle.wrong, 1.0);

@@ -2,7 +2,7 @@
 //! `sim::effect_models::Divergence`, without reflectivities, normals and the search for edges.
 
 use glam::DVec3;
-use sim::firing::{Firing, Met, Surroundings};
+use sim::firing::{Firing, SurfaceHit, Surroundings};
 
 /// Half the divergence of the beam along the scan and across it (63-9243, appendix F).
 const HALF: [f64; 2] = [1.5e-3, 0.75e-3];
@@ -25,7 +25,7 @@ pub struct ReferenceFootprint {
 struct ReferenceSample {
     x: f64,
     y: f64,
-    met: Option<Met>,
+    met: Option<SurfaceHit>,
 }
 
 /// All sub-rays of a pulse.
@@ -104,9 +104,10 @@ impl Samples {
     /// The range of the strongest return, and that of the last or, if the strongest is the last, of
     /// the second strongest; infinite for none.
     pub fn returns_m(&self) -> [f64; 2] {
-        let mut mets: Vec<&Met> = self.samples.iter().filter_map(|s| s.met.as_ref()).collect();
+        let mut mets: Vec<&SurfaceHit> =
+            self.samples.iter().filter_map(|s| s.met.as_ref()).collect();
         mets.sort_by(|a, b| a.range_m.total_cmp(&b.range_m));
-        let strength = |met: &Met| light(met.reflectivity) / (met.range_m * met.range_m);
+        let strength = |met: &SurfaceHit| light(met.reflectivity) / (met.range_m * met.range_m);
         let noticed = LEAST_SHARE * self.samples.len() as f64;
         // Range and strength, the nearest first.
         let mut returns: Vec<[f64; 2]> = mets

@@ -13,7 +13,7 @@ use engine::config::{self, Config};
 use engine::default_paths;
 use engine::devices::profile;
 use engine::failure::{Failure, Kind};
-use engine::output::{self, Aside, Target};
+use engine::output::{self, Backup, Target};
 use engine::reconstruct::report::ScanReport;
 use engine::service::CaptureEnd;
 
@@ -44,7 +44,7 @@ pub fn run(arguments: &cli::Capture, common: &Common) -> Result<CommandOutput, F
         Some(client) => Some(DaemonCapture::begin(client, &arguments.into())?),
         None => None,
     };
-    let older_log = Aside::put(&plan.log)?;
+    let older_log = Backup::put(&plan.log)?;
     let recording = match &mut by_daemon {
         Some(capture) => record(capture, &plan, &interrupt, &mut progress)?,
         None => record_locally(&plan, config, &interrupt, &mut progress)?,

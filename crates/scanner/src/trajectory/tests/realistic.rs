@@ -210,7 +210,7 @@ fn the_best_curve_through_real_polls_is_as_accurate_as_the_gear() {
                 let best = run.trajectory(None);
                 assert!(matches!(
                     best.method(),
-                    Method::ProfileServo | Method::ProfileSwing
+                    Method::ProfileServo | Method::ProfileServo2
                 ));
                 let fit = &best.fits()[0];
                 assert!(

@@ -1,6 +1,6 @@
 //! The footprint of a pulse: directions of its parts, and whether it is plane.
 
-use crate::firing::{Echo, Firing, Met, Surroundings};
+use crate::firing::{Echo, Firing, SurfaceHit, Surroundings};
 use glam::DVec3;
 
 /// The footprint of one laser's pulse.
@@ -54,13 +54,13 @@ impl Footprint {
         let corners = [(1.0, 1.0), (-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0)];
         let mut mets = [None; 4];
         let directions = corners.map(|(x, y)| self.towards(x, y));
-        surroundings.meet_fan(self.origin_m, &directions, &mut mets);
-        let flat = |a: Option<Met>, b: Option<Met>| match (a, b) {
+        surroundings.cast_fan(self.origin_m, &directions, &mut mets);
+        let flat = |a: Option<SurfaceHit>, b: Option<SurfaceHit>| match (a, b) {
             (None, None) => !middle.is_present(),
             (Some(a), Some(b)) if middle.is_present() => {
                 let mean = 0.5 * longer * (1.0 / a.range_m + 1.0 / b.range_m);
                 let off = (mean - 1.0 / middle.range_m).abs();
-                let alike = |met: &Met| met.reflectivity == middle.reflectivity;
+                let alike = |met: &SurfaceHit| met.reflectivity == middle.reflectivity;
                 off * middle.range_m * middle.range_m <= flat_m && alike(&a) && alike(&b)
             }
             _ => false,

@@ -132,7 +132,7 @@ fn look(surroundings: &Surroundings, side: usize) -> Vec<Seen> {
         let ways = (0..GRID).map(|column| towards(side, place(column), place(row)));
         let (lengths, directions): (Vec<f64>, Vec<DVec3>) =
             ways.map(|way| (way.length(), way / way.length())).unzip();
-        surroundings.meet_fan_static(DVec3::ZERO, &directions, &mut mets);
+        surroundings.cast_fan_static(DVec3::ZERO, &directions, &mut mets);
         seen.extend(lengths.iter().zip(&mets).map(|(length, met)| {
             met.map_or(Seen::default(), |met| Seen {
                 inverse: length / met.range_m,

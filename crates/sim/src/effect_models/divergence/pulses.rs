@@ -1,6 +1,6 @@
 //! Returns of a pulse from the samples of its sub-rays.
 
-use crate::firing::{Echo, Met};
+use crate::firing::{Echo, SurfaceHit};
 use glam::DVec3;
 
 use super::super::light;
@@ -46,7 +46,7 @@ impl Sample {
         strength: 0.0,
     };
 
-    pub fn new(met: &Met, direction: DVec3, off_middle: f64) -> Self {
+    pub fn new(met: &SurfaceHit, direction: DVec3, off_middle: f64) -> Self {
         let light = light::of_reflectivity(met.reflectivity).max(BLACK);
         let back = match met.normal == DVec3::ZERO {
             true => light,

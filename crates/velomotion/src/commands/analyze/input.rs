@@ -66,7 +66,7 @@ impl<'a> Named<'a> {
     /// [`Kind::Usage`] for invalid patterns, [`Kind::BadInput`] for missing files.
     pub fn new(argument: &'a str) -> Result<Self, Failure> {
         if PatternRequest::is_one(argument) {
-            let pattern = PatternRequest::parse(argument).and_then(|wish| wish.build());
+            let pattern = PatternRequest::parse(argument).and_then(|request| request.build());
             return Ok(Self::Pattern(Box::new(
                 pattern.map_err(|e| pattern_failure(&e))?,
             )));
@@ -77,7 +77,7 @@ impl<'a> Named<'a> {
             return Err(Failure::new(Kind::BadInput, what).help(HINT));
         }
         let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
-        let is_text = TEXTS.iter().any(|text| extension == *text);
+        let is_text = TEXT_EXTENSIONS.iter().any(|text| extension == *text);
         Ok(match Format::from_path(path) {
             Ok(format) => Self::Cloud(path, format),
             Err(_) if is_text => Self::Cloud(path, Format::Csv),
@@ -104,7 +104,7 @@ impl<'a> Named<'a> {
 }
 
 /// Extensions of text files with one row per point, apart from `.csv`.
-const TEXTS: [&str; 3] = ["xyz", "txt", "asc"];
+const TEXT_EXTENSIONS: [&str; 3] = ["xyz", "txt", "asc"];
 
 const HINT: &str = "name a pattern (vlp16, hdl32e, vlp32c, rmbl:SPEED, rsbl:SPEED, velomotion16:SPEED), a cloud (.ply .pcd .las .laz .e57 .mcap .csv .xyz .txt .asc), \
                     or a log or recording (pcapng, pcap)";
@@ -173,7 +173,7 @@ fn of_cloud(path: &Path, format: Format, origin_m: DVec3) -> Result<Input, Failu
         wrong(
             error.to_string(),
             match format {
-                Format::Csv => "expected is text with x, y and z in metres: a row a point, in the first three columns or those that a header names",
+                Format::Csv => "expected one row per point with x, y and z in metres, in the first three columns or those that a header names",
                 _ => "see whether the file is whole, and is what its extension says",
             },
         )
@@ -220,7 +220,7 @@ fn directions(
         ),
         _ => wrong(
             "no point that has a direction",
-            "points are seen from the origin, which is on the tilt axis: give a cloud of such, or --origin X,Y,Z",
+            "points are seen from the origin, which is on the tilt axis: give a cloud with that origin, or --origin X,Y,Z",
         ),
     }
 }

@@ -109,9 +109,9 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, 
         .clone()
         .unwrap_or_else(|| PathBuf::from(stem(&name)).with_extension("pcapng"));
     output::log_is_file(&log, "-o (.pcapng or .pcap)")?;
-    output::not_over(&arguments.scene, &log)?;
+    output::refuse_overwrite(&arguments.scene, &log)?;
     if let Some(truth) = &arguments.truth {
-        output::not_over(&arguments.scene, truth)?;
+        output::refuse_overwrite(&arguments.scene, truth)?;
         output::two_files(&log, truth)?;
         output::one_for_stdout(Some(truth), common.json)?;
     }

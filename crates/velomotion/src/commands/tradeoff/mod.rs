@@ -53,8 +53,7 @@ pub fn run(arguments: &cli::Tradeoff, common: &Common) -> Result<CommandOutput, 
         say: &mut |line| progress.say(line),
     };
     let machine = Machine::current(|path| std::fs::read_to_string(path).ok());
-    let report = StudyReport::measure(&selected, machine, bench).map_err(|(study, error)| {
-        let name = study.name;
+    let report = StudyReport::measure(&selected, machine, bench).map_err(|(name, error)| {
         Failure::new(Kind::Incomplete, format!("study {name}: {error}")).help(format!(
             "leave it out with --only, and report it with the output of --only {name} -vv"
         ))

@@ -12,7 +12,8 @@ use crate::continuity::BlindSector;
 
 /// A revolution in hundredths of a degree.
 pub(crate) const REVOLUTION_CDEG: i32 = 36_000;
-/// A step back by less is jitter or a slow reversal, not almost a revolution forward.
+/// A smaller step backwards is jitter or a slow reversal, not a step forward by almost a
+/// revolution.
 const BACKLASH_CDEG: i32 = 100;
 /// A step of more than twice the usual one plus this is a jump.
 const JUMP_CDEG: i32 = 20;
@@ -39,7 +40,7 @@ pub(crate) struct BlockTiming {
     /// Azimuth of its first firing, 0 up to 36000.
     pub azimuth_cdeg: i32,
     /// Azimuth per block period.
-    pub pace_cdeg: f64,
+    pub step_per_block_cdeg: f64,
 }
 
 /// Azimuth steps within a packet.
@@ -160,8 +161,7 @@ impl AzimuthSteps {
     }
 
     pub(crate) fn is_jump(&self, step_cdeg: i32) -> bool {
-        // A step that is no jump against the smallest is none against the median, which is
-        // expensive.
+        // The smallest step is compared first: the median is expensive, and never smaller.
         exceeds(step_cdeg, self.least_cdeg)
             && exceeds(step_cdeg, self.usual_cdeg.unwrap_or_else(|| self.median()))
     }
@@ -261,7 +261,7 @@ impl AzimuthSteps {
             *slot = BlockTiming {
                 after: Span::from_nanos(after_ns),
                 azimuth_cdeg: azimuth,
-                pace_cdeg: pace,
+                step_per_block_cdeg: pace,
             };
             let gap = step.map_or(0.0, |step| self.gap_ns(step));
             after_ns += self.period_ns;
