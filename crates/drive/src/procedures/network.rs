@@ -156,7 +156,8 @@ pub(super) async fn disarm(ops: &Ops) -> Result<(), DriveError> {
     if ops.on_can(|can, _| can.next_heartbeat.is_some()) != Some(true) {
         return Ok(());
     }
-    ops.write(objects::CONSUMER_HEARTBEAT, NO_CONSUMER).await?;
+    ops.write_idempotent(objects::CONSUMER_HEARTBEAT, NO_CONSUMER)
+        .await?;
     ops.on_can(|can, _| can.next_heartbeat = None);
     Ok(())
 }

@@ -2,8 +2,8 @@
 //! or at some; its base hides everything below.
 //!
 //! A hidden beam is emitted without a return, because the frame is nearer than the minimum range
-//! (1 m, 63-9243). Sectors are in the lidar's own azimuths, as the frame tilts with it. Scattered light
-//! of the frame is not included.
+//! (1 m, 63-9243). Sectors are in the lidar's own azimuths, as the frame tilts with it. Scattered
+//! light of the frame is not included.
 
 use crate::effects::ViewEffect;
 use crate::firing::Firing;
