@@ -305,17 +305,17 @@ impl AxisConfig {
         }
         let guard = &self.guard;
         for (field, angle, min) in [
-            ("max_following_error", self.max_following_error, 0.01),
-            ("arrival_tolerance", self.arrival_tolerance, 0.0),
-            ("standstill_spread", self.standstill_spread, 0.001),
-            ("guard.behind", guard.behind, 0.01),
-            ("guard.ahead", guard.ahead, 0.01),
-            ("guard.beyond_limits", guard.beyond_limits, 0.0),
-            ("guard.homing_margin", guard.homing_margin, 0.0),
+            ("guard.following_error_deg", self.max_following_error, 0.01),
+            ("guard.arrival_deg", self.arrival_tolerance, 0.0),
+            ("guard.standstill_deg", self.standstill_spread, 0.001),
+            ("guard.behind_deg", guard.behind, 0.01),
+            ("guard.ahead_deg", guard.ahead, 0.01),
+            ("guard.beyond_limits_deg", guard.beyond_limits, 0.0),
+            ("guard.homing_margin_deg", guard.homing_margin, 0.0),
         ] {
             within(field, angle.0, min, 360.0)?;
         }
-        within_ms("guard.servo_lag", guard.servo_lag, 0, MAX_SPAN_MS)?;
+        within_ms("guard.servo_lag_ms", guard.servo_lag, 0, 10_000)?;
         self.limits_qc()?;
         self.limit_switches.check()?;
         if let Some(brake) = self.brake {

@@ -436,7 +436,7 @@ impl DriveError {
             Self::NotReferenced { .. } => "Home the axis first.",
             Self::OffPlan { .. } => {
                 "Check encoder, coupling and gear, their settings (2210), and that nothing blocks or \
-                 drives the axis; then home again."
+                 drives the axis; then home again. The tolerances are in [axis.guard] of the configuration."
             }
             Self::LimitSwitch { .. } => {
                 "Check the switch, its input and the drive's limit settings (2071:4), then home again."

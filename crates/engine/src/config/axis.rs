@@ -32,6 +32,8 @@ pub struct AxisSettings {
     pub limit_switches: LimitSwitchSettings,
     /// Homing.
     pub homing: HomingSettings,
+    /// When the moving axis is stopped, and when it counts as arrived and at rest.
+    pub guard: GuardSettings,
 }
 
 /// Digital inputs of the limit switches (1..=9). A switch omitted from the table does not exist.
@@ -47,6 +49,28 @@ pub struct LimitSwitchSettings {
     /// Whether a pressed switch pulls its input low, so that a broken wire stops the axis too.
     #[serde(default)]
     pub normally_closed: bool,
+}
+
+/// Tolerances of the drive client's motion guard, degrees of tilt unless named otherwise.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct GuardSettings {
+    /// How far the axis may lag behind its plan at low speed.
+    pub behind_deg: f64,
+    /// Lag of the servo, added to `behind_deg` in proportion to the speed, milliseconds.
+    pub servo_lag_ms: u16,
+    /// How far the axis may be ahead of its plan or beyond its target.
+    pub ahead_deg: f64,
+    /// How far the axis may be beyond its limits.
+    pub beyond_limits_deg: f64,
+    /// How far homing may move beyond the range of the axis.
+    pub homing_margin_deg: f64,
+    /// Largest difference between the drive's own demand and position (object 6065).
+    pub following_error_deg: f64,
+    /// Largest distance from the target at which a move has arrived.
+    pub arrival_deg: f64,
+    /// Spread of the positions of an axis at rest.
+    pub standstill_deg: f64,
 }
 
 /// Homing of the axis.
@@ -80,6 +104,7 @@ impl Default for AxisSettings {
             brake_output: None,
             limit_switches: LimitSwitchSettings::default(),
             homing: HomingSettings::default(),
+            guard: GuardSettings::default(),
         }
     }
 }
@@ -91,6 +116,22 @@ impl Default for LimitSwitchSettings {
             negative: Some(6),
             positive: Some(5),
             normally_closed: false,
+        }
+    }
+}
+
+impl Default for GuardSettings {
+    fn default() -> Self {
+        let axis = drive::AxisConfig::default();
+        Self {
+            behind_deg: axis.guard.behind.0,
+            servo_lag_ms: 50,
+            ahead_deg: axis.guard.ahead.0,
+            beyond_limits_deg: axis.guard.beyond_limits.0,
+            homing_margin_deg: axis.guard.homing_margin.0,
+            following_error_deg: axis.max_following_error.0,
+            arrival_deg: axis.arrival_tolerance.0,
+            standstill_deg: axis.standstill_spread.0,
         }
     }
 }
@@ -117,6 +158,7 @@ impl AxisSettings {
             gear: self.gear,
         }
     }
+
     /// Refuses impossible numbers.
     pub(super) fn check(&self) -> Result<(), String> {
         let Self { homing, .. } = self;

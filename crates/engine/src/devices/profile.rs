@@ -1,6 +1,6 @@
 //! Selection of the device profile, and the drive's axis configuration.
 
-use drive::config::{AxisLimits, AxisTiming, BrakeConfig, HomingConfig, LimitSwitchConfig};
+use drive::config::{AxisLimits, BrakeConfig, HomingConfig, LimitSwitchConfig, MotionGuardConfig};
 use units::{DegPerS, DegPerS2, Degrees, RpmPerS, Span};
 
 use crate::config::{AxisSettings, Config, Device, DeviceKind};
@@ -55,7 +55,7 @@ pub fn axis(axis: &AxisSettings) -> Result<drive::AxisConfig, Failure> {
     };
     let gearing = axis.scan().gearing().map_err(|error| wrong(&error))?;
     let rpm = |deg_s: f64| gearing.rpm(DegPerS(deg_s));
-    let homing = &axis.homing;
+    let (homing, guard) = (&axis.homing, &axis.guard);
     let max_acceleration = gearing.rpm_per_s(DegPerS2(axis.max_accel_deg_s2));
     let config = drive::AxisConfig {
         node: axis.node,
@@ -86,7 +86,16 @@ pub fn axis(axis: &AxisSettings) -> Result<drive::AxisConfig, Failure> {
             time_limit: Span::from_secs(60),
             ..HomingConfig::default()
         },
-        timing: AxisTiming::default(),
+        max_following_error: Degrees(guard.following_error_deg),
+        arrival_tolerance: Degrees(guard.arrival_deg),
+        standstill_spread: Degrees(guard.standstill_deg),
+        guard: MotionGuardConfig {
+            behind: Degrees(guard.behind_deg),
+            servo_lag: Span::from_millis(guard.servo_lag_ms.into()),
+            ahead: Degrees(guard.ahead_deg),
+            beyond_limits: Degrees(guard.beyond_limits_deg),
+            homing_margin: Degrees(guard.homing_margin_deg),
+        },
         ..drive::AxisConfig::default()
     };
     config.check().map_err(|error| wrong(&error))?;
