@@ -155,6 +155,21 @@ pub enum DriveError {
         /// The value held.
         got: u32,
     },
+    /// The drive's own configuration contradicts that of the axis, so that angles or motions would
+    /// be wrong.
+    #[error("object {address} ({name}): expected {expected}, got {got}")]
+    Contradiction {
+        /// The object.
+        address: Address,
+        /// Its name.
+        name: &'static str,
+        /// The values that fit the configuration.
+        expected: String,
+        /// The drive's value.
+        got: i64,
+        /// The key of the configuration to change instead, if there is one.
+        key: Option<&'static str>,
+    },
     /// The device is not an EPOS2 servo drive.
     #[error("object {address} ({what}): expected {expected:#X}, got {got:#X}")]
     WrongDevice {
@@ -422,6 +437,14 @@ impl DriveError {
             Self::Refused { .. } | Self::NotTaken { .. } => {
                 "Check the firmware version; the axis is left disabled. Another master (EPOS Studio) \
                  on the drive must be closed."
+            }
+            Self::Contradiction { key, .. } => {
+                let ours = key.map_or(String::new(), |key| {
+                    format!("correct {key} in the configuration if the drive is right; else ")
+                });
+                return format!(
+                    "{ours}set the object with the drive's own tool (EPOS Studio) and save it there"
+                );
             }
             Self::WrongDevice { .. } => "Another device is on this port or node id: check both.",
             Self::Fault { error } | Self::FaultStays { error } => {

@@ -3,8 +3,10 @@
 //! Nothing is saved in the drive (1010): a restart restores its own settings, and connecting writes
 //! these again. Gains and motor data are left to the commissioning tool.
 
+use std::ops::RangeInclusive;
+
 use protocol::epos2::cia402::mode;
-use protocol::epos2::objects::{self, TypedObject};
+use protocol::epos2::objects::{self, Scalar, TypedObject};
 
 use crate::config::{BrakeConfig, LimitSwitchConfig, whole_ms};
 use crate::error::DriveError;
@@ -54,9 +56,52 @@ pub(super) async fn configure(ops: &Ops) -> Result<(), DriveError> {
     }
 }
 
+/// Compares the drive's own configuration, which the client never writes, with that of the axis.
+/// Done before every move: an exchanged drive may differ without any other sign.
+async fn verify_drive(ops: &Ops) -> Result<(), DriveError> {
+    let config = &ops.config;
+    let lines = i64::from(config.gearing.qc_per_motor_turn() / 4);
+    let key = Some("[axis] encoder_lines");
+    expect(ops, objects::ENCODER_LINES, lines..=lines, key).await?;
+    // An incremental encoder with or without index.
+    expect(ops, objects::SENSOR_TYPE, 1..=2, None).await?;
+    // A fault stops the axis by a ramp.
+    expect(ops, objects::FAULT_OPTION, 1..=2, None).await?;
+    expect(ops, objects::VELOCITY_NOTATION, 0..=0, None).await?;
+    let fast_enough = config.max_speed.0.into()..=i64::MAX;
+    let key = Some("[axis] max_speed_deg_s");
+    expect(ops, objects::MAX_MOTOR_SPEED, fast_enough, key).await
+}
+
+/// Fails if an object's value is not one of `expected`. `key` is the configuration's for it.
+async fn expect<T: Scalar + Into<i64>>(
+    ops: &Ops,
+    object: TypedObject<T>,
+    expected: RangeInclusive<i64>,
+    key: Option<&'static str>,
+) -> Result<(), DriveError> {
+    let got = ops.read(object).await?.into();
+    if expected.contains(&got) {
+        return Ok(());
+    }
+    let (least, most) = expected.into_inner();
+    Err(DriveError::Contradiction {
+        address: object.address,
+        name: object.name,
+        expected: match most {
+            i64::MAX => format!("at least {least}"),
+            _ if least == most => least.to_string(),
+            _ => format!("{least} to {most}"),
+        },
+        got,
+        key,
+    })
+}
+
 /// Verifies the settings that keep the axis within its range. Done before every move, as a drive
 /// that restarted has lost them.
 pub(super) async fn verify_safety(ops: &Ops) -> Result<(), DriveError> {
+    verify_drive(ops).await?;
     let switches = ops.config.limit_switches.mask();
     for object in [objects::INPUT_MASK, objects::INPUT_EXECUTION_MASK] {
         let got = ops.read(object).await?;

@@ -239,6 +239,33 @@ fn stop_of_an_idle_or_faulty_drive_is_harmless() {
     assert_eq!(rig.fake.state, FAULT);
 }
 
+/// An encoder of 512 lines behind a configuration of 500 makes every angle 2.4 % wrong.
+#[test]
+fn a_drive_that_contradicts_the_configuration_is_not_moved() {
+    for (object, value, key) in [
+        ((0x2210, 1), 512, "encoder_lines"),
+        ((0x2210, 2), 4, "EPOS Studio"),
+        ((0x605E, 0), 0, "EPOS Studio"),
+        ((0x608B, 0), 0xFE, "EPOS Studio"),
+        ((0x6410, 4), 1_000, "max_speed_deg_s"),
+    ] {
+        let mut rig = Rig::homed();
+        rig.fake.objects.insert(object, value);
+        let before = rig.fake.requests.len();
+        let error = rig.run(DriveCommand::Sweep(to(45.0))).unwrap_err();
+        assert!(
+            matches!(error, DriveError::Contradiction { .. }),
+            "{object:X?}: {error}"
+        );
+        assert!(error.help().contains(key), "{error}: {}", error.help());
+        let enabled = rig.fake.requests[before..].iter().any(|(_, request)| {
+            matches!(request, SerialRequest::WriteObject(write)
+                if write.address.index == 0x6040 && write.value & 0xF == 0xF)
+        });
+        assert!(!enabled, "{object:X?}: the power was switched on");
+    }
+}
+
 #[test]
 fn power_off_follows_a_quick_stop_that_does_not_stop() {
     let mut config = AxisConfig::default();
