@@ -1,5 +1,6 @@
 //! Paths of the daemon's Unix socket, which is named after the drive's port.
 
+use std::collections::BTreeSet;
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
@@ -11,6 +12,8 @@ use engine::failure::Failure;
 
 /// Folder of a service's socket.
 const SERVICE: &str = "/run/velomotion";
+/// Folders of the sockets of logged-in users, named by user id (systemd's pam_systemd(8)).
+const USERS: &str = "/run/user";
 
 /// Name for a drive that is searched on USB.
 const LOOKED_FOR: &str = "-usb-epos2";
@@ -64,7 +67,10 @@ pub fn candidates(profile: &str, device: &Device) -> Vec<PathBuf> {
     }
     let others: Vec<PathBuf> = places.iter().flat_map(|place| other_names(place)).collect();
     places.extend(others);
-    trusted(places.iter().map(|place| name_of(place)).collect())
+    trusted(
+        device.kind,
+        places.iter().map(|place| name_of(place)).collect(),
+    )
 }
 
 /// Possible sockets of a daemon that searches its drive: it may have found the one at `device`'s
@@ -72,17 +78,22 @@ pub fn candidates(profile: &str, device: &Device) -> Vec<PathBuf> {
 #[must_use]
 pub fn looking(device: &Device) -> Vec<PathBuf> {
     match device.kind == DeviceKind::Usb && device.port.is_some() {
-        true => trusted(vec![name_of(Path::new(LOOKED_FOR))]),
+        true => trusted(device.kind, vec![name_of(Path::new(LOOKED_FOR))]),
         false => Vec::new(),
     }
 }
 
-/// Existing trusted sockets with these names in all socket folders.
-fn trusted(names: Vec<String>) -> Vec<PathBuf> {
-    let mut folders = vec![folder()];
-    if folders.iter().all(|folder| folder != Path::new(SERVICE)) {
-        folders.push(SERVICE.into());
+/// Existing trusted sockets with these names in all socket folders. A port may be held by a process
+/// with another environment (sudo, systemd, cron); software devices belong to one environment.
+fn trusted(kind: DeviceKind, names: Vec<String>) -> Vec<PathBuf> {
+    let mut folders = vec![folder(), PathBuf::from(SERVICE)];
+    if kind != DeviceKind::Sim {
+        let users = std::fs::read_dir(USERS).into_iter().flatten().flatten();
+        folders.extend(users.map(|user| user.path()));
+        folders.push(std::env::temp_dir());
     }
+    let mut seen = BTreeSet::new();
+    folders.retain(|folder| seen.insert(folder.clone()));
     let sockets = folders
         .into_iter()
         .flat_map(|folder| names.iter().map(move |name| folder.join(name)));
@@ -112,12 +123,18 @@ fn other_names(place: &Path) -> Vec<PathBuf> {
     names
 }
 
-/// Whether the socket belongs to this user or to root. Any user can write to the temporary folder.
+/// Whether the socket belongs to this user or to root, or, for root, to the user of its folder. Any
+/// user can write to the temporary folder.
 fn is_trusted(socket: &Path) -> bool {
     let owner = std::fs::metadata(socket).map(|there| there.uid());
     let own = std::fs::metadata("/proc/self").map(|there| there.uid());
     match (owner, own) {
-        (Ok(owner), Ok(own)) => owner == own || owner == 0 || socket.starts_with(SERVICE),
+        (Ok(owner), Ok(own)) => {
+            owner == own
+                || owner == 0
+                || socket.starts_with(SERVICE)
+                || own == 0 && socket.starts_with(Path::new(USERS).join(owner.to_string()))
+        }
         _ => false,
     }
 }

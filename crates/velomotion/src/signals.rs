@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, LazyLock};
 
-use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP};
 
 use engine::failure::{Failure, Kind};
 
@@ -26,8 +26,21 @@ pub fn end_process_on_signal() {
 /// # Errors
 /// The system refuses a signal handler.
 pub fn interrupt_flag() -> Result<Arc<AtomicBool>, Failure> {
+    flag_of(&[SIGINT, SIGTERM, SIGQUIT, SIGHUP])
+}
+
+/// Like [`interrupt_flag`] for commands that can move the axis. Ctrl-Z (SIGTSTP) sets the flag,
+/// too: a suspended process could not stop the axis.
+///
+/// # Errors
+/// The system refuses a signal handler.
+pub fn motion_interrupt_flag() -> Result<Arc<AtomicBool>, Failure> {
+    flag_of(&[SIGINT, SIGTERM, SIGQUIT, SIGHUP, SIGTSTP])
+}
+
+fn flag_of(signals: &[i32]) -> Result<Arc<AtomicBool>, Failure> {
     let flag = Arc::new(AtomicBool::new(false));
-    for signal in [SIGINT, SIGTERM, SIGQUIT, SIGHUP] {
+    for &signal in signals {
         let registered = signal_hook::flag::register_conditional_shutdown(
             signal,
             INTERRUPTED,

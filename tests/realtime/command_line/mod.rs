@@ -253,8 +253,15 @@ fn a_capture_ends_as_planned_though_no_program_reads_its_output() {
     assert!(place.run("info scan.pcapng").status.success());
 }
 
+/// Ctrl-Z stops the axis, too: a suspended process could not.
 #[test]
-fn a_signal_stops_a_sweep_though_no_program_reads_the_output() {
+fn signals_stop_a_sweep_though_no_program_reads_the_output() {
+    for signal in ["-TERM", "-TSTP"] {
+        stops_a_sweep(signal);
+    }
+}
+
+fn stops_a_sweep(signal: &str) {
     let place = Place::new();
     let mut capture = with_unread_output(&place, "capture --speed 2 -o scan.ply -vv");
     // The log grows by several records per millisecond once the axis is sampled.
@@ -262,7 +269,7 @@ fn a_signal_stops_a_sweep_though_no_program_reads_the_output() {
         let log = std::fs::metadata(place.path("scan.pcapng")).ok()?;
         (log.len() > 3_000_000).then_some(())
     });
-    send("-TERM", &capture);
+    send(signal, &capture);
     assert_eq!(capture.wait().unwrap().code(), Some(130));
     assert!(
         place.path("scan.ply").is_file(),

@@ -34,7 +34,7 @@ pub fn run(arguments: &cli::Capture, common: &Common) -> Result<CommandOutput, F
     output::log_is_file(&plan.log, "--log")?;
     let target = Target::open(&plan.cloud, arguments.output.fields(), plan.force)?;
     output::check_free(&plan.log, plan.force)?;
-    let interrupt = signals::interrupt_flag()?;
+    let interrupt = signals::motion_interrupt_flag()?;
     let mut progress = Progress::new(common);
     for line in plan.headline() {
         progress.say(&line);

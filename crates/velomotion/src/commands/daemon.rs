@@ -23,7 +23,7 @@ const SIGNAL_POLL: Duration = Duration::from_millis(100);
 /// # Errors
 /// [`Failure`] where it cannot start, or its devices' thread is gone.
 pub fn run(arguments: &cli::DaemonArguments, common: &Common) -> Result<CommandOutput, Failure> {
-    let interrupt = signals::interrupt_flag()?;
+    let interrupt = signals::motion_interrupt_flag()?;
     let daemon = Daemon::start(Options {
         config: config::load(common.config.as_deref())?,
         device: common.device.clone(),

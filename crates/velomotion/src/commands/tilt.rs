@@ -24,7 +24,7 @@ pub fn run(arguments: &cli::TiltArguments, common: &Common) -> Result<CommandOut
     // Refused before a device is opened.
     let request = verb.into();
     jog::commands(request, &config, &device)?;
-    let interrupt = signals::interrupt_flag()?;
+    let interrupt = signals::motion_interrupt_flag()?;
     let (answer, simulated) = match Client::find(&name, &device) {
         Some(client) => (
             jog_by_daemon(&client, request, &interrupt)?,
