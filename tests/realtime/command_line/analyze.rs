@@ -478,7 +478,7 @@ fn inputs_that_cannot_be_analysed_are_errors() {
         (
             "analyze words.txt",
             3,
-            "expected is text with x, y and z in metres",
+            "expected one row per point with x, y and z in metres",
         ),
         ("analyze one.csv --origin 1,2", 2, "expected three numbers"),
         (
