@@ -216,7 +216,10 @@ fn a_fault_is_shown_with_advice_and_cleared() {
     let driver = Driver::start();
     let folder = tempfile::tempdir().unwrap();
     let bench = Bench::start();
-    let daemon = daemon(bench.config(), None, folder.path(), 0);
+    // The drive's own following error, not the client's motion guard, stops the held axis.
+    let mut config = bench.config();
+    config.axis.guard.behind_deg = 30.0;
+    let daemon = daemon(config, None, folder.path(), 0);
     let url = url(&daemon);
     driver.test(DESKTOP, async |page| {
         ready(&page, &url).await;
