@@ -75,9 +75,11 @@ fn frames_contain_the_whole_cloud_in_order() {
         assert_eq!(a[12..25], b[12..25], "the frames differ from the cloud");
         for at in [0, 4, 8, 25] {
             let bits = |row: &[u8]| u32::from_le_bytes(row[at..at + 4].try_into().unwrap());
+            // Near zero a nanometre is many steps of an f32.
+            let apart = (f32::from_bits(bits(a)) - f32::from_bits(bits(b))).abs();
             assert!(
-                bits(a).abs_diff(bits(b)) <= 1,
-                "the frames differ from the cloud"
+                bits(a).abs_diff(bits(b)) <= 1 || apart <= 2e-9,
+                "the frames differ from the cloud by {apart} at byte {at}"
             );
             rounded += u32::from(bits(a) != bits(b));
         }
