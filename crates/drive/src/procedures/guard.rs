@@ -17,6 +17,11 @@ const START_DELAY: Span = Span::from_millis(10);
 /// Share by which the drive's clock may differ from the host's, in progress of the move.
 const CLOCK_SHARE: f64 = 0.002;
 
+/// Gap between two samples above which the host's clock may have been set forward.
+const MAX_GAP: Span = Span::from_millis(20);
+/// Steps of the host's clock that are followed in one move. More would hide an axis that stands.
+const MAX_CLOCK_STEPS: u8 = 3;
+
 /// Compares samples with the plan of a move.
 pub(super) struct MotionGuard {
     plan: MovePlan,
@@ -29,6 +34,9 @@ pub(super) struct MotionGuard {
     highest: f64,
     /// The previous sample deviated.
     is_suspicious: bool,
+    /// When the previous sample was received, and its progress.
+    last: Option<(Stamp<Host>, f64)>,
+    clock_steps: u8,
 }
 
 impl MotionGuard {
@@ -51,6 +59,8 @@ impl MotionGuard {
             lowest: config.limits.min.0.min(plan.from.0) - guard.beyond_limits.0 - dither,
             highest: config.limits.max.0.max(plan.from.0) + guard.beyond_limits.0 + dither,
             is_suspicious: false,
+            last: None,
+            clock_steps: 0,
         }
     }
 
@@ -65,6 +75,7 @@ impl MotionGuard {
     /// [`DriveError::OffPlan`] at the second deviating sample in a row: a single one may be a
     /// damaged reply.
     pub fn check(&mut self, sample: &ShaftSample, angle: Degrees) -> Result<(), DriveError> {
+        self.follow_clock(sample, self.progress(angle.0));
         let deviation = self.deviation(sample, angle.0);
         let was_suspicious = std::mem::replace(&mut self.is_suspicious, deviation.is_some());
         match deviation {
@@ -77,12 +88,57 @@ impl MotionGuard {
         }
     }
 
+    /// Distance from the start in the direction of the move, degrees.
+    fn progress(&self, angle: f64) -> f64 {
+        let plan = &self.plan;
+        (angle - plan.from.0) * if plan.to.0 < plan.from.0 { -1.0 } else { 1.0 }
+    }
+
+    /// Shifts the start if the host's clock was set: to earlier than the previous sample, or forward
+    /// while the axis moved on by no more than usual. The plan then continues from the position.
+    fn follow_clock(&mut self, sample: &ShaftSample, progress: f64) {
+        let Some((received, before)) = self.last.replace((sample.answer, progress)) else {
+            return;
+        };
+        let moved = progress - before;
+        let usual = self.plan.cruise.0 * MAX_GAP.as_secs_f64() + self.ahead;
+        let gap = sample.request.saturating_since(received);
+        let is_step = gap < Span::ZERO || (gap > MAX_GAP && moved > 0.0);
+        if !is_step || moved.abs() > usual || self.clock_steps == MAX_CLOCK_STEPS {
+            return;
+        }
+        let most = self
+            .plan
+            .travelled(sample.answer.saturating_since(self.sent))
+            .0;
+        let least = self
+            .plan
+            .travelled(sample.request.saturating_since(self.acknowledged))
+            .0;
+        if (least..=most).contains(&progress) {
+            return;
+        }
+        self.clock_steps += 1;
+        let mut range = (0.0, self.plan.duration.as_secs_f64());
+        // Halving 60 times leaves less than a nanosecond of any duration.
+        for _ in 0..60 {
+            let middle = f64::midpoint(range.0, range.1);
+            match self.plan.travelled(Span::from_secs_f64(middle)).0 < progress {
+                true => range.0 = middle,
+                false => range.1 = middle,
+            }
+        }
+        let since_start = Span::from_secs_f64(range.1);
+        self.sent = sample.answer.saturating_add(Span::ZERO - since_start);
+        self.acknowledged = sample.request.saturating_add(Span::ZERO - since_start);
+    }
+
     /// The deviation of a sample, with the angle expected.
     fn deviation(&self, sample: &ShaftSample, angle: f64) -> Option<(Deviation, f64)> {
         let plan = &self.plan;
         let direction = if plan.to.0 < plan.from.0 { -1.0 } else { 1.0 };
         let at = |travelled: f64| plan.from.0 + direction * travelled;
-        let progress = (angle - plan.from.0) * direction;
+        let progress = self.progress(angle);
         let most = plan.travelled(sample.answer.saturating_since(self.sent)).0;
         let least = plan
             .travelled(sample.request.saturating_since(self.acknowledged))
@@ -141,14 +197,14 @@ mod tests {
 
     #[test]
     fn an_axis_on_its_plan_passes() {
-        let mut guard = guard(-45.0, 0.0);
-        for ms in 0..2_000 {
-            let angle = -45.0 + guard.plan.travelled(Span::from_millis(ms)).0;
-            assert_eq!(deviation(&mut guard, ms, angle), None, "{ms} ms");
-            // A servo that lags by 40 ms, and overshoots by 0.3 deg.
-            let lagging = -45.0 + guard.plan.travelled(Span::from_millis(ms - 40)).0;
-            assert_eq!(deviation(&mut guard, ms, lagging), None, "{ms} ms");
-            assert_eq!(deviation(&mut guard, ms, angle + 0.3), None, "{ms} ms");
+        // Exactly, behind a servo that lags by 40 ms, and with an overshoot of 0.3 deg.
+        for (lag_ms, overshoot) in [(0, 0.0), (40, 0.0), (0, 0.3)] {
+            let mut guard = guard(-45.0, 0.0);
+            for ms in 0..2_000 {
+                let travelled = guard.plan.travelled(Span::from_millis(ms - lag_ms)).0;
+                let angle = -45.0 + travelled + overshoot;
+                assert_eq!(deviation(&mut guard, ms, angle), None, "{ms} ms");
+            }
         }
     }
 
@@ -167,6 +223,51 @@ mod tests {
             );
             assert_eq!(found(900, 60.2), Some(Deviation::BeyondLimits));
         }
+    }
+
+    /// The host's clock is set in mid-sweep; samples come every millisecond.
+    #[test]
+    fn steps_of_the_hosts_clock_are_followed() {
+        for step_ms in [-3_000, -20, 30, 3_000] {
+            let mut guard = guard(-45.0, 0.0);
+            for ms in 0..1_000 {
+                let angle = -45.0 + guard.plan.travelled(Span::from_millis(ms)).0;
+                let shift = if ms < 400 { 0 } else { step_ms };
+                let at = Stamp::from_nanos((ms + shift) * 1_000_000);
+                let sample = ShaftSample {
+                    request: at,
+                    answer: at,
+                    position: Quadcounts(0),
+                    trigger: SampleTrigger::Request,
+                    device_us: None,
+                };
+                assert_eq!(
+                    guard.check(&sample, Degrees(angle)),
+                    Ok(()),
+                    "{step_ms} ms at {ms}"
+                );
+            }
+        }
+    }
+
+    /// Gaps between samples do not hide an axis that stands.
+    #[test]
+    fn an_axis_that_stands_is_found_behind_gaps() {
+        let mut guard = guard(-45.0, 0.0);
+        let found = (0..40).find(|n| {
+            let at = Stamp::from_nanos(n * 25_000_000);
+            let sample = ShaftSample {
+                request: at,
+                answer: at,
+                position: Quadcounts(0),
+                trigger: SampleTrigger::Request,
+                device_us: None,
+            };
+            let angle = -45.0 + guard.plan.travelled(Span::from_millis((n * 25).min(400))).0;
+            guard.check(&sample, Degrees(angle)).is_err()
+        });
+        // 3.3 deg at 56.25 deg/s are 60 ms.
+        assert!(found.is_some_and(|n| n * 25 < 550), "{found:?}");
     }
 
     #[test]
