@@ -19,6 +19,8 @@ const CLOCK_SHARE: f64 = 0.002;
 
 /// Gap between two samples above which the host's clock may have been set forward.
 const MAX_GAP: Span = Span::from_millis(20);
+/// Distance between two samples that proves nothing.
+const DITHER_DEG: f64 = 0.05;
 /// Steps of the host's clock that are followed in one move. More would hide an axis that stands.
 const MAX_CLOCK_STEPS: u8 = 3;
 
@@ -94,8 +96,9 @@ impl MotionGuard {
         (angle - plan.from.0) * if plan.to.0 < plan.from.0 { -1.0 } else { 1.0 }
     }
 
-    /// Shifts the start if the host's clock was set: to earlier than the previous sample, or forward
-    /// while the axis moved on by no more than usual. The plan then continues from the position.
+    /// Shifts the start if the host's clock was set: back, so that a sample precedes the previous
+    /// one or the axis moved further than the time between them allows, or forward while the axis
+    /// moved on by no more than usual. The plan then continues from the position.
     fn follow_clock(&mut self, sample: &ShaftSample, progress: f64) {
         let Some((received, before)) = self.last.replace((sample.answer, progress)) else {
             return;
@@ -103,7 +106,9 @@ impl MotionGuard {
         let moved = progress - before;
         let usual = self.plan.cruise.0 * MAX_GAP.as_secs_f64() + self.ahead;
         let gap = sample.request.saturating_since(received);
-        let is_step = gap < Span::ZERO || (gap > MAX_GAP && moved > 0.0);
+        let between = sample.answer.saturating_since(received).as_secs_f64();
+        let is_too_far = moved > 2.0 * self.plan.cruise.0 * between + DITHER_DEG;
+        let is_step = gap < Span::ZERO || is_too_far || (gap > MAX_GAP && moved > 0.0);
         if !is_step || moved.abs() > usual || self.clock_steps == MAX_CLOCK_STEPS {
             return;
         }

@@ -227,7 +227,7 @@ async fn sample_for(ops: &mut Ops, span: Span) -> Result<(), DriveError> {
 /// Status periods between two checks of the statusword.
 const STATUS_CHECKS: i64 = 1;
 /// Status periods between two checks of the limit switches.
-const SWITCH_CHECKS: i64 = 5;
+const SWITCH_CHECKS: i64 = 4;
 
 /// Timer of repeated checks.
 struct PeriodicCheck {
