@@ -1,8 +1,8 @@
 //! Messages and progress bars on stderr.
 //!
-//! A thread of its own writes to stderr. A terminal or pipe that nobody reads blocks that thread
-//! alone: the axis, the recording and signals do not wait for it. Its queue is bounded; what does
-//! not fit is dropped.
+//! A thread of its own writes to stderr. A terminal or pipe that no program reads blocks that
+//! thread alone: the axis, the recording and signals do not wait for it. Its queue is bounded; what
+//! does not fit is dropped.
 
 use std::io::{IsTerminal, Write};
 use std::sync::LazyLock;

@@ -180,18 +180,23 @@ mod tests {
         MotionGuard::new(&config, plan, at, at)
     }
 
+    /// A sample of this time; the guard is given its angle.
+    fn sample_at(at: Stamp<Host>) -> ShaftSample {
+        ShaftSample {
+            request: at,
+            answer: at,
+            position: Quadcounts(0),
+            trigger: SampleTrigger::Request,
+            device_us: None,
+        }
+    }
+
     /// Checks two samples of this angle, a millisecond apart.
     fn deviation(guard: &mut MotionGuard, ms: i64, angle: f64) -> Option<Deviation> {
         let mut result = Ok(());
         for ms in [ms, ms + 1] {
             let at = Stamp::from_nanos(ms * 1_000_000);
-            let sample = ShaftSample {
-                request: at,
-                answer: at,
-                position: Quadcounts(0),
-                trigger: SampleTrigger::Request,
-                device_us: None,
-            };
+            let sample = sample_at(at);
             result = guard.check(&sample, Degrees(angle));
         }
         match result {
@@ -239,13 +244,7 @@ mod tests {
                 let angle = -45.0 + guard.plan.travelled(Span::from_millis(ms)).0;
                 let shift = if ms < 400 { 0 } else { step_ms };
                 let at = Stamp::from_nanos((ms + shift) * 1_000_000);
-                let sample = ShaftSample {
-                    request: at,
-                    answer: at,
-                    position: Quadcounts(0),
-                    trigger: SampleTrigger::Request,
-                    device_us: None,
-                };
+                let sample = sample_at(at);
                 assert_eq!(
                     guard.check(&sample, Degrees(angle)),
                     Ok(()),
@@ -261,13 +260,7 @@ mod tests {
         let mut guard = guard(-45.0, 0.0);
         let found = (0..40).find(|n| {
             let at = Stamp::from_nanos(n * 25_000_000);
-            let sample = ShaftSample {
-                request: at,
-                answer: at,
-                position: Quadcounts(0),
-                trigger: SampleTrigger::Request,
-                device_us: None,
-            };
+            let sample = sample_at(at);
             let angle = -45.0 + guard.plan.travelled(Span::from_millis((n * 25).min(400))).0;
             guard.check(&sample, Degrees(angle)).is_err()
         });
@@ -278,13 +271,7 @@ mod tests {
     #[test]
     fn a_single_deviating_sample_is_ignored() {
         let mut guard = guard(-45.0, 0.0);
-        let sample = |ms: i64| ShaftSample {
-            request: Stamp::from_nanos(ms * 1_000_000),
-            answer: Stamp::from_nanos(ms * 1_000_000),
-            position: Quadcounts(0),
-            trigger: SampleTrigger::Request,
-            device_us: None,
-        };
+        let sample = |ms: i64| sample_at(Stamp::from_nanos(ms * 1_000_000));
         let on_plan = Degrees(-45.0 + guard.plan.travelled(Span::from_millis(300)).0);
         for (ms, angle) in [(300, Degrees(40.0)), (301, on_plan), (302, Degrees(-60.0))] {
             assert_eq!(guard.check(&sample(ms), angle), Ok(()), "{ms} ms");

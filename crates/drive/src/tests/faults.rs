@@ -266,8 +266,8 @@ fn a_drive_that_contradicts_the_configuration_is_not_moved() {
     }
 }
 
-#[test]
-fn power_off_follows_a_quick_stop_that_does_not_stop() {
+/// An axis in a slow move, whose states may take 100 ms.
+fn slowly_moving() -> Rig {
     let mut config = AxisConfig::default();
     config.timing.state_limit = Span::from_millis(100);
     let mut rig = Rig::new(config);
@@ -280,6 +280,12 @@ fn power_off_follows_a_quick_stop_that_does_not_stop() {
         }))
         .unwrap();
     assert_eq!(rig.run_for(Span::from_millis(500)), None);
+    rig
+}
+
+#[test]
+fn power_off_follows_a_quick_stop_that_does_not_stop() {
+    let mut rig = slowly_moving();
     rig.fake.deaf_to_quick_stop = true;
     rig.client.start(DriveCommand::Stop).unwrap();
     assert!(matches!(rig.finish(), Ok(CommandOutcome::Stopped(_))));
@@ -289,18 +295,7 @@ fn power_off_follows_a_quick_stop_that_does_not_stop() {
 
 #[test]
 fn an_axis_that_power_off_does_not_stop_is_reported() {
-    let mut config = AxisConfig::default();
-    config.timing.state_limit = Span::from_millis(100);
-    let mut rig = Rig::new(config);
-    rig.run(DriveCommand::Connect).unwrap();
-    rig.run(DriveCommand::Home).unwrap();
-    rig.client
-        .start(DriveCommand::Goto(crate::MoveCommand {
-            speed: units::Rpm(200),
-            ..to(45.0)
-        }))
-        .unwrap();
-    assert_eq!(rig.run_for(Span::from_millis(500)), None);
+    let mut rig = slowly_moving();
     (rig.fake.deaf_to_quick_stop, rig.fake.deaf_to_power_off) = (true, true);
     rig.client.start(DriveCommand::Stop).unwrap();
     let error = rig.finish().unwrap_err();
