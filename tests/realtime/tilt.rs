@@ -1,6 +1,6 @@
 //! `velomotion tilt` with the software drive in its own process.
 
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Write};
 use std::path::PathBuf;
 use std::process::{Child, Command, Output, Stdio};
 
@@ -155,8 +155,20 @@ fn tilt_stop_stops_a_move_of_another_process() {
         assert!(printed.read_line(&mut line).unwrap() > 0, "no motion");
     }
     let rest = std::thread::spawn(move || printed.lines().count());
+    let live = bench.json("tilt status");
+    assert_eq!(
+        (&live["state"], &live["power"], &live["activity"]),
+        (&"operation enabled".into(), &true.into(), &"moving".into()),
+        "{live}"
+    );
+    assert!(live["age_s"].as_f64().unwrap() < 1.0, "{live}");
+    assert!(live["angle_deg"].as_f64().unwrap() <= 0.0, "{live}");
     let stopped = bench.json("tilt stop");
-    assert_eq!(stopped["stopped"], true);
+    assert_eq!(
+        (&stopped["stopped"], &stopped["power"]),
+        (&true.into(), &false.into()),
+        "{stopped}"
+    );
     assert_eq!(moving.wait().unwrap().code(), Some(130));
     rest.join().unwrap();
     let status = bench.json("tilt status");
@@ -164,6 +176,35 @@ fn tilt_stop_stops_a_move_of_another_process() {
     assert_eq!(status["state"], "switch-on disabled");
     // No process holds the drive: the stop goes to the drive itself.
     assert_eq!(bench.json("tilt stop")["state"], "switch-on disabled");
+}
+
+/// This test listens at the socket of the drive's port, does not have the port, and answers that
+/// the axis is stopped.
+#[test]
+fn a_program_without_the_port_cannot_confirm_a_stop() {
+    let bench = Bench::new("--usb");
+    let link = bench.folder.path().join("epos");
+    let name: String = link
+        .to_string_lossy()
+        .chars()
+        .map(|c| if c.is_ascii_alphanumeric() { c } else { '-' })
+        .collect();
+    let socket = bench
+        .folder
+        .path()
+        .join(format!("velomotion{name}.daemon.sock"));
+    let listener = std::os::unix::net::UnixListener::bind(&socket).unwrap();
+    std::thread::spawn(move || {
+        for mut stream in listener.incoming().flatten() {
+            let body = r#"{"device":"soft","stopped":true,"state":"","power":false}"#;
+            let length = body.len();
+            let answer = format!("HTTP/1.1 200 OK\r\ncontent-length: {length}\r\n\r\n{body}");
+            let _ = stream.write_all(answer.as_bytes());
+        }
+    });
+    let stopped = bench.json("tilt stop");
+    assert_eq!(stopped["state"], "fault", "{stopped}");
+    assert_eq!(stopped["stopped"], serde_json::Value::Null, "{stopped}");
 }
 
 #[test]

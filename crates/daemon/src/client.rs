@@ -9,6 +9,8 @@ use std::time::Duration;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
+use io::processes::{self, SocketOwner};
+
 use super::sockets;
 use engine::config::Device;
 use engine::failure::{Failure, Kind};
@@ -67,7 +69,22 @@ impl Client {
     #[must_use]
     pub fn find(profile: &str, device: &Device) -> Option<Self> {
         let named = sockets::candidates(profile, device).into_iter();
-        let found = named.filter_map(Self::reach).next();
+        let port = device.port.as_deref();
+        let in_use = port.is_some_and(|port| !processes::holders(port).is_empty());
+        let mut reached = named.filter_map(Self::reach);
+        let found =
+            reached.find(
+                |client| match in_use && client.holds_port(device) == Some(false) {
+                    true => {
+                        let socket = client.socket.display();
+                        tracing::warn!(
+                            "{socket} is ignored: its program does not have the drive's port"
+                        );
+                        false
+                    }
+                    false => true,
+                },
+            );
         found.or_else(|| {
             let looking = sockets::looking(device).into_iter();
             let mut reached = looking.filter_map(Self::reach);
@@ -75,10 +92,27 @@ impl Client {
         })
     }
 
-    /// Client of the daemon at a socket, if one answers.
+    /// Whether the process at the socket has the device's serial port open; `None` if that is not
+    /// visible, or the device has no such port.
+    #[must_use]
+    pub fn holds_port(&self, device: &Device) -> Option<bool> {
+        let port = device.port.as_deref()?;
+        let stream = UnixStream::connect(&self.socket).ok()?;
+        processes::has_open(SocketOwner::of(&stream)?.pid, port)
+    }
+
+    /// Client of the daemon at a socket, if one of a trusted user answers.
     fn reach(socket: PathBuf) -> Option<Self> {
         match UnixStream::connect(&socket) {
-            Ok(_) => return Some(Self { socket }),
+            Ok(stream) => match SocketOwner::of(&stream) {
+                Some(owner) if sockets::is_trusted_user(&socket, owner.uid) => {
+                    return Some(Self { socket });
+                }
+                owner => tracing::warn!(
+                    "{} is ignored: {owner:?} listens there, which is another user",
+                    socket.display()
+                ),
+            },
             Err(error) if error.kind() == ErrorKind::PermissionDenied => tracing::warn!(
                 "a daemon may have the device, and denies access to it: {}; \
                  join the group that owns its socket (adduser YOU velomotion), and log in again",

@@ -139,6 +139,15 @@ fn is_trusted(socket: &Path) -> bool {
     }
 }
 
+/// Whether the listener at a trusted socket is its owner, this user or root.
+pub(crate) fn is_trusted_user(socket: &Path, user: u32) -> bool {
+    let owner = |path: &Path| std::fs::metadata(path).map(|there| there.uid());
+    user == 0
+        || [socket, Path::new("/proc/self")]
+            .iter()
+            .any(|path| owner(path).ok() == Some(user))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -79,6 +79,8 @@ pub enum CommandProgress {
         /// Position demand value (6062), relative to the zero before homing.
         demand: Quadcounts,
     },
+    /// The statusword (6041) was read.
+    Statusword(u16),
     /// A quick stop did not bring the axis to rest; switching its power off did.
     PowerCut,
     /// A command failed and the axis was stopped; the failure follows.

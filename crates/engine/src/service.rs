@@ -315,10 +315,15 @@ impl DeviceService {
         if let Lifetime::Command { .. } = self.lifetime {
             self.stop(None);
             self.wait_idle().await;
-            return match self.state.borrow().may_move {
+            let state = self.state.borrow();
+            return match state.may_move {
                 false => Ok(StopAnswer::Command(StoppedCommand {
                     device: self.name.clone(),
                     stopped: true,
+                    state: state
+                        .statusword
+                        .map_or("unknown".to_owned(), jog::state_name),
+                    power: state.statusword.is_some_and(jog::has_power),
                 })),
                 true => Err(LeaseError::Failure(
                     Failure::new(

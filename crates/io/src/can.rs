@@ -226,8 +226,9 @@ mod tests {
             (
                 CanError::Port(PortError::Busy {
                     port: "/dev/ttyACM0".to_owned(),
+                    by: "screen (pid 7)".to_owned(),
                 }),
-                "port /dev/ttyACM0: in use by another program",
+                "port /dev/ttyACM0: in use by screen (pid 7)",
             ),
         ] {
             assert_eq!(PortError::from(error).to_string(), expected);

@@ -34,5 +34,6 @@ pub mod discover;
 pub mod files;
 pub mod log;
 pub mod port;
+pub mod processes;
 pub mod recording;
 pub mod udp;

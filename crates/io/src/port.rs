@@ -83,10 +83,12 @@ pub enum PortError {
         port: String,
     },
     /// Another program uses it.
-    #[error("port {port}: in use by another program")]
+    #[error("port {port}: in use by {by}")]
     Busy {
         /// The port's path.
         port: String,
+        /// The programs that have it open.
+        by: String,
     },
     /// The device is no serial port or refuses the settings.
     #[error("port {port}: expected a serial port at {baud} baud, got: {reason}")]

@@ -81,6 +81,8 @@ impl fmt::Display for DeviceState {
 
 /// Bits of the statusword (6041) outside the pattern of the state.
 pub mod status {
+    /// Power stage on.
+    pub const VOLTAGE_ENABLED: u16 = 1 << 4;
     /// NMT state is operational.
     pub const REMOTE: u16 = 1 << 9;
     /// Target reached; at a halt: standstill.

@@ -7,7 +7,6 @@ use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use engine::failure::{Failure, Kind};
 use engine::service::LeaseError;
-use engine::service::status::AxisTask;
 use serde::Serialize;
 
 /// A refused request.
@@ -163,16 +162,7 @@ impl From<LeaseError> for Refusal {
             LeaseError::Busy(task) => Self::new(
                 StatusCode::CONFLICT,
                 Reason::Busy,
-                format!(
-                    "the axis is busy: {}",
-                    match task {
-                        AxisTask::Capturing => "a scan is recorded",
-                        AxisTask::Homing => "it is homing",
-                        AxisTask::Moving => "it moves",
-                        AxisTask::Connecting => "the drive is being set up",
-                        AxisTask::Stopping | AxisTask::Idle => "it is being stopped",
-                    }
-                ),
+                format!("the axis is busy: {}", task.description()),
                 "wait until it is done, or stop it (POST /api/v1/tilt/stop, tilt stop)",
             ),
         }

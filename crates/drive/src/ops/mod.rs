@@ -110,6 +110,9 @@ impl Ops {
         let request = self.request(object.address, ObjectAccess::Read);
         let reply = self.send(request).await?;
         let raw = reply.reply.value().unwrap_or_default();
+        if object.address == objects::STATUSWORD.address {
+            self.report(CommandProgress::Statusword(u16::from_raw(raw)));
+        }
         Ok((T::from_raw(raw), reply))
     }
 

@@ -1,5 +1,6 @@
 //! Motion of the axis outside captures, and reports on the drive's state.
 
+use drive::cia402::{DeviceState, status};
 use drive::{CommandOutcome, DeviceError, DriveCommand, DriveEvent, DriveStatus};
 use io::port::Port;
 use serde::{Deserialize, Serialize};
@@ -10,9 +11,10 @@ use crate::config::{Config, Device};
 use crate::devices::drive_session::{Session, SessionError};
 use crate::devices::profile as devices;
 use crate::failure::{Failure, Kind};
+use crate::service::status::AxisTask;
 
 /// State of the drive.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct AxisReport {
     /// Name of the device's profile.
     pub device: String,
@@ -40,6 +42,14 @@ pub struct AxisReport {
     pub faults: Vec<DriveFault>,
     /// Whether the drive is software.
     pub simulated: bool,
+    /// Whether the power stage is on.
+    pub power: bool,
+    /// What the axis is used for.
+    pub activity: AxisTask,
+    /// Age of state, power, angle and speed, seconds.
+    pub age_s: f64,
+    /// Age of switches and error history, seconds; absent if they have not been read.
+    pub switches_age_s: Option<f64>,
 }
 
 /// An entry of the error history.
@@ -63,6 +73,10 @@ pub struct StoppedCommand {
     pub device: String,
     /// Whether the axis was stopped.
     pub stopped: bool,
+    /// The drive's state (CiA 402).
+    pub state: String,
+    /// Whether the power stage is on.
+    pub power: bool,
 }
 
 /// Answer to `POST /tilt/stop`.
@@ -182,14 +196,9 @@ impl AxisReport {
     /// The report on the drive called `device`.
     #[must_use]
     pub fn new(device: &str, status: &DriveStatus, simulated: bool) -> Self {
-        Self {
+        let mut report = Self {
             device: device.to_owned(),
-            state: status
-                .state
-                .map_or("unknown".to_owned(), |state| state.to_string()),
-            statusword: status.statusword,
             mode: status.mode,
-            referenced: status.referenced,
             angle_deg: status.angle.map(|angle| angle.0),
             position_qc: status.position.0,
             velocity_rpm: status.velocity_rpm,
@@ -198,8 +207,35 @@ impl AxisReport {
             home_switch: status.inputs & 4 != 0,
             faults: status.history.iter().map(|error| fault(*error)).collect(),
             simulated,
-        }
+            switches_age_s: Some(0.0),
+            ..Self::default()
+        };
+        report.set_statusword(status.statusword);
+        report
     }
+
+    /// Sets the statusword and what it shows.
+    pub(crate) fn set_statusword(&mut self, statusword: u16) {
+        self.statusword = statusword;
+        self.state = state_name(statusword);
+        self.referenced = is_referenced(statusword);
+        self.power = has_power(statusword);
+    }
+}
+
+/// Whether a statusword shows a homed axis.
+pub(crate) const fn is_referenced(statusword: u16) -> bool {
+    statusword & status::REFERENCED != 0
+}
+
+/// Whether a statusword shows that the power stage is on.
+pub(crate) const fn has_power(statusword: u16) -> bool {
+    statusword & status::VOLTAGE_ENABLED != 0
+}
+
+/// The name of the state that a statusword shows.
+pub(crate) fn state_name(statusword: u16) -> String {
+    DeviceState::from_statusword(statusword).map_or("unknown".to_owned(), |state| state.to_string())
 }
 
 /// A fault of the drive with its meaning and remedy.

@@ -88,8 +88,9 @@ impl AxisLease {
                 };
                 state.stop = Some(stop.clone());
                 if task != AxisTask::Connecting {
-                    state.reported_at = None;
+                    state.is_report_current = false;
                 }
+                (state.statusword, state.live_at) = (None, None);
             }
             refused.is_none()
         });

@@ -7,6 +7,7 @@ use units::{Degrees, Host, Stamp};
 
 use super::DeviceService;
 use super::events::{Event, MessageLevel};
+use crate::capture::jog::{self, is_referenced};
 
 /// Between two reports.
 const INTERVAL: Duration = Duration::from_millis(50);
@@ -50,6 +51,7 @@ impl<'a> MotionReporter<'a> {
                 let packets = self.service.activity().packets;
                 self.moved(*at, gearing.angle(*demand), packets);
             }
+            DriveEvent::Progress(CommandProgress::Statusword(word)) => self.statusword(*word),
             DriveEvent::Progress(CommandProgress::PowerCut) => {
                 let help =
                     "check the drive's settings and what moves the axis before it moves again";
@@ -85,6 +87,23 @@ impl<'a> MotionReporter<'a> {
         self.service.send_status();
     }
 
+    /// Takes in the drive's state.
+    fn statusword(&self, word: u16) {
+        self.service.heartbeat();
+        let mut is_new = false;
+        self.service.state.send_modify(|state| {
+            is_new = state.statusword.replace(word) != Some(word);
+            state.live_at = Some(Instant::now());
+            if is_new {
+                state.drive.cia402 = Some(jog::state_name(word));
+                state.drive.referenced = is_referenced(word);
+            }
+        });
+        if is_new {
+            self.service.send_status();
+        }
+    }
+
     /// Takes in the axis's angle at a time.
     fn moved(&mut self, at: Stamp<Host>, angle: Degrees, packets: u64) {
         let mut speed = 0.0;
@@ -111,6 +130,7 @@ impl<'a> MotionReporter<'a> {
         self.service.state.send_modify(|state| {
             state.activity.left_s = left_s;
             state.activity.packets = packets;
+            state.live_at = Some(Instant::now());
             state.drive.angle_deg = Some(angle.0);
             state.drive.speed_deg_s = speed_deg_s;
         });

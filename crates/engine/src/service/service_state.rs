@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use units::Rpm;
+use units::{Degrees, Rpm};
 
 use super::events::{Event, MessageLevel};
 use super::lease::StopSignal;
@@ -31,8 +31,14 @@ pub(super) struct ServiceState {
     pub(super) lidar: LidarStatus,
     pub(super) disk: DiskStatus,
     pub(super) report: Option<AxisReport>,
-    /// Time of the report, unless something has happened since.
+    /// Time of the report.
     pub(super) reported_at: Option<Instant>,
+    /// Whether nothing has happened since the report.
+    pub(super) is_report_current: bool,
+    /// Newest statusword (6041) of the running command.
+    pub(super) statusword: Option<u16>,
+    /// Time of the newest statusword or angle.
+    pub(super) live_at: Option<Instant>,
     /// Whether the axis may move although no lease is held.
     pub(super) may_move: bool,
 }
@@ -106,12 +112,37 @@ impl DeviceService {
     pub fn known_report(&self) -> Option<AxisReport> {
         let state = self.state.borrow();
         let busy = state.activity.doing != AxisTask::Idle;
-        let fresh = |at: Instant| at.elapsed() < REPORT_LIFETIME;
-        if !busy && !state.reported_at.is_some_and(fresh) {
-            return None;
+        let age = state.reported_at.map(|at| at.elapsed());
+        let mut report = match &state.report {
+            Some(report) => report.clone(),
+            // A command that has just connected.
+            None => AxisReport {
+                device: self.name.clone(),
+                simulated: self.simulated(),
+                ..AxisReport::default()
+            },
+        };
+        report.switches_age_s = age.map(|age| age.as_secs_f64());
+        if !busy {
+            let is_fresh = age.is_some_and(|age| age < REPORT_LIFETIME);
+            report.age_s = age?.as_secs_f64();
+            return (state.is_report_current && is_fresh).then_some(report);
         }
-        let mut report = state.report.clone()?;
+        if let Some(statusword) = state.statusword {
+            report.set_statusword(statusword);
+        }
+        report.age_s = match state.live_at {
+            Some(at) => at.elapsed().as_secs_f64(),
+            None => age?.as_secs_f64(),
+        };
+        report.activity = state.activity.doing;
         report.angle_deg = state.drive.angle_deg;
+        if let Some(angle) = report.angle_deg {
+            let gearing = self.axis.gearing;
+            let rpm = state.drive.speed_deg_s / gearing.deg_s_per_rpm();
+            report.velocity_rpm = rpm.round() as i32;
+            report.position_qc = gearing.position(Degrees(angle)).map_or(0, |at| at.0);
+        }
         Some(report)
     }
 
@@ -126,6 +157,7 @@ impl DeviceService {
     pub(super) fn set_report(&self, report: Option<AxisReport>) {
         self.state.send_modify(|state| {
             state.reported_at = report.is_some().then(Instant::now);
+            state.is_report_current = true;
             state.report = report;
         });
     }
@@ -159,7 +191,7 @@ impl DeviceService {
             change(state);
             let after = health(state);
             if before != after {
-                state.reported_at = None;
+                state.is_report_current = false;
                 changed = Some(after);
             }
         });

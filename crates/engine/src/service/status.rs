@@ -1,12 +1,12 @@
 //! Status of the devices and of what they do, in the form that clients read (docs/src/daemon.md).
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::capture::jog::DriveFault;
 use crate::failure::Failure;
 
 /// What the axis is used for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum AxisTask {
     /// Nothing.
@@ -22,6 +22,20 @@ pub enum AxisTask {
     Capturing,
     /// The axis is being stopped, or a short request is under way.
     Stopping,
+}
+
+impl AxisTask {
+    /// The task in a message.
+    #[must_use]
+    pub const fn description(self) -> &'static str {
+        match self {
+            Self::Capturing => "a scan is recorded",
+            Self::Homing => "it is homing",
+            Self::Moving => "it moves",
+            Self::Connecting => "the drive is being set up",
+            Self::Stopping | Self::Idle => "it is being stopped",
+        }
+    }
 }
 
 /// The task of the axis and its progress.

@@ -13,7 +13,7 @@ use units::{Host, Span, Stamp};
 
 use super::wait::duration;
 use super::{Port, PortError};
-use crate::clock;
+use crate::{clock, processes};
 
 const WRITE_TIMEOUT: Duration = Duration::from_millis(500);
 
@@ -160,7 +160,10 @@ fn open_error(path: &Path, baud: u32, error: &serialport::Error) -> PortError {
         serialport::ErrorKind::Io(ErrorKind::NotFound) => PortError::NotFound { port },
         serialport::ErrorKind::Io(ErrorKind::PermissionDenied) => PortError::Permission { port },
         // serialport reports "no device" for EBUSY and for a lock of another program.
-        serialport::ErrorKind::NoDevice => PortError::Busy { port },
+        serialport::ErrorKind::NoDevice => PortError::Busy {
+            port,
+            by: processes::descriptions(path),
+        },
         serialport::ErrorKind::Io(kind) => PortError::Io {
             port,
             action: "open",

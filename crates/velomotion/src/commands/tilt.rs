@@ -5,7 +5,8 @@ use daemon::local::LocalService;
 use engine::capture::jog::{self, AxisReport, StopAnswer};
 use engine::config;
 use engine::devices::profile;
-use engine::failure::Failure;
+use engine::failure::{Failure, Kind};
+use engine::service::status::AxisTask;
 
 use super::CommandOutput;
 use super::device_backend::{jog_by_daemon, jog_locally};
@@ -25,7 +26,11 @@ pub fn run(arguments: &cli::TiltArguments, common: &Common) -> Result<CommandOut
     let request = verb.into();
     jog::commands(request, &config, &device)?;
     let interrupt = signals::motion_interrupt_flag()?;
-    let (answer, simulated) = match Client::find(&name, &device) {
+    // A stop is confirmed only by a program that has the drive; else it goes to the drive itself.
+    let client = Client::find(&name, &device).filter(|client| {
+        !matches!(verb, TiltVerb::Stop) || client.holds_port(&device) != Some(false)
+    });
+    let (answer, simulated) = match client {
         Some(client) => (
             jog_by_daemon(&client, request, &interrupt)?,
             "a software drive, the daemon's",
@@ -39,10 +44,21 @@ pub fn run(arguments: &cli::TiltArguments, common: &Common) -> Result<CommandOut
     };
     Ok(match answer {
         StopAnswer::Report(report) => output(&verb, &report, simulated),
-        StopAnswer::Command(stopped) => CommandOutput::report(
-            &stopped,
-            "the program that has the drive has stopped the axis".to_owned(),
-        ),
+        StopAnswer::Command(stopped) if stopped.stopped => {
+            let power = if stopped.power { "on" } else { "off" };
+            let text = format!(
+                "the program that has the drive has stopped the axis: {}, power {power}",
+                stopped.state
+            );
+            CommandOutput::report(&stopped, text)
+        }
+        StopAnswer::Command(_) => {
+            return Err(Failure::new(
+                Kind::DeviceFault,
+                "the program that has the drive did not stop the axis",
+            )
+            .help("switch the motor's supply off if the axis moves"));
+        }
     })
 }
 
@@ -66,24 +82,37 @@ fn status_table(report: &AxisReport, simulated: &str) -> String {
         Some(angle) => format!("{angle:.4} deg"),
         None => "not known: not homed since power-on (tilt home)".to_owned(),
     };
+    let power = if report.power { "on" } else { "off" };
     let mut rows = vec![
         ("drive", report.device.clone()),
         (
             "state",
             format!("{} (statusword {:04X})", report.state, report.statusword),
         ),
+        ("power", power.to_owned()),
         ("angle", angle),
         ("position", format!("{} qc", report.position_qc)),
         ("speed", format!("{} rpm of the motor", report.velocity_rpm)),
-        (
-            "limit switches",
-            format!(
-                "negative {}, positive {}",
-                yes(report.negative_limit),
-                yes(report.positive_limit)
-            ),
-        ),
     ];
+    if report.activity != AxisTask::Idle {
+        let task = report.activity.description();
+        rows.insert(
+            1,
+            (
+                "in use",
+                format!("{task} (values {:.1} s old)", report.age_s),
+            ),
+        );
+    }
+    if let Some(age) = report.switches_age_s {
+        let age = match age {
+            0.0 => String::new(),
+            age => format!(" ({age:.1} s ago)"),
+        };
+        let (negative, positive) = (yes(report.negative_limit), yes(report.positive_limit));
+        let switches = format!("negative {negative}, positive {positive}{age}");
+        rows.push(("limit switches", switches));
+    }
     rows.extend(report.faults.iter().take(1).map(|fault| {
         let name = fault.name.as_deref().unwrap_or("unknown error");
         ("last fault", format!("{} {name} (tilt faults)", fault.code))

@@ -1,0 +1,97 @@
+//! Other processes of this machine: those that hold a device file, and the one at the other end of
+//! a socket.
+
+use std::fs;
+use std::os::unix::net::UnixStream;
+use std::path::Path;
+
+use nix::sys::socket::getsockopt;
+use nix::sys::socket::sockopt::PeerCredentials;
+
+/// The process that listens at a Unix socket.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SocketOwner {
+    /// Process id; 0 if it is in a container.
+    pub pid: u32,
+    /// User id.
+    pub uid: u32,
+}
+
+impl SocketOwner {
+    /// The process at the other end of a connection, by the kernel's word.
+    #[must_use]
+    pub fn of(stream: &UnixStream) -> Option<Self> {
+        let owner = getsockopt(stream, PeerCredentials).ok()?;
+        Some(Self {
+            pid: u32::try_from(owner.pid()).unwrap_or(0),
+            uid: owner.uid(),
+        })
+    }
+}
+
+/// Whether a process has a file open; `None` if its open files are not visible to this user.
+#[must_use]
+pub fn has_open(pid: u32, file: &Path) -> Option<bool> {
+    let real = file.canonicalize().ok()?;
+    let open = fs::read_dir(format!("/proc/{pid}/fd")).ok()?;
+    let mut files = open
+        .flatten()
+        .filter_map(|fd| fs::read_link(fd.path()).ok());
+    Some(files.any(|open| open == real))
+}
+
+/// The processes that have a file open, as far as this user may see them.
+#[must_use]
+pub fn holders(file: &Path) -> Vec<u32> {
+    let processes = fs::read_dir("/proc").into_iter().flatten().flatten();
+    let pids = processes.filter_map(|entry| entry.file_name().to_str()?.parse().ok());
+    pids.filter(|pid| has_open(*pid, file) == Some(true))
+        .collect()
+}
+
+/// Name and id of a process, for messages.
+#[must_use]
+pub fn description(pid: u32) -> String {
+    let name = fs::read_to_string(format!("/proc/{pid}/comm"));
+    let name = name.as_deref().map_or("a program", str::trim);
+    format!("{name} (pid {pid})")
+}
+
+/// Names and ids of the processes that have a file open, for messages.
+#[must_use]
+pub fn descriptions(file: &Path) -> String {
+    match holders(file).as_slice() {
+        [] => "another program".to_owned(),
+        pids => pids
+            .iter()
+            .map(|pid| description(*pid))
+            .collect::<Vec<_>>()
+            .join(" and "),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::os::unix::net::UnixListener;
+
+    #[test]
+    fn this_process_holds_its_own_files_and_sockets() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("file");
+        let link = folder.path().join("link");
+        std::os::unix::fs::symlink(&path, &link).unwrap();
+        let own = std::process::id();
+        let file = fs::File::create(&path).unwrap();
+        assert_eq!(has_open(own, &link), Some(true));
+        assert_eq!(holders(&link), [own]);
+        drop(file);
+        assert_eq!(has_open(own, &link), Some(false));
+        assert!(holders(&path).is_empty());
+
+        let listener = UnixListener::bind(folder.path().join("socket")).unwrap();
+        let stream = UnixStream::connect(folder.path().join("socket")).unwrap();
+        assert_eq!(SocketOwner::of(&stream).unwrap().pid, own);
+        drop(listener);
+    }
+}
