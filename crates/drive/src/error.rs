@@ -9,7 +9,7 @@ use protocol::canopen::sdo::TransferError;
 use protocol::epos2::cia402::DeviceState;
 use protocol::epos2::objects::Address;
 use protocol::epos2::{CommError, DeviceError};
-use units::{DegPerS, DegPerS2, Degrees, Quadcounts, Rpm, Span};
+use units::{DegPerS, DegPerS2, Degrees, Rpm, Span};
 
 use crate::command::CommandKind;
 
@@ -92,6 +92,12 @@ pub enum DriveError {
         operation: Operation,
         /// Duration of the silence.
         silent: Span,
+    },
+    /// No drive has the configured node id: the gateway's or the bus's other end does not reply.
+    #[error("no answer from node {node} to the first request (object 1000:00)")]
+    NodeAbsent {
+        /// The node id.
+        node: u8,
     },
     /// The unit refused the request in the handshake (RS232: `F` instead of `O`).
     #[error("{operation} on the drive link: expected the handshake O, got F {attempts} time(s)")]
@@ -237,13 +243,13 @@ pub enum DriveError {
         max: Degrees,
     },
     /// The axis did not settle at its target.
-    #[error("expected the axis at {} qc after {:.2} s, got {} qc{}", target.0, waited.as_secs_f64(), position.0,
+    #[error("expected the axis at {:.3} deg after {:.2} s, got {:.3} deg{}", target.0, waited.as_secs_f64(), position.0,
         if *reached { " (although the drive reports target reached)" } else { "" })]
     NotArrived {
         /// Target.
-        target: Quadcounts,
+        target: Degrees,
         /// Last position.
-        position: Quadcounts,
+        position: Degrees,
         /// Time since the start of the move.
         waited: Span,
         /// Whether the drive reported target reached (bit 10).
@@ -278,11 +284,11 @@ pub enum DriveError {
         inputs: u16,
     },
     /// The axis does not stop.
-    #[error("the axis still moves {:.2} s after the stop: at {} qc{}", waited.as_secs_f64(), position.0,
+    #[error("the axis still moves {:.2} s after the stop: at {:.2} deg{}", waited.as_secs_f64(), position.0,
         if *power_off { ", though its power was switched off" } else { "" })]
     StillMoving {
-        /// Last position.
-        position: Quadcounts,
+        /// Last position; from an arbitrary zero if the axis is not homed.
+        position: Degrees,
         /// Time since the quick stop was sent.
         waited: Span,
         /// Whether the power stage was switched off, too.
@@ -408,6 +414,10 @@ impl DriveError {
             Self::LinkLost { .. } => {
                 "Check the drive's supply, the cable, the port and the node id. If the axis was \
                  moving, assume that it still is."
+            }
+            Self::NodeAbsent { .. } => {
+                "Check that [axis] node of the configuration is the drive's node id (its DIP switch, \
+                 object 2000), and its supply and cable."
             }
             Self::Handshake { .. } => {
                 "Check the baud rate, and the cable and its shield; no other program may use the port."

@@ -175,8 +175,8 @@ async fn sample_until_arrival(
         }
         if is_overdue && sample.request > limit {
             return Err(DriveError::NotArrived {
-                target,
-                position: sample.position,
+                target: ops.config.gearing.angle(target),
+                position: ops.config.gearing.angle(sample.position),
                 waited: ops.now().saturating_since(started),
                 reached,
             });

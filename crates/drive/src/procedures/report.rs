@@ -1,9 +1,9 @@
 //! Identity, error history and status of the drive. Nothing here changes anything.
 
 use protocol::canopen::sdo::TransferError;
-use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::DeviceState;
 use protocol::epos2::objects::{self, error_history};
+use protocol::epos2::{CommError, DeviceError};
 use units::Quadcounts;
 
 use crate::error::DriveError;
@@ -27,7 +27,14 @@ pub(super) async fn identify(ops: &Ops) -> Result<DriveIdentity, DriveError> {
         expected,
         got,
     };
-    let device_type = ops.read(objects::DEVICE_TYPE).await?;
+    let is_bus = ops.on_can(|_, _| ()).is_some();
+    let device_type = ops.read(objects::DEVICE_TYPE).await;
+    let device_type = device_type.map_err(|error| match error {
+        // A gateway waits for the node.
+        DriveError::Refused { error, .. } if error == CommError::TIMEOUT => absent(ops),
+        DriveError::LinkLost { .. } if is_bus => absent(ops),
+        error => error,
+    })?;
     if device_type & 0xFFFF != PROFILE_402 {
         let expected = device_type & !0xFFFF | PROFILE_402;
         return Err(wrong(objects::DEVICE_TYPE, expected, device_type));
@@ -45,6 +52,11 @@ pub(super) async fn identify(ops: &Ops) -> Result<DriveIdentity, DriveError> {
         software: ops.read(objects::SOFTWARE_VERSION).await?,
         hardware: ops.read(objects::HARDWARE_VERSION).await?,
     })
+}
+
+fn absent(ops: &Ops) -> DriveError {
+    let node = ops.config.node;
+    DriveError::NodeAbsent { node }
 }
 
 /// The device's name; empty if it cannot be read.

@@ -226,7 +226,7 @@ async fn wait_for_standstill(ops: &mut Ops) -> Result<(), DriveError> {
         // Both positions were requested after the limit: a delayed host may have missed the stop.
         if is_overdue && !window.is_steady() {
             return Err(DriveError::StillMoving {
-                position: sample.position,
+                position: ops.config.gearing.angle(sample.position),
                 waited: ops.now().saturating_since(began),
                 power_off: false,
             });

@@ -238,6 +238,10 @@ pub(crate) fn state_name(statusword: u16) -> String {
     DeviceState::from_statusword(statusword).map_or("unknown".to_owned(), |state| state.to_string())
 }
 
+/// Remedy of a fault that the public guides do not list.
+const UNKNOWN: &str =
+    "look the code up in the manual of the drive's firmware; then clear the fault";
+
 /// A fault of the drive with its meaning and remedy.
 #[must_use]
 pub fn fault(error: DeviceError) -> DriveFault {
@@ -246,7 +250,7 @@ pub fn fault(error: DeviceError) -> DriveFault {
         code: format!("{:04X}", error.0),
         name: meaning.map(|m| m.name.to_owned()),
         meaning: meaning.map(|m| m.meaning.to_owned()),
-        remedy: meaning.map(|m| m.remedy.to_owned()),
+        remedy: Some(meaning.map_or(UNKNOWN, |m| m.remedy).to_owned()),
     }
 }
 

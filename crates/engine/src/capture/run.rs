@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use drive::DriveClient;
+use drive::{CommandProgress, DriveClient, DriveEvent};
 use io::port::{Port, RecordingPort};
 use io::udp::ListenConfig;
 use protocol::record::{DriveLink, Record};
@@ -70,6 +70,8 @@ pub struct RecordingEnd {
     log: Result<CaptureCounts, Failure>,
     /// Why the capture itself stopped the axis.
     stopped: Option<Failure>,
+    /// Whether it failed before the axis had power: no log is left then.
+    pub is_empty: bool,
 }
 
 /// The recording's part of the report, independent of its cloud.
@@ -126,7 +128,9 @@ pub fn record(
     let client = DriveClient::new(plan.axis.clone(), job.link);
     let mut session = Session::new(client, port, Arc::clone(interrupt));
     let mut watch = SilenceWatch::new(recorder.packets());
+    let mut powered = false;
     let motion = moves::run(&mut session, &plan.steps, &mut |progress| {
+        powered |= matches!(progress, MoveProgress::Event(event) if is_powered(event));
         let packets = recorder.packets();
         if recorder.failed() || watch.silent(packets) {
             // A sweep that is not recorded is not worth making.
@@ -137,10 +141,22 @@ pub fn record(
     on_event(CaptureEvent::MotionEnded);
     drop(session);
     let log = recorder.finish(&mut || on_event(CaptureEvent::Saving));
+    let is_empty = motion.is_err() && !powered;
+    if is_empty {
+        // A log without a move is of no use, and would be in the way of the next capture.
+        let _ = std::fs::remove_file(&plan.log);
+    }
     Ok(RecordingEnd {
         stopped: watch.failure(),
+        is_empty,
         ..RecordingEnd::new(motion, log)
     })
+}
+
+/// Whether an event shows that the axis has power.
+fn is_powered(event: &DriveEvent) -> bool {
+    use CommandProgress::{Enabled, Homing, Moving};
+    matches!(event, DriveEvent::Progress(Enabled | Homing | Moving(_)))
 }
 
 /// Waits for the first packet, before anything moves.
@@ -221,6 +237,7 @@ impl RecordingEnd {
             motion,
             log,
             stopped: None,
+            is_empty: false,
         }
     }
 

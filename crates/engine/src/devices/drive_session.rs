@@ -48,7 +48,10 @@ impl SessionError {
     pub fn help(&self) -> Option<String> {
         match self {
             Self::Interrupted => None,
-            Self::Drive(error) => Some(error.help().to_owned()),
+            Self::Drive(error) => Some(match error {
+                DriveError::Fault { .. } => format!("{}\n{CLEARING}", error.help()),
+                error => error.help(),
+            }),
             Self::NotStopped(_) | Self::Port(_) => Some(
                 "switch the motor's supply off if the axis moves, then check cable and supply"
                     .to_owned(),
@@ -56,6 +59,9 @@ impl SessionError {
         }
     }
 }
+
+/// How a fault is cleared.
+pub const CLEARING: &str = "tilt faults --clear clears it, and so does homing the axis";
 
 /// A drive client on a port. Dropped while the axis may move, it sends a stop.
 pub struct Session<P: Port> {

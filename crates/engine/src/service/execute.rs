@@ -17,7 +17,7 @@ use crate::capture::moves::MoveProgress;
 use crate::capture::request::CapturePlan;
 use crate::capture::run::{self, CaptureEvent, CaptureJob, Outcome};
 use crate::devices::drive_port;
-use crate::devices::drive_session::{Session, SessionError};
+use crate::devices::drive_session::{CLEARING, Session, SessionError};
 use crate::devices::simulated::Simulated;
 use crate::failure::{Failure, Kind};
 
@@ -206,6 +206,7 @@ impl Worker {
         connection.failed = true;
         self.command_ended(connection, true, recorded.motion_error());
         let at_rest = recorded.at_rest();
+        let is_empty = recorded.is_empty;
         let mut outcome = recorded.outcome();
         for warning in &outcome.warnings {
             let events = service.events();
@@ -244,7 +245,11 @@ impl Worker {
                 _ => None,
             },
         };
-        (Ok(CaptureEnd { outcome, truth }), lost)
+        let result = match outcome.failure {
+            Some(failure) if is_empty => Err(failure),
+            _ => Ok(CaptureEnd { outcome, truth }),
+        };
+        (result, lost)
     }
 }
 
@@ -264,8 +269,9 @@ fn drive_in_fault(newest: Option<&DriveFault>) -> Failure {
 
 /// The remedy of a fault and how it is cleared.
 fn fault_help(remedy: Option<&str>) -> String {
-    let how = "tilt faults --clear clears it, and so does homing the axis";
-    remedy.map_or(how.to_owned(), |remedy| format!("{remedy}\n{how}"))
+    remedy.map_or(CLEARING.to_owned(), |remedy| {
+        format!("{remedy}\n{CLEARING}")
+    })
 }
 
 /// The loss of the port that an error means, if it does.

@@ -65,7 +65,15 @@ pub fn run(arguments: &cli::TiltArguments, common: &Common) -> Result<CommandOut
 /// The report as the verb shows it.
 fn output(verb: &TiltVerb, report: &AxisReport, simulated: &str) -> CommandOutput {
     let text = match verb {
-        TiltVerb::Faults { .. } => faults_table(report),
+        TiltVerb::Faults { clear: true } => {
+            let state = &report.state;
+            let kept = match report.faults.len() {
+                0 => "its error history is empty".to_owned(),
+                count => format!("its error history keeps {count} entries (tilt faults)"),
+            };
+            format!("the drive is not in fault: its state is {state}; {kept}")
+        }
+        TiltVerb::Faults { clear: false } => faults_table(report),
         _ => status_table(report, simulated),
     };
     match verb {
