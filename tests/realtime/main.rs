@@ -4,6 +4,7 @@
 
 mod command_line;
 mod daemon;
+mod doctor;
 mod network;
 mod software_drive;
 mod tilt;

@@ -5,13 +5,13 @@ use std::path::PathBuf;
 use std::process::{Child, Command, Output, Stdio};
 
 /// A software drive that runs until dropped, and a configuration that names it.
-struct Bench {
-    folder: tempfile::TempDir,
+pub struct Bench {
+    pub folder: tempfile::TempDir,
     drive: Child,
 }
 
 impl Bench {
-    fn new(interface: &str) -> Self {
+    pub fn new(interface: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let link = folder.path().join("epos");
         let mut drive = velomotion()
@@ -44,7 +44,7 @@ impl Bench {
         command
     }
 
-    fn run(&self, line: &str) -> Output {
+    pub fn run(&self, line: &str) -> Output {
         self.command(line).output().unwrap()
     }
 
@@ -62,6 +62,14 @@ impl Bench {
         let printed = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(output.status.success(), "{line}: {printed}");
         serde_json::from_slice(&output.stdout).unwrap()
+    }
+}
+
+impl Bench {
+    /// Ends the drive, whose port disappears.
+    pub fn unplug(&mut self) {
+        drop(self.drive.stdin.take());
+        assert!(self.drive.wait().unwrap().success());
     }
 }
 
@@ -213,7 +221,6 @@ fn the_software_drive_exits_and_removes_its_link_when_stdin_closes() {
     let link = bench.folder.path().join("epos");
     assert!(link.is_symlink());
     let mut bench = bench;
-    drop(bench.drive.stdin.take());
-    assert!(bench.drive.wait().unwrap().success());
+    bench.unplug();
     assert!(!link.is_symlink());
 }

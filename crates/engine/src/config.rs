@@ -103,7 +103,9 @@ fn positive(name: &str, value: f64, high: f64) -> Result<(), String> {
     }
 }
 
-fn usual_place() -> Option<PathBuf> {
+/// The configuration that is read without `--config`, if there is one.
+#[must_use]
+pub fn usual_place() -> Option<PathBuf> {
     let var = |name| std::env::var_os(name).map(PathBuf::from);
     let user = var("XDG_CONFIG_HOME").or_else(|| var("HOME").map(|home| home.join(".config")));
     [

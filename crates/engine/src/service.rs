@@ -10,7 +10,7 @@ mod drive_connection;
 pub mod events;
 mod execute;
 mod lease;
-mod lidar_stats;
+pub mod lidar_stats;
 pub mod live_preview;
 mod motion_reporter;
 mod open_devices;

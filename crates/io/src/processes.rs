@@ -32,41 +32,68 @@ impl SocketOwner {
 /// Whether a process has a file open; `None` if its open files are not visible to this user.
 #[must_use]
 pub fn has_open(pid: u32, file: &Path) -> Option<bool> {
-    let real = file.canonicalize().ok()?;
-    let open = fs::read_dir(format!("/proc/{pid}/fd")).ok()?;
-    let mut files = open
-        .flatten()
-        .filter_map(|fd| fs::read_link(fd.path()).ok());
-    Some(files.any(|open| open == real))
+    has_handle(pid, &file.canonicalize().ok()?)
 }
 
 /// The processes that have a file open, as far as this user may see them.
 #[must_use]
 pub fn holders(file: &Path) -> Vec<u32> {
-    let processes = fs::read_dir("/proc").into_iter().flatten().flatten();
-    let pids = processes.filter_map(|entry| entry.file_name().to_str()?.parse().ok());
-    pids.filter(|pid| has_open(*pid, file) == Some(true))
-        .collect()
-}
-
-/// Name and id of a process, for messages.
-#[must_use]
-pub fn description(pid: u32) -> String {
-    let name = fs::read_to_string(format!("/proc/{pid}/comm"));
-    let name = name.as_deref().map_or("a program", str::trim);
-    format!("{name} (pid {pid})")
+    let real = file.canonicalize();
+    real.map_or_else(|_| Vec::new(), |real| holders_of(&real))
 }
 
 /// Names and ids of the processes that have a file open, for messages.
 #[must_use]
 pub fn descriptions(file: &Path) -> String {
-    match holders(file).as_slice() {
+    describe(&holders(file))
+}
+
+/// Names and ids of the processes that listen on a UDP port, for messages.
+pub(crate) fn udp_descriptions(port: u16) -> String {
+    let sockets = fs::read_to_string("/proc/net/udp").unwrap_or_default();
+    let holders = sockets
+        .lines()
+        .filter_map(|line| socket_inode(line, port))
+        .flat_map(|inode| holders_of(Path::new(&format!("socket:[{inode}]"))));
+    describe(&holders.collect::<Vec<_>>())
+}
+
+/// The inode of a UDP socket in a line of `/proc/net/udp` (proc_net_udp(5)), if it is bound to the
+/// port: the local address is field 1, the inode field 9.
+fn socket_inode(line: &str, port: u16) -> Option<&str> {
+    let mut fields = line.split_whitespace();
+    let (_, local) = fields.nth(1)?.split_once(':')?;
+    if u16::from_str_radix(local, 16) != Ok(port) {
+        return None;
+    }
+    fields.nth(7)
+}
+
+/// Whether one of a process's open files is `target`, as `/proc` names it.
+fn has_handle(pid: u32, target: &Path) -> Option<bool> {
+    let open = fs::read_dir(format!("/proc/{pid}/fd")).ok()?;
+    let mut files = open
+        .flatten()
+        .filter_map(|fd| fs::read_link(fd.path()).ok());
+    Some(files.any(|open| open == target))
+}
+
+fn holders_of(target: &Path) -> Vec<u32> {
+    let processes = fs::read_dir("/proc").into_iter().flatten().flatten();
+    let pids = processes.filter_map(|entry| entry.file_name().to_str()?.parse().ok());
+    pids.filter(|pid| has_handle(*pid, target) == Some(true))
+        .collect()
+}
+
+fn describe(pids: &[u32]) -> String {
+    let name = |pid: &u32| {
+        let name = fs::read_to_string(format!("/proc/{pid}/comm"));
+        let name = name.as_deref().map_or("a program", str::trim);
+        format!("{name} (pid {pid})")
+    };
+    match pids {
         [] => "another program".to_owned(),
-        pids => pids
-            .iter()
-            .map(|pid| description(*pid))
-            .collect::<Vec<_>>()
-            .join(" and "),
+        pids => pids.iter().map(name).collect::<Vec<_>>().join(" and "),
     }
 }
 
@@ -88,6 +115,10 @@ mod tests {
         drop(file);
         assert_eq!(has_open(own, &link), Some(false));
         assert!(holders(&path).is_empty());
+
+        let udp = std::net::UdpSocket::bind("127.0.0.1:0").unwrap();
+        let named = udp_descriptions(udp.local_addr().unwrap().port());
+        assert!(named.ends_with(&format!("(pid {own})")), "{named}");
 
         let listener = UnixListener::bind(folder.path().join("socket")).unwrap();
         let stream = UnixStream::connect(folder.path().join("socket")).unwrap();

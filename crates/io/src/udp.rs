@@ -18,10 +18,12 @@ pub use socket::LidarSocket;
 #[derive(Debug, thiserror::Error)]
 pub enum UdpError {
     /// Another program uses the port.
-    #[error("UDP port {}: in use by another program", address.port())]
+    #[error("UDP port {}: in use by {by}", address.port())]
     Busy {
         /// Address to bind.
         address: SocketAddrV4,
+        /// The programs that listen there.
+        by: String,
     },
     /// No interface of this machine has that address.
     #[error("UDP address {address}: expected an address of this machine or 0.0.0.0")]

@@ -1,7 +1,7 @@
 //! Motion of the axis outside captures, and reports on the drive's state.
 
 use drive::cia402::{DeviceState, status};
-use drive::{CommandOutcome, DeviceError, DriveCommand, DriveEvent, DriveStatus};
+use drive::{CommandOutcome, DeviceError, DriveCommand, DriveEvent, DriveIdentity, DriveStatus};
 use io::port::Port;
 use serde::{Deserialize, Serialize};
 use units::{DegPerS, DegPerS2, Degrees};
@@ -18,6 +18,8 @@ use crate::service::status::AxisTask;
 pub struct AxisReport {
     /// Name of the device's profile.
     pub device: String,
+    /// The unit: name, versions and serial number.
+    pub unit: String,
     /// The drive's state (CiA 402).
     pub state: String,
     /// Statusword (6041).
@@ -198,6 +200,7 @@ impl AxisReport {
     pub fn new(device: &str, status: &DriveStatus, simulated: bool) -> Self {
         let mut report = Self {
             device: device.to_owned(),
+            unit: unit(&status.identity),
             mode: status.mode,
             angle_deg: status.angle.map(|angle| angle.0),
             position_qc: status.position.0,
@@ -221,6 +224,19 @@ impl AxisReport {
         self.referenced = is_referenced(statusword);
         self.power = has_power(statusword);
     }
+}
+
+/// Name, versions and serial number of a drive.
+#[must_use]
+pub fn unit(identity: &DriveIdentity) -> String {
+    let DriveIdentity {
+        name,
+        software,
+        hardware,
+        serial,
+        ..
+    } = identity;
+    format!("{name}, firmware {software:04X}, hardware {hardware:04X}, serial {serial:08X}")
 }
 
 /// Whether a statusword shows a homed axis.

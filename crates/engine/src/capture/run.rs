@@ -172,7 +172,7 @@ fn await_lidar(
                 .help("nothing had moved yet"));
         }
         if waited >= LIDAR_WAIT {
-            return Err(silence(&listen_config(&plan.device)));
+            return Err(silence(&listen_config(&plan.device), LIDAR_WAIT));
         }
         std::thread::sleep(LIDAR_POLL);
         waited += LIDAR_POLL;
@@ -180,9 +180,9 @@ fn await_lidar(
     Ok(())
 }
 
-/// The failure of a lidar that sends nothing.
+/// The failure of a lidar that sent nothing for so long.
 #[must_use]
-pub fn silence(config: &ListenConfig) -> Failure {
+pub fn silence(config: &ListenConfig, waited: Duration) -> Failure {
     let data = config.data_port;
     let ports = match config.position_port.filter(|&position| position != data) {
         Some(position) => format!("UDP ports {data} and {position}"),
@@ -198,7 +198,9 @@ pub fn silence(config: &ListenConfig) -> Failure {
     };
     Failure::new(
         Kind::NoDevice,
-        format!("no lidar: no packet came{source} to {to}, {ports}, in 2 s"),
+        format!("no lidar: no packet came{source} to {to}, {ports}, in {} s",
+            waited.as_secs()
+        ),
     )
     .help(format!(
         "see whether the lidar is powered and turns, its cable is in, this machine's address is the one it sends to\n\
@@ -415,7 +417,7 @@ mod tests {
 
     #[test]
     fn a_missing_lidar_is_reported_with_address_and_ports() {
-        let of = |config: &ListenConfig| silence(config).message;
+        let of = |config: &ListenConfig| silence(config, LIDAR_WAIT).message;
         assert_eq!(
             of(&ListenConfig::default()),
             "no lidar: no packet came to 0.0.0.0, UDP ports 2368 and 8308, in 2 s"

@@ -3,6 +3,7 @@
 //! Every packet is examined, so only the first block of each is. Recordings have the decoder's
 //! statistics instead.
 
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use lidar::{Options, Timekeeper};
@@ -11,12 +12,34 @@ use protocol::vlp16::{DataPacket, Model};
 use units::{Lidar, Stamp};
 
 use super::status::LidarStatus;
+use crate::config::Device;
+use crate::devices::lidar_receiver::LidarReceiver;
+use crate::devices::lidar_sockets::{LidarSockets, listen_config};
+use crate::failure::Failure;
 use crate::reconstruct::contents::return_mode_name;
 
 /// One revolution, hundredths of a degree.
 const REVOLUTION: i64 = 36_000;
 /// Longer gaps are a lidar that was off, not lost packets.
 const LONGEST_GAP_NS: i64 = 1_000_000_000;
+
+/// Listens to a device's lidar for this long, and reports what came.
+///
+/// # Errors
+/// Where its ports cannot be opened.
+pub fn listen(device: &Device, duration: Duration) -> Result<LidarStatus, Failure> {
+    let stats: Arc<Mutex<LidarStats>> = Arc::default();
+    let sockets = LidarSockets::bind(&listen_config(device))?;
+    let own = Arc::clone(&stats);
+    let receiver = LidarReceiver::start(
+        sockets,
+        Box::new(move |record| super::locked(&own).observe(record)),
+    )?;
+    std::thread::sleep(duration);
+    receiver.counts()?;
+    let (status, _) = super::locked(&stats).summary();
+    Ok(status)
+}
 
 /// Statistics of all packets so far.
 pub(super) struct LidarStats {

@@ -224,7 +224,10 @@ impl DeviceService {
             Err(failure) => (DeviceHealth::Fault, Some(failure.clone())),
             Ok(_) if silence >= LIDAR_SILENCE => {
                 let config = lidar_sockets::listen_config(&self.device);
-                (DeviceHealth::Absent, Some(run::silence(&config)))
+                (
+                    DeviceHealth::Absent,
+                    Some(run::silence(&config, LIDAR_SILENCE)),
+                )
             }
             Ok(_) if status.packets > 0 => (DeviceHealth::Connected, None),
             Ok(_) => (DeviceHealth::Absent, None),

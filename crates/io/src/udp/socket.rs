@@ -13,6 +13,7 @@ use tokio::net::UdpSocket;
 use super::UdpError;
 use super::batch::Batch;
 use crate::ancillary::{self, DropCounter};
+use crate::processes;
 
 /// A bound socket.
 #[derive(Debug)]
@@ -60,7 +61,10 @@ impl LidarSocket {
         socket
             .bind(&SocketAddr::V4(address).into())
             .map_err(|source| match source.kind() {
-                io::ErrorKind::AddrInUse => UdpError::Busy { address },
+                io::ErrorKind::AddrInUse => UdpError::Busy {
+                    address,
+                    by: processes::udp_descriptions(address.port()),
+                },
                 io::ErrorKind::AddrNotAvailable => UdpError::NoInterface {
                     address: *address.ip(),
                 },

@@ -67,9 +67,9 @@ fn output(verb: &TiltVerb, report: &AxisReport, simulated: &str) -> CommandOutpu
     let text = match verb {
         TiltVerb::Faults { clear: true } => {
             let state = &report.state;
-            let kept = match report.faults.len() {
-                0 => "its error history is empty".to_owned(),
-                count => format!("its error history keeps {count} entries (tilt faults)"),
+            let kept = match report.faults.first() {
+                None => "its error history is empty".to_owned(),
+                Some(last) => format!("its error history begins with {} (tilt faults)", last.code),
             };
             format!("the drive is not in fault: its state is {state}; {kept}")
         }
@@ -93,6 +93,7 @@ fn status_table(report: &AxisReport, simulated: &str) -> String {
     let power = if report.power { "on" } else { "off" };
     let mut rows = vec![
         ("drive", report.device.clone()),
+        ("unit", report.unit.clone()),
         (
             "state",
             format!("{} (statusword {:04X})", report.state, report.statusword),

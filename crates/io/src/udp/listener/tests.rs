@@ -138,7 +138,7 @@ fn bind_errors_name_the_reason() {
     };
     let busy = LidarListener::bind(&config).unwrap_err();
     assert!(
-        matches!(busy, UdpError::Busy { address } if address.port() == port),
+        matches!(busy, UdpError::Busy { address, .. } if address.port() == port),
         "{busy}"
     );
     let config = ListenConfig {

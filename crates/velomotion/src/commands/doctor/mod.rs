@@ -1,5 +1,7 @@
 //! `velomotion doctor`: checks the scanner setup of this machine and suggests fixes.
 
+mod devices;
+
 use std::fs;
 use std::path::Path;
 
@@ -10,8 +12,8 @@ use serde::Serialize;
 use super::CommandOutput;
 use crate::cli::Common;
 use engine::config::{self, AxisSettings, Config, DeviceKind};
-use engine::devices::profile as devices;
-use engine::failure::Failure;
+use engine::devices::profile;
+use engine::failure::{Failure, Kind};
 
 /// Result of one check.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -46,23 +48,50 @@ type Sysfs<'a> = &'a dyn Fn(&Path) -> Option<String>;
 /// Runs the command.
 ///
 /// # Errors
-/// An unreadable configuration.
+/// An unreadable configuration. A problem found is a failure with a result.
 pub fn run(common: &Common) -> Result<CommandOutput, Failure> {
     let config = config::load(common.config.as_deref())?;
+    let chosen = profile::choose(&config, common.device.as_deref())?;
     let read = |path: &Path| {
         fs::read_to_string(path)
             .ok()
             .map(|text| text.trim().to_owned())
     };
-    let mut findings = drives(&discover(), &read);
+    let mut findings = vec![configuration(common)];
+    findings.extend(drives(&discover(), &read));
     let interfaces = io::can::interfaces();
     findings.extend(can_interfaces(&interfaces));
-    findings.extend(profiles(&config, &interfaces));
-    findings.push(axis(&config.axis));
+    findings.extend(profiles(&config, &chosen.0, &interfaces));
+    let axis = axis(&config.axis);
+    let is_valid = axis.verdict == Verdict::Ok;
+    findings.push(axis);
     findings.push(receive_buffer(&read));
+    if is_valid {
+        findings.extend(devices::check(&config, chosen));
+    }
     let report = Findings { findings };
     let text = text(&report);
-    Ok(CommandOutput::result(&report, text))
+    let is_problem = |finding: &&Finding| finding.verdict == Verdict::Problem;
+    let failure = match report.findings.iter().filter(is_problem).count() {
+        0 => None,
+        1 => Some("1 problem found".to_owned()),
+        count => Some(format!("{count} problems found")),
+    };
+    Ok(CommandOutput {
+        failure: failure.map(|message| {
+            Failure::new(Kind::NoDevice, message).help("the lines marked PROBLEM say what to do")
+        }),
+        ..CommandOutput::result(&report, text)
+    })
+}
+
+/// The configuration that was read.
+fn configuration(common: &Common) -> Finding {
+    let path = common.config.clone().or_else(config::usual_place);
+    let found = path.map_or("none found: defaults".to_owned(), |path| {
+        path.display().to_string()
+    });
+    finding("configuration", Verdict::Ok, found)
 }
 
 fn finding(what: impl Into<String>, verdict: Verdict, found: impl Into<String>) -> Finding {
@@ -144,19 +173,20 @@ fn can_interfaces(interfaces: &[CanInterface]) -> Vec<Finding> {
             if interface.up {
                 finding(what, Verdict::Ok, "up")
             } else {
-                finding(what, Verdict::Problem, "down")
+                // A problem of the device that uses it alone.
+                finding(what, Verdict::Warning, "down")
                     .todo(format!("as root: {}", io::can::up_command(&interface.name)))
             }
         })
         .collect()
 }
 
-fn profiles(config: &Config, interfaces: &[CanInterface]) -> Vec<Finding> {
-    let named = config.device.default.as_deref().unwrap_or("auto");
-    let mut findings = vec![finding("device without --device", Verdict::Ok, named)];
+/// Checks the profiles; a device that is not `chosen` may be absent.
+fn profiles(config: &Config, chosen: &str, interfaces: &[CanInterface]) -> Vec<Finding> {
+    let mut findings = vec![finding("device in use", Verdict::Ok, chosen)];
     for (name, device) in &config.device.profiles {
         let what = format!("[device.{name}]");
-        findings.push(match (&device.kind, &device.port) {
+        let mut found = match (&device.kind, &device.port) {
             (DeviceKind::Sim, _) => finding(what, Verdict::Ok, "software devices"),
             (DeviceKind::Can, _) => match &device.interface {
                 Some(name) => can_profile(what, name, interfaces),
@@ -175,7 +205,11 @@ fn profiles(config: &Config, interfaces: &[CanInterface]) -> Vec<Finding> {
             (DeviceKind::Usb, None) => finding(what, Verdict::Ok, "the EPOS2 found on USB"),
             (_, None) => finding(what, Verdict::Problem, "names no port")
                 .todo("add port = \"/dev/ttyUSB0\" (or what it is)"),
-        });
+        };
+        if name != chosen && found.verdict == Verdict::Problem {
+            found.verdict = Verdict::Warning;
+        }
+        findings.push(found);
     }
     findings
 }
@@ -192,7 +226,7 @@ fn can_profile(what: String, name: &str, interfaces: &[CanInterface]) -> Finding
 }
 
 fn axis(configured: &AxisSettings) -> Finding {
-    match devices::axis(configured) {
+    match profile::axis(configured) {
         Ok(_) => finding("[axis]", Verdict::Ok, "axis configuration is valid"),
         Err(failure) => finding("[axis]", Verdict::Problem, failure.to_string()).todo(
             "correct that value in the configuration; docs/src/wiring.md describes every key",
@@ -280,7 +314,7 @@ mod tests {
             up,
         });
         let findings = can_interfaces(&interfaces);
-        assert_eq!(findings[0].verdict, Verdict::Problem);
+        assert_eq!(findings[0].verdict, Verdict::Warning);
         assert!(findings[0].todo.as_ref().unwrap().contains("can0"));
         assert_eq!(findings[1].verdict, Verdict::Ok);
     }
@@ -294,7 +328,7 @@ mod tests {
         let of = |name| {
             let text = format!("[device.bus]\nkind = 'can'\ninterface = '{name}'");
             let config: Config = toml::from_str(&text).unwrap();
-            profiles(&config, &there).remove(1)
+            profiles(&config, "bus", &there).remove(1)
         };
         assert_eq!(of("can0").verdict, Verdict::Ok);
         let missing = of("can1");

@@ -1,0 +1,67 @@
+//! `velomotion doctor` with a software drive in its own process.
+
+use std::net::UdpSocket;
+
+use serde_json::Value;
+
+use crate::tilt::Bench;
+
+/// Exit code and findings of `doctor`.
+fn doctor(bench: &Bench) -> (Option<i32>, Vec<Value>) {
+    let output = bench.run("doctor --json");
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let findings = report["findings"].as_array().unwrap().clone();
+    (output.status.code(), findings)
+}
+
+/// The finding about this, and its verdict.
+fn finding(findings: &[Value], what: &str) -> (String, String) {
+    let found = findings.iter().find(|finding| finding["what"] == what);
+    let found = found.unwrap_or_else(|| panic!("no finding about {what} in {findings:?}"));
+    let text = |key: &str| found[key].as_str().unwrap().to_owned();
+    (text("verdict"), text("found"))
+}
+
+#[test]
+fn doctor_asks_the_drive_and_listens_to_the_lidar() {
+    let mut bench = Bench::new("--usb");
+    let lidar = UdpSocket::bind("127.0.0.1:0").unwrap();
+    let port = lidar.local_addr().unwrap().port();
+    let path = bench.folder.path().join("velomotion.toml");
+    let mut config = std::fs::read_to_string(&path).unwrap();
+    config.push_str(&format!(
+        "lidar = '127.0.0.1'\ndata_port = {port}\nposition_port = {port}\n"
+    ));
+    std::fs::write(&path, config).unwrap();
+
+    // This process has the lidar's port.
+    let (code, findings) = doctor(&bench);
+    assert_eq!(code, Some(4), "{findings:?}");
+    let (verdict, found) = finding(&findings, "configuration");
+    assert_eq!((&*verdict, &*found), ("ok", "velomotion.toml"));
+    let (verdict, found) = finding(&findings, "drive of soft");
+    assert_eq!(verdict, "warning", "a new drive is in fault: {found}");
+    assert!(found.starts_with("EPOS2, firmware"), "{found}");
+    let (verdict, found) = finding(&findings, "lidar of soft");
+    let own = format!("(pid {})", std::process::id());
+    assert!(verdict == "problem" && found.contains(&own), "{found}");
+
+    // The port is free, and nothing sends.
+    drop(lidar);
+    let (code, findings) = doctor(&bench);
+    assert_eq!(code, Some(4), "{findings:?}");
+    let (verdict, found) = finding(&findings, "lidar of soft");
+    assert!(
+        verdict == "problem" && found.contains("no packet"),
+        "{found}"
+    );
+
+    // The drive is gone.
+    bench.unplug();
+    let (_, findings) = doctor(&bench);
+    let (verdict, found) = finding(&findings, "drive of soft");
+    assert!(
+        verdict == "problem" && found.contains("no such device"),
+        "{found}"
+    );
+}
