@@ -65,3 +65,38 @@ fn doctor_asks_the_drive_and_listens_to_the_lidar() {
         "{found}"
     );
 }
+
+/// Every step of the bring-up against the simulated drive, in which nothing is wrong.
+#[test]
+fn the_bring_up_finds_nothing_wrong_with_a_healthy_drive() {
+    for interface in ["--slcan"] {
+        let bench = Bench::new(interface);
+        let report = bench.json("doctor --bring-up --yes --report first.md");
+        let steps = report["steps"].as_array().unwrap();
+        assert_eq!(steps.len(), 11, "{interface}");
+        for step in steps {
+            let measurements = step["measurements"].as_array().unwrap();
+            assert!(!measurements.is_empty(), "{interface}: {step}");
+        }
+        let value = |name: &str| {
+            let all = steps
+                .iter()
+                .flat_map(|step| step["measurements"].as_array().unwrap());
+            let found = all.clone().find(|measurement| measurement["name"] == name);
+            found.unwrap_or_else(|| panic!("no {name}"))["value"]
+                .as_str()
+                .unwrap()
+                .to_owned()
+        };
+        assert!(value("unit").starts_with("EPOS2"));
+        assert!(value("onto the other switch").starts_with("method 17"));
+        assert!(value("in a move").starts_with("at rest after 0."));
+        let text = std::fs::read_to_string(bench.folder.path().join("first.md")).unwrap();
+        assert_eq!(text.matches("\n## ").count(), 11);
+        // A second report goes behind the first.
+        let refused = bench.run("doctor --bring-up --report first.md");
+        assert_eq!(refused.status.code(), Some(2), "nobody can answer");
+        let again = std::fs::read_to_string(bench.folder.path().join("first.md")).unwrap();
+        assert_eq!(again, text);
+    }
+}

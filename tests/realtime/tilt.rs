@@ -48,7 +48,7 @@ impl Bench {
         self.command(line).output().unwrap()
     }
 
-    fn json(&self, line: &str) -> serde_json::Value {
+    pub fn json(&self, line: &str) -> serde_json::Value {
         let mut output = self.run(&format!("{line} --json"));
         // The drive's process goes silent while a busy machine does not schedule it, and the client
         // stops.

@@ -3,12 +3,16 @@
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
+/// A time in RFC 3339, UTC.
+#[must_use]
+pub fn time_text(time: SystemTime) -> String {
+    humantime::format_rfc3339_seconds(time).to_string()
+}
+
 /// Default cloud of a capture: date, and `simulated` for simulated devices.
 #[must_use]
 pub fn cloud(start: SystemTime, simulated: bool) -> PathBuf {
-    let time = humantime::format_rfc3339_seconds(start)
-        .to_string()
-        .replace(':', "-");
+    let time = time_text(start).replace(':', "-");
     let what = if simulated { "-simulated" } else { "" };
     PathBuf::from(format!("velomotion{what}-{time}.ply"))
 }

@@ -5,6 +5,7 @@
 //! [`DeviceService::stop`] stops the motion of any holder. Status is a `watch`, events are a
 //! `broadcast`: neither makes the device thread wait.
 
+pub mod axis_report;
 mod device_thread;
 mod drive_connection;
 pub mod events;
@@ -31,13 +32,14 @@ pub use device_thread::DeviceThread;
 pub use lease::{AxisLease, LeaseError};
 pub use options::{Environment, Lifetime, ServiceOptions};
 
-use crate::capture::jog::{self, AxisReport, JogRequest, StopAnswer, StoppedCommand};
+use crate::capture::jog::{self, JogRequest};
 use crate::capture::request::CapturePlan;
 use crate::capture::run::Outcome;
 use crate::config::{Config, Device};
 use crate::devices::lidar_receiver::{LidarReceiver, PacketTap};
 use crate::devices::profile;
 use crate::failure::{Failure, Kind};
+use axis_report::{AxisReport, StopAnswer, StoppedCommand};
 use device_thread::Order;
 use events::Events;
 use lidar_stats::LidarStats;
@@ -322,8 +324,8 @@ impl DeviceService {
                     stopped: true,
                     state: state
                         .statusword
-                        .map_or("unknown".to_owned(), jog::state_name),
-                    power: state.statusword.is_some_and(jog::has_power),
+                        .map_or("unknown".to_owned(), axis_report::state_name),
+                    power: state.statusword.is_some_and(axis_report::has_power),
                 })),
                 true => Err(LeaseError::Failure(
                     Failure::new(

@@ -73,9 +73,23 @@ pub enum Command {
     /// Run the scanner as a service for browsers and other programs
     Daemon(DaemonArguments),
     /// Check this machine's scanner setup and suggest fixes
-    Doctor,
+    Doctor(Doctor),
     /// Run the simulated EPOS2 alone, to develop a client against it
     FirmwareSim(FirmwareSim),
+}
+
+/// `doctor`.
+#[derive(Clone, Debug, Args)]
+pub struct Doctor {
+    /// Lead through the first hour with a real drive: every step says what it does, and measures
+    #[arg(long)]
+    pub bring_up: bool,
+    /// Run every step of the bring-up without asking
+    #[arg(long, requires = "bring_up")]
+    pub yes: bool,
+    /// Report that the bring-up appends to [default: bring-up.md]
+    #[arg(long, value_name = "FILE", requires = "bring_up")]
+    pub report: Option<PathBuf>,
 }
 
 /// `capture`.

@@ -26,7 +26,7 @@ pub fn run(cli: &Cli) -> Result<CommandOutput, Failure> {
         Command::Tradeoff(arguments) => commands::tradeoff::run(arguments, &cli.common),
         Command::Tilt(arguments) => commands::tilt::run(arguments, &cli.common),
         Command::Daemon(arguments) => commands::daemon::run(arguments, &cli.common),
-        Command::Doctor => commands::doctor::run(&cli.common),
+        Command::Doctor(arguments) => commands::doctor::run(arguments, &cli.common),
         Command::FirmwareSim(arguments) => commands::firmware_sim::run(arguments, &cli.common),
     }
 }

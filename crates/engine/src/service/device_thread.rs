@@ -14,12 +14,13 @@ use drive::DriveCommand;
 use tokio::sync::oneshot;
 use units::Span;
 
+use super::axis_report::AxisReport;
 use super::drive_connection::{AxisKnowledge, DriveConnection};
 use super::execute::{lost_port, panic_failure};
 use super::lease::AxisLease;
 use super::status::AxisTask;
 use super::{CaptureResult, DeviceService, Lifetime};
-use crate::capture::jog::{self, AxisReport};
+use crate::capture::jog;
 use crate::capture::request::CapturePlan;
 use crate::devices::drive_port;
 use crate::devices::drive_session::SessionError;

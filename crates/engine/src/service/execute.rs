@@ -12,7 +12,7 @@ use super::lease::{AxisLease, StopSignal};
 use super::motion_reporter::MotionReporter;
 use super::status::DeviceHealth;
 use super::{CaptureEnd, CaptureResult, Lifetime, suspension};
-use crate::capture::jog::{self, AxisReport, DriveFault, Homing};
+use crate::capture::jog::{self, Homing};
 use crate::capture::moves::MoveProgress;
 use crate::capture::request::CapturePlan;
 use crate::capture::run::{self, CaptureEvent, CaptureJob, Outcome};
@@ -20,6 +20,7 @@ use crate::devices::drive_port;
 use crate::devices::drive_session::{CLEARING, Session, SessionError};
 use crate::devices::simulated::Simulated;
 use crate::failure::{Failure, Kind};
+use crate::service::axis_report::{AxisReport, DriveFault};
 
 impl Worker {
     /// Reads the drive's state.

@@ -6,8 +6,8 @@ use drive::{CommandProgress, DriveEvent, MovePlan};
 use units::{Degrees, Host, Stamp};
 
 use super::DeviceService;
+use super::axis_report::{is_referenced, state_name};
 use super::events::{Event, MessageLevel};
-use crate::capture::jog::{self, is_referenced};
 
 /// Between two reports.
 const INTERVAL: Duration = Duration::from_millis(50);
@@ -95,7 +95,7 @@ impl<'a> MotionReporter<'a> {
             is_new = state.statusword.replace(word) != Some(word);
             state.live_at = Some(Instant::now());
             if is_new {
-                state.drive.cia402 = Some(jog::state_name(word));
+                state.drive.cia402 = Some(state_name(word));
                 state.drive.referenced = is_referenced(word);
             }
         });

@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 use units::{Degrees, Rpm};
 
+use super::axis_report::AxisReport;
 use super::events::{Event, MessageLevel};
 use super::lease::StopSignal;
 use super::status::{
@@ -11,7 +12,6 @@ use super::status::{
     LidarStatus, ServiceStatus,
 };
 use super::{DeviceService, locked, now_s};
-use crate::capture::jog::AxisReport;
 use crate::capture::run;
 use crate::devices::lidar_sockets;
 use crate::failure::Failure;

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::capture::jog::DriveFault;
+use super::axis_report::DriveFault;
 use crate::failure::Failure;
 
 /// What the axis is used for.

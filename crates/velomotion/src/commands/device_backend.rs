@@ -9,13 +9,14 @@ use std::time::{Duration, Instant};
 
 use daemon::client::Client;
 use daemon::local::LocalService;
-use engine::capture::jog::{JogRequest, StopAnswer};
+use engine::capture::jog::JogRequest;
 use engine::capture::request::CapturePlan;
 use engine::capture::run::Outcome;
 use engine::capture_request::CaptureRequest;
 use engine::failure::{Failure, Kind};
 use engine::output::{self, file_failure, overwrite};
 use engine::reconstruct::report;
+use engine::service::axis_report::StopAnswer;
 use engine::service::scan_record::{ScanDetails, ScanState, ScanView};
 use engine::service::status::AxisTask;
 use engine::service::{CaptureEnd, CaptureResult, LeaseError};

@@ -2,10 +2,11 @@
 
 use daemon::client::Client;
 use daemon::local::LocalService;
-use engine::capture::jog::{self, AxisReport, StopAnswer};
+use engine::capture::jog;
 use engine::config;
 use engine::devices::profile;
 use engine::failure::{Failure, Kind};
+use engine::service::axis_report::{AxisReport, StopAnswer};
 use engine::service::status::AxisTask;
 
 use super::CommandOutput;

@@ -6,12 +6,13 @@ use std::time::Duration;
 
 use daemon::client::Client;
 use daemon::local::LocalService;
-use engine::capture::jog::{AxisReport, JogRequest, StopAnswer};
+use engine::capture::jog::JogRequest;
 use engine::capture::run;
 use engine::config::{Config, Device};
 use engine::devices::lidar_sockets::listen_config;
 use engine::devices::profile;
 use engine::failure::Failure;
+use engine::service::axis_report::{AxisReport, StopAnswer};
 use engine::service::lidar_stats;
 use engine::service::status::LidarStatus;
 

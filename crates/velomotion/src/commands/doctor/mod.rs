@@ -1,5 +1,6 @@
 //! `velomotion doctor`: checks the scanner setup of this machine and suggests fixes.
 
+mod bring_up;
 mod devices;
 
 use std::fs;
@@ -10,7 +11,7 @@ use io::discover::{ConnectedDevices, Epos2Found, discover};
 use serde::Serialize;
 
 use super::CommandOutput;
-use crate::cli::Common;
+use crate::cli::{Common, Doctor};
 use engine::config::{self, AxisSettings, Config, DeviceKind};
 use engine::devices::profile;
 use engine::failure::{Failure, Kind};
@@ -49,9 +50,12 @@ type Sysfs<'a> = &'a dyn Fn(&Path) -> Option<String>;
 ///
 /// # Errors
 /// An unreadable configuration. A problem found is a failure with a result.
-pub fn run(common: &Common) -> Result<CommandOutput, Failure> {
+pub fn run(arguments: &Doctor, common: &Common) -> Result<CommandOutput, Failure> {
     let config = config::load(common.config.as_deref())?;
     let chosen = profile::choose(&config, common.device.as_deref())?;
+    if arguments.bring_up {
+        return bring_up::run(arguments, common, &config, chosen);
+    }
     let read = |path: &Path| {
         fs::read_to_string(path)
             .ok()

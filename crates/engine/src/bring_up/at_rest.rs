@@ -1,0 +1,296 @@
+//! Steps without power: who the drive is, how it is set, how it answers.
+
+use std::time::{Duration, Instant};
+
+use drive::{CommandOutcome, DriveCommand, SampleTrigger};
+use protocol::epos2::objects::{self, input};
+use units::Stamp;
+
+use super::{BringUp, BringUpResult, BringUpStep, Judgement, Operator};
+use crate::devices::drive_session::SessionError;
+use crate::service::axis_report;
+
+/// Duration of sampling at rest, ns.
+pub(super) const REST_NS: i64 = 2_000_000_000;
+/// Attempts to see a pressed switch; each takes a few milliseconds.
+const SWITCH_READS: usize = 2_000;
+/// The longest gap between samples that the fit of the angle bridges within a count: the default
+/// profile accelerates for 160 ms.
+const LONGEST_GAP_MS: f64 = 50.0;
+
+pub(super) const IDENTITY: BringUpStep = BringUpStep {
+    title: "identity",
+    plan: "asks the drive for its name, versions, state and error history; changes nothing",
+    moves: false,
+    run: identity,
+};
+
+pub(super) const OBJECTS: BringUpStep = BringUpStep {
+    title: "configuration objects",
+    plan: "reads every object that the program uses; changes nothing",
+    moves: false,
+    run: read_objects,
+};
+
+pub(super) const CONNECTION: BringUpStep = BringUpStep {
+    title: "configuration",
+    plan: "clears a fault, writes the settings of [axis], reads them back, and compares the motor's and the encoder's; the power stays off",
+    moves: false,
+    run: connect,
+};
+
+pub(super) const LINK: BringUpStep = BringUpStep {
+    title: "link and encoder at rest",
+    plan: "samples the position for 2 s with the power off",
+    moves: false,
+    run: link,
+};
+
+pub(super) const SWITCHES: BringUpStep = BringUpStep {
+    title: "limit switches",
+    plan: "watches the inputs while you press each limit switch by hand; the power stays off",
+    moves: false,
+    run: switches,
+};
+
+fn identity(bring_up: &mut BringUp<'_>, _: &mut dyn Operator) -> Result<(), SessionError> {
+    let recording = bring_up.run(&[DriveCommand::Status])?;
+    let Some(CommandOutcome::Status(status)) = recording.outcome else {
+        return Ok(());
+    };
+    let identity = status.identity;
+    bring_up.note("unit", axis_report::unit(&identity));
+    let numbers = format!("{:08X}, {:08X}", identity.product, identity.revision);
+    bring_up.note("product code (1018:2) and revision (1018:3)", numbers);
+    let state = status
+        .state
+        .map_or("unknown".to_owned(), |state| state.to_string());
+    bring_up.note("state", format!("{state} ({:04X})", status.statusword));
+    bring_up.note(
+        "error history",
+        match status.history.as_slice() {
+            [] => "empty".to_owned(),
+            errors => errors
+                .iter()
+                .map(ToString::to_string)
+                .collect::<Vec<_>>()
+                .join("; "),
+        },
+    );
+    Ok(())
+}
+
+fn read_objects(bring_up: &mut BringUp<'_>, _: &mut dyn Operator) -> Result<(), SessionError> {
+    for object in objects::ALL {
+        let value = match bring_up.read(object.address)? {
+            None => "not readable".to_owned(),
+            Some(bytes) => {
+                let number = bytes
+                    .iter()
+                    .rev()
+                    .fold(0u64, |sum, byte| sum << 8 | u64::from(*byte));
+                format!("{number} (0x{number:X})")
+            }
+        };
+        bring_up.note(&format!("{} {}", object.address, object.name), value);
+    }
+    Ok(())
+}
+
+fn connect(bring_up: &mut BringUp<'_>, _: &mut dyn Operator) -> Result<(), SessionError> {
+    let recording = bring_up.run(&[DriveCommand::Connect])?;
+    let Some(CommandOutcome::Connected(report)) = recording.outcome else {
+        return Ok(());
+    };
+    bring_up.judge("settings", "written, read back, equal", true, "");
+    bring_up.note(
+        "source of the angle",
+        format!("{:?}", report.angle).to_lowercase(),
+    );
+    bring_up.note(
+        "the drive itself notices a dead host",
+        match report.monitors_host {
+            true => "yes (heartbeat, 1016)",
+            false => "no: a guardian process stops the axis",
+        },
+    );
+    Ok(())
+}
+
+fn link(bring_up: &mut BringUp<'_>, _: &mut dyn Operator) -> Result<(), SessionError> {
+    let hold = DriveCommand::Hold {
+        until: Stamp::from_nanos(REST_NS),
+    };
+    let recording = bring_up.run(&[DriveCommand::Connect, hold])?;
+    let samples = &recording.samples;
+    let ms = |span: units::Span| span.as_secs_f64() * 1e3;
+    let mut gaps: Vec<f64> = samples
+        .windows(2)
+        .map(|pair| ms(pair[1].answer.saturating_since(pair[0].answer)))
+        .collect();
+    let polled = samples
+        .iter()
+        .filter(|sample| sample.trigger == SampleTrigger::Request);
+    let mut delays: Vec<f64> = polled
+        .map(|sample| ms(sample.answer.saturating_since(sample.request)))
+        .collect();
+    let rate = samples.len() as f64 / (REST_NS as f64 * 1e-9);
+    let what = match delays.is_empty() {
+        true => "positions by SYNC",
+        false => "positions by polls",
+    };
+    bring_up.note(what, format!("{rate:.0} per second"));
+    if !delays.is_empty() {
+        bring_up.note("time of a poll", spread(&mut delays));
+    }
+    let worst = gaps.iter().copied().fold(0.0, f64::max);
+    bring_up.judge(
+        "time between positions",
+        spread(&mut gaps),
+        worst <= LONGEST_GAP_MS,
+        "see links.md: latency timer of the adapter, cable, load of this machine",
+    );
+    let positions = || samples.iter().map(|sample| sample.position.0);
+    let range = positions().max().unwrap_or(0) - positions().min().unwrap_or(0);
+    let degrees = f64::from(range) * bring_up.axis.gearing.degrees_per_qc();
+    let limit = bring_up.axis.standstill_spread.0;
+    bring_up.judge(
+        "dither of the encoder at rest",
+        format!("{range} qc, {degrees:.4} deg (limit {limit} deg)"),
+        degrees <= limit,
+        "check the encoder's cable and shield, or raise [axis.guard] standstill_deg",
+    );
+    Ok(())
+}
+
+/// Median, 99th percentile and worst of some times, ms.
+fn spread(values: &mut [f64]) -> String {
+    values.sort_by(f64::total_cmp);
+    let at = |share: f64| {
+        let index = (values.len().saturating_sub(1) as f64 * share).round() as usize;
+        values.get(index).copied().unwrap_or(f64::NAN)
+    };
+    format!(
+        "median {:.2}, 99 % {:.2}, worst {:.2} ms",
+        at(0.5),
+        at(0.99),
+        at(1.0)
+    )
+}
+
+fn switches(bring_up: &mut BringUp<'_>, operator: &mut dyn Operator) -> Result<(), SessionError> {
+    let switches = bring_up.axis.limit_switches;
+    let both = [
+        (
+            "negative limit switch",
+            switches.negative,
+            input::NEGATIVE_LIMIT,
+        ),
+        (
+            "positive limit switch",
+            switches.positive,
+            input::POSITIVE_LIMIT,
+        ),
+    ];
+    for (name, wired, bit) in both {
+        let Some(number) = wired else {
+            bring_up.note(name, "none configured");
+            continue;
+        };
+        let advice = format!(
+            "check the wiring of input {number}, and [axis.limit_switches] (input, normally_closed)"
+        );
+        let before = inputs(bring_up)?;
+        bring_up.judge(
+            &format!("{name}, free"),
+            format!("2071:1 is {before:04X}"),
+            before & bit == 0,
+            &advice,
+        );
+        let request = format!("press the {name} by hand and keep it pressed");
+        if !operator.has_done(&request) {
+            bring_up.note(&format!("{name}, pressed"), "not tried");
+            continue;
+        }
+        let mut pressed = inputs(bring_up)?;
+        for _ in 0..SWITCH_READS {
+            if pressed & bit != 0 {
+                break;
+            }
+            pressed = inputs(bring_up)?;
+        }
+        bring_up.judge(
+            &format!("{name}, pressed"),
+            format!("2071:1 is {pressed:04X}"),
+            pressed & bit != 0 && pressed & !bit == before & !bit,
+            &advice,
+        );
+    }
+    Ok(())
+}
+
+/// Digital input functionalities (2071:1).
+pub(super) fn inputs(bring_up: &mut BringUp<'_>) -> Result<u16, SessionError> {
+    let bytes = bring_up
+        .read(objects::INPUT_STATE.address)?
+        .unwrap_or_default();
+    Ok(bytes
+        .iter()
+        .take(2)
+        .rev()
+        .fold(0, |sum, byte| sum << 8 | u16::from(*byte)))
+}
+
+/// Time in which a killed process's axis must be at rest without power, with the time to open the
+/// port again.
+const REST_LIMIT: Duration = Duration::from_secs(2);
+
+impl BringUp<'_> {
+    /// Looks whether the axis is at rest, and without power where nothing but a brake holds it,
+    /// after its process was killed.
+    pub fn rest_after(&mut self, killed: Instant) -> BringUpResult {
+        let (value, is_good) = match self.wait_for_rest(killed) {
+            Ok((state, is_at_rest)) => {
+                let seconds = killed.elapsed().as_secs_f64();
+                let motion = if is_at_rest { "at rest" } else { "MOVES" };
+                (
+                    format!("{motion}, {state}, {seconds:.2} s after the kill"),
+                    is_at_rest,
+                )
+            }
+            Err(error) => (error.to_string(), false),
+        };
+        let advice = "cut the supply: the axis of a killed program is not at rest";
+        BringUpResult {
+            name: "axis".to_owned(),
+            value,
+            judgement: if is_good {
+                Judgement::Good
+            } else {
+                Judgement::Problem
+            },
+            advice: (!is_good).then(|| advice.to_owned()),
+        }
+    }
+
+    fn wait_for_rest(&mut self, killed: Instant) -> Result<(String, bool), SessionError> {
+        let mut before = None;
+        loop {
+            let recording = self.run(&[DriveCommand::Status])?;
+            let Some(CommandOutcome::Status(status)) = recording.outcome else {
+                return Ok(("state unknown".to_owned(), false));
+            };
+            let at = self.axis.gearing.angle(status.position).0;
+            let is_still = before
+                .replace(at)
+                .is_some_and(|before: f64| (before - at).abs() <= self.axis.standstill_spread.0);
+            let power = axis_report::has_power(status.statusword);
+            let is_at_rest = is_still && !power;
+            if is_at_rest || killed.elapsed() > REST_LIMIT {
+                let power = if power { "power on" } else { "power off" };
+                return Ok((power.to_owned(), is_still));
+            }
+            std::thread::sleep(Duration::from_millis(50));
+        }
+    }
+}

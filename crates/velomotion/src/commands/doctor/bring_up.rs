@@ -1,0 +1,345 @@
+//! `velomotion doctor --bring-up`: leads a person through the first hour with a real drive, and
+//! appends what it finds to a report.
+
+use std::fs::OpenOptions;
+use std::io::{BufRead, BufReader, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant, SystemTime};
+
+use engine::bring_up::{BringUp, BringUpResult, BringUpStepReport, Judgement, Operator, STEPS};
+use engine::config::{Config, Device};
+use engine::default_paths;
+use engine::devices::drive_port::{self, Looks, Opened};
+use engine::devices::profile;
+use engine::failure::{Failure, Kind};
+use io::discover::discover;
+use serde::Serialize;
+use units::DegPerS2;
+
+use super::super::CommandOutput;
+use crate::cli::{Common, Doctor};
+use crate::signals;
+use crate::terminal::to_stderr;
+
+/// Report if none is named.
+const REPORT: &str = "bring-up.md";
+/// Limit on the start of a move, homing included, and on the wait for the port after a kill.
+const START_LIMIT: Duration = Duration::from_secs(90);
+/// Time that the axis moves before its process is killed.
+const MOVING: Duration = Duration::from_millis(500);
+
+/// Result of the command.
+#[derive(Serialize)]
+struct BringUpReport {
+    report: PathBuf,
+    steps: Vec<BringUpStepReport>,
+    problems: usize,
+}
+
+/// The choice about a step.
+enum Choice {
+    Run,
+    Skip,
+    End,
+}
+
+/// Asks at the terminal; with `--yes` nobody is there.
+struct Person {
+    unattended: bool,
+}
+
+impl Person {
+    fn answer(&self) -> String {
+        let mut line = String::new();
+        // An end of the input ends the bring-up.
+        if self.unattended || std::io::stdin().lock().read_line(&mut line).unwrap_or(0) == 0 {
+            return "q".to_owned();
+        }
+        line.trim().to_lowercase()
+    }
+
+    fn choose(&self) -> Choice {
+        if self.unattended {
+            return Choice::Run;
+        }
+        to_stderr("  Enter: do it, s: skip, q: end");
+        match self.answer().as_str() {
+            "" => Choice::Run,
+            "s" => Choice::Skip,
+            _ => Choice::End,
+        }
+    }
+}
+
+impl Operator for Person {
+    fn has_done(&mut self, request: &str) -> bool {
+        if self.unattended {
+            return false;
+        }
+        to_stderr(&format!("  {request}\n  y: yes, n: no"));
+        self.answer() == "y"
+    }
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// The port cannot be opened, the report cannot be written, nobody answers, or a step found a
+/// problem.
+pub(super) fn run(
+    arguments: &Doctor,
+    common: &Common,
+    config: &Config,
+    (name, device): (String, Device),
+) -> Result<CommandOutput, Failure> {
+    if profile::simulated(&device) {
+        return Err(Failure::new(
+            Kind::Usage,
+            "the bring-up needs a drive of its own, not the software devices of --device sim",
+        )
+        .help("name the drive with --device; velomotion firmware-sim is one to practise with"));
+    }
+    if !arguments.yes && !std::io::stdin().is_terminal() {
+        return Err(
+            Failure::new(Kind::Usage, "nobody can answer: stdin is no terminal")
+                .help("run it in a terminal, or with --yes, which runs every step unattended"),
+        );
+    }
+    let axis = profile::axis(&config.axis)?;
+    let interrupt = signals::motion_interrupt_flag()?;
+    let port = drive_port::place(&name, &device, Looks::Once, &discover)?;
+    let path = arguments.report.clone().unwrap_or_else(|| REPORT.into());
+    let mut report = ReportFile::open(&path, &name, &port)?;
+    let mut person = Person {
+        unattended: arguments.yes,
+    };
+    to_stderr(
+        "The motor is uncoupled from the head, and you have the supply switch in hand.\n\
+         Every step says what it does before it does it. Ctrl-C stops the axis.",
+    );
+    let mut steps = Vec::new();
+    let mut opened = drive_port::open(&device, &port)?;
+    let acceleration = DegPerS2(device.accel_deg_s2);
+    let mut bring_up = BringUp::new(axis, acceleration, &mut opened, Arc::clone(&interrupt));
+    let mut ended = false;
+    for (number, step) in STEPS.iter().enumerate() {
+        to_stderr(&format!("\n{}. {}: {}", number + 1, step.title, step.plan));
+        match person.choose() {
+            Choice::Run => {}
+            Choice::Skip => continue,
+            Choice::End => {
+                ended = true;
+                break;
+            }
+        }
+        let done = step.run(&mut bring_up, &mut person);
+        show(&done);
+        report.append(&done)?;
+        let may_move = done.may_move;
+        steps.push(done);
+        if may_move {
+            return Err(Failure::new(Kind::DeviceFault, "the axis may still move")
+                .help("cut the motor's supply now; then see the report"));
+        }
+        if interrupt.load(Ordering::Relaxed) {
+            return Err(
+                Failure::new(Kind::Interrupted, "stopped by the user").help("the axis is at rest")
+            );
+        }
+    }
+    drop(bring_up);
+    if !ended {
+        to_stderr(&format!(
+            "\n{}. a killed program: MOVES: begins a slow move in another process, kills that with SIGKILL, and watches the axis",
+            STEPS.len() + 1
+        ));
+        if let Choice::Run = person.choose() {
+            drop(opened);
+            let done = kill(common, &name, config, &device, &port, &interrupt)?;
+            show(&done);
+            report.append(&done)?;
+            steps.push(done);
+        }
+    }
+    let problems = steps
+        .iter()
+        .flat_map(|step| &step.measurements)
+        .filter(|measurement| measurement.judgement == Judgement::Problem)
+        .count();
+    let failure = (problems > 0).then(|| {
+        Failure::new(Kind::DeviceFault, format!("{problems} problems found"))
+            .help("correct them before the head is coupled; the report has the advice")
+    });
+    let text = format!("{} steps, report {}", steps.len(), path.display());
+    let output = BringUpReport {
+        report: path,
+        steps,
+        problems,
+    };
+    Ok(CommandOutput {
+        failure,
+        ..CommandOutput::report(&output, text)
+    })
+}
+
+fn line(measurement: &BringUpResult) -> String {
+    let mark = match measurement.judgement {
+        Judgement::Good => "good   ",
+        Judgement::Problem => "PROBLEM",
+        Judgement::Noted => "       ",
+    };
+    format!("{mark}  {}: {}", measurement.name, measurement.value)
+}
+
+fn show(step: &BringUpStepReport) {
+    // The report has all objects.
+    let (shown, left) = step.measurements.split_at(step.measurements.len().min(12));
+    for measurement in shown {
+        to_stderr(&line(measurement));
+        if let Some(advice) = &measurement.advice {
+            to_stderr(&format!("         {advice}"));
+        }
+    }
+    if !left.is_empty() {
+        to_stderr(&format!("         and {} more in the report", left.len()));
+    }
+}
+
+/// The report, to which every step is appended at once.
+struct ReportFile {
+    file: std::fs::File,
+    path: PathBuf,
+}
+
+impl ReportFile {
+    fn open(path: &Path, name: &str, port: &Path) -> Result<Self, Failure> {
+        let file = OpenOptions::new().append(true).create(true).open(path);
+        let file = file.map_err(|error| failed(path, &error))?;
+        let mut report = Self {
+            file,
+            path: path.to_owned(),
+        };
+        let time = default_paths::time_text(SystemTime::now());
+        report.write(&format!(
+            "# Bring-up of {name} at {}, {time}, velomotion {}\n",
+            port.display(),
+            env!("CARGO_PKG_VERSION")
+        ))?;
+        Ok(report)
+    }
+
+    fn append(&mut self, step: &BringUpStepReport) -> Result<(), Failure> {
+        let mut text = format!("\n## {}\n\n", step.step);
+        for measurement in &step.measurements {
+            text.push_str(&format!("- {}\n", line(measurement).trim_start()));
+            if let Some(advice) = &measurement.advice {
+                text.push_str(&format!("  - {advice}\n"));
+            }
+        }
+        self.write(&text)
+    }
+
+    fn write(&mut self, text: &str) -> Result<(), Failure> {
+        let written = self.file.write_all(text.as_bytes());
+        written
+            .and_then(|()| self.file.flush())
+            .map_err(|error| failed(&self.path, &error))
+    }
+}
+
+fn failed(path: &Path, error: &std::io::Error) -> Failure {
+    Failure::new(
+        Kind::BadInput,
+        format!("the report {} cannot be written: {error}", path.display()),
+    )
+    .help("name another file with --report; the axis is at rest")
+}
+
+/// Kills a process that moves the axis, and watches what becomes of it.
+fn kill(
+    common: &Common,
+    name: &str,
+    config: &Config,
+    device: &Device,
+    port: &Path,
+    interrupt: &Arc<AtomicBool>,
+) -> Result<BringUpStepReport, Failure> {
+    let own = |kind: Kind, error: std::io::Error| {
+        Failure::new(
+            kind,
+            format!("the moving process cannot be watched: {error}"),
+        )
+        .help("run the step again")
+    };
+    let middle = (config.axis.min_deg + config.axis.max_deg) / 2.0;
+    // Ten seconds from home.
+    let speed = (config.axis.homing.to_deg - middle).abs().max(1.0) / 10.0;
+    let mut command = Command::new(std::env::current_exe().map_err(|e| own(Kind::BadInput, e))?);
+    command.args(["tilt", "goto", &format!("{middle}"), "-vv"]);
+    command.args(["--speed", &format!("{speed}"), "--device", name]);
+    if let Some(file) = &common.config {
+        command.arg("--config").arg(file);
+    }
+    command
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped());
+    let mut child = command.spawn().map_err(|e| own(Kind::NoDevice, e))?;
+    let moved = wait_for_move(&mut child);
+    let killed = Instant::now();
+    let _ = child.kill();
+    let _ = child.wait();
+    let mut step = BringUpStepReport {
+        step: "a killed program",
+        measurements: Vec::new(),
+        may_move: false,
+    };
+    if !moved {
+        step.measurements.push(BringUpResult {
+            name: "move".to_owned(),
+            value: "the move did not begin".to_owned(),
+            judgement: Judgement::Problem,
+            advice: Some("repeat the step after the problems before it are solved".to_owned()),
+        });
+        return Ok(step);
+    }
+    // A guardian of the killed process closes the port once the axis is at rest.
+    let mut opened = reopen(device, port)?;
+    let axis = profile::axis(&config.axis)?;
+    let acceleration = DegPerS2(device.accel_deg_s2);
+    let mut bring_up = BringUp::new(axis, acceleration, &mut opened, Arc::clone(interrupt));
+    step.measurements.push(bring_up.rest_after(killed));
+    Ok(step)
+}
+
+/// Waits until the process reports that the axis moves.
+fn wait_for_move(child: &mut Child) -> bool {
+    let Some(stderr) = child.stderr.take() else {
+        return false;
+    };
+    let (found, result) = std::sync::mpsc::channel();
+    std::thread::spawn(move || {
+        let mut lines = BufReader::new(stderr).lines().map_while(Result::ok);
+        let _ = found.send(lines.any(|line| line.contains("Moving(")));
+        // Goes on reading: a full pipe would say nothing about a killed program.
+        lines.for_each(drop);
+    });
+    let moved = result.recv_timeout(START_LIMIT).unwrap_or(false);
+    std::thread::sleep(MOVING);
+    moved
+}
+
+/// Opens the port as soon as the killed process's guardian has closed it.
+fn reopen(device: &Device, port: &Path) -> Result<Opened, Failure> {
+    let until = Instant::now() + START_LIMIT;
+    loop {
+        match drive_port::open(device, port) {
+            Err(failure) if Instant::now() >= until => return Err(failure),
+            Err(_) => std::thread::sleep(Duration::from_millis(20)),
+            Ok(opened) => return Ok(opened),
+        }
+    }
+}
