@@ -4,7 +4,7 @@
 //! come in the order of the requests, some are lost, and the reply to a read has four words where
 //! that to a write has two. An SDO response names its object (segments do not), but not which of
 //! two reads of one object it belongs to. A reply that fits more than one outstanding request is
-//! matched to none.
+//! matched to none; the newest of them stays outstanding, as the reply may be to an older one.
 //!
 //! After a loss the client sends a probe request, a read of an object that does not exist. Its
 //! error arrives after everything still under way and so resynchronises both sides. Two probes with
@@ -61,6 +61,9 @@ const MAX_OUTSTANDING: usize = 32;
 /// Age at which a request is dropped: four times the drive's own frame timeout of 500 ms.
 const EXPIRY: Span = Span::from_secs(2);
 
+/// No master gives a request up sooner: half of the shortest timeout of this client.
+const SHORTEST_TIMEOUT: Span = Span::from_millis(20);
+
 impl RequestMatcher {
     pub fn handle_sent(&mut self, request: SentRequest) {
         self.outstanding
@@ -86,13 +89,27 @@ impl RequestMatcher {
         let mut fitting = (0..).zip(&self.outstanding).filter(|(_, request)| {
             probe_error(request).is_none() && reply.fits(request.address, request.access)
         });
-        match (fitting.next(), fitting.next()) {
-            (Some((index, &request)), None) => {
+        let first = fitting.next().map(|(index, request)| (index, *request));
+        let newest = fitting.last().map(|(index, _)| index);
+        match (first, newest) {
+            (Some((index, request)), None) => {
                 self.outstanding.drain(..=index);
                 ReplyMatch::Request(request)
             }
-            _ => ReplyMatch::Unmatched,
+            (_, newest) => {
+                self.outstanding.drain(..newest.unwrap_or(0));
+                ReplyMatch::Unmatched
+            }
         }
+    }
+
+    /// Retires requests that were answered, though no reply was recorded: a master that sends its
+    /// next request after the shortest reply time and before any timeout has received the reply.
+    pub fn retire_answered(&mut self, next: Stamp<Host>, shortest: Span) {
+        self.outstanding.retain(|old| {
+            let gap = next.saturating_since(old.sent);
+            probe_error(old).is_some() || gap < shortest || gap > SHORTEST_TIMEOUT
+        });
     }
 
     /// The oldest probe that an error answers. If only probes are outstanding, an unexpected error

@@ -13,7 +13,7 @@ use protocol::epos2::objects::{self, Address};
 use protocol::epos2::usb::UsbDecoder;
 use protocol::epos2::{CommError, DeviceError, SerialFrame, SerialFrameError};
 use protocol::record::{Direction, DriveLink};
-use units::{Host, Quadcounts, Stamp};
+use units::{Host, Quadcounts, Span, Stamp};
 
 use crate::codec::parse_serial_request;
 use crate::event::{SampleTrigger, ShaftSample};
@@ -104,6 +104,8 @@ pub struct DriveListener {
     can: CanListener,
     matcher: RequestMatcher,
     last_id: u64,
+    /// Shortest time between a request and its reply so far.
+    shortest_reply: Option<Span>,
 }
 
 impl DriveListener {
@@ -120,6 +122,7 @@ impl DriveListener {
             can: CanListener::new(node),
             matcher: RequestMatcher::default(),
             last_id: 0,
+            shortest_reply: None,
         }
     }
 
@@ -177,6 +180,7 @@ impl DriveListener {
             }
             Some(CanEvent::Response(reply)) => match self.matcher.handle_reply(&reply) {
                 ReplyMatch::Request(sent) => {
+                    self.learn_reply_time(sent.sent, host);
                     self.can.learn_mapping(&sent, &reply);
                     observation(&sent, &reply, host).into_iter().for_each(emit);
                 }
@@ -206,6 +210,12 @@ impl DriveListener {
     /// Records a request; one to another node has the id 0.
     fn handle_sent(&mut self, node: u8, address: Address, access: ObjectAccess, sent: Stamp<Host>) {
         let is_own = node == self.node || node == 0;
+        // A recorder may have dropped a reply. A stop does not wait for the reply under way.
+        if let Some(shortest) = self.shortest_reply
+            && address != objects::CONTROLWORD.address
+        {
+            self.matcher.retire_answered(sent, shortest);
+        }
         self.last_id += u64::from(is_own);
         self.matcher.handle_sent(SentRequest {
             address,
@@ -213,6 +223,12 @@ impl DriveListener {
             sent,
             id: if is_own { self.last_id } else { 0 },
         });
+    }
+
+    fn learn_reply_time(&mut self, sent: Stamp<Host>, answer: Stamp<Host>) {
+        let time = answer.saturating_since(sent);
+        let shortest = self.shortest_reply.unwrap_or(time);
+        self.shortest_reply = Some(shortest.min(time));
     }
 
     fn handle_answer(
@@ -228,6 +244,7 @@ impl DriveListener {
         };
         match self.matcher.handle_reply(&reply) {
             ReplyMatch::Request(sent) if sent.id != 0 => {
+                self.learn_reply_time(sent.sent, host);
                 observation(&sent, &reply, host).into_iter().for_each(emit);
             }
             ReplyMatch::Request(_) | ReplyMatch::Probe(_) => {}

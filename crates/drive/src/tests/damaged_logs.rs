@@ -168,6 +168,49 @@ fn is_one_of(link: DriveLink, observed: &ShaftSample, samples: &[ShaftSample]) -
     })
 }
 
+/// A recorder that drops one reply loses one sample: the next request shows that the client had
+/// its reply.
+#[test]
+fn one_missing_reply_costs_one_sample() {
+    for link in LINKS {
+        let Recorded { log, samples } = recorded(link);
+        let replies = (0..log.len()).filter(|at| log[*at].0 == Direction::FromDevice);
+        let middle = replies.clone().count() / 2;
+        for missing in replies.skip(middle).take(12) {
+            let mut log = log.clone();
+            log.remove(missing);
+            let observed = listen(link, &log);
+            let lost = samples.len() - observed.len();
+            assert!(lost <= 1, "{link:?}: {lost} of {} lost", samples.len());
+            for sample in &observed {
+                assert!(is_one_of(link, sample, samples), "{link:?}: {sample:?}");
+            }
+        }
+    }
+}
+
+/// Replies dropped throughout a log cost no more samples than replies.
+#[test]
+fn missing_replies_cost_their_own_samples() {
+    for link in LINKS {
+        let Recorded { log, samples } = recorded(link);
+        let mut count = 0;
+        let mut missing = 0;
+        let mut log = log.clone();
+        log.retain(|(way, ..)| {
+            count += usize::from(*way == Direction::FromDevice);
+            let is_dropped = *way == Direction::FromDevice && count % 50 == 0;
+            missing += usize::from(is_dropped);
+            !is_dropped
+        });
+        let lost = samples.len() - listen(link, &log).len();
+        assert!(
+            lost <= missing,
+            "{link:?}: {lost} samples lost by {missing} replies"
+        );
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
