@@ -54,6 +54,8 @@ pub(crate) enum ReplyMatch {
 pub(crate) struct RequestMatcher {
     /// Oldest first.
     outstanding: VecDeque<SentRequest>,
+    /// Writes whose replies are lost, oldest first.
+    lost_writes: VecDeque<SentRequest>,
 }
 
 /// Requests kept; the probes need two, anything above only bounds memory.
@@ -83,7 +85,7 @@ impl RequestMatcher {
 
     pub fn handle_reply(&mut self, reply: &Reply) -> ReplyMatch {
         if let Some((index, address)) = self.find_probe(reply) {
-            self.outstanding.drain(..=index);
+            self.retire(index + 1);
             return ReplyMatch::Probe(address);
         }
         let mut fitting = (0..).zip(&self.outstanding).filter(|(_, request)| {
@@ -93,23 +95,43 @@ impl RequestMatcher {
         let newest = fitting.last().map(|(index, _)| index);
         match (first, newest) {
             (Some((index, request)), None) => {
-                self.outstanding.drain(..=index);
+                self.retire(index);
+                self.outstanding.pop_front();
                 ReplyMatch::Request(request)
             }
             (_, newest) => {
-                self.outstanding.drain(..newest.unwrap_or(0));
+                self.retire(newest.unwrap_or(0));
                 ReplyMatch::Unmatched
             }
         }
     }
 
+    /// Drops the oldest `count` requests, whose replies are lost.
+    fn retire(&mut self, count: usize) {
+        for request in self.outstanding.drain(..count) {
+            if let ObjectAccess::Write { .. } = request.access {
+                self.lost_writes.push_back(request);
+            }
+        }
+        let excess = self.lost_writes.len().saturating_sub(MAX_OUTSTANDING);
+        self.lost_writes.drain(..excess);
+    }
+
+    /// The oldest write whose reply is lost.
+    pub fn take_lost_write(&mut self) -> Option<SentRequest> {
+        self.lost_writes.pop_front()
+    }
+
     /// Retires requests that were answered, though no reply was recorded: a master that sends its
     /// next request after the shortest reply time and before any timeout has received the reply.
     pub fn retire_answered(&mut self, next: Stamp<Host>, shortest: Span) {
-        self.outstanding.retain(|old| {
+        let answered = |old: &SentRequest| {
             let gap = next.saturating_since(old.sent);
-            probe_error(old).is_some() || gap < shortest || gap > SHORTEST_TIMEOUT
-        });
+            probe_error(old).is_none() && (shortest..=SHORTEST_TIMEOUT).contains(&gap)
+        };
+        if let Some(newest) = self.outstanding.iter().rposition(answered) {
+            self.retire(newest + 1);
+        }
     }
 
     /// The oldest probe that an error answers. If only probes are outstanding, an unexpected error

@@ -88,7 +88,8 @@ impl MoveWatch {
         }
     }
 
-    /// Takes an acknowledged write of `value` to `address`, requested at `host`.
+    /// Takes a write of `value` to `address`, requested at `host`. The log may lack its
+    /// confirmation: the samples show whether the axis moved.
     pub fn wrote(&mut self, address: Address, value: u32, host: Stamp<Host>) {
         if address == objects::TARGET_POSITION.address {
             self.target = Some(Quadcounts(value as i32));

@@ -49,7 +49,8 @@ pub enum Observation {
         /// When the reply was complete.
         answer: Stamp<Host>,
     },
-    /// An object was written and the drive confirmed it.
+    /// An object was written. Reported with the drive's confirmation, or as soon as later traffic
+    /// shows that the confirmation is not in the log.
     Wrote {
         /// The object.
         address: Address,
@@ -57,8 +58,8 @@ pub enum Observation {
         value: u32,
         /// When the request was sent.
         request: Stamp<Host>,
-        /// When the confirmation was complete.
-        answer: Stamp<Host>,
+        /// When the confirmation was complete; `None` if it is not in the log.
+        answer: Option<Stamp<Host>>,
     },
     /// The drive refused a request.
     Refused {
@@ -176,9 +177,9 @@ impl DriveListener {
             None => {}
             Some(CanEvent::Noise) => emit(noise),
             Some(CanEvent::Request(address, access)) => {
-                self.handle_sent(self.node, address, access, host);
+                self.handle_sent(self.node, address, access, host, emit);
             }
-            Some(CanEvent::Response(reply)) => match self.matcher.handle_reply(&reply) {
+            Some(CanEvent::Response(reply)) => match self.matched(&reply, emit) {
                 ReplyMatch::Request(sent) => {
                     self.learn_reply_time(sent.sent, host);
                     self.can.learn_mapping(&sent, &reply);
@@ -204,17 +205,45 @@ impl DriveListener {
         else {
             return emit(noise);
         };
-        self.handle_sent(node, address, access, host);
+        self.handle_sent(node, address, access, host, emit);
+    }
+
+    /// Matches a reply; reports the writes before it that have none.
+    fn matched(&mut self, reply: &Reply, emit: &mut impl FnMut(Observation)) -> ReplyMatch {
+        let matched = self.matcher.handle_reply(reply);
+        self.report_lost_writes(emit);
+        matched
+    }
+
+    fn report_lost_writes(&mut self, emit: &mut impl FnMut(Observation)) {
+        while let Some(sent) = self.matcher.take_lost_write() {
+            if let (ObjectAccess::Write { value, .. }, true) = (sent.access, sent.id != 0) {
+                emit(Observation::Wrote {
+                    address: sent.address,
+                    value,
+                    request: sent.sent,
+                    answer: None,
+                });
+            }
+        }
     }
 
     /// Records a request; one to another node has the id 0.
-    fn handle_sent(&mut self, node: u8, address: Address, access: ObjectAccess, sent: Stamp<Host>) {
+    fn handle_sent(
+        &mut self,
+        node: u8,
+        address: Address,
+        access: ObjectAccess,
+        sent: Stamp<Host>,
+        emit: &mut impl FnMut(Observation),
+    ) {
         let is_own = node == self.node || node == 0;
         // A recorder may have dropped a reply. A stop does not wait for the reply under way.
         if let Some(shortest) = self.shortest_reply
             && address != objects::CONTROLWORD.address
         {
             self.matcher.retire_answered(sent, shortest);
+            self.report_lost_writes(emit);
         }
         self.last_id += u64::from(is_own);
         self.matcher.handle_sent(SentRequest {
@@ -242,7 +271,7 @@ impl DriveListener {
         let Ok(Ok(reply)) = frame.as_ref().map(Reply::parse) else {
             return emit(noise);
         };
-        match self.matcher.handle_reply(&reply) {
+        match self.matched(&reply, emit) {
             ReplyMatch::Request(sent) if sent.id != 0 => {
                 self.learn_reply_time(sent.sent, host);
                 observation(&sent, &reply, host).into_iter().for_each(emit);
@@ -282,7 +311,7 @@ fn observation(sent: &SentRequest, reply: &Reply, answer: Stamp<Host>) -> Option
                 address,
                 value,
                 request,
-                answer,
+                answer: Some(answer),
             });
         }
         ObjectAccess::Transfer(TransferRequest::InitiateDownload { .. }) => return None,

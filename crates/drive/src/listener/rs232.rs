@@ -1,6 +1,7 @@
 //! Passive decoder of an RS232 dialogue: separates handshake from bodies.
 //!
-//! A byte that does not fit ends the dialogue; the next opcode begins another, as for the unit.
+//! A byte that does not fit ends the dialogue; the next opcode begins another, as for the unit. A
+//! handshake that is not in the log follows from the byte after it.
 
 use protocol::epos2::message::{
     InitiateSegmentedRead, InitiateSegmentedWrite, ReadObject, RequestCanFrame, SegmentedRead,
@@ -77,8 +78,17 @@ impl Rs232Listener {
                 };
                 return Some(SerialEvent::Request(frame));
             }
+            (Awaiting::OpcodeHandshake(opcode), _) if !OPCODES.contains(&byte) => {
+                let mut decoder = BodyDecoder::new(*opcode);
+                decoder.push(byte);
+                Awaiting::Body(decoder)
+            }
             (Awaiting::AnswerOpcodeHandshake, OKAY) => {
                 Awaiting::Answer(BodyDecoder::new(SerialFrame::ANSWER))
+            }
+            (Awaiting::BodyHandshake | Awaiting::AnswerOpcode, OKAY) => {
+                self.awaiting = Awaiting::Answer(BodyDecoder::new(SerialFrame::ANSWER));
+                return Some(SerialEvent::Announced);
             }
             (Awaiting::AnswerHandshake, OKAY | FAILED) => Awaiting::Opcode,
             (_, opcode) if OPCODES.contains(&opcode) => Awaiting::OpcodeHandshake(opcode),
@@ -93,7 +103,7 @@ impl Rs232Listener {
                 (Awaiting::Body(BodyDecoder::new(*opcode)), None)
             }
             (Awaiting::BodyHandshake, OKAY) => (Awaiting::AnswerOpcode, None),
-            (Awaiting::AnswerOpcode, SerialFrame::ANSWER) => (
+            (Awaiting::BodyHandshake | Awaiting::AnswerOpcode, SerialFrame::ANSWER) => (
                 Awaiting::AnswerOpcodeHandshake,
                 Some(SerialEvent::Announced),
             ),

@@ -189,6 +189,42 @@ fn one_missing_reply_costs_one_sample() {
     }
 }
 
+/// A write whose confirmation is missing is reported all the same, before the samples after it.
+#[test]
+fn a_write_without_its_confirmation_is_reported() {
+    for link in LINKS {
+        let Recorded { log, .. } = recorded(link);
+        let writes = |log: &[Record]| {
+            let mut listener = DriveListener::new(1);
+            let mut writes = Vec::new();
+            for (direction, bytes, host) in log {
+                listener.observe(link, *direction, bytes, *host, &mut |seen| {
+                    if let Observation::Wrote { address, value, .. } = seen {
+                        writes.push((address, value));
+                    }
+                });
+            }
+            writes
+        };
+        let all = writes(log);
+        // Nothing follows the last write, so nothing shows that its confirmation is missing.
+        let (_, followed) = all.split_last().unwrap();
+        assert!(followed.len() > 5, "{link:?}: {}", followed.len());
+        for at in 0..log.len() {
+            if log[at].0 == Direction::ToDevice {
+                continue;
+            }
+            let mut log = log.clone();
+            log.remove(at);
+            let found = writes(&log);
+            assert!(
+                found.starts_with(followed),
+                "{link:?}: without record {at}: {found:?}"
+            );
+        }
+    }
+}
+
 /// Replies dropped throughout a log cost no more samples than replies.
 #[test]
 fn missing_replies_cost_their_own_samples() {
