@@ -128,6 +128,76 @@ fn cut(log: &Path, end: Stamp<units::Host>) -> Vec<u8> {
     bytes[..at].to_vec()
 }
 
+/// A recorder that drops replies of the drive: a single one in mid-sweep, one in twenty, or those
+/// to the writes that begin the sweep. The cloud loses no points and no accuracy.
+#[test]
+fn logs_without_some_replies_of_the_drive_give_the_whole_cloud() {
+    for attached in [Attachment::Usb, Attachment::Rs232, Attachment::Can] {
+        let captured = Captured::new(Setting::over(attached));
+        let (from, to) = captured.sweep_span();
+        let (_, whole) = captured.scan();
+        let middle = from + (to - from).half();
+        let before = from + Span::from_millis(-60);
+        let single =
+            |at: Stamp<units::Host>, _: usize| at >= middle && at < middle + Span::from_millis(2);
+        let share = |_: Stamp<units::Host>, count: usize| count.is_multiple_of(20);
+        let starting = |at: Stamp<units::Host>, count: usize| {
+            (before..from).contains(&at) && count.is_multiple_of(2)
+        };
+        type Dropped<'a> = &'a dyn Fn(Stamp<units::Host>, usize) -> bool;
+        let cases: [(&str, Dropped<'_>); 3] = [
+            ("single", &single),
+            ("one in twenty", &share),
+            ("at the start", &starting),
+        ];
+        for (name, dropped) in cases {
+            let folder = tempfile::tempdir().unwrap();
+            let log = folder.path().join("lossy.pcapng");
+            std::fs::write(&log, without_replies(&captured.log(), dropped)).unwrap();
+            let (scan, cloud) = scan(&log);
+            let truth =
+                |time: Stamp<units::Lidar>, laser| captured.truth().point(time.as_nanos(), laser);
+            let error = analysis::truth::compare(&cloud, truth).unwrap();
+            let share = cloud.len() as f64 / whole.len() as f64;
+            println!(
+                "{attached:?} {name}: {error:?}, {share:.4}, {:?}",
+                scan.contents.warnings
+            );
+            assert_eq!(scan.sweeps.len(), 1, "{attached:?} {name}");
+            assert!((share - 1.0).abs() < 0.005, "{attached:?} {name}: {share}");
+            assert!(
+                error.rms_m < 2e-3 && error.worst_m < 10e-3,
+                "{attached:?} {name}: {error:?}"
+            );
+        }
+    }
+}
+
+/// The bytes of a log without the drive's replies for which `dropped` is true, given their time and
+/// number.
+fn without_replies(log: &Path, dropped: &dyn Fn(Stamp<units::Host>, usize) -> bool) -> Vec<u8> {
+    let bytes = std::fs::read(log).unwrap();
+    let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
+    let mut kept = Vec::new();
+    let (mut at, mut replies, mut lost) = (0, 0, 0);
+    while at + 12 <= bytes.len() {
+        let length = word(at + 4) as usize;
+        // Interface 1 is the drive. The option epb_flags (2) follows the data; inbound is 1.
+        let is_drive = word(at) == 6 && word(at + 8) == 1;
+        let options = at + 28 + (word(at + 20) as usize).next_multiple_of(4);
+        let is_reply = is_drive && word(options) == 2 | 4 << 16 && word(options + 4) & 3 == 1;
+        let ns = u64::from(word(at + 12)) << 32 | u64::from(word(at + 16));
+        replies += usize::from(is_reply);
+        match is_reply && dropped(Stamp::from_nanos(ns as i64), replies) {
+            true => lost += 1,
+            false => kept.extend_from_slice(&bytes[at..at + length]),
+        }
+        at += length;
+    }
+    assert!(lost > 0, "no reply was dropped");
+    kept
+}
+
 fn scan(log: &Path) -> (ScanReport, Points) {
     let mut points = Points::new(Fields::ALL);
     let request = Reconstruction {

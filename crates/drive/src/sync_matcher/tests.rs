@@ -39,6 +39,23 @@ fn matching_starts_only_with_a_single_sync() {
     assert_eq!(syncs.handle_pdo(9, us(200_500)), Some(us(200_000)));
 }
 
+/// The PDO of the first SYNC is not in the log; the second SYNC follows as soon as the client had
+/// it.
+#[test]
+fn matching_starts_with_the_second_sync_if_the_first_pdo_was_dropped() {
+    let mut matcher = SyncMatcher::default();
+    matcher.observe(us(0));
+    matcher.handle_sync(us(200_000));
+    matcher.handle_sync(us(200_300));
+    assert_eq!(matcher.handle_pdo(1_300, us(200_600)), Some(us(200_300)));
+    // A master that does not wait: the PDO may be that of the first SYNC.
+    let mut matcher = SyncMatcher::default();
+    matcher.observe(us(0));
+    matcher.handle_sync(us(200_000));
+    matcher.handle_sync(us(201_000));
+    assert_eq!(matcher.handle_pdo(1_300, us(201_600)), None);
+}
+
 #[test]
 fn pdos_after_the_next_sync_are_matched_in_order() {
     let mut syncs = started(0);
