@@ -72,6 +72,29 @@ pub fn load(file: Option<&Path>) -> Result<Config, Failure> {
     Ok(config)
 }
 
+/// The mount in a TOML file: its table `[mount]`.
+///
+/// # Errors
+/// [`Kind::BadInput`] for an unreadable file, or one without a valid mount.
+pub fn load_mount(path: &Path) -> Result<MountConfig, Failure> {
+    #[derive(Deserialize)]
+    struct MountFile {
+        mount: MountConfig,
+    }
+    let wrong = |what: String| {
+        Failure::new(
+            Kind::BadInput,
+            format!("the mount {}: {what}", path.display()),
+        )
+        .help("give a TOML file with the height of the lidar above the tilt axis:\n[mount]\nd_m = 0.06")
+    };
+    let text = std::fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
+    let file: MountFile =
+        toml::from_str(&text).map_err(|error| wrong(error.to_string().trim_end().to_owned()))?;
+    between("mount.d_m", file.mount.d_m, -10.0, 10.0).map_err(wrong)?;
+    Ok(file.mount)
+}
+
 impl Config {
     /// Refuses impossible numbers (TOML allows nan and inf).
     fn check(&self) -> Result<(), String> {

@@ -17,6 +17,10 @@ use engine::failure::Failure;
 /// # Errors
 /// [`Failure`] without a result.
 pub fn run(cli: &Cli) -> Result<CommandOutput, Failure> {
+    if let Some(file) = cli.common.config.as_deref() {
+        // Also for commands that need no configuration: a mistyped name is an error.
+        engine::config::load(Some(file))?;
+    }
     match &cli.command {
         Command::Capture(arguments) => commands::capture::run(arguments, &cli.common),
         Command::Replay(arguments) => commands::replay::run(arguments, &cli.common),

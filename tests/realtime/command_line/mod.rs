@@ -429,6 +429,34 @@ fn a_real_recording_becomes_a_cloud() {
     );
 }
 
+/// Whoever calls the program learns of lost packets by its exit code, with `-q` too.
+#[test]
+fn a_recording_with_missing_packets_is_incomplete() {
+    let whole = std::fs::read(recording("vlp16-strongest-gps.pcap")).unwrap();
+    // Records of a pcap: 16 bytes of times and lengths, then the packet; 24 bytes of file header.
+    let mut at = 24;
+    let mut ends = Vec::new();
+    while at < whole.len() {
+        let length = u32::from_le_bytes(whole[at + 8..at + 12].try_into().unwrap()) as usize;
+        at += 16 + length;
+        ends.push(at);
+    }
+    let place = Place::new();
+    let cut = [&whole[..ends[9]], &whole[ends[12]..]].concat();
+    std::fs::write(place.path("cut.pcap"), cut).unwrap();
+    for quiet in ["", " -q"] {
+        let line = format!("replay cut.pcap --tilt none -o cloud.ply --force{quiet}");
+        let output = place.run(&line);
+        let printed = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(6), "{printed}");
+        assert!(
+            printed.contains("3 of 26 lidar packets are missing"),
+            "{printed}"
+        );
+        assert!(place.path("cloud.ply").is_file());
+    }
+}
+
 #[test]
 fn angles_of_another_device_can_be_attached() {
     let path = recording("vlp16-strongest-gps.pcap");
@@ -438,17 +466,35 @@ fn angles_of_another_device_can_be_attached() {
         "time_s,angle_deg\n0.0,-10\n0.02,-20\n",
     )
     .unwrap();
+    // Where the lidar is above the axis is not known.
     let line = format!(
         "replay {} --tilt angles.csv -o cloud.ply --json",
         path.display()
     );
-    let output = place.run(&line);
+    let own = place.path("velomotion.toml");
+    std::fs::rename(&own, place.path("other-name.toml")).unwrap();
+    place.fails(&line, 2, &["--mount"]);
+    std::fs::rename(place.path("other-name.toml"), &own).unwrap();
+    std::fs::write(place.path("other.toml"), "[mount]\nd_m = 0.25\n").unwrap();
+    let output = place.run(&format!("{line} --mount other.toml"));
     assert!(
         output.status.success(),
         "{}",
         String::from_utf8_lossy(&output.stderr)
     );
     let scan = json(&output);
+    assert_eq!(scan["sync"]["angle_bound_deg"], serde_json::Value::Null);
+    // The configuration has a mount, too: the cloud is the same.
+    let cloud = std::fs::read(place.path("cloud.ply")).unwrap();
+    let again = place.run(&format!("{line} --config other.toml --force"));
+    assert!(again.status.success());
+    assert!(cloud == std::fs::read(place.path("cloud.ply")).unwrap());
+    std::fs::write(place.path("low.toml"), "[mount]\nd_m = 0.05\n").unwrap();
+    let lower = place.run(&format!(
+        "{line} --mount low.toml --config other.toml --force"
+    ));
+    assert!(lower.status.success());
+    assert!(cloud != std::fs::read(place.path("cloud.ply")).unwrap());
     let points = scan["points"].as_u64().unwrap();
     let left_out = scan["left_out"].as_u64().unwrap();
     // The table covers 0.02 s of 0.0345 s: only points within it are placed.
@@ -460,7 +506,7 @@ fn angles_of_another_device_can_be_attached() {
     )
     .unwrap();
     place.fails(
-        &format!("replay {} --tilt late.csv", path.display()),
+        &format!("replay {} --tilt late.csv --mount low.toml", path.display()),
         3,
         &["do not overlap"],
     );

@@ -335,7 +335,7 @@ fn report(
             .iter()
             .map(|sweep| report::SweepReport::new(sweep, stats.rpm))
             .collect(),
-        sync: sync(alignment),
+        sync: sync(alignment, &request.tilt),
         output: output.display().to_string(),
         log: path.display().to_string(),
         lost_records: request.lost_records,
@@ -396,7 +396,9 @@ fn interrupted(path: &Path) -> Failure {
     ))
 }
 
-fn sync(alignment: &Alignment) -> SyncReport {
+fn sync(alignment: &Alignment, tilt: &TiltSource) -> SyncReport {
+    // The accuracy of a table is not known.
+    let is_table = matches!(tilt, TiltSource::Table(_));
     SyncReport {
         clock_method: "lower envelope",
         clock_residual_us: alignment.clock.residual().as_micros_f64(),
@@ -406,7 +408,7 @@ fn sync(alignment: &Alignment) -> SyncReport {
         angle_method: alignment.trajectory.method().name(),
         tolerance: alignment.choice.as_ref().map(ToleranceReport::new),
         angle_rms_deg: alignment.angle_rms_deg(),
-        angle_bound_deg: alignment.angle_bound_deg(),
+        angle_bound_deg: alignment.angle_bound_deg().filter(|_| !is_table),
     }
 }
 

@@ -13,6 +13,7 @@ use io::recording::{
 };
 use protocol::record::{Record, Wire};
 use scanner::ScanConfig;
+use scanner::config::MountConfig;
 
 use crate::failure::{Failure, Kind};
 
@@ -22,6 +23,7 @@ pub struct Source {
     path: PathBuf,
     input: RecordingInput,
     wanted: Option<SensorAddress>,
+    mount: Option<MountConfig>,
 }
 
 /// Name of a sensor: its address, and its data port if one address has several.
@@ -126,6 +128,7 @@ impl Source {
             path: path.to_owned(),
             input,
             wanted,
+            mount: None,
         };
         drop(source.recording()?);
         Ok(source)
@@ -141,17 +144,34 @@ impl Source {
         self.input.recording().map_err(|error| failure(&error))
     }
 
+    /// Replaces the mount of the recording's configuration.
+    pub const fn set_mount(&mut self, mount: MountConfig) {
+        self.mount = Some(mount);
+    }
+
+    /// Whether the recording is a log with the configuration of its scanner.
+    ///
+    /// # Errors
+    /// [`Kind::BadInput`] for an unreadable file.
+    pub fn has_config(&self) -> Result<bool, Failure> {
+        Ok(self.recording()?.metadata().is_some_and(is_own))
+    }
+
     /// The configuration in a log; defaults for a plain recording.
     ///
     /// # Errors
     /// [`Kind::BadInput`] for an unreadable file or an invalid configuration in a log.
     pub fn config(&self) -> Result<ScanConfig, Failure> {
+        let config = self.recorded_config()?;
+        Ok(ScanConfig {
+            mount: self.mount.unwrap_or(config.mount),
+            ..config
+        })
+    }
+
+    fn recorded_config(&self) -> Result<ScanConfig, Failure> {
         let recording = self.recording()?;
-        // Other programs write comments too.
-        let Some(text) = recording
-            .metadata()
-            .filter(|text| text.trim_start().starts_with("velomotion = "))
-        else {
+        let Some(text) = recording.metadata().filter(|text| is_own(text)) else {
             return Ok(ScanConfig::default());
         };
         let wrong = |what: String| {
@@ -258,6 +278,11 @@ impl Source {
             .help("choose one with --sensor ADDRESS or --sensor ADDRESS:PORT; velomotion info describes each")),
         }
     }
+}
+
+/// Whether a comment is a log's configuration. Other programs write comments too.
+fn is_own(comment: &str) -> bool {
+    comment.trim_start().starts_with("velomotion = ")
 }
 
 fn cut_off(end: &End) -> Option<String> {

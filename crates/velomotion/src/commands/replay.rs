@@ -1,5 +1,7 @@
 //! `velomotion replay`: a cloud from a log, or from a plain lidar recording.
 
+use engine::capture::completeness;
+use engine::config;
 use engine::default_paths;
 use engine::failure::{Failure, Kind};
 use engine::output::{self, Target};
@@ -8,6 +10,7 @@ use engine::reconstruct::frames::FramePlan;
 use engine::reconstruct::replay::{self, Reconstruction};
 use engine::reconstruct::source::Source;
 use engine::reconstruct::tilt_table::tilt_source;
+use scanner::config::MountConfig;
 use scanner::{TableTime, TiltSource};
 use units::Degrees;
 
@@ -23,10 +26,14 @@ use crate::terminal::Progress;
 pub fn run(arguments: &cli::Replay, common: &Common) -> Result<CommandOutput, Failure> {
     let interrupt = signals::interrupt_flag()?;
     // Check the input before an output is opened.
-    let source = Source::open(&arguments.input, arguments.lidar.sensor)?;
+    let mut source = Source::open(&arguments.input, arguments.lidar.sensor)?;
+    let tilt = tilt_source(&arguments.tilt)?;
+    if let Some(mount) = mount(arguments, common, &tilt, &source)? {
+        source.set_mount(mount);
+    }
     let request = Reconstruction {
         recording: &source,
-        tilt: tilt_source(&arguments.tilt)?,
+        tilt,
         options: decoder_options(&arguments.lidar.request(), &source)?,
         time: arguments.time.into(),
         accuracy: arguments.accuracy.wanted(),
@@ -69,15 +76,43 @@ pub fn run(arguments: &cli::Replay, common: &Common) -> Result<CommandOutput, Fa
     if scan.contents.simulated {
         progress.say("SIMULATED: this log was made by simulated devices");
     }
-    let failure = scan.contents.truncated.as_ref().map(|truncated| {
+    let failure = completeness::missing(&scan).map(|missing| {
+        let help = match &scan.contents.truncated {
+            Some(_) => "copy the recording from its source again if you need the rest",
+            None => "scan again if what is missing matters",
+        };
         Failure::new(
             Kind::Incomplete,
-            format!("{} is incomplete: {truncated}", arguments.input.display()),
+            format!("{}: {missing}", arguments.input.display()),
         )
         .help(format!(
-            "the cloud of the existing part is {}; copy the recording from its source again if you need the rest",
+            "the cloud of what is there is {}; {help}",
             cloud.display()
         ))
     });
     Ok(CommandOutput::scan(&scan, failure, stdout))
+}
+
+/// The mount that replaces the recording's: that of `--mount`, or the configuration's for a
+/// recording of another rig with a table of angles.
+fn mount(
+    arguments: &cli::Replay,
+    common: &Common,
+    tilt: &TiltSource,
+    source: &Source,
+) -> Result<Option<MountConfig>, Failure> {
+    if let Some(file) = &arguments.mount {
+        return config::load_mount(file).map(Some);
+    }
+    if !matches!(tilt, TiltSource::Table(_)) || source.has_config()? {
+        return Ok(None);
+    }
+    let Some(file) = common.config.clone().or_else(config::usual_place) else {
+        return Err(Failure::new(
+            Kind::Usage,
+            "a recording without a configuration, and angles of another rig: where is the lidar on its tilt axis?",
+        )
+        .help("name a file with [mount] d_m, the height of the lidar above the axis, with --mount or --config"));
+    };
+    Ok(Some(config::load(Some(&file))?.mount))
 }
