@@ -135,6 +135,9 @@ pub struct AxisTiming {
     pub timeout: Span,
     /// Time limit of a reply while the axis moves, when silence costs more than a repeated request.
     pub timeout_moving: Span,
+    /// Time without any input from the drive for which a move or homing goes on: a busy machine
+    /// delays this program and its adapters. The drive completes its own profile meanwhile.
+    pub silence_limit: Span,
     /// Repeats of a read after its reply was lost. Writes are not repeated.
     pub read_retries: u8,
     /// Shortest period of position samples; zero polls at the rate of the replies. The position
@@ -201,15 +204,16 @@ impl Default for MotionGuardConfig {
 }
 
 impl Default for CanHeartbeats {
-    /// Heartbeats every 50 ms. The drive tolerates three missing ones, as the host's threads may be
-    /// delayed; the host tolerates one.
+    /// Heartbeats every 50 ms. The host tolerates their absence for as long as silence in a move.
+    /// The drive tolerates 500 ms, as the host's threads may be delayed: an axis at 98 deg/s is at
+    /// rest 0.7 s after its host died.
     fn default() -> Self {
         Self {
             host_node: 127,
             host_heartbeat: Span::from_millis(50),
-            host_limit: Span::from_millis(200),
+            host_limit: Span::from_millis(500),
             node_heartbeat: Span::from_millis(50),
-            node_limit: Span::from_millis(125),
+            node_limit: Span::from_secs(1),
         }
     }
 }
@@ -257,6 +261,7 @@ impl Default for AxisTiming {
         Self {
             timeout: Span::from_millis(500),
             timeout_moving: Span::from_millis(100),
+            silence_limit: Span::from_secs(1),
             read_retries: 2,
             poll_period: Span::from_millis(1),
             status_period: Span::from_millis(20),

@@ -21,6 +21,7 @@ use crate::codec::{Codec, Decoded};
 use crate::exchange::Reply;
 use crate::request_matcher::{ReplyMatch, RequestMatcher, SentRequest};
 use request::ActiveRequest;
+use resync::{MAX_PROBES, SILENT_PROBE_TIMEOUT};
 use resync_budget::ResyncBudget;
 
 pub use request::LinkStats;
@@ -174,11 +175,15 @@ impl RequestLink {
             }
             _ if expedite => Some(self.send_active(now, false)),
             LinkState::Desynchronised { probes } => {
+                let timeout = match probes < MAX_PROBES {
+                    true => request.probe_timeout,
+                    false => request.probe_timeout.max(SILENT_PROBE_TIMEOUT),
+                };
                 self.state = LinkState::Probing {
                     probes: probes.saturating_add(1),
-                    deadline: now.saturating_add(request.probe_timeout),
+                    deadline: now.saturating_add(timeout),
                 };
-                Some(self.send_probe(now, request.probe_timeout))
+                Some(self.send_probe(now, timeout))
             }
             LinkState::AwaitReply { .. } | LinkState::Probing { .. } => None,
         }

@@ -16,6 +16,8 @@ pub(crate) struct LinkRequest {
     pub probe_timeout: Span,
     /// Repeats after a lost reply.
     pub retries: u8,
+    /// Time without any input for which probes go on; at least two probes.
+    pub silence_limit: Span,
     /// Sent even while the link is desynchronised, and again after that.
     pub is_urgent: bool,
     /// Given up after one timeout in all, attempts and probes included.
@@ -107,6 +109,12 @@ impl ActiveRequest {
             self.attempts = self.attempts.saturating_sub(1);
         }
         may_retry
+    }
+
+    /// Whether silence is tolerated now.
+    pub fn tolerates_silence(&self, now: Stamp<Host>) -> bool {
+        let silent = self.started.map(|started| now.saturating_since(started));
+        silent.is_some_and(|silent| silent < self.request.silence_limit)
     }
 
     /// When a last attempt is given up.

@@ -12,7 +12,9 @@ use super::request::{ActiveRequest, LinkRequest, RequestFailure};
 use super::{LinkState, RequestLink};
 
 /// Unanswered probes before a request is given up.
-const MAX_PROBES: u8 = 2;
+pub(super) const MAX_PROBES: u8 = 2;
+/// Time limit of probes after that: a machine that was busy for long has few to work off.
+pub(super) const SILENT_PROBE_TIMEOUT: Span = Span::from_millis(100);
 /// Time limit of the rest of a reply: longer than a serial adapter's latency timer of 16 ms.
 const REST_TIMEOUT: Span = Span::from_millis(20);
 
@@ -33,6 +35,7 @@ impl RequestLink {
             timeout,
             probe_timeout: timeout,
             retries: 0,
+            silence_limit: Span::ZERO,
             is_urgent: false,
             is_last_attempt: false,
         };
@@ -148,7 +151,15 @@ impl RequestLink {
             ),
             None => (probes < MAX_PROBES, probes),
         };
-        if may_retry && !self.is_budget_exhausted(now) {
+        let may_be_silent = !self.has_input
+            && !self.budget.has_damage()
+            && self
+                .active
+                .is_some_and(|active| active.tolerates_silence(now));
+        if may_be_silent {
+            self.budget.handle_silence(now);
+        }
+        if may_be_silent || may_retry && !self.is_budget_exhausted(now) {
             self.state = LinkState::Desynchronised { probes: counted };
             return;
         }

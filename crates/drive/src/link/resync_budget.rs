@@ -45,6 +45,11 @@ impl ResyncBudget {
         self.waiting_since = Some(now);
     }
 
+    /// Records that nothing has arrived: only input uses the budget up.
+    pub fn handle_silence(&mut self, now: Stamp<Host>) {
+        self.waiting_since = Some(now);
+    }
+
     pub fn handle_request_waiting(&mut self, now: Stamp<Host>) {
         self.waiting_since.get_or_insert(now);
     }

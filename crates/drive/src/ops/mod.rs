@@ -52,6 +52,8 @@ pub(crate) struct Ops {
     pub config: Arc<AxisConfig>,
     /// The axis may be moving: time limits are short.
     pub is_moving: bool,
+    /// Time without any input from the drive that an operation tolerates.
+    pub silence_limit: Span,
     /// An alarm of the CAN bus fails the operation in progress.
     pub aborts_on_alarm: bool,
     next_sample: Option<Stamp<Host>>,
@@ -68,6 +70,7 @@ impl Ops {
             core,
             config,
             is_moving: false,
+            silence_limit: Span::ZERO,
             aborts_on_alarm: false,
             next_sample: None,
         }
@@ -304,6 +307,7 @@ impl Ops {
                 ObjectAccess::Read => timing.read_retries,
                 _ => 0,
             },
+            silence_limit: self.silence_limit,
             is_urgent: false,
             is_last_attempt: false,
         }

@@ -32,6 +32,7 @@ async fn run(ops: &mut Ops) -> Result<CommandOutcome, DriveError> {
     network::arm(ops).await?;
     enable(ops).await?;
     ops.is_moving = true;
+    ops.silence_limit = ops.config.timing.silence_limit;
     ops.set_referenced(false);
     ops.write(objects::CONTROLWORD, control::START_HOMING)
         .await?;

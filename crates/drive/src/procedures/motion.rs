@@ -113,6 +113,7 @@ async fn configure(ops: &Ops, target: ValidatedMove) -> Result<(), DriveError> {
 /// Starts the move; returns its guard, and when the drive confirmed the start.
 async fn start(ops: &mut Ops, plan: MovePlan) -> Result<(MotionGuard, Stamp<Host>), DriveError> {
     ops.is_moving = true;
+    ops.silence_limit = ops.config.timing.silence_limit;
     let sent = ops.now();
     ops.write(objects::CONTROLWORD, control::START_ABSOLUTE)
         .await?;

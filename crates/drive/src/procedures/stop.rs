@@ -45,6 +45,7 @@ pub(crate) async fn brake(mut ops: Ops) -> Result<CommandOutcome, DriveError> {
 /// diagnosis.
 pub(super) async fn make_safe(ops: &mut Ops, cause: DriveError) -> DriveError {
     ops.aborts_on_alarm = false;
+    ops.silence_limit = Span::ZERO;
     let stopped = match cause {
         DriveError::LinkLost { .. }
         | DriveError::NodeSilent { .. }

@@ -181,13 +181,13 @@ fn the_drive_stops_when_the_host_dies() {
     let mut rig = homed();
     rig.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
     assert_eq!(rig.run_for(Span::from_millis(600)), None);
-    assert_eq!(rig.fake.objects[&(0x1016, 1)], 127 << 16 | 200);
+    assert_eq!(rig.fake.objects[&(0x1016, 1)], 127 << 16 | 500);
     // The host stops calling the client.
     let died = rig.now;
     while rig.fake.state != FAULT {
         rig.now += Span::from_millis(1);
         rig.fake.live(rig.now);
-        assert!(rig.now - died < Span::from_millis(250));
+        assert!(rig.now - died < Span::from_millis(550));
     }
     assert_eq!(rig.fake.objects[&(0x1003, 1)], 0x8130);
 }
@@ -232,7 +232,7 @@ fn a_missing_heartbeat_in_mid_sweep_stops_the_axis() {
         "{error}"
     );
     let reaction = rig.quick_stop().unwrap() - at;
-    assert!(reaction < Span::from_millis(140), "{reaction:?}");
+    assert!(reaction < Span::from_millis(1_015), "{reaction:?}");
     let safe = |p: &CommandProgress| matches!(p, CommandProgress::MadeSafe(_));
     assert!(rig.progress().iter().any(safe));
 }

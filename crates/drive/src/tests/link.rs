@@ -25,6 +25,7 @@ fn request(index: u16, access: ObjectAccess) -> LinkRequest {
         timeout: TIMEOUT,
         probe_timeout: TIMEOUT,
         retries: 2,
+        silence_limit: Span::ZERO,
         is_urgent: false,
         is_last_attempt: false,
     }

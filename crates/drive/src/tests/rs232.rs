@@ -25,6 +25,7 @@ fn request(index: u16, access: ObjectAccess) -> LinkRequest {
         timeout: Span::from_millis(100),
         probe_timeout: Span::from_millis(100),
         retries: if access == ObjectAccess::Read { 2 } else { 0 },
+        silence_limit: Span::ZERO,
         is_urgent: false,
         is_last_attempt: false,
     }
