@@ -1,12 +1,12 @@
 //! `[axis]`: encoder, gear, limits, homing.
 
 use scanner::config::TiltAxisConfig;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::{between, positive};
 
 /// The tilt axis: encoder, gear, limits.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct AxisSettings {
     /// Node id of the drive.
@@ -37,7 +37,7 @@ pub struct AxisSettings {
 }
 
 /// Digital inputs of the limit switches (1..=9). A switch omitted from the table does not exist.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LimitSwitchSettings {
     /// Input of the lower limit switch.
@@ -52,7 +52,7 @@ pub struct LimitSwitchSettings {
 }
 
 /// Tolerances of the drive client's motion guard, degrees of tilt unless named otherwise.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct GuardSettings {
     /// How far the axis may lag behind its plan at low speed.
@@ -74,7 +74,7 @@ pub struct GuardSettings {
 }
 
 /// Homing of the axis.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct HomingSettings {
     /// Homing method (object 6098).
