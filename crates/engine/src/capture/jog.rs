@@ -225,7 +225,7 @@ pub fn failure(error: &SessionError) -> Failure {
         _ => Kind::DeviceFault,
     };
     let help = error.help().unwrap_or_else(|| {
-        "the axis is at rest, its power stage off, its brake set if it has one".to_owned()
+        "the axis is at rest, its power stage off and its brake set if it has one; with [axis] without_brake = \"hold\" it is held powered".to_owned()
     });
     Failure::new(kind, error.to_string()).help(help)
 }

@@ -28,12 +28,25 @@ pub struct AxisSettings {
     /// Digital output of the drive (1..=5) that opens the brake; absent without a brake. The
     /// factory setting assigns no output.
     pub brake_output: Option<u8>,
+    /// What happens to an axis without a brake when it comes to rest.
+    pub without_brake: WithoutBrake,
     /// Limit switches; the factory's inputs without the table.
     pub limit_switches: LimitSwitchSettings,
     /// Homing.
     pub homing: HomingSettings,
     /// When the moving axis is stopped, and when it counts as arrived and at rest.
     pub guard: GuardSettings,
+}
+
+/// What happens to an axis without a brake when it comes to rest.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum WithoutBrake {
+    /// The power is switched off, as with a brake.
+    #[default]
+    Release,
+    /// The drive stays powered and holds the axis, as its head would fall.
+    Hold,
 }
 
 /// Digital inputs of the limit switches (1..=9). A switch omitted from the table does not exist.
@@ -102,6 +115,7 @@ impl Default for AxisSettings {
             max_accel_deg_s2: 10_000.0,
             quick_stop_deg_s2: 500.0,
             brake_output: None,
+            without_brake: WithoutBrake::Release,
             limit_switches: LimitSwitchSettings::default(),
             homing: HomingSettings::default(),
             guard: GuardSettings::default(),
@@ -169,6 +183,11 @@ impl AxisSettings {
             ("axis.homing.to_deg", homing.to_deg),
         ] {
             between(name, value, -3_600.0, 3_600.0)?;
+        }
+        if let (WithoutBrake::Hold, Some(output)) = (self.without_brake, self.brake_output) {
+            return Err(format!(
+                "axis.without_brake: expected hold on an axis without a brake only, got it with brake_output = {output}"
+            ));
         }
         let fastest = self.max_speed_deg_s;
         positive("axis.max_speed_deg_s", fastest, 1e6)?;

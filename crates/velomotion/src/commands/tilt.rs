@@ -86,6 +86,10 @@ fn status_table(report: &AxisReport, simulated: &str) -> String {
             ),
         ),
     ];
+    // Operation enabled, or quick stop active.
+    if report.statusword & 0xF == 0x7 {
+        rows.insert(2, ("power", "on: the drive holds the axis".to_owned()));
+    }
     rows.extend(report.faults.iter().take(1).map(|fault| {
         let name = fault.name.as_deref().unwrap_or("unknown error");
         ("last fault", format!("{} {name} (tilt faults)", fault.code))
