@@ -27,3 +27,7 @@ scan *ARGS:
 # 200 seeded failure scenarios; --first SEED --captures N for others, --bless for the table of docs/src/chaos.md.
 chaos *ARGS:
     cargo test -p velomotion-tests --test chaos --locked -- --captures 200 {{ARGS}}
+
+# 200 kills at random moments on each transport; --bless for the table of docs/src/kills.md.
+kills *ARGS:
+    cargo test -p velomotion --test kills --locked -- --kills 200 {{ARGS}}

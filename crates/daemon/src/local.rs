@@ -33,6 +33,7 @@ impl LocalService {
         (name, device): (String, Device),
         lidar: bool,
         interrupt: &Arc<AtomicBool>,
+        environment: Environment,
     ) -> Result<Self, Failure> {
         // Software devices belong to their command alone.
         let socket = match profile::simulated(&device) {
@@ -47,7 +48,7 @@ impl LocalService {
                 lidar,
                 interrupt: Arc::clone(interrupt),
             },
-            environment: Environment::default(),
+            environment,
         })?;
         let server = socket.and_then(|socket| {
             serve(&service, &socket)

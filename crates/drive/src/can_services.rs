@@ -57,6 +57,8 @@ pub(crate) struct CanServices {
     pub streaming: bool,
     /// The node has the object (1016) that monitors the host's heartbeat.
     pub monitors_host: bool,
+    /// The node has the configured reaction to a missing heartbeat of the host (6007).
+    pub obeys_abort_option: bool,
     /// The latest sample that has not been taken.
     pub latest: Option<ShaftSample>,
     /// The stream has stalled: a wait for it timed out.
@@ -79,6 +81,7 @@ impl CanServices {
             next_sync: None,
             streaming: false,
             monitors_host: false,
+            obeys_abort_option: false,
             latest: None,
             stalled: false,
             alarm: None,
@@ -108,6 +111,7 @@ impl CanServices {
         self.streaming = false;
         self.stalled = false;
         self.monitors_host = false;
+        self.obeys_abort_option = false;
         self.next_heartbeat = None;
         self.syncs.restart();
     }

@@ -23,10 +23,11 @@ pub enum DriveCommand {
         /// End of the hold.
         until: Stamp<Host>,
     },
-    /// Stops, disables the power stage and lets the brake hold. The only command that may interrupt
-    /// another.
+    /// Stops, disables the power stage and lets the brake hold, or holds an axis without a brake if
+    /// it is configured so. The only command that may interrupt another.
     Stop,
-    /// Disables the power stage of an axis at rest, so that the brake holds.
+    /// Disables the power stage of an axis at rest, so that the brake holds, or holds it like
+    /// [`DriveCommand::Stop`].
     Brake,
     /// Clears a fault; the axis stays disabled.
     ClearFaults,

@@ -36,6 +36,9 @@ pub struct AxisConfig {
     pub limit_switches: LimitSwitchConfig,
     /// The holding brake; `None` leaves the outputs unchanged.
     pub brake: Option<BrakeConfig>,
+    /// Whether an axis without a brake stays powered at rest after a move or stop, as its head
+    /// would fall.
+    pub hold_without_brake: bool,
     /// Homing procedure.
     pub homing: HomingConfig,
     /// Periods and time limits.
@@ -175,6 +178,7 @@ impl Default for AxisConfig {
             guard: MotionGuardConfig::default(),
             limit_switches: LimitSwitchConfig::default(),
             brake: Some(BrakeConfig::default()),
+            hold_without_brake: false,
             homing: HomingConfig::default(),
             timing: AxisTiming::default(),
             can: CanHeartbeats::default(),
@@ -295,6 +299,12 @@ const HOMING_METHODS: [i8; 15] = [1, 2, 7, 11, 17, 18, 23, 27, 33, 34, 35, -1, -
 const MAX_SPAN_MS: i64 = 3_600_000;
 
 impl AxisConfig {
+    /// Whether the drive holds the axis at rest, as nothing else does.
+    #[must_use]
+    pub const fn holds(&self) -> bool {
+        self.hold_without_brake && self.brake.is_none()
+    }
+
     /// Validates every field.
     ///
     /// # Errors

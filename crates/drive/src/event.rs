@@ -208,7 +208,7 @@ pub struct MoveReport {
     pub arrived: Stamp<Host>,
 }
 
-/// An axis at rest with the power stage off.
+/// An axis at rest, with the power stage off or held as configured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct StopReport {
@@ -222,6 +222,8 @@ pub struct StopReport {
     pub fault: bool,
     /// Whether an output of the drive controls a brake.
     pub brake: bool,
+    /// Whether the power stage is on and holds the axis.
+    pub held: bool,
 }
 
 /// Validity of the position of an axis at rest.

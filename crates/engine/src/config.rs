@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use scanner::config::{LidarConfig, MountConfig};
 use serde::Deserialize;
 
-pub use axis::{AxisSettings, HomingSettings, LimitSwitchSettings};
+pub use axis::{AxisSettings, HomingSettings, LimitSwitchSettings, WithoutBrake};
 pub use device::{Device, DeviceKind, Devices};
 
 use crate::config::daemon::DaemonConfig;

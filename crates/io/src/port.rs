@@ -2,7 +2,9 @@
 //!
 //! A port does not interpret bytes. [`RecordingPort`] is a wrapper that records them.
 
+mod child;
 mod delimit;
+mod descriptor;
 mod pty;
 mod recorder;
 mod serial;
@@ -12,6 +14,8 @@ use std::io;
 
 use units::{Host, Span, Stamp};
 
+pub use child::{PortChild, shared_port};
+pub use descriptor::DescriptorPort;
 pub use pty::Pty;
 pub use recorder::RecordingPort;
 pub use serial::{LatencyTimer, SerialPort};

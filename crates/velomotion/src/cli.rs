@@ -76,6 +76,9 @@ pub enum Command {
     Doctor(Doctor),
     /// Run the simulated EPOS2 alone, to develop a client against it
     FirmwareSim(FirmwareSim),
+    /// Stop the axis if the program that drives it dies; started by that program only
+    #[command(hide = true)]
+    GuardAxis,
 }
 
 /// `doctor`.

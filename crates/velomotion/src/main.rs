@@ -7,7 +7,7 @@ use std::time::Duration;
 use clap::Parser;
 use engine::failure::{Failure, Kind};
 use velomotion::cli::{Cli, Common};
-use velomotion::commands::CommandOutput;
+use velomotion::commands::{CommandOutput, guard_axis};
 use velomotion::logging;
 use velomotion::signals;
 use velomotion::terminal::{flush, to_stderr};
@@ -17,6 +17,7 @@ const LAST_WORDS: Duration = Duration::from_secs(1);
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
+    guard_axis::offer();
     keep_words_whole();
     // The default hook would block the device thread on a stderr that no program reads.
     std::panic::set_hook(Box::new(|panic| {

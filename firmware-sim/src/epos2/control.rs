@@ -233,6 +233,18 @@ impl Node {
         self.sequence = Sequence::leaving(DeviceState::Fault);
     }
 
+    /// Reacts to a lost master by the abort connection option code (6007): 1 as to a device error,
+    /// 2 disable voltage, 3 quick stop, others none. The error is recorded in any case.
+    pub(super) fn lose_connection(&mut self, error: DeviceError) {
+        match self.dictionary.get(objects::ABORT_CONNECTION_OPTION) {
+            1 => return self.fail(error),
+            2 => self.transition(ControlCommand::DisableVoltage),
+            3 => self.transition(ControlCommand::QuickStop),
+            _ => {}
+        }
+        self.errors.push(error);
+    }
+
     /// The ramp of the fault reaction option code (605E): 0 none, 1 slow-down, 2 and others quick
     /// stop.
     fn fault_ramp(&self) -> Option<TypedObject<u32>> {

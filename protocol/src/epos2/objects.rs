@@ -105,6 +105,8 @@ objects! {
     SENSOR_TYPE: u16 = 0x2210, 2, "Position Sensor Type";
     /// See [`crate::epos2::cia402::control`].
     CONTROLWORD: u16 = 0x6040, 0, "Controlword";
+    /// Reaction to a lost master: 0 none, 1 that to a fault, 2 disable voltage, 3 quick stop.
+    ABORT_CONNECTION_OPTION: i16 = 0x6007, 0, "Abort Connection Option Code";
     /// See [`crate::epos2::cia402::status`].
     STATUSWORD: u16 = 0x6041, 0, "Statusword";
     /// How "shutdown" stops: 0 at once, 1 by the profile deceleration.

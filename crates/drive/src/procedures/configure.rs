@@ -116,7 +116,7 @@ pub(super) async fn verify_safety(ops: &Ops) -> Result<(), DriveError> {
     let limits = ops.config.limits_qc()?;
     ops.verify(objects::MIN_POSITION, limits.min.0).await?;
     ops.verify(objects::MAX_POSITION, limits.max.0).await?;
-    network::verify_stream(ops).await
+    network::verify(ops).await
 }
 
 /// Whether the drive has lost the software limits written by connecting, which only a restart

@@ -10,7 +10,7 @@ use crate::ops::Ops;
 
 use super::configure::{configure, verify_safety};
 use super::network;
-use super::power::{clear_fault, is_off, is_referenced, wait_for};
+use super::power::{clear_fault, is_held, is_off, is_referenced, wait_for};
 use super::report::{history, identify};
 use super::stop::halt;
 
@@ -26,9 +26,11 @@ pub(crate) async fn connect(mut ops: Ops) -> Result<CommandOutcome, DriveError> 
         halt(&mut ops).await?;
     }
     clear_fault(&ops).await?;
-    ops.write(objects::CONTROLWORD, control::DISABLE_VOLTAGE)
-        .await?;
-    wait_for(&ops, "power off, no fault", is_off).await?;
+    if !is_held(&ops, ops.read(objects::STATUSWORD).await?) {
+        ops.write(objects::CONTROLWORD, control::DISABLE_VOLTAGE)
+            .await?;
+        wait_for(&ops, "power off, no fault", is_off).await?;
+    }
     network::reset(&ops);
     configure(&ops).await?;
     verify_safety(&ops).await?;

@@ -11,7 +11,7 @@ use crate::ops::Ops;
 
 use super::configure::verify_safety;
 use super::network;
-use super::power::{check_enabled, enable, is_referenced, set_mode};
+use super::power::{check_enabled, enable, is_held, is_referenced, set_mode};
 use super::stop::make_safe;
 
 /// Runs [`crate::DriveCommand::Home`].
@@ -26,7 +26,11 @@ pub(crate) async fn home(mut ops: Ops) -> Result<CommandOutcome, DriveError> {
 async fn run(ops: &mut Ops) -> Result<CommandOutcome, DriveError> {
     verify_safety(ops).await?;
     // A start bit left by another master must not act when the mode changes.
-    ops.write(objects::CONTROLWORD, control::SHUTDOWN).await?;
+    let idle = match is_held(ops, ops.read(objects::STATUSWORD).await?) {
+        true => control::ENABLE_OPERATION,
+        false => control::SHUTDOWN,
+    };
+    ops.write(objects::CONTROLWORD, idle).await?;
     set_mode(ops, mode::HOMING).await?;
     configure(ops).await?;
     network::arm(ops).await?;
@@ -43,7 +47,6 @@ async fn run(ops: &mut Ops) -> Result<CommandOutcome, DriveError> {
         .await?;
     set_mode(ops, mode::PROFILE_POSITION).await?;
     let outcome = check_result(ops).await?;
-    network::disarm(ops).await?;
     Ok(outcome)
 }
 

@@ -80,7 +80,6 @@ async fn run(ops: &mut Ops, target: ValidatedMove, hold: Span) -> Result<MoveRep
     let (position, arrived) = sample_until_arrival(ops, target.target, &mut guard, started).await?;
     ops.is_moving = false;
     sample_for(ops, hold).await?;
-    network::disarm(ops).await?;
     Ok(MoveReport {
         plan,
         position,

@@ -1,9 +1,8 @@
 //! Configuration of a CAN bus: NMT state, heartbeats both ways, the stream of positions. Does
 //! nothing on other links.
 //!
-//! The node monitors the host's heartbeat (1016) only while a command may move the axis. Between
-//! commands the axis holds and the host may be silent. The EPOS2 has no such monitoring on USB and
-//! RS232.
+//! The node monitors the host's heartbeat (1016) from before the axis is powered until its power is
+//! off, or it is held as configured. The EPOS2 has no such monitoring on USB and RS232.
 
 use protocol::canopen::heartbeat::ConsumerEntry;
 use protocol::canopen::nmt::NmtCommand;
@@ -45,9 +44,14 @@ pub(super) async fn configure(ops: &Ops) -> Result<(AngleSource, bool), DriveErr
         ops.write_verified(objects::CONSUMER_HEARTBEAT, NO_CONSUMER)
             .await,
     )?;
+    let obeys_option = is_supported(
+        ops.write_verified(objects::ABORT_CONNECTION_OPTION, abort_option(ops))
+            .await,
+    )?;
     let streaming = is_supported(map_stream(ops, node).await)?;
     ops.on_can(|can, _| {
         can.monitors_host = monitors_host;
+        can.obeys_abort_option = obeys_option;
         can.streaming = streaming;
         can.send_nmt(NmtCommand::Start);
     });
@@ -64,6 +68,16 @@ pub(super) async fn configure(ops: &Ops) -> Result<(AngleSource, bool), DriveErr
         AngleSource::Polls
     };
     Ok((angle, monitors_host))
+}
+
+/// What the drive does if the host's heartbeat is missing (6007): 1, the reaction to a device error
+/// (605E: ramp, then power off and brake), or 3, a quick stop that keeps the axis powered. Firmware
+/// without these values has the reaction of 605E.
+fn abort_option(ops: &Ops) -> i16 {
+    match ops.config.holds() {
+        true => 3,
+        false => 1,
+    }
 }
 
 /// 1016: no heartbeat is monitored.
@@ -96,9 +110,13 @@ async fn map_stream(ops: &Ops, node: NodeId) -> Result<(), DriveError> {
     verify_mapping(ops, node).await
 }
 
-/// Verifies the stream before a move: a log of the move then contains the mapping, and a change by
-/// another master is detected.
-pub(super) async fn verify_stream(ops: &Ops) -> Result<(), DriveError> {
+/// Verifies the reaction to a lost host, and the stream, before a move: a log of the move then
+/// contains the mapping, and a change by another master is detected.
+pub(super) async fn verify(ops: &Ops) -> Result<(), DriveError> {
+    if ops.on_can(|can, _| can.obeys_abort_option) == Some(true) {
+        ops.verify(objects::ABORT_CONNECTION_OPTION, abort_option(ops))
+            .await?;
+    }
     match ops.on_can(|can, _| (can.streaming, can.node)) {
         Some((true, node)) => verify_mapping(ops, node).await,
         _ => Ok(()),
@@ -148,7 +166,10 @@ pub(super) async fn arm(ops: &Ops) -> Result<(), DriveError> {
     let time_ms = u16::try_from(whole_ms(can.host_limit)).unwrap_or(u16::MAX);
     let entry = ConsumerEntry { node, time_ms };
     ops.write_verified(objects::CONSUMER_HEARTBEAT, entry.to_u32())
-        .await
+        .await?;
+    // The node monitors from the first heartbeat on: one goes out before anything can move.
+    ops.on_can(|can, now| can.next_heartbeat = Some(now));
+    Ok(())
 }
 
 /// Ends the monitoring.

@@ -38,6 +38,19 @@ pub(super) fn is_off(statusword: u16) -> bool {
     )
 }
 
+/// Whether the power stage is on and the drive holds its position.
+fn is_holding(statusword: u16) -> bool {
+    matches!(
+        DeviceState::from_statusword(statusword),
+        Some(DeviceState::OperationEnabled | DeviceState::QuickStopActive)
+    )
+}
+
+/// Whether an axis in this state stays powered at rest: it is configured so, and it is powered.
+pub(super) fn is_held(ops: &Ops, statusword: u16) -> bool {
+    ops.config.holds() && is_holding(statusword)
+}
+
 /// Whether the axis is referenced.
 pub(super) fn is_referenced(statusword: u16) -> bool {
     statusword & status::REFERENCED != 0
@@ -125,6 +138,12 @@ pub(super) async fn enable(ops: &Ops) -> Result<(), DriveError> {
     match DeviceState::from_statusword(got) {
         Some(DeviceState::OperationEnabled) => return Ok(()),
         Some(DeviceState::SwitchOnDisabled | DeviceState::ReadyToSwitchOn) => {}
+        // Held after a stop: its head must not fall.
+        Some(DeviceState::QuickStopActive) if ops.config.holds() => {
+            ops.write(objects::CONTROLWORD, control::ENABLE_OPERATION)
+                .await?;
+            return wait_for_state(ops, "operation enabled", DeviceState::OperationEnabled).await;
+        }
         // Any other state is left through "switch-on disabled".
         _ => {
             ops.write(objects::CONTROLWORD, control::DISABLE_VOLTAGE)

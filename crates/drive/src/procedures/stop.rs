@@ -1,4 +1,5 @@
-//! Stop and brake: axis at rest and observed to be, power off, brake set.
+//! Stop and brake: axis at rest and observed to be, power off, brake set. An axis without a brake
+//! is held by the drive instead if the configuration says so.
 //!
 //! The encoder decides about standstill. The velocity (606C) is too coarse: one count per control
 //! cycle is 30 rpm at 2000 qc per revolution. The axis is at rest if its positions of 50 ms spread
@@ -21,7 +22,7 @@ use crate::ops::Ops;
 
 use super::configure::has_lost_settings;
 use super::network;
-use super::power::{is_fault, is_off, is_referenced, wait_for};
+use super::power::{is_fault, is_held, is_off, is_referenced, wait_for};
 use super::report::newest_error;
 
 /// Share of the standstill spread by which the mean position may drift within the window: 0.3 deg/s
@@ -160,13 +161,21 @@ async fn diagnose(ops: &Ops, cause: DriveError) -> DriveError {
     }
 }
 
-/// Waits for standstill, then disables the power stage and lets the brake close.
+/// Waits for standstill, then disables the power stage and lets the brake close. The one policy at
+/// the end of every move and stop.
 async fn disable_at_standstill(ops: &mut Ops) -> Result<StopReport, DriveError> {
     ops.is_moving = true;
     wait_for_standstill(ops).await?;
-    ops.write_idempotent(objects::CONTROLWORD, control::DISABLE_VOLTAGE)
-        .await?;
-    let statusword = wait_for(ops, "power off", is_off).await?;
+    let mut statusword = 0;
+    if ops.config.holds() {
+        statusword = ops.read(objects::STATUSWORD).await?;
+    }
+    let held = is_held(ops, statusword);
+    if !held {
+        ops.write_idempotent(objects::CONTROLWORD, control::DISABLE_VOLTAGE)
+            .await?;
+        statusword = wait_for(ops, "power off", is_off).await?;
+    }
     ops.is_moving = false;
     let brake = ops.config.brake;
     ops.sleep(brake.map_or(Span::ZERO, |brake| brake.fall))
@@ -178,7 +187,7 @@ async fn disable_at_standstill(ops: &mut Ops) -> Result<StopReport, DriveError> 
     } else {
         None
     };
-    // The power is off: an error of the monitoring no longer matters.
+    // The power is off, or 6007 keeps it on: an error of the monitoring no longer matters.
     let _ = network::disarm(ops).await;
     let validity = position_validity(ops, statusword, error);
     Ok(StopReport {
@@ -187,6 +196,7 @@ async fn disable_at_standstill(ops: &mut Ops) -> Result<StopReport, DriveError> 
         angle: (validity == PositionValidity::Valid).then(|| ops.config.gearing.angle(position)),
         fault,
         brake: brake.is_some(),
+        held,
     })
 }
 

@@ -209,14 +209,19 @@ fn the_host_sends_heartbeats_until_a_stop_is_complete() {
     assert!(!stopped.fault);
 }
 
+/// A powered axis is monitored between commands, too; at rest with its power off it is not.
 #[test]
-fn the_host_may_be_silent_between_commands() {
+fn the_host_may_be_silent_once_the_power_is_off() {
     let mut rig = homed();
     rig.run(DriveCommand::Goto(to(0.0))).unwrap();
+    rig.run(DriveCommand::Brake).unwrap();
     rig.now += Span::from_secs(30);
     rig.fake.live(rig.now);
     assert_ne!(rig.fake.state, FAULT);
-    assert!(rig.run(DriveCommand::Goto(to(10.0))).is_ok());
+    rig.run(DriveCommand::Goto(to(10.0))).unwrap();
+    rig.now += Span::from_secs(30);
+    rig.fake.live(rig.now);
+    assert_eq!(rig.fake.state, FAULT);
 }
 
 #[test]

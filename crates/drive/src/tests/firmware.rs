@@ -71,9 +71,9 @@ impl Server {
     }
 }
 
-struct World {
-    client: DriveClient,
-    node: Node,
+pub(super) struct World {
+    pub(super) client: DriveClient,
+    pub(super) node: Node,
     server: Server,
     now: Stamp<Host>,
     next_tick: Stamp<Host>,
@@ -83,7 +83,7 @@ struct World {
     /// When the client sent a quick stop.
     quick_stops: Vec<Stamp<Host>>,
     /// The cable is cut.
-    cut: bool,
+    pub(super) cut: bool,
     /// Transforms the unit's bytes on their way.
     distort: Distortion,
     /// Start of each control cycle, and the shaft's motion through it, world qc.
@@ -95,7 +95,7 @@ impl World {
         Self::on(DriveLink::Usb, config)
     }
 
-    fn on(link: DriveLink, config: NodeConfig) -> Self {
+    pub(super) fn on(link: DriveLink, config: NodeConfig) -> Self {
         let now = Stamp::from_nanos(1_795_000_000_000_000_000);
         Self {
             client: DriveClient::new(AxisConfig::default(), link),
@@ -128,7 +128,7 @@ impl World {
         panic!("the command does not end within 120 s: {:?}", self.client);
     }
 
-    fn step(&mut self) -> Option<Result<CommandOutcome, DriveError>> {
+    pub(super) fn step(&mut self) -> Option<Result<CommandOutcome, DriveError>> {
         while let Some(frame) = self.client.poll_transmit(self.now) {
             if is_quick_stop(&frame) {
                 self.quick_stops.push(self.now);

@@ -6,6 +6,7 @@ mod damaged_logs;
 mod fake;
 mod faults;
 mod firmware;
+mod hold;
 mod link;
 mod links;
 mod listener;

@@ -152,7 +152,9 @@ impl<'a> BringUp<'a> {
     ) -> Result<SessionRecord, SessionError> {
         let client = DriveClient::new(axis, self.opened.link);
         let stop = Arc::new(AtomicBool::new(false));
-        let mut session = Session::new(client, &mut *self.opened.port, Arc::clone(&stop));
+        let opened = &mut *self.opened;
+        let mut session = Session::new(client, &mut *opened.port, Arc::clone(&stop))
+            .guarded_by(opened.guardian.as_mut());
         let mut recording = SessionRecord::default();
         for command in commands {
             let command = match *command {

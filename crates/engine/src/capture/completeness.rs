@@ -10,6 +10,8 @@ use crate::reconstruct::report::ScanReport;
 /// Time without packets after which the sweep is stopped. A lidar in rotation sends a packet every
 /// 1.3 ms.
 pub const LIDAR_SILENCE: Duration = Duration::from_secs(1);
+/// A longer time between two looks is a suspension of this program.
+const LONGEST_PAUSE: Duration = Duration::from_millis(500);
 /// Longest time without packets at the end of the last sweep, seconds. Sweeps end with a sample of
 /// the drive, some milliseconds after the one before, and a packet takes 1.3 ms to fill.
 pub const MAX_LIDAR_GAP_S: f64 = 0.05;
@@ -19,6 +21,8 @@ pub const MAX_LIDAR_GAP_S: f64 = 0.05;
 pub struct SilenceWatch {
     packets: u64,
     last_packet: Instant,
+    /// The last call of [`SilenceWatch::silent`].
+    last_look: Instant,
     silent: bool,
 }
 
@@ -29,15 +33,19 @@ impl SilenceWatch {
         Self {
             packets,
             last_packet: Instant::now(),
+            last_look: Instant::now(),
             silent: false,
         }
     }
 
     /// Whether the lidar has fallen silent, by the number of packets until now.
     pub fn silent(&mut self, packets: u64) -> bool {
-        if packets != self.packets {
+        let now = Instant::now();
+        // After a suspension of this program, received packets are yet to be counted.
+        let suspended = now - std::mem::replace(&mut self.last_look, now) > LONGEST_PAUSE;
+        if packets != self.packets || suspended {
             self.packets = packets;
-            self.last_packet = Instant::now();
+            self.last_packet = now;
         }
         self.silent |= self.last_packet.elapsed() >= LIDAR_SILENCE;
         self.silent

@@ -8,6 +8,7 @@ use units::{DegPerS, DegPerS2, Degrees};
 use crate::capture::moves;
 use crate::config::{Config, Device};
 use crate::devices::drive_session::{Session, SessionError};
+use crate::devices::guardian::GuardianError;
 use crate::devices::profile as devices;
 use crate::failure::{Failure, Kind};
 
@@ -97,7 +98,7 @@ pub enum Homing {
 /// # Errors
 /// [`SessionError`].
 pub fn run<P: Port>(
-    session: &mut Session<P>,
+    session: &mut Session<'_, P>,
     commands: &[DriveCommand],
     homing: Homing,
     on_event: &mut dyn FnMut(&DriveEvent),
@@ -118,11 +119,13 @@ pub fn run<P: Port>(
 #[must_use]
 pub fn failure(error: &SessionError) -> Failure {
     let kind = match error {
-        SessionError::Interrupted => Kind::Interrupted,
+        SessionError::Interrupted | SessionError::Guardian(GuardianError::Acted { .. }) => {
+            Kind::Interrupted
+        }
         _ => Kind::DeviceFault,
     };
     let help = error.help().unwrap_or_else(|| {
-        "the axis is at rest, its power stage off, its brake set if it has one".to_owned()
+        "the axis is at rest, its power stage off and its brake set if it has one; with [axis] without_brake = \"hold\" it is held powered".to_owned()
     });
     Failure::new(kind, error.to_string()).help(help)
 }

@@ -107,7 +107,7 @@ pub enum MoveProgress<'a> {
 /// # Errors
 /// [`SessionError`]. The axis has been stopped unless the error reports otherwise.
 pub fn run<P: Port>(
-    session: &mut Session<P>,
+    session: &mut Session<'_, P>,
     steps: &[Step],
     on_progress: &mut dyn FnMut(MoveProgress<'_>),
 ) -> Result<(), SessionError> {

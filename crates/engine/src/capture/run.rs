@@ -19,6 +19,7 @@ use crate::capture::log_recorder::{CaptureCounts, CaptureLog};
 use crate::capture::moves::{self, MoveProgress};
 use crate::capture::request::CapturePlan;
 use crate::devices::drive_session::{Session, SessionError};
+use crate::devices::guardian::{Guardian, GuardianError};
 use crate::devices::lidar_receiver::LidarReceiver;
 use crate::devices::lidar_sockets::listen_config;
 use crate::failure::{Failure, Kind};
@@ -43,6 +44,8 @@ pub struct CaptureJob<'a> {
     pub lidar: &'a Arc<LidarReceiver>,
     /// The drive's port.
     pub port: &'a mut dyn Port,
+    /// Stops the axis if this process dies.
+    pub guardian: Option<&'a mut Guardian>,
     /// How the drive is attached.
     pub link: DriveLink,
     /// Speed of an RS232 line.
@@ -126,7 +129,7 @@ pub fn record(
         tap(record);
     });
     let client = DriveClient::new(plan.axis.clone(), job.link);
-    let mut session = Session::new(client, port, Arc::clone(interrupt));
+    let mut session = Session::new(client, port, Arc::clone(interrupt)).guarded_by(job.guardian);
     let mut watch = SilenceWatch::new(recorder.packets());
     let mut powered = false;
     let motion = moves::run(&mut session, &plan.steps, &mut |progress| {
@@ -253,12 +256,6 @@ impl RecordingEnd {
     #[must_use]
     pub fn at_rest(&self) -> bool {
         !self.motion.as_ref().is_err_and(SessionError::may_move)
-    }
-
-    /// Whether the drive's port has failed.
-    #[must_use]
-    pub fn port_failed(&self) -> bool {
-        matches!(self.motion, Err(SessionError::Port(_)))
     }
 
     /// The report on it. What went wrong first comes first.
@@ -396,10 +393,13 @@ fn loss(counts: &CaptureCounts) -> Option<Failure> {
 
 fn motion_failure(error: &SessionError, log: Option<Failure>) -> Failure {
     let kind = match error {
-        SessionError::Interrupted => Kind::Interrupted,
-        SessionError::NotStopped(_) | SessionError::Drive(_) | SessionError::Port(_) => {
-            Kind::DeviceFault
+        SessionError::Interrupted | SessionError::Guardian(GuardianError::Acted { .. }) => {
+            Kind::Interrupted
         }
+        SessionError::NotStopped(_)
+        | SessionError::Drive(_)
+        | SessionError::Port(_)
+        | SessionError::Guardian(GuardianError::Lost) => Kind::DeviceFault,
     };
     let also = log.map_or(String::new(), |failure| {
         format!("; and {}", failure.message)

@@ -1,12 +1,12 @@
 //! `[axis]`: encoder, gear, limits, homing.
 
 use scanner::config::TiltAxisConfig;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::{between, positive};
 
 /// The tilt axis: encoder, gear, limits.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct AxisSettings {
     /// Node id of the drive.
@@ -28,6 +28,8 @@ pub struct AxisSettings {
     /// Digital output of the drive (1..=5) that opens the brake; absent without a brake. The
     /// factory setting assigns no output.
     pub brake_output: Option<u8>,
+    /// What happens to an axis without a brake when it comes to rest.
+    pub without_brake: WithoutBrake,
     /// Limit switches; the factory's inputs without the table.
     pub limit_switches: LimitSwitchSettings,
     /// Homing.
@@ -36,8 +38,19 @@ pub struct AxisSettings {
     pub guard: GuardSettings,
 }
 
+/// What happens to an axis without a brake when it comes to rest.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum WithoutBrake {
+    /// The power is switched off, as with a brake.
+    #[default]
+    Release,
+    /// The drive stays powered and holds the axis, as its head would fall.
+    Hold,
+}
+
 /// Digital inputs of the limit switches (1..=9). A switch omitted from the table does not exist.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LimitSwitchSettings {
     /// Input of the lower limit switch.
@@ -52,7 +65,7 @@ pub struct LimitSwitchSettings {
 }
 
 /// Tolerances of the drive client's motion guard, degrees of tilt unless named otherwise.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct GuardSettings {
     /// How far the axis may lag behind its plan at low speed.
@@ -74,7 +87,7 @@ pub struct GuardSettings {
 }
 
 /// Homing of the axis.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct HomingSettings {
     /// Homing method (object 6098).
@@ -102,6 +115,7 @@ impl Default for AxisSettings {
             max_accel_deg_s2: 10_000.0,
             quick_stop_deg_s2: 500.0,
             brake_output: None,
+            without_brake: WithoutBrake::Release,
             limit_switches: LimitSwitchSettings::default(),
             homing: HomingSettings::default(),
             guard: GuardSettings::default(),
@@ -169,6 +183,11 @@ impl AxisSettings {
             ("axis.homing.to_deg", homing.to_deg),
         ] {
             between(name, value, -3_600.0, 3_600.0)?;
+        }
+        if let (WithoutBrake::Hold, Some(output)) = (self.without_brake, self.brake_output) {
+            return Err(format!(
+                "axis.without_brake: expected hold on an axis without a brake only, got it with brake_output = {output}"
+            ));
         }
         let fastest = self.max_speed_deg_s;
         positive("axis.max_speed_deg_s", fastest, 1e6)?;

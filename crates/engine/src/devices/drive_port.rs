@@ -1,6 +1,7 @@
 //! Opens the drive's port by the device's profile, with help if that fails.
 
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use io::can::{CanError, CanPort, Slcan, SocketCan};
 use io::discover::ConnectedDevices;
@@ -10,7 +11,8 @@ use protocol::canopen::slcan::Bitrate;
 use protocol::record::DriveLink;
 use units::{Host, Span, Stamp};
 
-use crate::config::{Device, DeviceKind};
+use super::guardian::Guardian;
+use crate::config::{AxisSettings, Device, DeviceKind};
 use crate::failure::{Failure, Kind};
 
 /// EPOS2 on USB: 1 Mbaud by the Communication Guide.
@@ -19,9 +21,14 @@ const USB_BAUD: u32 = 1_000_000;
 const RS232_BAUD: u32 = 115_200;
 /// SLCAN adapters on USB ignore the rate; those on a real line mostly have this one.
 const SLCAN_BAUD: u32 = 115_200;
+/// Longest wait for a port in use.
+const BUSY_WAIT: Duration = Duration::from_secs(2);
+const BUSY_POLL: Duration = Duration::from_millis(20);
 
 /// An open port of the drive.
 pub struct Opened {
+    /// Stops the axis if this process dies. Dropped before the port, which it shares.
+    pub guardian: Option<Guardian>,
     /// Bytes of a serial line, or 16 bytes per frame of a bus.
     pub port: Box<dyn Port>,
     /// Attachment of the drive.
@@ -30,6 +37,16 @@ pub struct Opened {
     pub rs232_baud: Option<u32>,
     /// Warning about the port.
     pub warning: Option<String>,
+}
+
+/// How a guardian is started.
+#[derive(Clone, Copy, Debug)]
+pub struct GuardianOptions<'a> {
+    /// The program, which runs [`guardian::run`](super::guardian::run) if it is started with
+    /// [`guardian::ARGUMENT`](super::guardian::ARGUMENT).
+    pub program: &'a Path,
+    /// The axis.
+    pub axis: &'a AxisSettings,
 }
 
 /// How long the caller searches for a drive.
@@ -122,29 +139,47 @@ fn found(plugged: &ConnectedDevices, looks: Looks) -> Result<PathBuf, Failure> {
 ///
 /// # Errors
 /// Returns [`Kind::NoDevice`].
-pub fn open(device: &Device, place: &Path) -> Result<Opened, Failure> {
+pub fn open(
+    device: &Device,
+    place: &Path,
+    guarding: Option<&GuardianOptions<'_>>,
+) -> Result<Opened, Failure> {
     let serial = |baud: u32| {
-        SerialPort::open(place, device.baud.unwrap_or(baud)).map_err(|error| failure(&error))
+        open_serial(place, device.baud.unwrap_or(baud)).map_err(|error| failure(&error))
     };
     let opened = |port: Box<dyn Port>, link| Opened {
+        guardian: None,
         port,
         link,
         rs232_baud: None,
         warning: None,
     };
     Ok(match device.kind {
-        DeviceKind::Sim | DeviceKind::Usb => {
+        // Software devices end with this process.
+        DeviceKind::Sim => opened(Box::new(serial(USB_BAUD)?), DriveLink::Usb),
+        DeviceKind::Usb => {
             let port = serial(USB_BAUD)?;
-            let warning = slow_answers(port.latency);
+            let (guardian, unguarded) = start_guardian(&port, DriveLink::Usb, guarding);
+            let warnings: Vec<String> = [slow_answers(port.latency), unguarded]
+                .into_iter()
+                .flatten()
+                .collect();
             Opened {
-                warning,
+                guardian,
+                warning: (!warnings.is_empty()).then(|| warnings.join("; ")),
                 ..opened(Box::new(port), DriveLink::Usb)
             }
         }
-        DeviceKind::Rs232 => Opened {
-            rs232_baud: Some(device.baud.unwrap_or(RS232_BAUD)),
-            ..opened(Box::new(serial(RS232_BAUD)?), DriveLink::Rs232)
-        },
+        DeviceKind::Rs232 => {
+            let port = serial(RS232_BAUD)?;
+            let (guardian, warning) = start_guardian(&port, DriveLink::Rs232, guarding);
+            Opened {
+                guardian,
+                warning,
+                rs232_baud: Some(device.baud.unwrap_or(RS232_BAUD)),
+                ..opened(Box::new(port), DriveLink::Rs232)
+            }
+        }
         DeviceKind::Slcan => {
             let bus = Slcan::open(serial(SLCAN_BAUD)?, Bitrate::Kbit1000)
                 .map_err(|error| can_failure(place, &error))?;
@@ -156,6 +191,41 @@ pub fn open(device: &Device, place: &Path) -> Result<Opened, Failure> {
             opened(Box::new(BusLine(bus)), DriveLink::Can)
         }
     })
+}
+
+/// Opens a serial port. One in use may be that of a guardian that stops the axis: it is free soon.
+fn open_serial(place: &Path, baud: u32) -> Result<SerialPort, PortError> {
+    let deadline = Instant::now() + BUSY_WAIT;
+    loop {
+        match SerialPort::open(place, baud) {
+            Err(PortError::Busy { .. }) if Instant::now() < deadline => {
+                std::thread::sleep(BUSY_POLL);
+            }
+            opened => return opened,
+        }
+    }
+}
+
+/// Starts the guardian of a port, or returns a warning.
+fn start_guardian(
+    port: &SerialPort,
+    link: DriveLink,
+    options: Option<&GuardianOptions<'_>>,
+) -> (Option<Guardian>, Option<String>) {
+    let started = match options {
+        Some(options) => Guardian::start(options.program, port, link, options.axis)
+            .map_err(|error| format!("{}: {error}", options.program.display())),
+        None => Err("no program is configured".to_owned()),
+    };
+    match started {
+        Ok(guardian) => (Some(guardian), None),
+        Err(why) => (
+            None,
+            Some(format!(
+                "no guardian process ({why}): if this program dies, the axis completes its move and stays powered"
+            )),
+        ),
+    }
 }
 
 fn slow_answers(timer: LatencyTimer) -> Option<String> {

@@ -13,6 +13,8 @@ use io::port::{Port, PortError};
 use thiserror::Error;
 use units::{Host, Span, Stamp};
 
+use super::guardian::{Guardian, GuardianError};
+
 /// Why a procedure ended early.
 #[derive(Debug, Error)]
 pub enum SessionError {
@@ -30,6 +32,9 @@ pub enum SessionError {
     /// received.
     #[error("{0}; the axis may still move")]
     Port(#[from] PortError),
+    /// The guardian process has stopped the axis, or is gone. The port must be opened again.
+    #[error(transparent)]
+    Guardian(#[from] GuardianError),
 }
 
 impl SessionError {
@@ -40,6 +45,7 @@ impl SessionError {
             Self::Interrupted => false,
             Self::NotStopped(_) | Self::Port(_) => true,
             Self::Drive(error) => matches!(error, DriveError::NotStopped { .. }),
+            Self::Guardian(error) => error.may_move(),
         }
     }
 
@@ -52,7 +58,11 @@ impl SessionError {
                 DriveError::Fault { .. } => format!("{}\n{CLEARING}", error.help()),
                 error => error.help(),
             }),
-            Self::NotStopped(_) | Self::Port(_) => Some(
+            Self::Guardian(error) if !error.may_move() => Some(
+                "the move is not resumed: begin again; docs/src/tilt.md describes the guardian"
+                    .to_owned(),
+            ),
+            Self::NotStopped(_) | Self::Port(_) | Self::Guardian(_) => Some(
                 "switch the motor's supply off if the axis moves, then check cable and supply"
                     .to_owned(),
             ),
@@ -64,9 +74,11 @@ impl SessionError {
 pub const CLEARING: &str = "tilt faults --clear clears it, and so does homing the axis";
 
 /// A drive client on a port. Dropped while the axis may move, it sends a stop.
-pub struct Session<P: Port> {
+pub struct Session<'g, P: Port> {
     client: DriveClient,
     port: P,
+    /// Stops the axis if this process cannot.
+    guardian: Option<&'g mut Guardian>,
     interrupt: Arc<AtomicBool>,
     /// Whether a command that can move or power the axis has begun and no later command has
     /// disabled the axis.
@@ -80,7 +92,7 @@ const STOP_TRIES: u32 = 5;
 /// Time that a session dropped in motion waits for the axis to stop.
 const LAST_RESORT: Span = Span::from_secs(1);
 
-impl<P: Port> Session<P> {
+impl<'g, P: Port> Session<'g, P> {
     /// Makes a session over `port`, with the port's time. It stops the axis when `interrupt`
     /// becomes true.
     pub fn new(client: DriveClient, port: P, interrupt: Arc<AtomicBool>) -> Self {
@@ -88,8 +100,16 @@ impl<P: Port> Session<P> {
             client,
             port,
             interrupt,
+            guardian: None,
             unsafe_to_leave: false,
         }
+    }
+
+    /// Has the axis guarded while it may move or is powered.
+    #[must_use]
+    pub fn guarded_by(mut self, guardian: Option<&'g mut Guardian>) -> Self {
+        self.guardian = guardian;
+        self
     }
 
     /// Runs `command` to its end.
@@ -102,6 +122,11 @@ impl<P: Port> Session<P> {
         on_event: &mut dyn FnMut(&DriveEvent),
     ) -> Result<CommandOutcome, SessionError> {
         let kind = command.kind();
+        if may_leave_power_on(kind) && !self.unsafe_to_leave {
+            self.guardian
+                .as_mut()
+                .map_or(Ok(()), |guardian| guardian.arm())?;
+        }
         if let Err(error) = self.client.start(command) {
             return Err(match self.stop(on_event)? {
                 None => SessionError::Drive(error),
@@ -113,7 +138,7 @@ impl<P: Port> Session<P> {
         match ended {
             Ended::Done(outcome) => {
                 if matches!(kind, CommandKind::Stop | CommandKind::Brake) {
-                    self.unsafe_to_leave = false;
+                    self.set_safe(true);
                 }
                 Ok(outcome)
             }
@@ -123,11 +148,15 @@ impl<P: Port> Session<P> {
                     CommandKind::Stop => SessionError::NotStopped(error),
                     _ => SessionError::Drive(error),
                 };
-                self.unsafe_to_leave = error.may_move();
+                self.set_safe(!error.may_move());
                 Err(error)
             }
             Ended::Interrupted => match self.stop(on_event)? {
                 None => Err(SessionError::Interrupted),
+                Some(error) => Err(SessionError::NotStopped(error)),
+            },
+            Ended::Unguarded => match self.stop(on_event)? {
+                None => Err(GuardianError::Lost.into()),
                 Some(error) => Err(SessionError::NotStopped(error)),
             },
         }
@@ -142,7 +171,7 @@ impl<P: Port> Session<P> {
     fn stop(
         &mut self,
         on_event: &mut dyn FnMut(&DriveEvent),
-    ) -> Result<Option<DriveError>, PortError> {
+    ) -> Result<Option<DriveError>, SessionError> {
         let mut last = None;
         for _ in 0..STOP_TRIES {
             last = match self.client.start(DriveCommand::Stop) {
@@ -150,14 +179,24 @@ impl<P: Port> Session<P> {
                 Ok(()) => match self.pump(on_event, false, None)? {
                     Ended::Failed(error) => Some(error),
                     Ended::Done(_) | Ended::Interrupted => None,
+                    // The next attempt has no guardian.
+                    Ended::Unguarded => continue,
                 },
             };
             if last.is_none() {
-                self.unsafe_to_leave = false;
+                self.set_safe(true);
                 break;
             }
         }
         Ok(last)
+    }
+
+    /// Records whether the axis is at rest as it may be left.
+    fn set_safe(&mut self, safe: bool) {
+        self.unsafe_to_leave = !safe;
+        if let (true, Some(guardian)) = (safe, &mut self.guardian) {
+            guardian.disarm();
+        }
     }
 
     fn pump(
@@ -165,9 +204,21 @@ impl<P: Port> Session<P> {
         on_event: &mut dyn FnMut(&DriveEvent),
         interruptible: bool,
         until: Option<Stamp<Host>>,
-    ) -> Result<Ended, PortError> {
+    ) -> Result<Ended, SessionError> {
         let mut buffer = [0; 512];
         loop {
+            match self.guardian.as_mut().map(|guardian| guardian.heartbeat()) {
+                Some(Err(GuardianError::Lost)) => {
+                    self.guardian = None;
+                    return Ok(Ended::Unguarded);
+                }
+                Some(Err(error)) => {
+                    // The guardian has used the port since.
+                    self.unsafe_to_leave = false;
+                    return Err(error.into());
+                }
+                Some(Ok(())) | None => {}
+            }
             while let Some(frame) = self.client.poll_transmit(self.port.now()) {
                 self.port.write_frame(&frame)?;
             }
@@ -210,7 +261,7 @@ fn may_leave_power_on(kind: CommandKind) -> bool {
     )
 }
 
-impl<P: Port> Drop for Session<P> {
+impl<P: Port> Drop for Session<'_, P> {
     /// After a panic or an error of the port: sends the stop and waits for its end if the port
     /// still works.
     fn drop(&mut self) {
@@ -219,6 +270,9 @@ impl<P: Port> Drop for Session<P> {
             // The error that dropped the session has been reported already.
             let _ = self.pump(&mut |_| {}, false, Some(until));
         }
+        if let Some(guardian) = &mut self.guardian {
+            guardian.disarm();
+        }
     }
 }
 
@@ -226,4 +280,6 @@ enum Ended {
     Done(CommandOutcome),
     Failed(DriveError),
     Interrupted,
+    /// The guardian is gone.
+    Unguarded,
 }

@@ -2,9 +2,11 @@
 
 pub mod drive_port;
 pub mod drive_session;
+pub mod guardian;
 pub mod lidar_receiver;
 pub mod lidar_sockets;
 pub mod profile;
 pub mod simulated;
 pub mod simulated_axis;
 pub mod simulated_drive;
+mod sleep_inhibitor;

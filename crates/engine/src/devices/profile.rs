@@ -3,7 +3,7 @@
 use drive::config::{AxisLimits, BrakeConfig, HomingConfig, LimitSwitchConfig, MotionGuardConfig};
 use units::{DegPerS, DegPerS2, Degrees, RpmPerS, Span};
 
-use crate::config::{AxisSettings, Config, Device, DeviceKind};
+use crate::config::{AxisSettings, Config, Device, DeviceKind, WithoutBrake};
 use crate::failure::{Failure, Kind};
 
 /// Acceleration of homing, if the axis allows it.
@@ -76,6 +76,7 @@ pub fn axis(axis: &AxisSettings) -> Result<drive::AxisConfig, Failure> {
             output,
             ..BrakeConfig::default()
         }),
+        hold_without_brake: axis.without_brake == WithoutBrake::Hold,
         homing: HomingConfig {
             method: homing.method,
             switch_speed: rpm(homing.speed_deg_s),

@@ -47,8 +47,22 @@ const SEED: u64 = 1;
 pub fn run(
     config: NodeConfig,
     attachment: Attachment,
+    port: SoftwarePort,
+    stop: &AtomicBool,
+) -> Result<(), SoftwareDriveError> {
+    run_observed(config, attachment, port, stop, &mut |_, _| {})
+}
+
+/// Like [`run`]; calls `observe` with the drive and the host time of each control cycle.
+///
+/// # Errors
+/// Returns the failure of its port.
+pub fn run_observed(
+    config: NodeConfig,
+    attachment: Attachment,
     mut port: SoftwarePort,
     stop: &AtomicBool,
+    observe: &mut dyn FnMut(Stamp<Host>, &Node),
 ) -> Result<(), SoftwareDriveError> {
     let mut server = DriveServer::new(attachment, SEED);
     let mut node = Node::new(NodeConfig {
@@ -71,6 +85,7 @@ pub fn run(
         while now.saturating_since(cycle) >= CYCLE {
             node.tick();
             cycle += CYCLE;
+            observe(cycle, &node);
             server.poll(&mut node, &mut |bytes| out.extend_from_slice(bytes));
             port.send(&mut out)?;
         }

@@ -47,7 +47,8 @@ impl Worker {
             ([] | [DriveCommand::Connect], Lifetime::Resident) => Arc::default(),
             _ => Arc::clone(stop.flag()),
         };
-        let mut session = Session::new(client, &mut *opened.port, interrupt);
+        let mut session =
+            Session::new(client, &mut *opened.port, interrupt).guarded_by(opened.guardian.as_mut());
         // A simulated drive starts with its service, and is not homed.
         let homing = match service.simulated() && !service.is_referenced() {
             true => Homing::First,
@@ -169,6 +170,7 @@ impl Worker {
                 interrupt: lease.stop().flag(),
                 lidar: &receiver,
                 port: &mut *opened.port,
+                guardian: opened.guardian.as_mut(),
                 link: opened.link,
                 rs232_baud: opened.rs232_baud,
                 tap: &|record| service.preview.record(record),
@@ -203,7 +205,7 @@ impl Worker {
                 return (Ok(end), Some(ConnectionLoss::Stale));
             }
         };
-        let port_failed = recorded.port_failed();
+        let lost = recorded.motion_error().and_then(lost_port);
         connection.failed = true;
         self.command_ended(connection, true, recorded.motion_error());
         let at_rest = recorded.at_rest();
@@ -230,8 +232,8 @@ impl Worker {
         {
             *failure = reason;
         }
-        let lost = match outcome.failure.clone().filter(|_| port_failed) {
-            Some(failure) => Some(ConnectionLoss::Port(failure)),
+        let lost = match lost {
+            Some(lost) => Some(lost),
             // The device thread brings it to rest as soon as the drive answers again.
             None if !at_rest => {
                 if let Some(failure) = &outcome.failure {
@@ -279,6 +281,8 @@ fn fault_help(remedy: Option<&str>) -> String {
 pub(super) fn lost_port(error: &SessionError) -> Option<ConnectionLoss> {
     match error {
         SessionError::Port(error) => Some(ConnectionLoss::Port(drive_port::failure(error))),
+        // The port opened again has a new guardian.
+        SessionError::Guardian(_) => Some(ConnectionLoss::Stale),
         _ => None,
     }
 }

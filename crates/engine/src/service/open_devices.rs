@@ -11,7 +11,7 @@ use super::events::MessageLevel;
 use super::status::{DeviceHealth, DriveSnapshot};
 use super::{DeviceService, Lifetime};
 use crate::config::DeviceKind;
-use crate::devices::drive_port::{self, Looks};
+use crate::devices::drive_port::{self, GuardianOptions, Looks};
 use crate::devices::lidar_receiver::LidarReceiver;
 use crate::devices::lidar_sockets::{LidarSockets, listen_config};
 use crate::devices::simulated::{self, LidarPorts, Simulated};
@@ -120,7 +120,19 @@ impl Worker {
 
     fn open_port(&self, place: &std::path::Path) -> Result<DriveConnection, Failure> {
         let service = &self.service;
-        let opened = drive_port::open(&service.device, place)?;
+        let opened = drive_port::open(
+            &service.device,
+            place,
+            service
+                .environment
+                .guardian
+                .as_deref()
+                .map(|program| GuardianOptions {
+                    program,
+                    axis: &service.config.axis,
+                })
+                .as_ref(),
+        )?;
         service.update_drive(|drive| {
             drive.port = Some(place.display().to_string());
             drive.link = Some(link_name(opened.link));

@@ -1,5 +1,6 @@
 //! What a service is started with.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -16,6 +17,10 @@ pub struct Environment {
     pub plugged: Arc<dyn Fn() -> ConnectedDevices + Send + Sync>,
     /// Time that the machine has been suspended since it was booted.
     pub suspended: Arc<dyn Fn() -> Span + Send + Sync>,
+    /// Program of the guardian process, which stops the axis on USB and RS232 if this process dies
+    /// or hangs: started with [`guardian::ARGUMENT`](crate::devices::guardian::ARGUMENT), it calls
+    /// [`guardian::run`](crate::devices::guardian::run).
+    pub guardian: Option<PathBuf>,
     /// Called on the device thread at every heartbeat.
     pub heartbeat: Arc<dyn Fn(AxisTask) + Send + Sync>,
 }
@@ -25,6 +30,7 @@ impl Default for Environment {
         Self {
             plugged: Arc::new(io::discover::discover),
             suspended: Arc::new(io::clock::suspended),
+            guardian: None,
             heartbeat: Arc::new(|_| {}),
         }
     }

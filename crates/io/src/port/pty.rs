@@ -1,34 +1,25 @@
 //! The device side of a pseudo-terminal, for the software drive. The other side is a serial port by
 //! path. Bytes pass without the delay of a baud rate.
 
-use std::io;
-use std::os::fd::{AsFd, OwnedFd};
+use std::os::fd::OwnedFd;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
 
-use nix::errno::Errno;
-use nix::fcntl::{FcntlArg, FdFlag, OFlag, fcntl};
-use nix::poll::PollFlags;
+use nix::fcntl::{FcntlArg, FdFlag, fcntl};
 use nix::pty::openpty;
 use nix::sys::termios::{SetArg, cfmakeraw, tcgetattr, tcsetattr};
 use nix::unistd;
 use units::{Host, Span, Stamp};
 
-use super::wait::{duration, wait};
+use super::descriptor::DescriptorPort;
 use super::{Port, PortError};
-use crate::clock;
-
-/// The timeout of a real port for a frame.
-const WRITE_TIMEOUT: Duration = Duration::from_millis(500);
 
 /// A pseudo-terminal in raw mode, seen from the device. Dropping it unplugs the device.
 #[derive(Debug)]
 pub struct Pty {
-    device: OwnedFd,
+    device: DescriptorPort,
     /// Kept open, so that the device sees no hang-up while no client has the port open.
     _client: OwnedFd,
     path: PathBuf,
-    name: String,
 }
 
 impl Pty {
@@ -52,13 +43,10 @@ impl Pty {
         for fd in [&pair.master, &pair.slave] {
             fcntl(fd, FcntlArg::F_SETFD(FdFlag::FD_CLOEXEC))?;
         }
-        let flags = OFlag::from_bits_truncate(fcntl(&pair.master, FcntlArg::F_GETFL)?);
-        fcntl(&pair.master, FcntlArg::F_SETFL(flags | OFlag::O_NONBLOCK))?;
         let path = unistd::ttyname(&pair.slave)?;
         Ok(Self {
-            device: pair.master,
+            device: DescriptorPort::new(pair.master, path.display().to_string())?,
             _client: pair.slave,
-            name: path.display().to_string(),
             path,
         })
     }
@@ -68,48 +56,11 @@ impl Pty {
     pub fn path(&self) -> &Path {
         &self.path
     }
-
-    fn io_error(&self, action: &'static str, errno: Errno) -> PortError {
-        match errno {
-            Errno::EIO | Errno::ENXIO | Errno::ENODEV => PortError::Disconnected {
-                port: self.name.clone(),
-                reason: errno.desc().to_owned(),
-            },
-            _ => PortError::Io {
-                port: self.name.clone(),
-                action,
-                source: io::Error::from(errno),
-            },
-        }
-    }
 }
 
 impl Port for Pty {
     fn write_frame(&mut self, frame: &[u8]) -> Result<Stamp<Host>, PortError> {
-        let host = clock::now();
-        let deadline = Instant::now() + WRITE_TIMEOUT;
-        let mut written = 0;
-        while let Some(rest) = frame.get(written..).filter(|rest| !rest.is_empty()) {
-            match unistd::write(&self.device, rest) {
-                Ok(n) => written += n,
-                Err(Errno::EINTR) => {}
-                // The client's input queue is full.
-                Err(Errno::EAGAIN) => {
-                    let left = deadline.saturating_duration_since(Instant::now());
-                    if left.is_zero() {
-                        return Err(PortError::WriteTimeout {
-                            port: self.name.clone(),
-                            expected: frame.len(),
-                            got: written,
-                        });
-                    }
-                    wait(self.device.as_fd(), PollFlags::POLLOUT, left)
-                        .map_err(|e| self.io_error("write", e))?;
-                }
-                Err(e) => return Err(self.io_error("write", e)),
-            }
-        }
-        Ok(host)
+        self.device.write_frame(frame)
     }
 
     fn read(
@@ -117,16 +68,6 @@ impl Port for Pty {
         buffer: &mut [u8],
         timeout: Span,
     ) -> Result<Option<(usize, Stamp<Host>)>, PortError> {
-        let seen = wait(self.device.as_fd(), PollFlags::POLLIN, duration(timeout))
-            .map_err(|e| self.io_error("read", e))?;
-        if seen.is_empty() {
-            return Ok(None);
-        }
-        match unistd::read(&self.device, buffer) {
-            Ok(0) => Ok(None),
-            Ok(n) => Ok(Some((n, clock::now()))),
-            Err(Errno::EINTR | Errno::EAGAIN) => Ok(None),
-            Err(e) => Err(self.io_error("read", e)),
-        }
+        self.device.read(buffer, timeout)
     }
 }

@@ -5,6 +5,7 @@
 
 use std::fs;
 use std::io::{self, ErrorKind, Read, Write};
+use std::os::fd::AsRawFd;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -65,6 +66,10 @@ impl SerialPort {
             name,
             timeout: Duration::ZERO,
         })
+    }
+
+    pub(super) fn raw_fd(&self) -> std::os::fd::RawFd {
+        self.tty.as_raw_fd()
     }
 
     fn set_timeout(&mut self, timeout: Duration) {

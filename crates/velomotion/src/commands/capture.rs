@@ -19,6 +19,7 @@ use engine::service::CaptureEnd;
 
 use super::CommandOutput;
 use super::device_backend::{DaemonCapture, LocalCapture, record};
+use super::guard_axis::environment;
 use crate::cli::{self, Common};
 use crate::signals;
 use crate::terminal::Progress;
@@ -84,7 +85,7 @@ fn record_locally(
     progress: &mut Progress,
 ) -> Result<CaptureEnd, Failure> {
     let device = (plan.name.clone(), plan.device.clone());
-    let local = LocalService::start(config, device, true, interrupt)?;
+    let local = LocalService::start(config, device, true, interrupt, environment())?;
     if let Some(warning) = &local.thread.port_warning {
         progress.say(&format!("warning: {warning}"));
     }

@@ -8,6 +8,7 @@ use sd_notify::NotifyState;
 
 use super::CommandOutput;
 use super::device_backend::thread_gone;
+use super::guard_axis::environment;
 use crate::cli::{self, Common};
 use crate::signals;
 use crate::terminal::to_stderr;
@@ -28,6 +29,7 @@ pub fn run(arguments: &cli::DaemonArguments, common: &Common) -> Result<CommandO
         config: config::load(common.config.as_deref())?,
         device: common.device.clone(),
         listen: arguments.listen,
+        environment: environment(),
         ..Options::default()
     })?;
     greet(&daemon, common);

@@ -6,6 +6,7 @@ pub mod daemon;
 pub mod device_backend;
 pub mod doctor;
 pub mod firmware_sim;
+pub mod guard_axis;
 pub mod info;
 pub mod replay;
 pub mod simulate;

@@ -11,6 +11,7 @@ use engine::service::status::AxisTask;
 
 use super::CommandOutput;
 use super::device_backend::{jog_by_daemon, jog_locally};
+use super::guard_axis::environment;
 use crate::cli::{self, Common, TiltVerb};
 use crate::signals;
 use crate::tables::table;
@@ -37,7 +38,8 @@ pub fn run(arguments: &cli::TiltArguments, common: &Common) -> Result<CommandOut
             "a software drive, the daemon's",
         ),
         None => {
-            let local = LocalService::start(config, (name, device), false, &interrupt)?;
+            let local =
+                LocalService::start(config, (name, device), false, &interrupt, environment())?;
             let answer = jog_locally(&local, request);
             local.stop();
             (answer?, "a software drive, switched on a moment ago")

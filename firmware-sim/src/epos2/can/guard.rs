@@ -79,7 +79,7 @@ impl HeartbeatMonitor {
         }
     }
 
-    /// Raises error 8130 when the heartbeat has stopped: the drive ramps down and switches off.
+    /// Raises error 8130 when the heartbeat has stopped. The drive reacts by 6007.
     pub fn watch(&mut self, node: &mut Node, sub: u8, now_us: u64) {
         self.reload(node, sub);
         let (Some(entry), Some(last_us)) = (self.entry, self.last_us) else {
@@ -87,7 +87,7 @@ impl HeartbeatMonitor {
         };
         if now_us.saturating_sub(last_us) > 1000 * u64::from(entry.time_ms) {
             self.last_us = None;
-            node.fail(DeviceError::CAN_LIFE_GUARD);
+            node.lose_connection(DeviceError::CAN_LIFE_GUARD);
             node.leave_operational();
         }
     }

@@ -3,8 +3,8 @@
 //!
 //! [`CanServer`] joins the services, one file each: NMT and error control, SDO, transmit and
 //! receive PDOs. Not simulated: bit timing and arbitration, LSS, SDO block transfer, life guarding
-//! (100C, 100D; guarding requests are answered) and the abort connection option (6007): a lost
-//! master is error 8130 with the reaction of 605E.
+//! (100C, 100D; guarding requests are answered). A lost master is error 8130 with the reaction of
+//! 6007.
 
 mod guard;
 mod receive;

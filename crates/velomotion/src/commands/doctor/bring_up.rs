@@ -12,7 +12,7 @@ use std::time::{Duration, Instant, SystemTime};
 use engine::bring_up::{BringUp, BringUpResult, BringUpStepReport, Judgement, Operator, STEPS};
 use engine::config::{Config, Device};
 use engine::default_paths;
-use engine::devices::drive_port::{self, Looks, Opened};
+use engine::devices::drive_port::{self, GuardianOptions, Looks, Opened};
 use engine::devices::profile;
 use engine::failure::{Failure, Kind};
 use io::discover::discover;
@@ -20,6 +20,7 @@ use serde::Serialize;
 use units::DegPerS2;
 
 use super::super::CommandOutput;
+use super::super::guard_axis::environment;
 use crate::cli::{Common, Doctor};
 use crate::signals;
 use crate::terminal::to_stderr;
@@ -121,7 +122,15 @@ pub(super) fn run(
          Every step says what it does before it does it. Ctrl-C stops the axis.",
     );
     let mut steps = Vec::new();
-    let mut opened = drive_port::open(&device, &port)?;
+    let environment = environment();
+    let guarding = environment
+        .guardian
+        .as_deref()
+        .map(|program| GuardianOptions {
+            program,
+            axis: &config.axis,
+        });
+    let mut opened = drive_port::open(&device, &port, guarding.as_ref())?;
     let acceleration = DegPerS2(device.accel_deg_s2);
     let mut bring_up = BringUp::new(axis, acceleration, &mut opened, Arc::clone(&interrupt));
     let mut ended = false;
@@ -336,7 +345,7 @@ fn wait_for_move(child: &mut Child) -> bool {
 fn reopen(device: &Device, port: &Path) -> Result<Opened, Failure> {
     let until = Instant::now() + START_LIMIT;
     loop {
-        match drive_port::open(device, port) {
+        match drive_port::open(device, port, None) {
             Err(failure) if Instant::now() >= until => return Err(failure),
             Err(_) => std::thread::sleep(Duration::from_millis(20)),
             Ok(opened) => return Ok(opened),

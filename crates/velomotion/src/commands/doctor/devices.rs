@@ -17,6 +17,7 @@ use engine::service::lidar_stats;
 use engine::service::status::LidarStatus;
 
 use super::super::device_backend::jog_locally;
+use super::super::guard_axis::environment;
 use super::{Finding, Verdict, finding};
 
 /// Time for which the lidar is listened to: 754 packets of a VLP-16.
@@ -77,7 +78,13 @@ fn problem(what: String, failure: Failure) -> Finding {
 
 /// The drive's report, from a service that opens its port.
 fn report(config: &Config, device: (String, Device)) -> Result<AxisReport, Failure> {
-    let local = LocalService::start(config.clone(), device, false, &Arc::default())?;
+    let local = LocalService::start(
+        config.clone(),
+        device,
+        false,
+        &Arc::default(),
+        environment(),
+    )?;
     let answer = jog_locally(&local, JogRequest::Status);
     local.stop();
     match answer? {

@@ -83,6 +83,7 @@ fn a_saved_heartbeat_starts_one_period_after_boot_up() {
 fn the_axis_stops_when_the_masters_heartbeat_ends() {
     let mut bus = Bus::new();
     bus.write(0x1016, 1, 0x007F_0064); // node 127, 100 ms
+    bus.write(0x6007, 0, 1); // as to a device error
     bus.nmt(NmtCommand::Start);
     bus.go(100_000);
     bus.ticks(200);
@@ -114,6 +115,23 @@ fn the_axis_stops_when_the_masters_heartbeat_ends() {
     bus.send(0x77F, &[5]);
     bus.ticks(110);
     assert_eq!(bus.with(0x081).len(), 1);
+}
+
+#[test]
+fn the_abort_connection_option_decides_what_a_lost_master_causes() {
+    // No action, fault, disable voltage, quick stop (which keeps the power on).
+    for (option, state) in [(0, 0x0137), (1, 0x0108), (2, 0x0140), (3, 0x0117)] {
+        let mut bus = Bus::new();
+        bus.write(0x1016, 1, 0x007F_0064); // node 127, 100 ms
+        bus.write(0x6007, 0, option);
+        bus.nmt(NmtCommand::Start);
+        bus.go(100_000);
+        bus.send(0x77F, &[5]);
+        bus.ticks(400);
+        assert_eq!(bus.read(0x6041, 0) & 0x417F, state, "option {option}");
+        assert_eq!(bus.read(0x606C, 0) == 0, option != 0, "option {option}");
+        assert_eq!(bus.read(0x1003, 1), 0x8130);
+    }
 }
 
 #[test]

@@ -1,0 +1,105 @@
+//! An axis without a brake that the drive holds: once enabled, its power never goes off.
+
+use firmware_sim::epos2::NodeConfig;
+use protocol::epos2::cia402::DeviceState;
+use protocol::record::DriveLink;
+use units::{Degrees, Rpm, RpmPerS};
+
+use super::firmware::World;
+use crate::client::DriveClient;
+use crate::command::{DriveCommand, MoveCommand};
+use crate::config::AxisConfig;
+use crate::error::DriveError;
+use crate::event::CommandOutcome;
+
+fn config() -> AxisConfig {
+    AxisConfig {
+        brake: None,
+        hold_without_brake: true,
+        ..AxisConfig::default()
+    }
+}
+
+fn is_powered(world: &World) -> bool {
+    matches!(
+        world.node.state(),
+        DeviceState::OperationEnabled | DeviceState::QuickStopActive
+    )
+}
+
+/// Runs a command to its end; the axis must stay powered.
+fn run_powered(world: &mut World, command: DriveCommand) -> Result<CommandOutcome, DriveError> {
+    world.client.start(command)?;
+    loop {
+        assert!(is_powered(world), "{command:?}");
+        if let Some(end) = world.step() {
+            assert!(is_powered(world), "{command:?}");
+            return end;
+        }
+    }
+}
+
+fn goto(to: f64) -> DriveCommand {
+    DriveCommand::Goto(MoveCommand {
+        to: Degrees(to),
+        speed: Rpm(400),
+        acceleration: RpmPerS(10_000),
+    })
+}
+
+/// A homed axis, at rest and held.
+fn held_on(link: DriveLink) -> World {
+    let mut world = World::on(link, NodeConfig::default());
+    world.client = DriveClient::new(config(), link);
+    for command in [DriveCommand::Connect, DriveCommand::Home] {
+        world.client.start(command).unwrap();
+        while world.step().is_none() {}
+    }
+    world
+}
+
+#[test]
+fn an_axis_without_a_brake_stays_powered_from_move_to_move() {
+    for link in [DriveLink::Usb, DriveLink::Rs232, DriveLink::Can] {
+        let mut world = held_on(link);
+        let Ok(CommandOutcome::Stopped(rest)) = run_powered(&mut world, DriveCommand::Brake) else {
+            panic!("{link:?}: not at rest")
+        };
+        assert!(rest.held && !rest.brake, "{link:?}");
+        // A stop in mid-move, then another program.
+        world.client.start(goto(-20.0)).unwrap();
+        for _ in 0..2_000 {
+            assert!(world.step().is_none(), "{link:?}");
+        }
+        let stopped = run_powered(&mut world, DriveCommand::Stop);
+        assert!(matches!(stopped, Ok(CommandOutcome::Stopped(rest)) if rest.held));
+        world.client = DriveClient::new(config(), link);
+        for command in [
+            DriveCommand::Connect,
+            goto(-40.0),
+            DriveCommand::Home,
+            DriveCommand::Brake,
+        ] {
+            let done = run_powered(&mut world, command);
+            assert!(done.is_ok(), "{link:?} {command:?}: {done:?}");
+        }
+    }
+}
+
+#[test]
+fn a_held_axis_stays_powered_when_the_host_dies_on_can() {
+    let mut world = held_on(DriveLink::Can);
+    world.client.start(goto(-20.0)).unwrap();
+    for _ in 0..2_000 {
+        assert!(world.step().is_none());
+    }
+    world.cut = true;
+    let limit = world.node.time_us() + 500_000;
+    while world.node.time_us() < limit {
+        assert!(is_powered(&world));
+        if world.step().is_some() {
+            break;
+        }
+    }
+    assert_eq!(world.node.state(), DeviceState::QuickStopActive);
+}

@@ -1,0 +1,171 @@
+//! The program dies or hangs at any moment of a motion, on each transport: within a second the axis
+//! is at rest, its power off and its brake set, or held where the configuration says so.
+//!
+//! `cargo test -p velomotion --test kills -- [--kills N] [--first SEED] [--transport NAME]
+//! [--bless]`. Without arguments every signal meets every kind of motion, and five kills random
+//! moments. With `--kills` only kills at random moments are made; `--bless` writes the table of
+//! docs/src/kills.md.
+#![allow(clippy::unwrap_used, clippy::panic, clippy::expect_used)] // a test
+
+mod bench;
+mod cases;
+mod special;
+mod table;
+
+use std::sync::Mutex;
+
+use bench::Bench;
+use cases::{Case, Moment, Motion, SIGNALS, Signal};
+use table::Table;
+
+/// Transports and the seed that each adds.
+const TRANSPORTS: [&str; 3] = ["usb", "rs232", "slcan"];
+/// An axis with a brake.
+pub const BRAKE: &str = "brake_output = 1";
+/// An axis that the drive holds.
+pub const HOLD: &str = "without_brake = 'hold'";
+/// Kills at random moments without arguments.
+const FEW: u64 = 5;
+
+struct Arguments {
+    first: u64,
+    kills: Option<u64>,
+    transport: Option<String>,
+    bless: bool,
+}
+
+/// Results of the run.
+#[derive(Default)]
+struct Results {
+    table: Mutex<Table>,
+    failed: Mutex<Vec<String>>,
+}
+
+impl Results {
+    fn check(&self, what: &str, result: Result<(), String>) {
+        if let Err(why) = result {
+            eprintln!("{what}: {why}");
+            self.failed.lock().unwrap().push(format!("{what}: {why}"));
+        }
+    }
+}
+
+fn main() {
+    let arguments = arguments();
+    let results = Results::default();
+    let chosen = |name: &&str| {
+        arguments
+            .transport
+            .as_deref()
+            .is_none_or(|only| only == *name)
+    };
+    std::thread::scope(|scope| {
+        for transport in TRANSPORTS.into_iter().filter(chosen) {
+            let (arguments, results) = (&arguments, &results);
+            scope.spawn(move || on_transport(transport, arguments, results));
+        }
+    });
+    if arguments.kills.is_none() {
+        for transport in ["usb", "rs232"] {
+            guardian(transport, &results);
+        }
+    }
+    let table = results.table.into_inner().unwrap();
+    println!("{table}");
+    if arguments.bless {
+        table.bless();
+    }
+    let failed = results.failed.into_inner().unwrap();
+    for why in &failed {
+        println!("FAILED: {why}");
+    }
+    if !failed.is_empty() {
+        std::process::exit(1);
+    }
+}
+
+fn on_transport(transport: &'static str, arguments: &Arguments, results: &Results) {
+    let bench = Bench::start(transport, BRAKE);
+    results.check(transport, bench.run("tilt home"));
+    if arguments.kills.is_none() {
+        every_signal(transport, &bench, results);
+    }
+    let kills = arguments.kills.unwrap_or(FEW);
+    for seed in arguments.first..arguments.first + kills {
+        let case = Case::random(seed);
+        let what = format!(
+            "{transport}: kill in {:?}, again: --test kills -- --transport {transport} --first {seed} --kills 1",
+            case.motion
+        );
+        let result = case.run(&bench);
+        if let Ok(aftermath) = &result {
+            let mut table = results.table.lock().unwrap();
+            table.count(transport, aftermath);
+        }
+        results.check(&what, result.map(drop));
+    }
+}
+
+/// Every signal meets every kind of motion, and the goto of a held axis.
+fn every_signal(transport: &str, bench: &Bench, results: &Results) {
+    let check = |motion, signal: Signal, bench, held| {
+        let case = Case {
+            motion,
+            signal,
+            moment: Moment::Moving,
+            held,
+        };
+        let axis = if held { "a held axis" } else { "an axis" };
+        let what = format!("{transport}: {} in {motion:?} of {axis}", signal.0);
+        results.check(&what, case.run(bench).map(drop));
+    };
+    for signal in SIGNALS {
+        for motion in Motion::ALL {
+            check(motion, signal, bench, false);
+        }
+    }
+    let held = Bench::start(transport, HOLD);
+    results.check(transport, held.run("tilt home"));
+    for signal in SIGNALS {
+        check(Motion::Goto, signal, &held, true);
+    }
+}
+
+/// The guardian itself, one transport after the other.
+fn guardian(transport: &str, results: &Results) {
+    let bench = Bench::start(transport, BRAKE);
+    results.check(transport, bench.run("tilt home"));
+    let checks: [(&str, fn(&Bench) -> Result<(), String>); 3] = [
+        ("the guardian is killed", special::guardian_killed),
+        (
+            "the port is busy while the guardian acts",
+            special::next_command_waits,
+        ),
+        ("a loaded machine", special::no_false_alarm),
+    ];
+    for (what, check) in checks {
+        results.check(&format!("{transport}: {what}"), check(&bench));
+    }
+}
+
+fn arguments() -> Arguments {
+    let mut arguments = Arguments {
+        first: 0,
+        kills: None,
+        transport: None,
+        bless: false,
+    };
+    let mut words = std::env::args().skip(1);
+    while let Some(word) = words.next() {
+        let mut value = || words.next().expect("the option needs a value");
+        match word.as_str() {
+            "--first" => arguments.first = value().parse().expect("--first SEED"),
+            "--kills" => arguments.kills = value().parse().ok(),
+            "--transport" => arguments.transport = Some(value()),
+            "--bless" => arguments.bless = true,
+            // Other arguments of `cargo test`.
+            _ => {}
+        }
+    }
+    arguments
+}
