@@ -1,0 +1,161 @@
+//! What a run must show, and the table of all runs.
+
+use std::fmt;
+
+use crate::faults::{Expect, Misbehaviour};
+use crate::rows::ROWS;
+use crate::run::{Kept, MAX_GAP, Outcome, Transport};
+
+/// Markers around the table in the page.
+const MARKS: (&str, &str) = ("<!-- table -->\n", "<!-- end of the table -->");
+/// Milliseconds from the sample that shows it to the first stop; and where nothing shows it.
+const STOP_MS: f64 = 50.0;
+const SILENT_MS: f64 = 300.0;
+/// Degrees of a quick stop from 56.25 deg/s by 500 deg/s2, and 0.1 deg.
+const BEYOND: f64 = 56.25 * 56.25 / 500.0 / 2.0 + 0.1;
+/// Degrees of homing without a switch: its bound, and a stop.
+const HOMING: f64 = 45.0 + 1.0 + 10.0 + 1.0;
+
+/// What a run showed.
+#[derive(Default)]
+pub struct Verdict {
+    travel: f64,
+    beyond: f64,
+    stop_ms: Option<f64>,
+    moving: bool,
+    powered: bool,
+    braked: bool,
+    exit: Option<i32>,
+    kept: Option<Kept>,
+    /// What must not be.
+    pub wrong: Vec<String>,
+    /// What the client printed.
+    pub printed: String,
+    /// The machine delayed the drive.
+    pub is_disturbed: bool,
+}
+
+impl Verdict {
+    /// A run that could not be judged.
+    pub fn failed(why: String) -> Self {
+        Self { wrong: vec![why], ..Self::default() }
+    }
+
+    /// Judges a run.
+    pub fn of(row: &Misbehaviour, outcome: &Outcome) -> Self {
+        let drive = &outcome.drive;
+        let began = drive.record.began.unwrap_or(f64::INFINITY);
+        let last = drive.record.truth.last().map_or(0.0, |truth| truth.at);
+        let mut verdict = Self {
+            travel: drive.record.travel(began),
+            beyond: drive.record.beyond(0.0),
+            stop_ms: outcome.stop_ms(),
+            moving: drive.record.travel(last - 0.1) > 0.03,
+            powered: drive.axis.powered,
+            braked: drive.axis.braked,
+            exit: outcome.exit,
+            kept: Some(outcome.kept),
+            wrong: Vec::new(),
+            printed: outcome.printed.clone(),
+            is_disturbed: outcome.gap > MAX_GAP,
+        };
+        if !outcome.has_begun(row) {
+            verdict.wrong.push("it never began".to_owned());
+        }
+        verdict.check(row.expect);
+        verdict
+    }
+
+    fn check(&mut self, expect: Expect) {
+        let mut wrong = Vec::new();
+        let mut must = |is_so: bool, what: String| {
+            if !is_so {
+                wrong.push(what);
+            }
+        };
+        let obeys = expect != Expect::Unstoppable;
+        if obeys {
+            must(!self.moving, "still moving".to_owned());
+            must(!self.powered, "still powered".to_owned());
+            if expect != Expect::HomingBound {
+                let what = format!("{:.2} deg beyond the limits", self.beyond);
+                must(self.beyond <= BEYOND, what);
+            }
+        } else {
+            must(self.exit == Some(5), format!("exit {:?}", self.exit));
+            let tells = self.printed.to_lowercase().contains("supply");
+            must(tells, "no word of the supply".to_owned());
+        }
+        let stop = self.stop_ms.unwrap_or(f64::INFINITY);
+        match expect {
+            Expect::Completes => {
+                must(self.exit == Some(0), format!("exit {:?}", self.exit));
+                must(self.kept == Some(Kept::Cloud), format!("kept {:?}", self.kept));
+            }
+            Expect::Refused => {
+                must(self.travel < 0.01, format!("moved {:.3} deg", self.travel));
+                must(matches!(self.exit, Some(4 | 5)), format!("exit {:?}", self.exit));
+            }
+            Expect::Stopped => {
+                must(stop <= STOP_MS, format!("stop after {stop:.0} ms"));
+                must(!matches!(self.exit, Some(0) | None), format!("exit {:?}", self.exit));
+            }
+            Expect::Silent => {
+                must(stop <= SILENT_MS, format!("stop after {stop:.0} ms"));
+                must(!matches!(self.exit, Some(0) | None), format!("exit {:?}", self.exit));
+            }
+            Expect::HomingBound => {
+                must(self.travel <= HOMING, format!("travel {:.1} deg", self.travel));
+                must(self.exit == Some(5), format!("exit {:?}", self.exit));
+            }
+            Expect::Unstoppable | Expect::Safe => {}
+        }
+        self.wrong = [std::mem::take(&mut self.wrong), wrong].concat();
+    }
+}
+
+impl fmt::Display for Verdict {
+    /// The cells of the table after the row's name and link.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let stop = self.stop_ms.map_or("-".to_owned(), |ms| format!("{ms:.0}"));
+        let exit = self.exit.map_or("-".to_owned(), |exit| exit.to_string());
+        let kept = match self.kept {
+            Some(Kept::Cloud) => "cloud",
+            Some(Kept::Log) => "log",
+            _ => "-",
+        };
+        let power = if self.powered { "**on**" } else { "off" };
+        let brake = if self.braked { "shut" } else { "**open**" };
+        let moving = if self.moving { ", **moving**" } else { "" };
+        write!(
+            f,
+            "{:.1} | {:.2} | {stop} | {power}, {brake}{moving} | {exit} | {kept}",
+            self.travel, self.beyond
+        )?;
+        if f.alternate() || self.wrong.is_empty() {
+            return Ok(());
+        }
+        write!(f, "   <- {}{}", self.wrong.join("; "), if self.is_disturbed { " (disturbed)" } else { "" })
+    }
+}
+
+/// Writes the table of the page.
+pub fn bless(verdicts: &[(usize, Transport, Verdict)]) {
+    let mut table = String::from(
+        "| misbehaviour | link | travel, deg | beyond the limits, deg | first stop, ms | power, brake | exit | kept |\n\
+         |---|---|---|---|---|---|---|---|\n",
+    );
+    for (number, row) in ROWS.iter().enumerate() {
+        for transport in Transport::ALL {
+            let found = verdicts.iter().find(|v| v.0 == number && v.1 == transport);
+            if let Some((.., verdict)) = found {
+                table.push_str(&format!("| {} | {} | {verdict:#} |\n", row.name, transport.kind()));
+            }
+        }
+    }
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/src/misbehaviours.md");
+    let page = std::fs::read_to_string(path).unwrap();
+    let (before, rest) = page.split_once(MARKS.0).unwrap();
+    let (_, after) = rest.split_once(MARKS.1).unwrap();
+    std::fs::write(path, format!("{before}{}{table}{}{after}", MARKS.0, MARKS.1)).unwrap();
+}

@@ -1,0 +1,142 @@
+//! The truth over time, and what the client was shown and sent.
+
+use crate::motion::{Axis, Profile};
+
+/// Range that the configuration allows, degrees.
+pub const LIMITS: (f64, f64) = (-45.0, 0.0);
+
+/// Something that happened.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Event {
+    /// A controlword arrived.
+    Control(u16),
+    /// The drive entered a fault.
+    Fault(u16),
+}
+
+/// The axis at a time.
+#[derive(Clone, Copy, Debug)]
+pub struct Truth {
+    /// Seconds.
+    pub at: f64,
+    /// The axis.
+    pub axis: Axis,
+    /// The axis has been homed.
+    pub homed: bool,
+}
+
+/// What happened to a drive.
+#[derive(Default)]
+pub struct Record {
+    /// On a CAN bus, where NMT decides about process data.
+    pub can: bool,
+    /// Truth, every millisecond.
+    pub truth: Vec<Truth>,
+    /// Events with their times.
+    pub events: Vec<(f64, Event)>,
+    /// When the misbehaviour began.
+    pub began: Option<f64>,
+    /// When the client was first shown what it cannot overlook.
+    pub shown: Option<f64>,
+    /// When the sweep was half done.
+    pub half: Option<f64>,
+    /// When the client was signalled to end.
+    pub signalled: Option<f64>,
+    plan: Option<Profile>,
+    homed: bool,
+}
+
+impl Record {
+    /// Stores the truth of a step.
+    pub fn truth(&mut self, now: f64, axis: &Axis) {
+        if self.truth.last().is_none_or(|last| now - last.at >= 0.001) {
+            self.truth.push(Truth { at: now, axis: *axis, homed: self.homed });
+        }
+    }
+
+    /// Stores an event.
+    pub fn event(&mut self, now: f64, event: Event) {
+        self.events.push((now, event));
+    }
+
+    /// The misbehaviour begins.
+    pub fn begin(&mut self, now: f64) {
+        self.began = Some(now);
+    }
+
+    /// Whether it has begun.
+    pub fn has_begun(&self) -> bool {
+        self.began.is_some()
+    }
+
+    /// The axis was homed.
+    pub fn home(&mut self) {
+        self.homed = true;
+    }
+
+    /// A new move: what a healthy drive does from now on.
+    pub fn plan(&mut self, plan: Profile) {
+        self.plan = Some(plan);
+    }
+
+    /// The sweep is half done.
+    pub fn mid_sweep(&mut self, now: f64) {
+        self.half.get_or_insert(now);
+    }
+
+    /// Whether the client was signalled.
+    pub fn is_signalled(&self) -> bool {
+        self.signalled.is_some()
+    }
+
+    /// The client is shown a position: judges it by the documented limits.
+    pub fn sample(&mut self, now: f64, shown: f64, referenced: bool) {
+        let Some(plan) = self.plan.filter(|_| referenced && self.has_begun()) else {
+            return;
+        };
+        let (expected, _) = plan.at(now);
+        let sign = (plan.to - plan.from).signum();
+        let ahead = (shown - expected) * sign;
+        let is_outside = shown < LIMITS.0 - 0.13 || shown > LIMITS.1 + 0.13;
+        let behind = 0.53 + plan.speed * 0.05;
+        if is_outside || ahead > 0.53 || ahead < -behind || (shown - plan.from) * sign < -0.53 {
+            self.shown.get_or_insert(now);
+        }
+    }
+
+    /// The client is shown something else that it must not overlook.
+    pub fn show(&mut self, now: f64) {
+        if self.has_begun() {
+            self.shown.get_or_insert(now);
+        }
+    }
+
+    /// First quick stop or disable voltage after a time.
+    pub fn first_stop(&self, after: f64) -> Option<f64> {
+        self.events.iter().find_map(|(at, event)| match event {
+            Event::Control(word) if *at >= after && (word & 2 == 0 || word & 4 == 0) => Some(*at),
+            _ => None,
+        })
+    }
+
+    /// Degrees travelled after a time.
+    pub fn travel(&self, after: f64) -> f64 {
+        let later = || self.truth.iter().filter(|truth| truth.at >= after);
+        let pairs = later().zip(later().skip(1));
+        pairs.map(|(a, b)| (b.axis.deg - a.axis.deg).abs()).sum()
+    }
+
+    /// Farthest degrees beyond the limits; in homing, beyond the switches.
+    pub fn beyond(&self, after: f64) -> f64 {
+        let later = self.truth.iter().filter(|truth| truth.at >= after);
+        later
+            .map(|truth| {
+                let (low, high) = match truth.homed {
+                    true => LIMITS,
+                    false => (LIMITS.0 - 1.0, LIMITS.1 + 1.25),
+                };
+                (truth.axis.deg - high).max(low - truth.axis.deg).max(0.0)
+            })
+            .fold(0.0, f64::max)
+    }
+}
