@@ -178,12 +178,13 @@ impl Drive {
             (0x6041, 0) => u32::from(self.statusword()),
             (0x6064, 0) => {
                 let reported = self.reported();
-                let plain = f64::from(reported) / QC_PER_DEG;
-                self.record.sample(self.now, plain, self.referenced);
-                match self.faults.wrong_object {
-                    true => u32::from(self.statusword()),
-                    false => signed(reported),
-                }
+                let shown = match self.faults.wrong_object {
+                    true => i32::from(self.statusword()),
+                    false => reported,
+                };
+                let deg = f64::from(shown) / QC_PER_DEG;
+                self.record.sample(self.now, deg, self.referenced);
+                signed(shown)
             }
             (0x6062, 0) => signed((self.demand.0 * QC_PER_DEG) as i32),
             (0x606C | 0x2028, 0) if self.faults.speed_lies => signed(-1_234),
@@ -260,7 +261,9 @@ impl Drive {
         let is_homing = self.value(0x6060, 0) == 6;
         let reached = match is_homing {
             true => self.homing.is_done(),
-            false => self.profile.is_none_or(|p| self.now >= p.start + p.duration()),
+            false => self
+                .profile
+                .is_none_or(|p| self.now >= p.start + p.duration()),
         };
         let reached = match self.faults.reached {
             Some(claimed) if !is_homing => claimed,
@@ -268,7 +271,7 @@ impl Drive {
         };
         let bit12 = match is_homing {
             true => self.homing.is_done(),
-            false => self.acknowledged && !self.faults.ignores_targets,
+            false => self.acknowledged && !self.faults.never_acknowledges,
         };
         state
             | u16::from(self.operational || !self.record.can) << 9
@@ -337,9 +340,6 @@ impl Drive {
     }
 
     fn start(&mut self) {
-        if self.faults.ignores_targets {
-            return;
-        }
         let speed = f64::from(self.value(0x6081, 0).min(self.value(0x607F, 0)));
         let plan = Profile {
             from: self.demand.0,
@@ -350,6 +350,9 @@ impl Drive {
         };
         self.record.plan(plan);
         self.trigger_at_start(&plan);
+        if self.faults.ignores_targets {
+            return;
+        }
         self.acknowledged = true;
         self.profile = Some(Profile {
             speed: plan.speed * self.faults.speed_factor,
@@ -390,8 +393,8 @@ impl Drive {
 
     /// Bits of the limit switches that are pressed.
     pub(crate) fn inputs(&self) -> u16 {
-        let pressed = u16::from(self.axis.deg <= SWITCHES.0)
-            | u16::from(self.axis.deg >= SWITCHES.1) << 1;
+        let pressed =
+            u16::from(self.axis.deg <= SWITCHES.0) | u16::from(self.axis.deg >= SWITCHES.1) << 1;
         self.faults.switches.seen(pressed, self.now)
     }
 

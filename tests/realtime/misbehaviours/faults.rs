@@ -9,8 +9,10 @@ pub enum When {
     Start,
     /// 0.2 s into homing.
     Homing,
-    /// At rest under power, before the sweep.
-    Holding,
+    /// With the end of homing.
+    Homed,
+    /// 0.1 s later, at rest under power.
+    Waiting,
     /// With the command that starts the sweep.
     SweepStart,
     /// 0.4 s into the sweep.
@@ -147,6 +149,7 @@ pub struct Faults {
     pub ignores_disable: bool,
     pub ignores_writes: bool,
     pub ignores_targets: bool,
+    pub never_acknowledges: bool,
     /// Seconds until a quick stop begins, and until the power goes off.
     pub stops_after: f64,
     pub disables_after: f64,
@@ -195,6 +198,7 @@ impl Default for Faults {
             ignores_disable: false,
             ignores_writes: false,
             ignores_targets: false,
+            never_acknowledges: false,
             stops_after: 0.0,
             disables_after: 0.0,
             creeps: None,

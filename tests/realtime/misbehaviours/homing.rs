@@ -50,7 +50,12 @@ impl Drive {
             _ => Phase::Failed,
         };
         self.referenced = false;
-        self.homing = Homing { phase, since: Some(self.now), speed: 0.0, travelled: 0.0 };
+        self.homing = Homing {
+            phase,
+            since: Some(self.now),
+            speed: 0.0,
+            travelled: 0.0,
+        };
     }
 
     /// Demand of a running homing after `dt` more seconds.
@@ -81,7 +86,7 @@ impl Drive {
                     // The axis may still lag: the demand becomes the home position.
                     let at = (profile.to * QC_PER_DEG).round() as i64;
                     self.offset += i64::from(home) - at;
-                    self.record.home();
+                    self.record.homed = Some(self.now);
                     (self.referenced, self.homing.phase) = (true, Phase::Done);
                     self.past.clear();
                     return (f64::from(home) / QC_PER_DEG, 0.0);

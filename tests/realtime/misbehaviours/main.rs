@@ -34,7 +34,7 @@ use run::Transport;
 /// Runs at a time: they mostly wait.
 const THREADS: usize = 3;
 /// Runs of a row whose drive was not scheduled in time.
-const TRIES: usize = 4;
+const TRIES: usize = 6;
 
 fn main() {
     check_frames();
@@ -59,13 +59,24 @@ fn main() {
         }
     });
     let verdicts = verdicts.into_inner().unwrap();
-    println!("{} runs in {:.0} s", verdicts.len(), begin.elapsed().as_secs_f64());
-    let failed = verdicts.iter().filter(|(.., verdict)| !verdict.wrong.is_empty());
+    println!(
+        "{} runs in {:.0} s",
+        verdicts.len(),
+        begin.elapsed().as_secs_f64()
+    );
+    let failed = verdicts
+        .iter()
+        .filter(|(.., verdict)| !verdict.wrong.is_empty());
     let mut count = 0;
     for (row, transport, verdict) in failed {
         count += 1;
         let name = ROWS[*row].name;
-        println!("FAILED: {name} on {}: {}\n{}", transport.kind(), verdict.wrong.join("; "), verdict.printed);
+        println!(
+            "FAILED: {name} on {}: {}\n{}",
+            transport.kind(),
+            verdict.wrong.join("; "),
+            verdict.printed
+        );
     }
     if is_bless {
         judge::bless(&verdicts);
@@ -83,14 +94,20 @@ fn plan(all: bool, only: &[&String]) -> Vec<(usize, Transport)> {
             let (name, link) = part.split_once('@').unwrap_or((part, ""));
             (row.name.contains(name), link.to_owned())
         };
-        let named: Vec<String> = only.iter().map(is_named).filter(|n| n.0).map(|n| n.1).collect();
+        let named: Vec<String> = only
+            .iter()
+            .map(is_named)
+            .filter(|n| n.0)
+            .map(|n| n.1)
+            .collect();
         if !only.is_empty() && named.is_empty() {
             continue;
         }
         for (place, transport) in Transport::ALL.into_iter().enumerate() {
             let is_possible = !row.only_can || transport == Transport::Slcan;
             let is_turn = all || row.only_can || number % 3 == place;
-            let is_wanted = named.is_empty() || named.iter().any(|link| transport.kind().contains(link));
+            let is_wanted =
+                named.is_empty() || named.iter().any(|link| transport.kind().contains(link));
             if is_possible && is_turn && is_wanted {
                 plan.push((number, transport));
             }
@@ -118,15 +135,26 @@ fn one(row: &'static Misbehaviour, transport: Transport) -> Verdict {
 fn check_frames() {
     let usb = |opcode, data: &[u8]| usb::frame(opcode, data, 0);
     let hex = |text: &str| -> Vec<u8> {
-        text.split(' ').map(|byte| u8::from_str_radix(byte, 16).unwrap()).collect()
+        text.split(' ')
+            .map(|byte| u8::from_str_radix(byte, 16).unwrap())
+            .collect()
     };
-    assert_eq!(usb(0x10, &[0x41, 0x60, 0, 1]), hex("90 02 10 02 41 60 00 01 64 CF"));
-    assert_eq!(usb(0, &[0, 0, 0, 0, 0x37, 2, 0, 0]), hex("90 02 00 04 00 00 00 00 37 02 00 00 68 00"));
+    assert_eq!(
+        usb(0x10, &[0x41, 0x60, 0, 1]),
+        hex("90 02 10 02 41 60 00 01 64 CF")
+    );
+    assert_eq!(
+        usb(0, &[0, 0, 0, 0, 0x37, 2, 0, 0]),
+        hex("90 02 00 04 00 00 00 00 37 02 00 00 68 00")
+    );
     assert_eq!(
         usb(0, &[0, 0, 0, 0, 0, 0, 0x90, 0x80]),
         hex("90 02 00 04 00 00 00 00 00 00 90 90 80 14 35")
     );
-    assert_eq!(rs232::body(0x10, &[0x41, 0x60, 0, 1], 0), hex("01 41 60 00 01 AB F0"));
+    assert_eq!(
+        rs232::body(0x10, &[0x41, 0x60, 0, 1], 0),
+        hex("01 41 60 00 01 AB F0")
+    );
     assert_eq!(
         rs232::body(0, &[0, 0, 0, 0, 0x37, 2, 0, 0], 0),
         hex("03 00 00 00 00 37 02 00 00 19 80")

@@ -40,17 +40,22 @@ pub struct Record {
     pub shown: Option<f64>,
     /// When the sweep was half done.
     pub half: Option<f64>,
+    /// When homing ended.
+    pub homed: Option<f64>,
     /// When the client was signalled to end.
     pub signalled: Option<f64>,
     plan: Option<Profile>,
-    homed: bool,
 }
 
 impl Record {
     /// Stores the truth of a step.
     pub fn truth(&mut self, now: f64, axis: &Axis) {
         if self.truth.last().is_none_or(|last| now - last.at >= 0.001) {
-            self.truth.push(Truth { at: now, axis: *axis, homed: self.homed });
+            self.truth.push(Truth {
+                at: now,
+                axis: *axis,
+                homed: self.homed.is_some(),
+            });
         }
     }
 
@@ -67,11 +72,6 @@ impl Record {
     /// Whether it has begun.
     pub fn has_begun(&self) -> bool {
         self.began.is_some()
-    }
-
-    /// The axis was homed.
-    pub fn home(&mut self) {
-        self.homed = true;
     }
 
     /// A new move: what a healthy drive does from now on.
@@ -94,19 +94,23 @@ impl Record {
         let Some(plan) = self.plan.filter(|_| referenced && self.has_begun()) else {
             return;
         };
+        if now > plan.start + plan.duration() + 3.0 {
+            return;
+        }
         let (expected, _) = plan.at(now);
         let sign = (plan.to - plan.from).signum();
         let ahead = (shown - expected) * sign;
         let is_outside = shown < LIMITS.0 - 0.13 || shown > LIMITS.1 + 0.13;
         let behind = 0.53 + plan.speed * 0.05;
         if is_outside || ahead > 0.53 || ahead < -behind || (shown - plan.from) * sign < -0.53 {
-            self.shown.get_or_insert(now);
+            self.show(now);
         }
     }
 
-    /// The client is shown something else that it must not overlook.
+    /// The client is shown what it must not overlook.
     pub fn show(&mut self, now: f64) {
-        if self.has_begun() {
+        let Some(began) = self.began else { return };
+        if self.first_stop(began).is_none() {
             self.shown.get_or_insert(now);
         }
     }
@@ -117,6 +121,12 @@ impl Record {
             Event::Control(word) if *at >= after && (word & 2 == 0 || word & 4 == 0) => Some(*at),
             _ => None,
         })
+    }
+
+    /// Highest speed of the axis.
+    pub fn highest_speed(&self) -> f64 {
+        let speeds = self.truth.iter().map(|truth| truth.axis.speed.abs());
+        speeds.fold(0.0, f64::max)
     }
 
     /// Degrees travelled after a time.

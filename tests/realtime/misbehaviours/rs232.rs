@@ -55,7 +55,9 @@ impl Rs232 {
             return;
         }
         self.send(drive, vec![OKAY]);
-        let Some(answer) = execute(drive, &mut self.upload, opcode, data) else { return };
+        let Some(answer) = execute(drive, &mut self.upload, opcode, data) else {
+            return;
+        };
         // NMT and CAN services have no answer on RS232.
         if matches!(opcode, 0x0E | 0x20) {
             return;

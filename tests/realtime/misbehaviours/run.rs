@@ -73,7 +73,7 @@ pub struct Outcome {
     pub printed: String,
     /// What it kept.
     pub kept: Kept,
-    /// Longest pause of the drive's thread.
+    /// Longest pause of the drive's thread, a fifth of it at standstill.
     pub gap: f64,
 }
 
@@ -130,11 +130,7 @@ pub fn run(row: &'static Misbehaviour, transport: Transport) -> Result<Outcome, 
 }
 
 /// Runs the client; returns its exit code.
-fn capture(
-    folder: &Path,
-    row: &Misbehaviour,
-    shared: &Shared,
-) -> Result<Option<i32>, String> {
+fn capture(folder: &Path, row: &Misbehaviour, shared: &Shared) -> Result<Option<i32>, String> {
     let mut client = Command::new(env!("CARGO_BIN_EXE_velomotion"));
     client
         .args("capture --speed 56.25 --accel 500 -o scan.ply --log scan.pcapng".split(' '))
@@ -144,7 +140,10 @@ fn capture(
     // A pipe that nobody reads is full after a moment of -vv.
     let is_unread = row.name.contains("nobody reads");
     if is_unread {
-        client.arg("-vv").stdout(Stdio::piped()).stderr(Stdio::piped());
+        client
+            .arg("-vv")
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped());
     } else {
         let file = File::create(folder.join("stderr")).map_err(|error| error.to_string())?;
         client.stdout(Stdio::null()).stderr(file);
@@ -191,19 +190,28 @@ fn be_drive(
     let (mut buffer, mut last, mut longest) = ([0; 512], 0.0, 0.0_f64);
     while !shared.end.load(Ordering::Acquire) {
         let read = match &mut pty {
-            Some(port) => port.read(&mut buffer, Span::from_nanos(300_000)).ok().flatten(),
+            Some(port) => port
+                .read(&mut buffer, Span::from_nanos(300_000))
+                .ok()
+                .flatten(),
             None => {
                 std::thread::sleep(Duration::from_micros(300));
                 None
             }
         };
         let now = shared.begin.elapsed().as_secs_f64();
-        if drive.record.has_begun() || drive.record.half.is_some() {
-            longest = longest.max(now - last);
-        }
+        // While the axis stands, a client waits for longer.
+        let allowance = if drive.axis.speed.abs() > 0.1 {
+            1.0
+        } else {
+            0.2
+        };
+        longest = longest.max((now - last) * allowance);
         last = now;
         drive.advance(now);
-        let bytes = buffer.get(..read.map_or(0, |(count, _)| count)).unwrap_or_default();
+        let bytes = buffer
+            .get(..read.map_or(0, |(count, _)| count))
+            .unwrap_or_default();
         let is_dead = drive.boots_at.is_some() || drive.faults.is_deaf;
         if is_dead && transport != Transport::Slcan {
             if !bytes.is_empty() {
@@ -248,10 +256,17 @@ fn kept(folder: &Path) -> Kept {
     }
     let cloud = std::fs::read(folder.join("scan.ply")).unwrap_or_default();
     let header = String::from_utf8_lossy(&cloud[..cloud.len().min(400)]).into_owned();
-    let points = header
-        .lines()
-        .find_map(|line| line.strip_prefix("element vertex ")?.trim().parse::<u64>().ok());
-    if points.is_some_and(|points| points > 0) { Kept::Cloud } else { Kept::Log }
+    let points = header.lines().find_map(|line| {
+        line.strip_prefix("element vertex ")?
+            .trim()
+            .parse::<u64>()
+            .ok()
+    });
+    if points.is_some_and(|points| points > 0) {
+        Kept::Cloud
+    } else {
+        Kept::Log
+    }
 }
 
 impl Outcome {

@@ -159,6 +159,14 @@ impl Drive {
         if self.homing.seconds(self.now) > 0.2 {
             self.trigger(When::Homing);
         }
+        if let Some(homed) = self.record.homed
+            && self.state == State::Enabled
+        {
+            self.trigger(When::Homed);
+            if self.now - homed > 0.1 && self.profile.is_none() {
+                self.trigger(When::Waiting);
+            }
+        }
         let Some(profile) = self.profile else { return };
         let is_sweep = (profile.to - profile.from).abs() > SWEEP_DEG;
         if is_sweep && self.now > profile.start + 0.4 {
@@ -167,11 +175,6 @@ impl Drive {
         }
         if is_sweep && self.now > profile.start + profile.duration() - 0.1 {
             self.trigger(When::Braking);
-        }
-        if !is_sweep && self.referenced && self.state == State::Enabled
-            && self.now > profile.start + profile.duration() + 0.02
-        {
-            self.trigger(When::Holding);
         }
     }
 }

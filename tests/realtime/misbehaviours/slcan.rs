@@ -89,7 +89,11 @@ impl Slcan {
                     if drive.faults.wrong_object && response[1] == 0x64 {
                         response[1] = 0x62;
                     }
-                    let id = if drive.faults.wrong_node { 0x582 } else { 0x581 };
+                    let id = if drive.faults.wrong_node {
+                        0x582
+                    } else {
+                        0x581
+                    };
                     if drive.faults.wrong_node || drive.faults.wrong_object {
                         drive.show();
                     }
@@ -133,7 +137,10 @@ impl Slcan {
         match command >> 5 {
             1 if command & 2 == 0 => abort(0x0504_0001),
             1 => {
-                let value = request[4..8].iter().rev().fold(0, |sum, b| sum << 8 | u32::from(*b));
+                let value = request[4..8]
+                    .iter()
+                    .rev()
+                    .fold(0, |sum, b| sum << 8 | u32::from(*b));
                 match drive.write(index, sub, value) {
                     Ok(()) => Some([0x60, low, high, sub, 0, 0, 0, 0]),
                     Err(code) => abort(code),
@@ -150,7 +157,11 @@ impl Slcan {
                 }
                 Ok(rest) => {
                     let length = rest.len() as u8;
-                    self.upload = Upload { rest, toggle: false, is_open: true };
+                    self.upload = Upload {
+                        rest,
+                        toggle: false,
+                        is_open: true,
+                    };
                     Some([0x41, low, high, sub, length, 0, 0, 0])
                 }
             },

@@ -21,7 +21,10 @@ pub struct Usb {
 pub fn frame(opcode: u8, data: &[u8], spoil: u16) -> Vec<u8> {
     let length = (data.len() / 2) as u8;
     let sum = crc([length, opcode].into_iter().chain(swapped(data))) ^ spoil;
-    let body = [opcode, length].into_iter().chain(data.iter().copied()).chain(sum.to_le_bytes());
+    let body = [opcode, length]
+        .into_iter()
+        .chain(data.iter().copied())
+        .chain(sum.to_le_bytes());
     let mut bytes = vec![0x90, 0x02];
     for byte in body {
         bytes.push(byte);
@@ -74,7 +77,9 @@ impl Link for Usb {
                 self.escaped = true;
                 continue;
             }
-            let Some(frame) = &mut self.frame else { continue };
+            let Some(frame) = &mut self.frame else {
+                continue;
+            };
             frame.push(byte);
             if frame.len() >= 2 && frame.len() == 4 + 2 * usize::from(frame[1]) {
                 let frame = self.frame.take().unwrap_or_default();

@@ -53,7 +53,10 @@ impl Outbox {
     }
 
     fn random(&mut self) -> u8 {
-        self.seed = self.seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        self.seed = self
+            .seed
+            .wrapping_mul(1_664_525)
+            .wrapping_add(1_013_904_223);
         (self.seed >> 24) as u8
     }
 
@@ -71,7 +74,11 @@ impl Outbox {
 pub fn crc(bytes: impl IntoIterator<Item = u8>) -> u16 {
     bytes.into_iter().fold(0_u16, |crc, byte| {
         (0..8).fold(crc ^ u16::from(byte) << 8, |crc, _| {
-            if crc & 0x8000 == 0 { crc << 1 } else { crc << 1 ^ 0x1021 }
+            if crc & 0x8000 == 0 {
+                crc << 1
+            } else {
+                crc << 1 ^ 0x1021
+            }
         })
     })
 }
@@ -129,7 +136,10 @@ pub fn execute(drive: &mut Drive, upload: &mut Upload, opcode: u8, data: &[u8]) 
                 let mut answer = vec![0; 4];
                 let mut value = value.to_le_bytes();
                 // A real drive leaves garbage above the object's width.
-                value.iter_mut().skip(width.into()).for_each(|byte| *byte = 0xA5);
+                value
+                    .iter_mut()
+                    .skip(width.into())
+                    .for_each(|byte| *byte = 0xA5);
                 answer.extend(value);
                 Some(answer)
             }
@@ -145,7 +155,11 @@ pub fn execute(drive: &mut Drive, upload: &mut Upload, opcode: u8, data: &[u8]) 
         }
         0x12 => match long_object(drive, index, sub) {
             Ok(rest) => {
-                *upload = Upload { rest, toggle: false, is_open: true };
+                *upload = Upload {
+                    rest,
+                    toggle: false,
+                    is_open: true,
+                };
                 error(0)
             }
             Err(code) => error(code),

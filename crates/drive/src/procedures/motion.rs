@@ -145,7 +145,9 @@ async fn start(ops: &mut Ops, plan: MovePlan) -> Result<(MotionGuard, Stamp<Host
 /// The next sample, compared with the plan.
 async fn guarded_sample(ops: &mut Ops, guard: &mut MotionGuard) -> Result<ShaftSample, DriveError> {
     let sample = ops.next_sample().await?;
-    guard.check(&sample, ops.config.gearing.angle(sample.position))?;
+    let checked = guard.check(&sample, ops.config.gearing.angle(sample.position));
+    ops.set_lag(guard.lag);
+    checked?;
     Ok(sample)
 }
 
