@@ -11,7 +11,7 @@ pub enum When {
     Homing,
     /// With the end of homing.
     Homed,
-    /// 0.1 s later, at rest under power.
+    /// 0.05 s later, at rest under power.
     Waiting,
     /// With the command that starts the sweep.
     SweepStart,
@@ -34,10 +34,16 @@ pub enum Expect {
     Stopped,
     /// No sample shows it: stopped once silence or damage is certain, within 300 ms.
     Silent,
+    /// The positions do not show it: stopped once a limit switch does.
+    Unseen,
+    /// The quick stop is ignored: stopped by power off and brake.
+    Braked,
     /// Homing ends within its bound of travel.
     HomingBound,
     /// The drive obeys nothing, or hears nothing: the message tells to cut the supply.
     Unstoppable,
+    /// The power is off and the command failed; only weight moves the axis.
+    Falls,
     /// Complete or stopped; safe in the end.
     Safe,
 }

@@ -13,6 +13,10 @@ const STOP_MS: f64 = 50.0;
 const SILENT_MS: f64 = 300.0;
 /// Degrees beyond the limits in addition to a quick stop by 500 deg/s2.
 const BEYOND: f64 = 0.1;
+/// The same where a quick stop is ignored and the brake stops the axis.
+const BRAKED: f64 = 1.0;
+/// The same where the axis moves at 112 deg/s to a limit switch, which is read every 80 ms.
+const UNSEEN: f64 = 1.0 + 0.09 * 112.5;
 /// Degrees of homing without a switch: its bound, and a stop.
 const HOMING: f64 = 45.0 + 1.0 + 10.0 + 1.0;
 
@@ -54,7 +58,7 @@ impl Verdict {
         let mut verdict = Self {
             travel: drive.record.travel(began),
             beyond: drive.record.beyond(0.0),
-            ramp: drive.record.highest_speed().powi(2) / 500.0 / 2.0,
+            ramp: drive.record.highest_speed().max(56.25).powi(2) / 500.0 / 2.0,
             stop_ms: outcome.stop_ms(),
             moving: drive.record.travel(last - 0.1) > 0.03,
             powered: drive.axis.powered,
@@ -79,19 +83,25 @@ impl Verdict {
                 wrong.push(what);
             }
         };
-        let obeys = expect != Expect::Unstoppable;
-        if obeys {
-            must(!self.moving, "still moving".to_owned());
-            must(!self.powered, "still powered".to_owned());
-            if expect != Expect::HomingBound {
-                let what = format!("{:.2} deg beyond the limits", self.beyond);
-                must(self.beyond <= self.ramp + BEYOND, what);
+        let stops = !matches!(expect, Expect::Unstoppable | Expect::Falls);
+        must(!stops || !self.moving, "still moving".to_owned());
+        match expect {
+            Expect::Unstoppable => {
+                must(self.exit == Some(5), format!("exit {:?}", self.exit));
+                let tells = self.printed.to_lowercase().contains("supply");
+                must(tells, "no word of the supply".to_owned());
             }
-        } else {
-            must(self.exit == Some(5), format!("exit {:?}", self.exit));
-            let tells = self.printed.to_lowercase().contains("supply");
-            must(tells, "no word of the supply".to_owned());
+            _ => must(!self.powered, "still powered".to_owned()),
         }
+        let beyond = self.ramp
+            + match expect {
+                Expect::Unstoppable | Expect::Falls | Expect::HomingBound => f64::INFINITY,
+                Expect::Unseen => UNSEEN,
+                Expect::Braked => BRAKED,
+                _ => BEYOND,
+            };
+        let what = format!("{:.2} deg beyond the limits", self.beyond);
+        must(self.beyond <= beyond, what);
         let stop = self.stop_ms.unwrap_or(f64::INFINITY);
         match expect {
             Expect::Completes => {
@@ -108,7 +118,7 @@ impl Verdict {
                     format!("exit {:?}", self.exit),
                 );
             }
-            Expect::Stopped => {
+            Expect::Stopped | Expect::Unseen | Expect::Braked => {
                 must(stop <= STOP_MS, format!("stop after {stop:.0} ms"));
                 must(
                     !matches!(self.exit, Some(0) | None),
@@ -129,7 +139,7 @@ impl Verdict {
                 );
                 must(self.exit == Some(5), format!("exit {:?}", self.exit));
             }
-            Expect::Unstoppable | Expect::Safe => {}
+            Expect::Unstoppable | Expect::Falls | Expect::Safe => {}
         }
         self.wrong = [std::mem::take(&mut self.wrong), wrong].concat();
     }

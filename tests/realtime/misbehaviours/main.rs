@@ -41,7 +41,7 @@ fn main() {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let has = |word: &str| words.iter().any(|given| given == word);
     let is_bless = has("--bless");
-    let only: Vec<&String> = words.iter().filter(|word| !word.starts_with('-')).collect();
+    let only: Vec<&String> = named(&words);
     let all = is_bless || has("--include-ignored") || !only.is_empty();
     let plan = plan(all, &only);
     let begin = Instant::now();
@@ -84,6 +84,14 @@ fn main() {
     if count > 0 {
         std::process::exit(1);
     }
+}
+
+/// Names of rows among the arguments; `--skip` has one that is not meant.
+fn named(words: &[String]) -> Vec<&String> {
+    let before = [String::new()];
+    let pairs = before.iter().chain(words).zip(words);
+    let names = pairs.filter(|(before, word)| !word.starts_with('-') && *before != "--skip");
+    names.map(|(_, word)| word).collect()
 }
 
 /// The runs: each row on one link, or on all.

@@ -4,6 +4,9 @@ use crate::motion::{Axis, Profile};
 
 /// Range that the configuration allows, degrees.
 pub const LIMITS: (f64, f64) = (-45.0, 0.0);
+/// Share of the documented tolerances that shows a misbehaviour: the client's plan starts a little
+/// later or earlier than the drive's.
+const SHARE: f64 = 0.95;
 
 /// Something that happened.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,18 +94,22 @@ impl Record {
 
     /// The client is shown a position: judges it by the documented limits.
     pub fn sample(&mut self, now: f64, shown: f64, referenced: bool) {
-        let Some(plan) = self.plan.filter(|_| referenced && self.has_begun()) else {
-            return;
-        };
-        if now > plan.start + plan.duration() + 3.0 {
+        if !referenced || !self.has_begun() {
             return;
         }
-        let (expected, _) = plan.at(now);
-        let sign = (plan.to - plan.from).signum();
+        // Before the sweep the axis holds where homing ends.
+        let (expected, from, sign, speed) = match self.plan {
+            Some(plan) => {
+                let sign = (plan.to - plan.from).signum();
+                (plan.at(now).0, plan.from, sign, plan.speed)
+            }
+            None => (LIMITS.1, LIMITS.1, 1.0, 0.0),
+        };
         let ahead = (shown - expected) * sign;
         let is_outside = shown < LIMITS.0 - 0.13 || shown > LIMITS.1 + 0.13;
-        let behind = 0.53 + plan.speed * 0.05;
-        if is_outside || ahead > 0.53 || ahead < -behind || (shown - plan.from) * sign < -0.53 {
+        let behind = SHARE * (0.53 + speed * 0.05);
+        let most = SHARE * 0.53;
+        if is_outside || ahead > most || ahead < -behind || (shown - from) * sign < -most {
             self.show(now);
         }
     }

@@ -163,7 +163,7 @@ impl Drive {
             && self.state == State::Enabled
         {
             self.trigger(When::Homed);
-            if self.now - homed > 0.1 && self.profile.is_none() {
+            if self.now - homed > 0.05 && self.profile.is_none() {
                 self.trigger(When::Waiting);
             }
         }

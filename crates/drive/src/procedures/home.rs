@@ -210,9 +210,10 @@ async fn settled_position(ops: &mut Ops) -> Result<Quadcounts, DriveError> {
     let limit = ops.now().saturating_add(timing.state_limit);
     let mut last = Quadcounts(ops.read(objects::POSITION_ACTUAL).await?);
     let mut since = ops.now();
-    // Farther away it does not only lag behind.
-    let lag = ops.config.max_following_error;
-    while !is_inside(ops, last)? && is_within(ops, last, lag)? {
+    // A lagging axis comes closer.
+    let ahead = ops.config.tolerance_qc(ops.config.guard.ahead).0;
+    let farthest = outside(ops, last)?.saturating_add(ahead);
+    while !is_inside(ops, last)? && outside(ops, last)? <= farthest {
         let requested = ops.now();
         if requested.saturating_since(since) >= timing.standstill || requested > limit {
             break;
@@ -226,13 +227,15 @@ async fn settled_position(ops: &mut Ops) -> Result<Quadcounts, DriveError> {
     Ok(last)
 }
 
-/// Whether a position is within the limits and the arrival tolerance.
-fn is_inside(ops: &Ops, position: Quadcounts) -> Result<bool, DriveError> {
-    is_within(ops, position, ops.config.arrival_tolerance)
+/// Quadcounts beyond the limits, negative within.
+fn outside(ops: &Ops, position: Quadcounts) -> Result<i32, DriveError> {
+    let limits = ops.config.limits_qc()?;
+    let above = position.0.saturating_sub(limits.max.0);
+    Ok(limits.min.0.saturating_sub(position.0).max(above))
 }
 
-/// Whether a position is within the limits and a tolerance.
-fn is_within(ops: &Ops, position: Quadcounts, tolerance: Degrees) -> Result<bool, DriveError> {
-    let limits = ops.config.limits_qc()?;
-    Ok(limits.contains(position, ops.config.tolerance_qc(tolerance)))
+/// Whether a position is within the limits and the arrival tolerance.
+fn is_inside(ops: &Ops, position: Quadcounts) -> Result<bool, DriveError> {
+    let tolerance = ops.config.tolerance_qc(ops.config.arrival_tolerance);
+    Ok(outside(ops, position)? <= tolerance.0)
 }

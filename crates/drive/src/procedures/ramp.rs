@@ -11,7 +11,7 @@ use crate::event::ShaftSample;
 const SPEED_SPAN: Span = Span::from_millis(12);
 /// Share of the overshoot at the end of a move (`ahead`) that a stop may have: a servo overshoots
 /// less than the tolerance for deviations from a whole move.
-const OVERSHOOT_SHARE: f64 = 0.6;
+const OVERSHOOT_SHARE: f64 = 0.4;
 
 /// Compares the samples after a quick stop with its ramp.
 pub(super) struct QuickStopRamp {
@@ -53,19 +53,19 @@ impl QuickStopRamp {
         };
         let counts = f64::from(sample.position.0) - f64::from(first.position.0);
         let moved = counts.abs() * self.deg_per_qc;
-        let is_measured = sample.request.saturating_since(first.answer) >= SPEED_SPAN;
-        let seconds = sample.answer.saturating_since(first.request).as_secs_f64();
-        if !is_measured {
+        // The drive takes each sample at about the same time between request and answer. Where one
+        // of them was delayed, the time between the samples is a range.
+        let since_request = sample.request.saturating_since(first.request);
+        let since_answer = sample.answer.saturating_since(first.answer);
+        let least = since_request.min(since_answer).as_secs_f64();
+        let seconds = since_request.max(since_answer).as_secs_f64();
+        if least < SPEED_SPAN.as_secs_f64() {
             return false;
         }
-        let speed = *self.speed.get_or_insert_with(|| {
-            // The drive takes each sample at about the same time between request and answer.
-            let since_request = sample.request.saturating_since(first.request).as_secs_f64();
-            let since_answer = sample.answer.saturating_since(first.answer).as_secs_f64();
-            let since = f64::midpoint(since_request, since_answer);
-            // The ramp may already have begun.
-            moved / since + self.deceleration * since / 2.0
-        });
+        // The ramp may already have begun.
+        let speed = *self
+            .speed
+            .get_or_insert(moved / least + self.deceleration * seconds / 2.0);
         let on_ramp = seconds.min(speed / self.deceleration);
         let most = on_ramp * (speed - self.deceleration * on_ramp / 2.0);
         let is_beyond = moved > most + self.tolerance;
