@@ -75,6 +75,8 @@ pub struct Outcome {
     pub kept: Kept,
     /// Longest pause of the drive's thread, a fifth of it at standstill.
     pub gap: f64,
+    /// Longest time without a request between the beginning and the first stop.
+    pub silence: f64,
 }
 
 /// What the threads of a run share.
@@ -114,7 +116,7 @@ pub fn run(row: &'static Misbehaviour, transport: Transport) -> Result<Outcome, 
         let exit = capture(folder.path(), row, &shared);
         std::thread::sleep(AFTERWARDS);
         shared.end.store(true, Ordering::Release);
-        let (drive, gap) = device.join().map_err(|_| "the fake drive panicked")?;
+        let (drive, gap, silence) = device.join().map_err(|_| "the fake drive panicked")?;
         let read = |name| {
             let bytes = std::fs::read(folder.path().join(name)).unwrap_or_default();
             String::from_utf8_lossy(&bytes).into_owned()
@@ -125,6 +127,7 @@ pub fn run(row: &'static Misbehaviour, transport: Transport) -> Result<Outcome, 
             printed: read("stderr"),
             kept: kept(folder.path()),
             gap,
+            silence,
         })
     })
 }
@@ -175,19 +178,21 @@ fn terminate(child: &Child, shared: &Shared) -> Result<(), String> {
     sent.map(drop).map_err(|error| error.to_string())
 }
 
-/// Runs the drive until the end; returns it with the longest pause of its thread.
+/// Runs the drive until the end; returns it with the longest pauses of its thread and of the
+/// client.
 fn be_drive(
     pty: Pty,
     row: &'static Misbehaviour,
     transport: Transport,
     shared: &Shared,
-) -> (Drive, f64) {
+) -> (Drive, f64, f64) {
     let mut pty = Some(pty);
     let mut link = transport.link();
     let mut drive = Drive::new(-8.0);
     drive.record.can = transport == Transport::Slcan;
     drive.arm(row);
-    let (mut buffer, mut last, mut longest) = ([0; 512], 0.0, 0.0_f64);
+    let (mut buffer, mut last, mut heard) = ([0; 512], 0.0, 0.0);
+    let (mut longest, mut silence) = (0.0_f64, 0.0_f64);
     while !shared.end.load(Ordering::Acquire) {
         let read = match &mut pty {
             Some(port) => port
@@ -212,6 +217,14 @@ fn be_drive(
         let bytes = buffer
             .get(..read.map_or(0, |(count, _)| count))
             .unwrap_or_default();
+        if !bytes.is_empty() {
+            heard = now;
+        }
+        if let Some(began) = drive.record.began
+            && drive.record.first_stop(began).is_none()
+        {
+            silence = silence.max(now - heard);
+        }
         let is_dead = drive.boots_at.is_some() || drive.faults.is_deaf;
         if is_dead && transport != Transport::Slcan {
             if !bytes.is_empty() {
@@ -239,7 +252,7 @@ fn be_drive(
             shared.half.store(true, Ordering::Release);
         }
     }
-    (drive, longest)
+    (drive, longest, silence)
 }
 
 fn kept(folder: &Path) -> Kept {
