@@ -187,34 +187,32 @@ impl fmt::Display for Verdict {
     }
 }
 
-/// Writes the table of the page.
+/// Writes the table of the page. Rows that did not run stay as they are.
 pub fn bless(verdicts: &[(usize, Transport, Verdict)]) {
-    let mut table = String::from(
-        "| misbehaviour | link | travel, deg | beyond the limits, deg | first stop, ms | power, brake | exit | kept |\n\
-         |---|---|---|---|---|---|---|---|\n",
-    );
-    for (number, row) in ROWS.iter().enumerate() {
-        for transport in Transport::ALL {
-            let found = verdicts.iter().find(|v| v.0 == number && v.1 == transport);
-            if let Some((.., verdict)) = found {
-                table.push_str(&format!(
-                    "| {} | {} | {verdict:#} |\n",
-                    row.name,
-                    transport.kind()
-                ));
-            }
-        }
-    }
     let path = concat!(
         env!("CARGO_MANIFEST_DIR"),
         "/../../docs/src/misbehaviours.md"
     );
     let page = std::fs::read_to_string(path).unwrap();
     let (before, rest) = page.split_once(MARKS.0).unwrap();
-    let (_, after) = rest.split_once(MARKS.1).unwrap();
-    std::fs::write(
-        path,
-        format!("{before}{}{table}{}{after}", MARKS.0, MARKS.1),
-    )
-    .unwrap();
+    let (old, after) = rest.split_once(MARKS.1).unwrap();
+    let mut table = String::from(
+        "| misbehaviour | link | travel, deg | beyond the limits, deg | first stop, ms | power, brake | exit | kept |\n\
+         |---|---|---|---|---|---|---|---|\n",
+    );
+    for (number, row) in ROWS.iter().enumerate() {
+        for transport in Transport::ALL {
+            let key = format!("| {} | {} | ", row.name, transport.kind());
+            let found = verdicts.iter().find(|v| v.0 == number && v.1 == transport);
+            let line = match found {
+                Some((.., verdict)) => Some(format!("{key}{verdict:#} |")),
+                None => old.lines().find(|line| line.starts_with(&key)).map(str::to_owned),
+            };
+            if let Some(line) = line {
+                table.push_str(&line);
+                table.push('\n');
+            }
+        }
+    }
+    std::fs::write(path, format!("{before}{}{table}{}{after}", MARKS.0, MARKS.1)).unwrap();
 }
