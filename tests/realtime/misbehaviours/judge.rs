@@ -206,7 +206,10 @@ pub fn bless(verdicts: &[(usize, Transport, Verdict)]) {
             let found = verdicts.iter().find(|v| v.0 == number && v.1 == transport);
             let line = match found {
                 Some((.., verdict)) => Some(format!("{key}{verdict:#} |")),
-                None => old.lines().find(|line| line.starts_with(&key)).map(str::to_owned),
+                None => old
+                    .lines()
+                    .find(|line| line.starts_with(&key))
+                    .map(str::to_owned),
             };
             if let Some(line) = line {
                 table.push_str(&line);
@@ -214,5 +217,9 @@ pub fn bless(verdicts: &[(usize, Transport, Verdict)]) {
             }
         }
     }
-    std::fs::write(path, format!("{before}{}{table}{}{after}", MARKS.0, MARKS.1)).unwrap();
+    std::fs::write(
+        path,
+        format!("{before}{}{table}{}{after}", MARKS.0, MARKS.1),
+    )
+    .unwrap();
 }
