@@ -131,7 +131,7 @@ impl Switches {
             Self::Dead => 0,
             Self::PositiveOn => pressed | 2,
             Self::NegativeOn => pressed | 1,
-            Self::Bounce if (now * 400.0) as u64 % 3 == 0 => 0,
+            Self::Bounce if ((now * 400.0) as u64).is_multiple_of(3) => 0,
             Self::Bounce => pressed,
         }
     }

@@ -187,7 +187,8 @@ impl fmt::Display for Verdict {
     }
 }
 
-/// Writes the table of the page. Rows that did not run stay as they are.
+/// Writes the table of the page. Rows that did not run, or that the machine disturbed, stay as they
+/// are.
 pub fn bless(verdicts: &[(usize, Transport, Verdict)]) {
     let path = concat!(
         env!("CARGO_MANIFEST_DIR"),
@@ -203,7 +204,9 @@ pub fn bless(verdicts: &[(usize, Transport, Verdict)]) {
     for (number, row) in ROWS.iter().enumerate() {
         for transport in Transport::ALL {
             let key = format!("| {} | {} | ", row.name, transport.kind());
-            let found = verdicts.iter().find(|v| v.0 == number && v.1 == transport);
+            let found = verdicts
+                .iter()
+                .find(|v| v.0 == number && v.1 == transport && !v.2.is_disturbed);
             let line = match found {
                 Some((.., verdict)) => Some(format!("{key}{verdict:#} |")),
                 None => old

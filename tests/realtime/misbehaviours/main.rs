@@ -53,7 +53,11 @@ fn main() {
                 while let Some(&(row, transport)) = plan.get(next.fetch_add(1, Ordering::Relaxed)) {
                     let verdict = one(&ROWS[row], transport);
                     println!("{:5} {:52} {verdict}", transport.kind(), ROWS[row].name);
-                    verdicts.lock().unwrap().push((row, transport, verdict));
+                    let mut verdicts = verdicts.lock().unwrap();
+                    verdicts.push((row, transport, verdict));
+                    if is_bless {
+                        judge::bless(&verdicts);
+                    }
                 }
             });
         }
@@ -77,9 +81,6 @@ fn main() {
             verdict.wrong.join("; "),
             verdict.printed
         );
-    }
-    if is_bless {
-        judge::bless(&verdicts);
     }
     if count > 0 {
         std::process::exit(1);

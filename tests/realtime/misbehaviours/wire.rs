@@ -130,7 +130,7 @@ pub fn execute(drive: &mut Drive, upload: &mut Upload, opcode: u8, data: &[u8]) 
     let error = |code: u32| Some(code.to_le_bytes().to_vec());
     let is_ours = node == 0 || node == 1;
     match opcode {
-        0x10 | 0x11 | 0x12 if !is_ours => error(0x0504_0000),
+        0x10..=0x12 if !is_ours => error(0x0504_0000),
         0x10 => match drive.read(index, sub) {
             Ok((value, width)) => {
                 let mut answer = vec![0; 4];
