@@ -24,6 +24,10 @@ book:
 scan *ARGS:
     cargo run --release -- capture --speed 56.25 {{ARGS}}
 
+# Captures with a drive that misbehaves; --include-ignored for every link, --bless for the table of docs/src/misbehaviours.md.
+misbehaviours *ARGS:
+    cargo test -p velomotion --test misbehaviours --locked -- {{ARGS}}
+
 # 200 seeded failure scenarios; --first SEED --captures N for others, --bless for the table of docs/src/chaos.md.
 chaos *ARGS:
     cargo test -p velomotion-tests --test chaos --locked -- --captures 200 {{ARGS}}

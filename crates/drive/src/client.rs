@@ -52,6 +52,7 @@ impl DriveClient {
             link: RequestLink::new(Codec::new(link, config.node)),
             can: node.map(|node| CanServices::new(node, config.can)),
             referenced: false,
+            lag: None,
             now: Stamp::from_nanos(0),
             is_starting: false,
             wake: None,

@@ -1,7 +1,7 @@
 //! First pass over the records: arrival times of lidar packets, shaft samples and acknowledged
 //! writes of the drive.
 
-use drive::objects::Address;
+use drive::objects::{self, Address};
 use drive::record::{DriveLink, Record, Wire};
 use drive::{DriveListener, Observation, ShaftSample};
 use lidar::{Options, Timekeeper};
@@ -115,11 +115,16 @@ impl Survey {
     }
 }
 
+/// Mode of operation (6060): homing.
+const HOMING: i8 = 6;
+
 /// Reads times and angles from records, for the first pass and for the live cloud.
 pub(crate) struct RecordReader {
     timekeeper: Timekeeper,
     listener: DriveListener,
     request_transmission_time: Span,
+    /// The drive homes: its positions may lose their zero at any time.
+    is_homing: bool,
 }
 
 impl RecordReader {
@@ -128,6 +133,7 @@ impl RecordReader {
             timekeeper: Timekeeper::new(options),
             listener: DriveListener::new(config.axis.node),
             request_transmission_time: config.request_transmission_time(),
+            is_homing: false,
         }
     }
 
@@ -157,10 +163,20 @@ impl RecordReader {
         };
         // The drive takes the position after it has the whole request.
         let transmission = self.request_transmission_time;
+        let is_homing = &mut self.is_homing;
         self.listener
             .observe(link, direction, frame, host, &mut |mut seen| {
-                if let Observation::Sample(sample) = &mut seen {
-                    sample.request = sample.answer.min(sample.request + transmission);
+                match &mut seen {
+                    Observation::Sample(_) if *is_homing => return,
+                    Observation::Sample(sample) => {
+                        sample.request = sample.answer.min(sample.request + transmission);
+                    }
+                    Observation::Wrote { address, value, .. }
+                        if *address == objects::MODE.address =>
+                    {
+                        *is_homing = objects::MODE.decode(*value) == HOMING;
+                    }
+                    _ => {}
                 }
                 emit(seen);
             });

@@ -13,7 +13,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::task::Poll;
 
 use protocol::epos2::objects::{self, Address, Scalar, TypedObject};
-use units::{Host, Quadcounts, Span, Stamp};
+use units::{Degrees, Host, Quadcounts, Span, Stamp};
 
 use crate::can_services::{Alarm, CanServices};
 use crate::config::AxisConfig;
@@ -30,6 +30,8 @@ pub(crate) struct Core {
     pub can: Option<CanServices>,
     /// The axis has been referenced since it was connected.
     pub referenced: bool,
+    /// How far the axis lagged behind its demand, as far as known: a stop takes this distance more.
+    pub lag: Option<Degrees>,
     pub now: Stamp<Host>,
     /// A command was started, but [`Core::begin`] has not run yet.
     pub is_starting: bool,
@@ -56,6 +58,8 @@ pub(crate) struct Ops {
     pub silence_limit: Span,
     /// An alarm of the CAN bus fails the operation in progress.
     pub aborts_on_alarm: bool,
+    /// The power was switched off: friction stops the axis, without a brake slower than a ramp.
+    pub is_coasting: bool,
     next_sample: Option<Stamp<Host>>,
 }
 
@@ -72,6 +76,7 @@ impl Ops {
             is_moving: false,
             silence_limit: Span::ZERO,
             aborts_on_alarm: false,
+            is_coasting: false,
             next_sample: None,
         }
     }
@@ -89,6 +94,14 @@ impl Ops {
 
     pub fn set_referenced(&self, referenced: bool) {
         lock(&self.core).referenced = referenced;
+    }
+
+    pub fn lag(&self) -> Option<Degrees> {
+        lock(&self.core).lag
+    }
+
+    pub fn set_lag(&self, lag: Degrees) {
+        lock(&self.core).lag = Some(lag);
     }
 
     pub fn now(&self) -> Stamp<Host> {

@@ -36,6 +36,8 @@ pub(super) struct MotionGuard {
     highest: f64,
     /// The previous sample deviated.
     is_suspicious: bool,
+    /// How far the latest sample was behind the plan.
+    pub lag: Degrees,
     /// When the previous sample was received, and its progress.
     last: Option<(Stamp<Host>, f64)>,
     clock_steps: u8,
@@ -61,6 +63,7 @@ impl MotionGuard {
             lowest: config.limits.min.0.min(plan.from.0) - guard.beyond_limits.0 - dither,
             highest: config.limits.max.0.max(plan.from.0) + guard.beyond_limits.0 + dither,
             is_suspicious: false,
+            lag: Degrees(0.0),
             last: None,
             clock_steps: 0,
         }
@@ -78,6 +81,9 @@ impl MotionGuard {
     /// damaged reply.
     pub fn check(&mut self, sample: &ShaftSample, angle: Degrees) -> Result<(), DriveError> {
         self.follow_clock(sample, self.progress(angle.0));
+        let since_start = sample.answer.saturating_since(self.sent);
+        let lag = self.plan.travelled(since_start).0 - self.progress(angle.0);
+        self.lag = Degrees(lag.clamp(0.0, self.behind));
         let deviation = self.deviation(sample, angle.0);
         let was_suspicious = std::mem::replace(&mut self.is_suspicious, deviation.is_some());
         match deviation {

@@ -5,7 +5,7 @@ use protocol::epos2::objects;
 use units::{Degrees, Host, Quadcounts, Stamp};
 
 use crate::config::AxisConfig;
-use crate::error::DriveError;
+use crate::error::{Deviation, DriveError};
 use crate::event::{CommandOutcome, CommandProgress};
 use crate::ops::Ops;
 
@@ -38,6 +38,8 @@ async fn run(ops: &mut Ops) -> Result<CommandOutcome, DriveError> {
     ops.is_moving = true;
     ops.silence_limit = ops.config.timing.silence_limit;
     ops.set_referenced(false);
+    let speed = ops.config.gearing.rate(ops.config.homing.switch_speed);
+    ops.set_lag(Degrees(speed.0 * ops.config.guard.servo_lag.as_secs_f64()));
     ops.write(objects::CONTROLWORD, control::START_HOMING)
         .await?;
     ops.report(CommandProgress::Homing);
@@ -96,7 +98,11 @@ async fn wait_until_attained(ops: &mut Ops) -> Result<(), DriveError> {
         }
         // An error here does not end homing. A lost link fails the next check.
         if let Ok((demand, reply)) = ops.read_timed(objects::POSITION_DEMAND).await {
-            travel.check(&ops.config, demand, reply.answer)?;
+            travel.demand.add(&ops.config, demand, reply.answer);
+            if let Ok((position, reply)) = ops.read_timed(objects::POSITION_ACTUAL).await {
+                travel.position.add(&ops.config, position, reply.answer);
+            }
+            travel.check(&ops.config)?;
             ops.report(CommandProgress::Searching {
                 at: reply.answer,
                 demand: Quadcounts(demand),
@@ -112,42 +118,70 @@ async fn wait_until_attained(ops: &mut Ops) -> Result<(), DriveError> {
     }
 }
 
-/// Distance that homing has moved the demand. The position itself is not read: its reads would
-/// count as samples, though the axis may lose its zero at any time.
+/// The way of the axis in homing: of the demand, and of the position, since a drive may report a
+/// demand that its axis does not follow.
 #[derive(Default)]
 struct HomingTravel {
+    demand: Way,
+    position: Way,
+    /// The previous position was too far from the demand.
+    is_suspicious: bool,
+}
+
+/// A distance from the start, qc.
+#[derive(Default)]
+struct Way {
     last: Option<(i32, Stamp<Host>)>,
     travelled: i64,
 }
 
-impl HomingTravel {
-    /// Adds the demand and compares the distance from the start with the range of the axis.
-    fn check(
-        &mut self,
-        config: &AxisConfig,
-        demand: i32,
-        at: Stamp<Host>,
-    ) -> Result<(), DriveError> {
-        if let Some((last, since)) = self.last.replace((demand, at)) {
-            let moved = i64::from(demand) - i64::from(last);
-            // Where the drive sets its zero the demand jumps, further than the axis can move.
+impl Way {
+    fn add(&mut self, config: &AxisConfig, position: i32, at: Stamp<Host>) {
+        if let Some((last, since)) = self.last.replace((position, at)) {
+            let moved = i64::from(position) - i64::from(last);
+            // Where the drive sets its zero the position jumps, further than the axis can move.
             let seconds = at.saturating_since(since).as_secs_f64();
             let fastest = Degrees(2.0 * config.gearing.rate(config.max_speed).0 * seconds + 1.0);
             if moved.unsigned_abs() <= u64::from(config.tolerance_qc(fastest).0.unsigned_abs()) {
                 self.travelled += moved;
             }
         }
-        let qc = self
-            .travelled
-            .unsigned_abs()
-            .min(i32::MAX.unsigned_abs().into()) as i32;
-        let travelled = config.gearing.angle(Quadcounts(qc));
+    }
+
+    fn angle(&self, config: &AxisConfig) -> f64 {
+        let most = i64::from(i32::MAX);
+        let qc = self.travelled.clamp(-most, most) as i32;
+        config.gearing.angle(Quadcounts(qc)).0
+    }
+}
+
+impl HomingTravel {
+    /// Compares the distance from the start with the range of the axis, and the way of the position
+    /// with that of the demand.
+    fn check(&mut self, config: &AxisConfig) -> Result<(), DriveError> {
+        let (demand, position) = (self.demand.angle(config), self.position.angle(config));
+        // The drive's own limit: a healthy one is in fault before.
+        let tolerance = config.max_following_error.0 + config.standstill_spread.0;
+        let is_off = demand != 0.0 && (position - demand).abs() > tolerance;
+        // The zero may be set between the two reads.
+        if std::mem::replace(&mut self.is_suspicious, is_off) && is_off {
+            return Err(DriveError::OffPlan {
+                deviation: match position * demand {
+                    opposite if opposite < 0.0 => Deviation::WrongWay,
+                    _ if position.abs() < demand.abs() => Deviation::Behind,
+                    _ => Deviation::Ahead,
+                },
+                expected: Degrees(demand),
+                got: Degrees(position),
+            });
+        }
+        let travelled = demand.abs().max(position.abs());
         let range = config.limits.max.0 - config.limits.min.0;
         let bound = range + config.homing.offset.0.abs() + config.guard.homing_margin.0;
-        if travelled.0 > bound {
+        if travelled > bound {
             return Err(DriveError::HomingTravel {
                 method: config.homing.method,
-                travelled,
+                travelled: Degrees(travelled),
                 bound: Degrees(bound),
             });
         }
@@ -180,7 +214,10 @@ async fn settled_position(ops: &mut Ops) -> Result<Quadcounts, DriveError> {
     let limit = ops.now().saturating_add(timing.state_limit);
     let mut last = Quadcounts(ops.read(objects::POSITION_ACTUAL).await?);
     let mut since = ops.now();
-    while !is_inside(ops, last)? {
+    // A lagging axis comes closer.
+    let ahead = ops.config.tolerance_qc(ops.config.guard.ahead).0;
+    let farthest = outside(ops, last)?.saturating_add(ahead);
+    while !is_inside(ops, last)? && outside(ops, last)? <= farthest {
         let requested = ops.now();
         if requested.saturating_since(since) >= timing.standstill || requested > limit {
             break;
@@ -194,9 +231,15 @@ async fn settled_position(ops: &mut Ops) -> Result<Quadcounts, DriveError> {
     Ok(last)
 }
 
+/// Quadcounts beyond the limits, negative within.
+fn outside(ops: &Ops, position: Quadcounts) -> Result<i32, DriveError> {
+    let limits = ops.config.limits_qc()?;
+    let above = position.0.saturating_sub(limits.max.0);
+    Ok(limits.min.0.saturating_sub(position.0).max(above))
+}
+
 /// Whether a position is within the limits and the arrival tolerance.
 fn is_inside(ops: &Ops, position: Quadcounts) -> Result<bool, DriveError> {
-    let limits = ops.config.limits_qc()?;
     let tolerance = ops.config.tolerance_qc(ops.config.arrival_tolerance);
-    Ok(limits.contains(position, tolerance))
+    Ok(outside(ops, position)? <= tolerance.0)
 }

@@ -12,6 +12,7 @@ mod motion;
 mod network;
 mod object;
 mod power;
+mod ramp;
 mod report;
 mod stop;
 

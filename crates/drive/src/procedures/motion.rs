@@ -145,7 +145,9 @@ async fn start(ops: &mut Ops, plan: MovePlan) -> Result<(MotionGuard, Stamp<Host
 /// The next sample, compared with the plan.
 async fn guarded_sample(ops: &mut Ops, guard: &mut MotionGuard) -> Result<ShaftSample, DriveError> {
     let sample = ops.next_sample().await?;
-    guard.check(&sample, ops.config.gearing.angle(sample.position))?;
+    let checked = guard.check(&sample, ops.config.gearing.angle(sample.position));
+    ops.set_lag(guard.lag);
+    checked?;
     Ok(sample)
 }
 
@@ -211,12 +213,23 @@ async fn check_switches(ops: &Ops, pressed_before: u16) -> Result<(), DriveError
     })
 }
 
-/// Samples an enabled axis at standstill.
+/// Samples an enabled axis at standstill; it must not move away.
 async fn sample_for(ops: &mut Ops, span: Span) -> Result<(), DriveError> {
+    if span == Span::ZERO {
+        return Ok(());
+    }
     let until = ops.now().saturating_add(span);
+    let here = ops.next_sample().await?;
+    let no_move = ValidatedMove {
+        target: here.position,
+        speed: ops.config.max_speed,
+        acceleration: ops.config.max_acceleration,
+    };
+    let plan = ops.config.plan_move(here.position, no_move);
+    let mut guard = MotionGuard::new(&ops.config, plan, here.request, here.answer);
     let mut check = PeriodicCheck::new(ops, STATUS_CHECKS);
     while ops.now() < until {
-        ops.next_sample().await?;
+        guarded_sample(ops, &mut guard).await?;
         if check.is_due(ops.now()) {
             check_enabled(ops).await?;
         }

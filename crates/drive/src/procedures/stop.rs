@@ -23,6 +23,7 @@ use crate::ops::Ops;
 use super::configure::has_lost_settings;
 use super::network;
 use super::power::{is_fault, is_held, is_off, is_referenced, wait_for};
+use super::ramp::QuickStopRamp;
 use super::report::newest_error;
 
 /// Share of the standstill spread by which the mean position may drift within the window: 0.3 deg/s
@@ -111,6 +112,7 @@ async fn cut_power(ops: &mut Ops, error: DriveError) -> Result<StopReport, Drive
     if off.is_err() {
         return Err(error);
     }
+    ops.is_coasting = true;
     match disable_at_standstill(ops).await {
         Ok(report) => {
             ops.report(CommandProgress::PowerCut);
@@ -228,6 +230,7 @@ async fn wait_for_standstill(ops: &mut Ops) -> Result<(), DriveError> {
         .saturating_add(quick_stop_ramp(ops))
         .saturating_add(ops.config.timing.state_limit);
     let mut window = StandstillWindow::new(&ops.config);
+    let mut ramp = (!ops.is_coasting).then(|| QuickStopRamp::new(&ops.config, ops.lag()));
     let mut is_overdue = false;
     loop {
         let sample = ops.next_sample().await?;
@@ -235,7 +238,8 @@ async fn wait_for_standstill(ops: &mut Ops) -> Result<(), DriveError> {
             return Ok(());
         }
         // Both positions were requested after the limit: a delayed host may have missed the stop.
-        if is_overdue && !window.is_steady() {
+        let has_left = ramp.as_mut().is_some_and(|ramp| ramp.is_left_by(&sample));
+        if has_left || is_overdue && !window.is_steady() {
             return Err(DriveError::StillMoving {
                 position: ops.config.gearing.angle(sample.position),
                 waited: ops.now().saturating_since(began),

@@ -1,0 +1,228 @@
+//! What a run must show, and the table of all runs.
+
+use std::fmt;
+
+use crate::faults::{Expect, Misbehaviour};
+use crate::rows::ROWS;
+use crate::run::{Kept, MAX_GAP, Outcome, Transport};
+
+/// Markers around the table in the page.
+const MARKS: (&str, &str) = ("<!-- table -->\n", "<!-- end of the table -->");
+/// Seconds without a request that show a machine too busy for the client.
+const MAX_SILENCE: f64 = 0.02;
+/// Milliseconds from the sample that shows it to the first stop; and where nothing shows it.
+const STOP_MS: f64 = 50.0;
+const SILENT_MS: f64 = 300.0;
+/// Degrees beyond the limits in addition to a quick stop by 500 deg/s2.
+const BEYOND: f64 = 0.1;
+/// The same where a quick stop is ignored and the brake stops the axis.
+const BRAKED: f64 = 1.0;
+/// The same where the axis moves at 112 deg/s to a limit switch, which is read every 80 ms.
+const UNSEEN: f64 = 1.0 + 0.09 * 112.5;
+/// Degrees of homing without a switch: its bound, and a stop.
+const HOMING: f64 = 45.0 + 1.0 + 10.0 + 1.0;
+
+/// What a run showed.
+#[derive(Default)]
+pub struct Verdict {
+    travel: f64,
+    beyond: f64,
+    /// Degrees of a quick stop from the highest speed of the axis.
+    ramp: f64,
+    stop_ms: Option<f64>,
+    moving: bool,
+    powered: bool,
+    braked: bool,
+    exit: Option<i32>,
+    kept: Option<Kept>,
+    /// What must not be.
+    pub wrong: Vec<String>,
+    /// What the client printed.
+    pub printed: String,
+    /// The machine delayed the drive.
+    pub is_disturbed: bool,
+}
+
+impl Verdict {
+    /// A run that could not be judged.
+    pub fn failed(why: String) -> Self {
+        Self {
+            wrong: vec![why],
+            ..Self::default()
+        }
+    }
+
+    /// Judges a run.
+    pub fn of(row: &Misbehaviour, outcome: &Outcome) -> Self {
+        let drive = &outcome.drive;
+        let began = drive.record.began.unwrap_or(f64::INFINITY);
+        let last = drive.record.truth.last().map_or(0.0, |truth| truth.at);
+        // A client asks for a sample every few milliseconds. One that never does fails every try.
+        let is_shown = matches!(
+            row.expect,
+            Expect::Stopped | Expect::Unseen | Expect::Braked
+        );
+        let is_held_up = is_shown && !row.name.contains("nobody reads");
+        let mut verdict = Self {
+            travel: drive.record.travel(began),
+            beyond: drive.record.beyond(0.0),
+            ramp: drive.record.highest_speed().max(56.25).powi(2) / 500.0 / 2.0,
+            stop_ms: outcome.stop_ms(),
+            moving: drive.record.travel(last - 0.1) > 0.03,
+            powered: drive.axis.powered,
+            braked: drive.axis.braked,
+            exit: outcome.exit,
+            kept: Some(outcome.kept),
+            wrong: Vec::new(),
+            printed: outcome.printed.clone(),
+            is_disturbed: outcome.gap > MAX_GAP || is_held_up && outcome.silence > MAX_SILENCE,
+        };
+        if !outcome.has_begun(row) {
+            verdict.wrong.push("it never began".to_owned());
+        }
+        verdict.check(row.expect);
+        verdict
+    }
+
+    fn check(&mut self, expect: Expect) {
+        let mut wrong = Vec::new();
+        let mut must = |is_so: bool, what: String| {
+            if !is_so {
+                wrong.push(what);
+            }
+        };
+        let stops = !matches!(expect, Expect::Unstoppable | Expect::Falls);
+        must(!stops || !self.moving, "still moving".to_owned());
+        match expect {
+            Expect::Unstoppable => {
+                must(self.exit == Some(5), format!("exit {:?}", self.exit));
+                let tells = self.printed.to_lowercase().contains("supply");
+                must(tells, "no word of the supply".to_owned());
+            }
+            _ => must(!self.powered, "still powered".to_owned()),
+        }
+        let beyond = self.ramp
+            + match expect {
+                Expect::Unstoppable | Expect::Falls | Expect::HomingBound => f64::INFINITY,
+                Expect::Unseen => UNSEEN,
+                Expect::Braked => BRAKED,
+                _ => BEYOND,
+            };
+        let what = format!("{:.2} deg beyond the limits", self.beyond);
+        must(self.beyond <= beyond, what);
+        let stop = self.stop_ms.unwrap_or(f64::INFINITY);
+        match expect {
+            Expect::Completes => {
+                must(self.exit == Some(0), format!("exit {:?}", self.exit));
+                must(
+                    self.kept == Some(Kept::Cloud),
+                    format!("kept {:?}", self.kept),
+                );
+            }
+            Expect::Refused => {
+                must(self.travel < 0.01, format!("moved {:.3} deg", self.travel));
+                must(
+                    matches!(self.exit, Some(4 | 5)),
+                    format!("exit {:?}", self.exit),
+                );
+            }
+            Expect::Stopped | Expect::Unseen | Expect::Braked => {
+                must(stop <= STOP_MS, format!("stop after {stop:.0} ms"));
+                must(
+                    !matches!(self.exit, Some(0) | None),
+                    format!("exit {:?}", self.exit),
+                );
+            }
+            Expect::Silent => {
+                must(stop <= SILENT_MS, format!("stop after {stop:.0} ms"));
+                must(
+                    !matches!(self.exit, Some(0) | None),
+                    format!("exit {:?}", self.exit),
+                );
+            }
+            Expect::HomingBound => {
+                must(
+                    self.travel <= HOMING,
+                    format!("travel {:.1} deg", self.travel),
+                );
+                must(self.exit == Some(5), format!("exit {:?}", self.exit));
+            }
+            Expect::Unstoppable | Expect::Falls | Expect::Safe => {}
+        }
+        self.wrong = [std::mem::take(&mut self.wrong), wrong].concat();
+    }
+}
+
+impl fmt::Display for Verdict {
+    /// The cells of the table after the row's name and link.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let stop = self.stop_ms.map_or("-".to_owned(), |ms| format!("{ms:.0}"));
+        let exit = self.exit.map_or("-".to_owned(), |exit| exit.to_string());
+        let kept = match self.kept {
+            Some(Kept::Cloud) => "cloud",
+            Some(Kept::Log) => "log",
+            _ => "-",
+        };
+        let power = if self.powered { "**on**" } else { "off" };
+        let brake = if self.braked { "shut" } else { "**open**" };
+        let moving = if self.moving { ", **moving**" } else { "" };
+        write!(
+            f,
+            "{:.1} | {:.2} | {stop} | {power}, {brake}{moving} | {exit} | {kept}",
+            self.travel, self.beyond
+        )?;
+        if f.alternate() || self.wrong.is_empty() {
+            return Ok(());
+        }
+        write!(
+            f,
+            "   <- {}{}",
+            self.wrong.join("; "),
+            if self.is_disturbed {
+                " (disturbed)"
+            } else {
+                ""
+            }
+        )
+    }
+}
+
+/// Writes the table of the page. Rows that did not run, or that the machine disturbed, stay as they
+/// are.
+pub fn bless(verdicts: &[(usize, Transport, Verdict)]) {
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../docs/src/misbehaviours.md"
+    );
+    let page = std::fs::read_to_string(path).unwrap();
+    let (before, rest) = page.split_once(MARKS.0).unwrap();
+    let (old, after) = rest.split_once(MARKS.1).unwrap();
+    let mut table = String::from(
+        "| misbehaviour | link | travel, deg | beyond the limits, deg | first stop, ms | power, brake | exit | kept |\n\
+         |---|---|---|---|---|---|---|---|\n",
+    );
+    for (number, row) in ROWS.iter().enumerate() {
+        for transport in Transport::ALL {
+            let key = format!("| {} | {} | ", row.name, transport.kind());
+            let found = verdicts
+                .iter()
+                .find(|v| v.0 == number && v.1 == transport && !v.2.is_disturbed);
+            let line = match found {
+                Some((.., verdict)) => Some(format!("{key}{verdict:#} |")),
+                None => old
+                    .lines()
+                    .find(|line| line.starts_with(&key))
+                    .map(str::to_owned),
+            };
+            if let Some(line) = line {
+                table.push_str(&line);
+                table.push('\n');
+            }
+        }
+    }
+    std::fs::write(
+        path,
+        format!("{before}{}{table}{}{after}", MARKS.0, MARKS.1),
+    )
+    .unwrap();
+}
