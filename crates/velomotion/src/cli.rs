@@ -510,6 +510,27 @@ pub struct FirmwareSim {
     /// Create a symbolic link to the port
     #[arg(long, value_name = "PATH", conflicts_with = "can")]
     pub link: Option<PathBuf>,
+    /// Let gravity accelerate the axis without power, positive towards larger angles; without it
+    /// and --friction the axis stays in place
+    #[arg(long, value_name = "DEG_PER_S2", allow_negative_numbers = true)]
+    pub gravity: Option<f64>,
+    /// Let the axis coast without power until friction has stopped it
+    #[arg(long, value_name = "DEG_PER_S2")]
+    pub friction: Option<f64>,
+    /// Fit a holding brake that opens and closes in these times; it needs --gravity or --friction
+    #[arg(
+        long,
+        value_name = "OPEN_MS,CLOSE_MS",
+        value_delimiter = ',',
+        num_args = 1
+    )]
+    pub brake: Option<Vec<u16>>,
+    /// Deceleration by the closed brake; less than gravity slips [default: holds any load]
+    #[arg(long, value_name = "DEG_PER_S2", requires = "brake")]
+    pub brake_holds: Option<f64>,
+    /// Let the encoder's count deviate by up to this many quadcounts at rest under power
+    #[arg(long, value_name = "QC", default_value_t = 0)]
+    pub dither: u8,
 }
 
 /// Parses a share below 1.
