@@ -67,14 +67,13 @@ fn load(arguments: &cli::FirmwareSim, axis: &AxisConfig) -> Option<AxisLoad> {
     Some(AxisLoad {
         gravity_rpm_s: if gravity < 0.0 { -magnitude } else { magnitude },
         friction_rpm_s: arguments.friction.map_or(0, motor),
-        brake: match arguments.brake.as_deref() {
-            Some(&[opening_ms, closing_ms]) => Some(HoldingBrake {
+        brake: arguments
+            .brake
+            .map(|(opening_ms, closing_ms)| HoldingBrake {
                 opening_ms,
                 closing_ms,
                 holding_rpm_s: arguments.brake_holds.map_or(u32::MAX, motor),
             }),
-            _ => None,
-        },
     })
 }
 

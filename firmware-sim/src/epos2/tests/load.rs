@@ -40,7 +40,7 @@ fn enabled_with(brake: HoldingBrake, rise_ms: u16, fall_ms: u16) -> Node {
         ..free()
     });
     let output = TypedObject::<u16>::new(0x2079, 1, "output");
-    set(&mut node, output, objects::OUTPUT_BRAKE.into());
+    set(&mut node, output, objects::OUTPUT_BRAKE);
     let mask = get(&node, objects::OUTPUT_MASK) | 1 << objects::OUTPUT_BRAKE;
     set(&mut node, objects::OUTPUT_MASK, mask);
     set(&mut node, objects::BRAKE_RISE, rise_ms);
