@@ -52,7 +52,7 @@ impl Node {
         self.generator.rest_at(self.shaft.position);
     }
 
-    /// Deviation of the encoder's count from the shaft at rest, qc: the servo's limit cycle, another
+    /// Deviation of the encoder's count from the shaft at rest, qc: the servo's limit cycle, a new
     /// value in each control cycle.
     pub(super) fn dither_qc(&self) -> i64 {
         let amplitude = u64::from(self.config.dither_qc);
