@@ -513,6 +513,29 @@ pub struct FirmwareSim {
     /// Create a symbolic link to the port
     #[arg(long, value_name = "PATH", conflicts_with = "can")]
     pub link: Option<PathBuf>,
+    /// Let gravity accelerate the axis without power, positive towards larger angles; without it
+    /// and --friction the axis stays in place
+    #[arg(long, value_name = "DEG_PER_S2", allow_negative_numbers = true)]
+    pub gravity: Option<f64>,
+    /// Let the axis coast without power until friction has stopped it
+    #[arg(long, value_name = "DEG_PER_S2")]
+    pub friction: Option<f64>,
+    /// Fit a holding brake that opens and closes in these times; it needs --gravity or --friction
+    #[arg(long, value_name = "OPEN_MS,CLOSE_MS", value_parser = two_times)]
+    pub brake: Option<(u16, u16)>,
+    /// Deceleration by the closed brake; less than gravity slips [default: holds any load]
+    #[arg(long, value_name = "DEG_PER_S2", requires = "brake")]
+    pub brake_holds: Option<f64>,
+    /// Let the encoder's count deviate by up to this many quadcounts at rest under power
+    #[arg(long, value_name = "QC", default_value_t = 0)]
+    pub dither: u8,
+}
+
+/// Parses two times, milliseconds.
+fn two_times(text: &str) -> Result<(u16, u16), String> {
+    text.split_once(',')
+        .and_then(|(open, close)| Some((open.parse().ok()?, close.parse().ok()?)))
+        .ok_or_else(|| "expected two times from 0 to 65535 ms: OPEN,CLOSE".to_owned())
 }
 
 /// Parses a share below 1.

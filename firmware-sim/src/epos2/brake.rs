@@ -51,6 +51,11 @@ impl Node {
         }
     }
 
+    /// Whether an output of the unit holds a brake open.
+    pub(super) fn is_brake_energised(&self) -> bool {
+        self.brake_released && self.has_brake()
+    }
+
     fn has_brake(&self) -> bool {
         let brake = u32::from(objects::OUTPUT_BRAKE);
         let wired =

@@ -28,10 +28,40 @@ pub struct NodeConfig {
     pub hard_stops: [Option<i32>; 2],
     /// Model of the servo; `None`: the shaft follows exactly.
     pub servo: Option<Servo>,
+    /// What moves and holds the shaft without power; `None`: an unpowered shaft stays in place.
+    pub load: Option<AxisLoad>,
+    /// Largest deviation of the encoder's count from the shaft at rest under power, qc.
+    pub dither_qc: u8,
     /// The switches on the digital inputs.
     pub switches: [Option<Switch>; MAX_SWITCHES],
     /// Error at power-on, such as [`DeviceError::CAN_PASSIVE`] without a CAN bus.
     pub fault_at_power_on: DeviceError,
+}
+
+/// What moves and holds the shaft while the power stage is off, as accelerations of the motor in
+/// rpm/s. The power stage overcomes gravity and friction without deviation, but not a closed brake.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct AxisLoad {
+    /// Acceleration of the free axis by gravity, positive towards higher positions; the same at
+    /// every angle.
+    pub gravity_rpm_s: i32,
+    /// Deceleration by friction. An axis at rest stays so while friction is not below gravity.
+    pub friction_rpm_s: u32,
+    /// The holding brake; `None`: not fitted, whatever the outputs of the unit say.
+    pub brake: Option<HoldingBrake>,
+}
+
+/// A brake that a spring closes. It opens while a digital output of the unit is configured for it
+/// and released, and holds the axis otherwise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct HoldingBrake {
+    /// Time from the output's change until the axis is free, ms.
+    pub opening_ms: u16,
+    /// Time from the output's change until the axis is held, ms.
+    pub closing_ms: u16,
+    /// Deceleration by the closed brake in addition to friction. Less than gravity: a worn brake
+    /// that slips.
+    pub holding_rpm_s: u32,
 }
 
 /// Identity data in the dictionary.
@@ -111,6 +141,8 @@ impl Default for NodeConfig {
             index_position: 700,
             hard_stops: [None; 2],
             servo: None,
+            load: None,
+            dither_qc: 0,
             switches: [
                 limit(6, Region::AtMost(-43_334)),
                 limit(5, Region::AtLeast(43_334)),

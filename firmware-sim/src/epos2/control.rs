@@ -165,8 +165,8 @@ impl Node {
         self.state = DeviceState::QuickStopActive;
     }
 
-    /// Switches the power off. The shaft stays in place, as neither friction nor load is simulated,
-    /// and the demand equals its position.
+    /// Switches the power off. The demand equals the shaft's position, which stays unless the
+    /// configuration has a load.
     fn power_off(&mut self, to: DeviceState) {
         self.abandon_motion();
         self.shaft.rest();

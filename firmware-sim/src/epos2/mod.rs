@@ -9,7 +9,7 @@
 //!
 //! Not simulated: modes that a tilt axis does not use, and the electrical side. The shaft follows
 //! its demand exactly unless the configuration has a servo with a lag ([`Servo`]) or something
-//! blocks it; an unpowered shaft stays in place.
+//! blocks it; an unpowered shaft stays in place unless the configuration has a load ([`AxisLoad`]).
 
 mod brake;
 mod can;
@@ -28,6 +28,7 @@ mod homing;
 mod homing_method;
 mod inputs;
 mod leg;
+mod load;
 mod mapping;
 mod network;
 mod node;
@@ -47,7 +48,9 @@ mod velocity_mode;
 
 pub use brake::BrakeState;
 pub use can::CanServer;
-pub use config::{MAX_SWITCHES, NodeConfig, Region, Servo, Switch, UnitIdentity};
+pub use config::{
+    AxisLoad, HoldingBrake, MAX_SWITCHES, NodeConfig, Region, Servo, Switch, UnitIdentity,
+};
 pub use node::{Node, ShaftSegment};
 pub use protocol::canopen::{CanFrame, SOCKETCAN_LEN};
 pub use rs232::Rs232Server;

@@ -12,6 +12,7 @@ use super::errors::Errors;
 use super::fixed::{fine, floor_qc, q32};
 use super::generator::Generator;
 use super::homing::HomingState;
+use super::load::BrakeArmature;
 use super::network::NetworkState;
 use super::objects::is_powered;
 use super::position_mode::PositionMode;
@@ -47,6 +48,7 @@ pub struct Node {
     pub(super) controlword: u16,
     pub(super) sequence: Sequence,
     pub(super) brake_released: bool,
+    pub(super) armature: BrakeArmature,
     /// Mode in effect (6061).
     pub(super) mode: i8,
     /// World qc of the unit's position 0.
@@ -96,6 +98,7 @@ impl Node {
             controlword: 0,
             sequence: Sequence::Idle,
             brake_released: false,
+            armature: BrakeArmature::default(),
             mode: saved.get(objects::MODE),
             origin: floor_qc(shaft.position),
             referenced: false,
@@ -145,10 +148,16 @@ impl Node {
             }
         }
         let start = q32(self.shaft.position);
-        self.generator.step();
-        self.shaft
-            .follow(self.generator.position, self.generator.qc_per_turn);
-        self.follow_shaft();
+        self.advance_brake();
+        match self.config.load {
+            Some(load) if !self.is_powered() => self.coast(load),
+            _ => {
+                self.generator.step();
+                self.shaft
+                    .follow(self.generator.position, self.generator.qc_per_turn);
+                self.follow_shaft();
+            }
+        }
         let end = q32(self.shaft.position);
         self.segment = ShaftSegment { start, end };
     }
@@ -222,7 +231,7 @@ impl Node {
     fn world_count(&self) -> i64 {
         let ShaftSegment { start, end } = self.segment;
         let moved = (i128::from(end) - i128::from(start)) * i128::from(self.phase_us) / 1000;
-        ((i128::from(start) + moved) >> 32) as i64
+        ((i128::from(start) + moved) >> 32) as i64 + self.dither_qc()
     }
 
     /// 2020: counts since power-on.

@@ -43,6 +43,27 @@ fn exchange(server: &mut Rs232Server, node: &mut Node, request: &SerialFrame) ->
     frames.remove(0).unwrap()
 }
 
+/// 2005 is 500 ms from the factory.
+#[test]
+fn half_a_telegram_is_dropped_after_the_frame_timeout() {
+    let read = [0x01, 0x41, 0x60, 0x00, 0x01, 0xAB, 0xF0];
+    for (pause_ms, dropped) in [(499, false), (500, false), (501, true)] {
+        let (mut server, mut node) = (Rs232Server::new(1), node());
+        assert_eq!(send(&mut server, &mut node, &[0x10]), b"O");
+        assert_eq!(send(&mut server, &mut node, &read[..3]), b"");
+        for _ in 0..pause_ms {
+            node.tick();
+        }
+        if dropped {
+            // The next byte is an opcode.
+            assert_eq!(send(&mut server, &mut node, &[0x10]), b"O");
+            assert_eq!(send(&mut server, &mut node, &read), b"O\0");
+        } else {
+            assert_eq!(send(&mut server, &mut node, &read[3..]), b"O\0");
+        }
+    }
+}
+
 #[test]
 fn an_exchange_matches_golden_bytes() {
     // Read of 6041 of node 1.

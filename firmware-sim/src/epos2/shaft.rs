@@ -3,9 +3,10 @@
 //!
 //! A hard stop or a jam holds the shaft while the servo continues; released, it catches up at a
 //! limited speed. The current is proportional to the distance between shaft and servo, as in a
-//! proportional position controller. Load, friction and ripple are not simulated.
+//! proportional position controller. Without power, gravity and friction move the shaft if the
+//! configuration has a load. Ripple is not simulated.
 
-use super::fixed::{FINE_PER_QC, Fine, Speed, fine};
+use super::fixed::{FINE_PER_QC, Fine, Speed, WORLD_END, fine};
 use super::servo::{Follower, Servo};
 
 /// Current per quadcount of deviation, mA.
@@ -22,6 +23,10 @@ pub(super) struct MotorShaft {
     servo: Option<Follower>,
     /// Something blocks it in place.
     pub jammed: bool,
+    /// A closed brake holds it against the motor.
+    pub braked: bool,
+    /// Speed without power, millirpm; `None` under power.
+    free_speed: Option<i64>,
     /// Hard stops, world qc: below, above.
     stops: [Option<i32>; 2],
     /// In the last millisecond.
@@ -42,6 +47,8 @@ impl MotorShaft {
             position,
             servo,
             jammed: false,
+            braked: false,
+            free_speed: None,
             stops,
             moved: 0,
             behind: false,
@@ -55,6 +62,7 @@ impl MotorShaft {
             moved: 0,
             behind: false,
             held: false,
+            free_speed: Some(0),
             ..self
         };
         shaft.rest();
@@ -84,9 +92,8 @@ impl MotorShaft {
 
     /// Advances by one millisecond towards `demand`.
     pub fn follow(&mut self, demand: Fine, qc_per_turn: u32) {
-        let [low, high] = self.stops;
-        let low = low.map_or(Fine::MIN, |qc| fine(qc.into()));
-        let high = high.map_or(Fine::MAX, |qc| fine(qc.into()));
+        let [low, high] = self.ends();
+        self.free_speed = None;
         if let Some(servo) = &mut self.servo {
             servo.follow(demand);
         }
@@ -94,7 +101,7 @@ impl MotorShaft {
         let wanted = free.max(low).min(high);
         // One millirpm is twice the quadcounts of a revolution, in position units per millisecond.
         let most = FASTEST_RPM * 1000 * 2 * i64::from(qc_per_turn);
-        self.moved = if self.jammed {
+        self.moved = if self.jammed || self.braked {
             0
         } else {
             wanted.saturating_sub(self.position).clamp(-most, most)
@@ -102,6 +109,38 @@ impl MotorShaft {
         self.position = self.position.saturating_add(self.moved);
         self.behind = self.position != demand;
         self.held = self.position != free;
+    }
+
+    /// Advances by one millisecond without power: `gravity` accelerates, `friction` decelerates,
+    /// rpm/s. The speed at power-off is that of the last millisecond.
+    pub fn coast(&mut self, gravity: i32, friction: u32, qc_per_turn: u32) {
+        let qc_per_turn = i64::from(qc_per_turn.max(1));
+        let before = self.free_speed.unwrap_or(self.moved / (2 * qc_per_turn));
+        // One rpm/s is one millirpm/ms.
+        let driven = before + i64::from(gravity);
+        let slowed = driven.abs().saturating_sub(friction.into()).max(0);
+        let most = FASTEST_RPM * 1000;
+        let after = (driven.signum() * slowed).clamp(-most, most);
+        // The mean of both speeds, at two position units per millirpm.
+        let wanted = self.position.saturating_add((before + after) * qc_per_turn);
+        let [low, high] = self.ends();
+        let end = wanted.max(low.max(-WORLD_END)).min(high.min(WORLD_END));
+        let blocked = self.jammed || end != wanted;
+        let end = if self.jammed { self.position } else { end };
+        self.moved = end - self.position;
+        self.position = end;
+        self.free_speed = Some(if blocked { 0 } else { after });
+        self.behind = self.moved != 0;
+        self.held = false;
+    }
+
+    /// Lowest and highest position between the hard stops.
+    fn ends(&self) -> [Fine; 2] {
+        let [low, high] = self.stops;
+        [
+            low.map_or(Fine::MIN, |qc| fine(qc.into())),
+            high.map_or(Fine::MAX, |qc| fine(qc.into())),
+        ]
     }
 
     /// Speed in the last millisecond.

@@ -1,6 +1,8 @@
 //! The client with the simulated EPOS2 of firmware-sim, in virtual time. The two share only the
 //! frames.
 
+mod load;
+
 use std::collections::VecDeque;
 
 use firmware_sim::epos2::{BrakeState, CanServer, Node, NodeConfig, Rs232Server, Servo, UsbServer};

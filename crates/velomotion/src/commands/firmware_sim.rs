@@ -5,9 +5,12 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use drive::AxisConfig;
+use firmware_sim::epos2::{AxisLoad, HoldingBrake, NodeConfig};
 use io::can::SocketCan;
 use io::port::Pty;
 use sim::Attachment;
+use units::DegPerS2;
 
 use super::CommandOutput;
 use crate::cli::{self, Common};
@@ -42,10 +45,36 @@ pub fn run(arguments: &cli::FirmwareSim, common: &Common) -> Result<CommandOutpu
         cli::FirmwareSim { slcan: true, .. } => Attachment::Slcan,
         _ => Attachment::Usb,
     };
-    let ended = software_drive::run(simulated::node(&axis), attachment, port, &stop);
+    let node = NodeConfig {
+        load: load(arguments, &axis),
+        dither_qc: arguments.dither,
+        ..simulated::node(&axis)
+    };
+    let ended = software_drive::run(node, attachment, port, &stop);
     drop(link);
     ended.map_err(|error| failed(&error))?;
     Ok(CommandOutput::default())
+}
+
+/// What moves and holds the unpowered axis.
+fn load(arguments: &cli::FirmwareSim, axis: &AxisConfig) -> Option<AxisLoad> {
+    let motor = |deg_s2: f64| axis.gearing.rpm_per_s(DegPerS2(deg_s2)).0;
+    if arguments.gravity.is_none() && arguments.friction.is_none() {
+        return None;
+    }
+    let gravity = arguments.gravity.unwrap_or_default();
+    let magnitude = i32::try_from(motor(gravity)).unwrap_or(i32::MAX);
+    Some(AxisLoad {
+        gravity_rpm_s: if gravity < 0.0 { -magnitude } else { magnitude },
+        friction_rpm_s: arguments.friction.map_or(0, motor),
+        brake: arguments
+            .brake
+            .map(|(opening_ms, closing_ms)| HoldingBrake {
+                opening_ms,
+                closing_ms,
+                holding_rpm_s: arguments.brake_holds.map_or(u32::MAX, motor),
+            }),
+    })
 }
 
 /// Opens a pseudo-terminal with its optional link.

@@ -7,6 +7,7 @@ mod description;
 mod golden;
 mod homing;
 mod limits;
+mod load;
 mod position;
 mod states;
 mod storage;

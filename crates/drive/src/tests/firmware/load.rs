@@ -1,0 +1,80 @@
+//! An axis with weight: gravity, a holding brake with its delays, encoder dither, coasting.
+
+use firmware_sim::epos2::{AxisLoad, HoldingBrake};
+
+use super::*;
+
+/// Falls at 1500 deg/s2 less a tenth for friction; the brake takes 10 ms either way, as configured.
+const LOAD: AxisLoad = AxisLoad {
+    gravity_rpm_s: -30_000,
+    friction_rpm_s: 3_000,
+    brake: Some(HoldingBrake {
+        opening_ms: 10,
+        closing_ms: 10,
+        holding_rpm_s: 330_000,
+    }),
+};
+/// World position of the lower hard stop, 5 degrees below the limit switch.
+const STOP: i32 = -46_667;
+
+fn loaded(load: AxisLoad) -> NodeConfig {
+    NodeConfig {
+        load: Some(load),
+        dither_qc: 2,
+        hard_stops: [Some(STOP), Some(-STOP)],
+        ..NodeConfig::default()
+    }
+}
+
+/// The end of a sweep to -15 degrees with the brake: its report, and the shaft's position in the
+/// drive's counts a second later.
+fn sweep_and_brake(link: DriveLink, load: AxisLoad) -> (Result<StopReport, DriveError>, f64) {
+    let mut world = World::on(link, loaded(load));
+    world.run(DriveCommand::Connect).unwrap();
+    world.run(DriveCommand::Home).unwrap();
+    let swept = world.run(DriveCommand::Sweep(to(-15.0)));
+    let Ok(CommandOutcome::Arrived(arrived)) = swept else {
+        panic!("{link:?}: {swept:?}")
+    };
+    assert!(arrived.position.0.abs_diff(-10_000) <= 2, "{arrived:?}");
+    let target = world.world_qc(world.now);
+    let stopped = world.run(DriveCommand::Brake).map(|outcome| match outcome {
+        CommandOutcome::Stopped(report) => report,
+        other => panic!("{link:?}: {other:?}"),
+    });
+    world.run_for(Span::from_secs(1));
+    let fallen = world.world_qc(world.now) - target;
+    (stopped, fallen)
+}
+
+#[test]
+fn an_axis_with_weight_arrives_and_stays_on_its_brake() {
+    for link in LINKS {
+        let (stopped, fallen) = sweep_and_brake(link, LOAD);
+        let stopped = stopped.unwrap();
+        assert!(!stopped.fault && stopped.validity == PositionValidity::Valid);
+        // The power goes at once, so the axis falls for the 10 ms of the brake: 45 qc, and 4 until
+        // it has stopped: 0.075 degrees.
+        assert!((-50.0..=-48.0).contains(&fallen), "{link:?}: {fallen}");
+        let reported = f64::from(stopped.position.0 + 10_000);
+        assert!((reported - fallen).abs() <= 12.0, "{link:?}: {reported}");
+    }
+}
+
+#[test]
+fn an_axis_without_a_brake_is_not_reported_at_its_target() {
+    for link in LINKS {
+        let load = AxisLoad {
+            brake: None,
+            ..LOAD
+        };
+        let (stopped, fallen) = sweep_and_brake(link, load);
+        // A second later it lies on the hard stop.
+        assert!(fallen < -30_000.0, "{link:?}: {fallen}");
+        // The report follows the brake's closing time, at least 10 ms into the fall: 45 qc, read a
+        // little early. The client does not look whether the axis still moves.
+        if let Ok(report) = stopped {
+            assert!(report.position.0 < -10_030, "{link:?}: {report:?}");
+        }
+    }
+}
