@@ -42,6 +42,11 @@ fn software_drive(interface: &[String]) {
         slcan: is("--slcan"),
         can: interface.get(1).cloned(),
         link: None,
+        gravity: None,
+        friction: None,
+        brake: None,
+        brake_holds: None,
+        dither: 0,
     };
     let common = Common {
         device: None,
@@ -119,7 +124,7 @@ fn device(kind: DeviceKind) -> Device {
 
 /// Samples for a duration at the axis's poll period.
 fn measure(kind: DeviceKind, drive: &SoftwareDrive, axis: AxisConfig, seconds: f64) -> Measured {
-    let opened = ports::open(&device(kind), drive.port.as_ref()).unwrap();
+    let opened = ports::open(&device(kind), drive.port.as_ref(), None).unwrap();
     // As in a log: sent and received bytes count, not the client's interpretation.
     let received = RefCell::new(ReceivedTraffic::new(&axis));
     let port = RecordingPort::new(opened.port, opened.link, |record: &Record<'_>| {

@@ -69,7 +69,7 @@ fn doctor_asks_the_drive_and_listens_to_the_lidar() {
 /// Every step of the bring-up against the simulated drive, in which nothing is wrong.
 #[test]
 fn the_bring_up_finds_nothing_wrong_with_a_healthy_drive() {
-    for interface in ["--slcan"] {
+    for interface in ["--usb", "--slcan"] {
         let bench = Bench::new(interface);
         let report = bench.json("doctor --bring-up --yes --report first.md");
         let steps = report["steps"].as_array().unwrap();

@@ -135,7 +135,8 @@ fn every_signal(transport: &str, bench: &Bench, results: &Results) {
 fn guardian(transport: &str, results: &Results) {
     let bench = Bench::start(transport, BRAKE);
     results.check(transport, bench.run("tilt home"));
-    let checks: [(&str, fn(&Bench) -> Result<(), String>); 3] = [
+    type Check = fn(&Bench) -> Result<(), String>;
+    let checks: [(&str, Check); 3] = [
         ("the guardian is killed", special::guardian_killed),
         (
             "the port is busy while the guardian acts",

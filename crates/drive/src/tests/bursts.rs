@@ -82,9 +82,9 @@ fn damage_in_bursts_is_survived() {
 }
 
 /// The sweep fails and the axis stops if it still receives: within 200 ms of the first recognised
-/// damage, later by one request timeout where the damage looks like a missing reply, and after a second
-/// where it looks like silence (RS232, whose unit waits for handshakes). Another 100 ms later the
-/// client knows whether the axis has stopped.
+/// damage, later by one request timeout where the damage looks like a missing reply, and after a
+/// second where it looks like silence (RS232, whose unit waits for handshakes). Another 100 ms
+/// later the client knows whether the axis has stopped.
 #[test]
 fn continuous_damage_ends_the_sweep_in_time() {
     for link in [DriveLink::Usb, DriveLink::Rs232] {
@@ -123,8 +123,8 @@ fn continuous_damage_ends_the_sweep_in_time() {
 /// A stop without replies: 80 ms of quick stop, its ramp of 75 ms, and 80 ms of power off.
 const BLIND_STOP: Span = Span::from_millis(240);
 
-/// Silence gets a second, to the end of the probe under way; on RS232 a probe takes the 500 ms after
-/// which the unit drops a telegram.
+/// Silence gets a second, to the end of the probe under way; on RS232 a probe takes the 500 ms
+/// after which the unit drops a telegram.
 #[test]
 fn silence_ends_the_sweep_after_a_second() {
     for (link, most) in [(DriveLink::Usb, 1_100), (DriveLink::Rs232, 1_520)] {
