@@ -12,7 +12,9 @@ const MARKS: (&str, &str) = ("<!-- table -->\n", "<!-- end of the table -->");
 const MAX_SILENCE: f64 = 0.02;
 /// Milliseconds from the sample that shows it to the first stop; and where nothing shows it.
 const STOP_MS: f64 = 50.0;
-const SILENT_MS: f64 = 300.0;
+/// A move goes on through silence until its planned end, for a second at most; on RS232 the unit's
+/// frame timeout comes in addition.
+const SILENT_MS: f64 = 1_600.0;
 /// Degrees beyond the limits in addition to a quick stop by 500 deg/s2.
 const BEYOND: f64 = 0.1;
 /// The same where a quick stop is ignored and the brake stops the axis.

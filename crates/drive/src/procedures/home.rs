@@ -2,7 +2,7 @@
 
 use protocol::epos2::cia402::{control, mode, status};
 use protocol::epos2::objects;
-use units::{Degrees, Host, Quadcounts, Stamp};
+use units::{Degrees, Host, Quadcounts, Span, Stamp};
 
 use crate::config::AxisConfig;
 use crate::error::{Deviation, DriveError};
@@ -36,9 +36,10 @@ async fn run(ops: &mut Ops) -> Result<CommandOutcome, DriveError> {
     network::arm(ops).await?;
     enable(ops).await?;
     ops.is_moving = true;
-    ops.silence_limit = ops.config.timing.silence_limit;
     ops.set_referenced(false);
     let speed = ops.config.gearing.rate(ops.config.homing.switch_speed);
+    let margin = Span::from_secs_f64(ops.config.guard.homing_margin.0 / speed.0);
+    ops.silence_limit = ops.config.timing.silence_limit.min(margin);
     ops.set_lag(Degrees(speed.0 * ops.config.guard.servo_lag.as_secs_f64()));
     ops.write(objects::CONTROLWORD, control::START_HOMING)
         .await?;

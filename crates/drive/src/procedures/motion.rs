@@ -112,7 +112,6 @@ async fn configure(ops: &Ops, target: ValidatedMove) -> Result<(), DriveError> {
 /// Starts the move; returns its guard, and when the drive confirmed the start.
 async fn start(ops: &mut Ops, plan: MovePlan) -> Result<(MotionGuard, Stamp<Host>), DriveError> {
     ops.is_moving = true;
-    ops.silence_limit = ops.config.timing.silence_limit;
     let sent = ops.now();
     ops.write(objects::CONTROLWORD, control::START_ABSOLUTE)
         .await?;
@@ -170,7 +169,11 @@ async fn sample_until_arrival(
     // Set when the statusword was requested after the limit. Only a position requested after that
     // proves a failure, as a delayed host may have missed the arrival.
     let mut is_overdue = false;
+    let planned_end = started.saturating_add(guard.plan().duration);
     loop {
+        // An axis that leaves its plan unseen is within its limits until then.
+        let left = planned_end.saturating_since(ops.now()).max(Span::ZERO);
+        ops.silence_limit = ops.config.timing.silence_limit.min(left);
         let sample = guarded_sample(ops, guard).await?;
         if reached && sample.position.0.abs_diff(target.0) <= tolerance {
             return Ok((sample.position, sample.answer));
