@@ -174,7 +174,7 @@ fn angle_errors_match_their_estimate() {
     for method in [Method::Nearest, Method::Linear] {
         let mut seen = Vec::new();
         for (case, sweep) in SWEEPS.into_iter().enumerate() {
-            for seed in 0..SEEDS / 3 {
+            for seed in 0..SEEDS {
                 seen.extend(angles(
                     &capture(Attachment::Usb, sweep, seed),
                     method,

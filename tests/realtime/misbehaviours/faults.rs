@@ -32,7 +32,8 @@ pub enum Expect {
     Refused,
     /// Stopped within 50 ms of the sample that shows it.
     Stopped,
-    /// No sample shows it: stopped once silence or damage is certain: within a second, on RS232 1.6 s.
+    /// No sample shows it: stopped once silence or damage is certain: within a second, on RS232
+    /// 1.6 s.
     Silent,
     /// The positions do not show it: stopped once a limit switch does.
     Unseen,
