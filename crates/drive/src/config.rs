@@ -15,6 +15,8 @@ pub struct AxisConfig {
     pub node: u8,
     /// Encoder and gear.
     pub gearing: Gearing,
+    /// Direction of the encoder (2210:4).
+    pub sensor_polarity: u16,
     /// Range of targets, also written to the drive as software position limits (607D).
     pub limits: AxisLimits,
     /// Maximal motor speed (607F).
@@ -104,6 +106,8 @@ pub struct LimitSwitchConfig {
 pub struct BrakeConfig {
     /// Digital output of the brake (2079), 1 to 5.
     pub output: u8,
+    /// Whether the output is inverted (2078:3).
+    pub inverted: bool,
     /// Time the brake takes to open (2100:1), whole milliseconds up to 65535.
     pub rise: Span,
     /// Time the brake takes to close (2100:2), whole milliseconds up to 65535.
@@ -166,6 +170,7 @@ impl Default for AxisConfig {
         Self {
             node: 1,
             gearing: DEFAULT_GEARING,
+            sensor_polarity: 0,
             limits: AxisLimits {
                 min: Degrees(-60.0),
                 max: Degrees(60.0),
@@ -239,6 +244,7 @@ impl Default for BrakeConfig {
     fn default() -> Self {
         Self {
             output: 1,
+            inverted: false,
             rise: Span::from_millis(10),
             fall: Span::from_millis(10),
         }

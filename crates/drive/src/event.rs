@@ -83,6 +83,9 @@ pub enum CommandProgress {
     Statusword(u16),
     /// A quick stop did not bring the axis to rest; switching its power off did.
     PowerCut,
+    /// An axis at rest moved by this after its power was switched off: its head fell, or the brake
+    /// slipped.
+    Dropped(Degrees),
     /// A command failed and the axis was stopped; the failure follows.
     MadeSafe(StopReport),
 }

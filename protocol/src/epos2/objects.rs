@@ -83,6 +83,8 @@ objects! {
     OUTPUT_STATE: u16 = 0x2078, 1, "Digital Output State";
     /// Outputs that the state controls.
     OUTPUT_MASK: u16 = 0x2078, 2, "Digital Output Mask";
+    /// Bit set: an active output is low.
+    OUTPUT_POLARITY: u16 = 0x2078, 3, "Digital Output Polarity";
     /// Purpose of digital output 1; [`OUTPUT_BRAKE`] makes it the holding brake.
     OUTPUT_1: u16 = 0x2079, 1, "Configuration of Digital Output1";
     /// Homing to a mechanical stop: mA.
@@ -103,6 +105,8 @@ objects! {
     ENCODER_LINES: u32 = 0x2210, 1, "Pulse Number Incremental Encoder 1";
     /// 1 incremental with index, 2 without.
     SENSOR_TYPE: u16 = 0x2210, 2, "Position Sensor Type";
+    /// Bit 0 set: the encoder counts the other way.
+    SENSOR_POLARITY: u16 = 0x2210, 4, "Position Sensor Polarity";
     /// See [`crate::epos2::cia402::control`].
     CONTROLWORD: u16 = 0x6040, 0, "Controlword";
     /// Reaction to a lost master: 0 none, 1 that to a fault, 2 disable voltage, 3 quick stop.

@@ -65,12 +65,38 @@ async fn verify_drive(ops: &Ops) -> Result<(), DriveError> {
     expect(ops, objects::ENCODER_LINES, lines..=lines, key).await?;
     // An incremental encoder with or without index.
     expect(ops, objects::SENSOR_TYPE, 1..=2, None).await?;
+    // The other direction mirrors the angles.
+    let polarity = i64::from(config.sensor_polarity);
+    let key = Some("[axis] sensor_polarity");
+    expect(ops, objects::SENSOR_POLARITY, polarity..=polarity, key).await?;
+    if let Some(brake) = config.brake {
+        verify_brake(ops, brake).await?;
+    }
     // A fault stops the axis by a ramp.
     expect(ops, objects::FAULT_OPTION, 1..=2, None).await?;
     expect(ops, objects::VELOCITY_NOTATION, 0..=0, None).await?;
     let fast_enough = config.max_speed.0.into()..=i64::MAX;
     let key = Some("[axis] max_speed_deg_s");
     expect(ops, objects::MAX_MOTOR_SPEED, fast_enough, key).await
+}
+
+/// Fails if the brake's output has the other polarity: the brake would open at power off.
+async fn verify_brake(ops: &Ops, brake: BrakeConfig) -> Result<(), DriveError> {
+    let got = ops.read(objects::OUTPUT_POLARITY).await?;
+    let bit = 1 << objects::OUTPUT_BRAKE;
+    if (got & bit != 0) == brake.inverted {
+        return Ok(());
+    }
+    Err(DriveError::Contradiction {
+        address: objects::OUTPUT_POLARITY.address,
+        name: objects::OUTPUT_POLARITY.name,
+        expected: match brake.inverted {
+            true => format!("bit {} set", objects::OUTPUT_BRAKE),
+            false => format!("bit {} clear", objects::OUTPUT_BRAKE),
+        },
+        got: got.into(),
+        key: Some("[axis] brake_inverted"),
+    })
 }
 
 /// Fails if an object's value is not one of `expected`. `key` is the configuration's for it.

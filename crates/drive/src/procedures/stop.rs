@@ -13,7 +13,7 @@ use std::collections::VecDeque;
 use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::control;
 use protocol::epos2::objects;
-use units::Span;
+use units::{Degrees, Quadcounts, Span};
 
 use crate::config::AxisConfig;
 use crate::error::DriveError;
@@ -167,7 +167,7 @@ async fn diagnose(ops: &Ops, cause: DriveError) -> DriveError {
 /// the end of every move and stop.
 async fn disable_at_standstill(ops: &mut Ops) -> Result<StopReport, DriveError> {
     ops.is_moving = true;
-    wait_for_standstill(ops).await?;
+    let at_rest = wait_for_standstill(ops).await?;
     let mut statusword = 0;
     if ops.config.holds() {
         statusword = ops.read(objects::STATUSWORD).await?;
@@ -178,11 +178,14 @@ async fn disable_at_standstill(ops: &mut Ops) -> Result<StopReport, DriveError> 
             .await?;
         statusword = wait_for(ops, "power off", is_off).await?;
     }
-    ops.is_moving = false;
     let brake = ops.config.brake;
     ops.sleep(brake.map_or(Span::ZERO, |brake| brake.fall))
         .await;
-    let position = ops.next_sample().await?.position;
+    let position = match held {
+        true => ops.next_sample().await?.position,
+        false => wait_without_power(ops, at_rest).await?,
+    };
+    ops.is_moving = false;
     let fault = is_fault(statusword);
     let error = if fault {
         newest_error(ops).await?
@@ -200,6 +203,29 @@ async fn disable_at_standstill(ops: &mut Ops) -> Result<StopReport, DriveError> 
         brake: brake.is_some(),
         held,
     })
+}
+
+/// Waits until an axis that was `at_rest` with power is at rest without: its head may fall.
+async fn wait_without_power(ops: &mut Ops, at_rest: Quadcounts) -> Result<Quadcounts, DriveError> {
+    ops.is_coasting = true;
+    let position = wait_for_standstill(ops)
+        .await
+        .map_err(|error| match error {
+            DriveError::StillMoving {
+                position, waited, ..
+            } => DriveError::StillMoving {
+                position,
+                waited,
+                power_off: true,
+            },
+            error => error,
+        })?;
+    let qc = position.0.saturating_sub(at_rest.0);
+    let moved = ops.config.gearing.degrees_per_qc() * f64::from(qc);
+    if moved.abs() > ops.config.guard.ahead.0 {
+        ops.report(CommandProgress::Dropped(Degrees(moved)));
+    }
+    Ok(position)
 }
 
 fn position_validity(ops: &Ops, statusword: u16, error: Option<DeviceError>) -> PositionValidity {
@@ -224,7 +250,7 @@ fn invalidates_position(error: DeviceError) -> bool {
     )
 }
 
-async fn wait_for_standstill(ops: &mut Ops) -> Result<(), DriveError> {
+async fn wait_for_standstill(ops: &mut Ops) -> Result<Quadcounts, DriveError> {
     let began = ops.now();
     let limit = began
         .saturating_add(quick_stop_ramp(ops))
@@ -235,7 +261,7 @@ async fn wait_for_standstill(ops: &mut Ops) -> Result<(), DriveError> {
     loop {
         let sample = ops.next_sample().await?;
         if window.is_at_rest_with(&sample) {
-            return Ok(());
+            return Ok(sample.position);
         }
         // Both positions were requested after the limit: a delayed host may have missed the stop.
         let has_left = ramp.as_mut().is_some_and(|ramp| ramp.is_left_by(&sample));

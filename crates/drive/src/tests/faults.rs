@@ -245,6 +245,8 @@ fn a_drive_that_contradicts_the_configuration_is_not_moved() {
     for (object, value, key) in [
         ((0x2210, 1), 512, "encoder_lines"),
         ((0x2210, 2), 4, "EPOS Studio"),
+        ((0x2210, 4), 1, "sensor_polarity"),
+        ((0x2078, 3), 4, "brake_inverted"),
         ((0x605E, 0), 0, "EPOS Studio"),
         ((0x608B, 0), 0xFE, "EPOS Studio"),
         ((0x6410, 4), 1_000, "max_speed_deg_s"),

@@ -28,6 +28,10 @@ pub struct AxisSettings {
     /// Digital output of the drive (1..=5) that opens the brake; absent without a brake. The
     /// factory setting assigns no output.
     pub brake_output: Option<u8>,
+    /// Whether the brake's output is inverted in the drive (2078:3, bit 2).
+    pub brake_inverted: bool,
+    /// Direction of the encoder in the drive (2210:4).
+    pub sensor_polarity: u16,
     /// What happens to an axis without a brake when it comes to rest.
     pub without_brake: WithoutBrake,
     /// Limit switches; the factory's inputs without the table.
@@ -115,6 +119,8 @@ impl Default for AxisSettings {
             max_accel_deg_s2: 10_000.0,
             quick_stop_deg_s2: 500.0,
             brake_output: None,
+            brake_inverted: false,
+            sensor_polarity: 0,
             without_brake: WithoutBrake::Release,
             limit_switches: LimitSwitchSettings::default(),
             homing: HomingSettings::default(),

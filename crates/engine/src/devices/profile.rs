@@ -60,6 +60,7 @@ pub fn axis(axis: &AxisSettings) -> Result<drive::AxisConfig, Failure> {
     let config = drive::AxisConfig {
         node: axis.node,
         gearing,
+        sensor_polarity: axis.sensor_polarity,
         limits: AxisLimits {
             min: Degrees(axis.min_deg),
             max: Degrees(axis.max_deg),
@@ -74,6 +75,7 @@ pub fn axis(axis: &AxisSettings) -> Result<drive::AxisConfig, Failure> {
         },
         brake: axis.brake_output.map(|output| BrakeConfig {
             output,
+            inverted: axis.brake_inverted,
             ..BrakeConfig::default()
         }),
         hold_without_brake: axis.without_brake == WithoutBrake::Hold,

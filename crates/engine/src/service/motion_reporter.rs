@@ -61,6 +61,18 @@ impl<'a> MotionReporter<'a> {
                     Some(help.to_owned()),
                 );
             }
+            DriveEvent::Progress(CommandProgress::Dropped(moved)) => {
+                let help = "check the brake (brake_output, its polarity and supply); without one set \
+                            without_brake = \"hold\" in [axis], or balance the head";
+                self.service.events().message(
+                    MessageLevel::Warning,
+                    format!(
+                        "the axis moved by {:.2} deg after its power was switched off",
+                        moved.0
+                    ),
+                    Some(help.to_owned()),
+                );
+            }
             event => {
                 if matches!(event, DriveEvent::Progress(_)) {
                     self.service.heartbeat();

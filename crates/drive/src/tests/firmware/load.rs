@@ -26,9 +26,12 @@ fn loaded(load: AxisLoad) -> NodeConfig {
     }
 }
 
-/// The end of a sweep to -15 degrees with the brake: its report, and the shaft's position in the
-/// drive's counts a second later.
-fn sweep_and_brake(link: DriveLink, load: AxisLoad) -> (Result<StopReport, DriveError>, f64) {
+/// The end of a sweep to -15 degrees with the brake: its report, the shaft's position in the
+/// drive's counts a second later, and the drop that the client reports, degrees.
+fn sweep_and_brake(
+    link: DriveLink,
+    load: AxisLoad,
+) -> (Result<StopReport, DriveError>, f64, Option<f64>) {
     let mut world = World::on(link, loaded(load));
     world.run(DriveCommand::Connect).unwrap();
     world.run(DriveCommand::Home).unwrap();
@@ -44,13 +47,17 @@ fn sweep_and_brake(link: DriveLink, load: AxisLoad) -> (Result<StopReport, Drive
     });
     world.run_for(Span::from_secs(1));
     let fallen = world.world_qc(world.now) - target;
-    (stopped, fallen)
+    let dropped = world.events.iter().find_map(|event| match event {
+        DriveEvent::Progress(CommandProgress::Dropped(moved)) => Some(moved.0),
+        _ => None,
+    });
+    (stopped, fallen, dropped)
 }
 
 #[test]
 fn an_axis_with_weight_arrives_and_stays_on_its_brake() {
     for link in LINKS {
-        let (stopped, fallen) = sweep_and_brake(link, LOAD);
+        let (stopped, fallen, dropped) = sweep_and_brake(link, LOAD);
         let stopped = stopped.unwrap();
         assert!(!stopped.fault && stopped.validity == PositionValidity::Valid);
         // The power goes at once, so the axis falls for the 10 ms of the brake: 45 qc, and 4 until
@@ -58,23 +65,24 @@ fn an_axis_with_weight_arrives_and_stays_on_its_brake() {
         assert!((-50.0..=-48.0).contains(&fallen), "{link:?}: {fallen}");
         let reported = f64::from(stopped.position.0 + 10_000);
         assert!((reported - fallen).abs() <= 12.0, "{link:?}: {reported}");
+        assert_eq!(dropped, None, "{link:?}");
     }
 }
 
+/// The report waits for the end of the fall.
 #[test]
-fn an_axis_without_a_brake_is_not_reported_at_its_target() {
+fn an_axis_without_a_brake_is_reported_where_it_falls_to() {
     for link in LINKS {
         let load = AxisLoad {
             brake: None,
             ..LOAD
         };
-        let (stopped, fallen) = sweep_and_brake(link, load);
-        // A second later it lies on the hard stop.
+        let (stopped, fallen, dropped) = sweep_and_brake(link, load);
+        assert!(dropped.unwrap() < -45.0, "{link:?}: {dropped:?}");
+        // It lies on the hard stop.
         assert!(fallen < -30_000.0, "{link:?}: {fallen}");
-        // The report follows the brake's closing time, at least 10 ms into the fall: 45 qc, read a
-        // little early. The client does not look whether the axis still moves.
-        if let Ok(report) = stopped {
-            assert!(report.position.0 < -10_030, "{link:?}: {report:?}");
-        }
+        let report = stopped.unwrap();
+        let reported = f64::from(report.position.0 + 10_000);
+        assert!((reported - fallen).abs() <= 12.0, "{link:?}: {report:?}");
     }
 }
