@@ -98,10 +98,9 @@ fn on_transport(transport: &'static str, arguments: &Arguments, results: &Result
             case.motion
         );
         let result = case.run(&bench);
-        if let Ok(aftermath) = &result {
-            let mut table = results.table.lock().unwrap();
-            table.count(transport, aftermath);
-        }
+        let mut table = results.table.lock().unwrap();
+        table.count(transport, result.as_ref());
+        drop(table);
         results.check(&what, result.map(drop));
     }
 }

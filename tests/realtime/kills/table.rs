@@ -14,12 +14,24 @@ const MARKS: (&str, &str) = ("<!-- table -->\n", "<!-- end of the table -->");
 
 /// Results, by transport.
 #[derive(Default)]
-pub struct Table(BTreeMap<&'static str, Vec<Aftermath>>);
+pub struct Table(BTreeMap<&'static str, Kills>);
+
+/// The kills on one transport.
+#[derive(Default)]
+struct Kills {
+    measured: Vec<Aftermath>,
+    /// Kills after which a requirement was not met, or that could not be judged.
+    failed: usize,
+}
 
 impl Table {
     /// Counts one kill.
-    pub fn count(&mut self, transport: &'static str, aftermath: &Aftermath) {
-        self.0.entry(transport).or_default().push(*aftermath);
+    pub fn count(&mut self, transport: &'static str, result: Result<&Aftermath, &String>) {
+        let kills = self.0.entry(transport).or_default();
+        match result {
+            Ok(aftermath) => kills.measured.push(*aftermath),
+            Err(_) => kills.failed += 1,
+        }
     }
 
     /// Replaces the table in the page.
@@ -36,11 +48,15 @@ impl fmt::Display for Table {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "| transport | kills | axis moved | powered at rest | power off | standstill: median, longest | power off: median, longest | moving after 1 s | powered after 1 s | brake open after 1 s |"
+            "| transport | kills | axis moved | powered at rest | power off | standstill: median, longest | power off: median, longest | moving after 1 s | powered after 1 s | brake open after 1 s | failed |"
         )?;
-        writeln!(f, "|---|---|---|---|---|---|---|---|---|---|")?;
+        writeln!(f, "|---|---|---|---|---|---|---|---|---|---|---|")?;
         for transport in TRANSPORTS {
-            let Some(all) = self.0.get(transport) else {
+            let Some(Kills {
+                measured: all,
+                failed,
+            }) = self.0.get(transport)
+            else {
                 continue;
             };
             let count = |is: &dyn Fn(&Aftermath) -> bool| all.iter().filter(|one| is(one)).count();
@@ -55,8 +71,8 @@ impl fmt::Display for Table {
             };
             writeln!(
                 f,
-                "| {transport} | {} | {} | {} | {} | {} | {} | {} | {} | {} |",
-                all.len(),
+                "| {transport} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {failed} |",
+                all.len() + failed,
                 count(&|one| one.moving_at_signal),
                 count(&|one| one.powered_at_signal && !one.moving_at_signal),
                 count(&|one| !one.powered_at_signal),
