@@ -384,10 +384,13 @@ impl DeviceService {
         let _ = state.wait_for(idle).await;
     }
 
-    /// Waits for requests that only read the drive's state: they must not have a motion refused.
+    /// Waits for requests that only read the drive's state, and for the connection: they must not
+    /// have a motion refused.
     pub async fn wait_for_reads(&self) {
         let mut state = self.state.subscribe();
-        let none = state.wait_for(|state| !state.activity.reads_only);
+        let none = state.wait_for(|state| {
+            !state.activity.reads_only && state.activity.doing != AxisTask::Connecting
+        });
         let _ = tokio::time::timeout(READ_WAIT, none).await;
     }
 
