@@ -137,8 +137,8 @@ pub struct Replay {
     /// time_s,angle_deg
     #[arg(long, value_name = "log|none|ANGLES.csv", default_value = "log")]
     pub tilt: String,
-    /// Mount of the lidar: a TOML file with [mount] d_m [default: the log's; with ANGLES.csv the
-    /// configuration's]
+    /// Mount of the lidar: a TOML file with d_m in its table `mount` (default: the log's; with
+    /// ANGLES.csv the configuration's)
     #[arg(long, value_name = "FILE")]
     pub mount: Option<PathBuf>,
     /// Emit points at the recorded times, or FACTOR times as fast

@@ -150,6 +150,10 @@ async fn guarded_sample(ops: &mut Ops, guard: &mut MotionGuard) -> Result<ShaftS
     Ok(sample)
 }
 
+/// From the end of silence that a move goes on through to the stop of the axis: a probe and a quick
+/// stop without reply.
+const BLIND_STOP: Span = Span::from_millis(250);
+
 /// Samples until the axis is at its target; returns its position and when.
 async fn sample_until_arrival(
     ops: &mut Ops,
@@ -170,9 +174,10 @@ async fn sample_until_arrival(
     // proves a failure, as a delayed host may have missed the arrival.
     let mut is_overdue = false;
     let planned_end = started.saturating_add(guard.plan().duration);
+    let last_stop = planned_end.saturating_add(-BLIND_STOP);
     loop {
-        // An axis that leaves its plan unseen is within its limits until then.
-        let left = planned_end.saturating_since(ops.now()).max(Span::ZERO);
+        // An axis that moves on unseen must be stopped before it is beyond its limits.
+        let left = last_stop.saturating_since(ops.now()).max(Span::ZERO);
         ops.silence_limit = ops.config.timing.silence_limit.min(left);
         let sample = guarded_sample(ops, guard).await?;
         if reached && sample.position.0.abs_diff(target.0) <= tolerance {
