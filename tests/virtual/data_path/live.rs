@@ -53,10 +53,10 @@ fn the_live_cloud_is_nearly_as_accurate_as_a_replay() {
             offline.worst_m * 1e3
         );
         assert!(most < MOST_LAG, "{attached:?}: {most:?}");
-        // With constant delays both are limited by the range's 2 mm: equal to 2 %, as the points at
+        // With constant delays both are limited by the range's 2 mm: equal to 3 %, as the points at
         // the ends of the sweep differ.
         assert!(
-            offline.rms_m <= live.rms_m * 1.02 && offline.worst_m <= live.worst_m,
+            offline.rms_m <= live.rms_m * 1.03 && offline.worst_m <= live.worst_m,
             "{attached:?}"
         );
         assert!(live.rms_m < 5e-3, "{attached:?}");
