@@ -151,11 +151,13 @@ impl RequestLink {
             ),
             None => (probes < MAX_PROBES, probes),
         };
+        // A unit that needs a longer silence is probed only after that.
+        let next_probe = now.max(self.codec.deadline().unwrap_or(now));
         let may_be_silent = !self.has_input
             && !self.budget.has_damage()
             && self
                 .active
-                .is_some_and(|active| active.tolerates_silence(now));
+                .is_some_and(|active| active.tolerates_silence(next_probe));
         if may_be_silent {
             self.budget.handle_silence(now);
         }
