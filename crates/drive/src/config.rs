@@ -142,9 +142,9 @@ pub struct AxisTiming {
     pub timeout: Span,
     /// Time limit of a reply while the axis moves, when silence costs more than a repeated request.
     pub timeout_moving: Span,
-    /// Time without any input from the drive for which a move or homing goes on, but not
-    /// so long that an unseen axis could leave its limits: a busy machine delays this program and its adapters. The drive
-    /// completes its own profile meanwhile.
+    /// Time without any input from the drive for which a move or homing goes on, but not so long
+    /// that an unseen axis could leave its limits: a busy machine delays this program and its
+    /// adapters. The drive completes its own profile meanwhile.
     pub silence_limit: Span,
     /// Repeats of a read after its reply was lost. Writes are not repeated.
     pub read_retries: u8,
