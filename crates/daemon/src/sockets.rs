@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use io::discover::{ConnectedDevices, discover};
 
 use engine::config::{Device, DeviceKind};
-use engine::devices::drive_port::{self as ports, Looks};
+use engine::devices::drive_port::{self as ports, Search};
 use engine::failure::Failure;
 
 /// Folder of a service's socket.
@@ -33,15 +33,15 @@ pub fn folder() -> PathBuf {
 /// # Errors
 /// Returns a failure if the profile names no port.
 pub fn name(profile: &str, device: &Device) -> Result<String, Failure> {
-    Ok(name_of(&place(profile, device)?))
+    Ok(name_of(&port_path(profile, device)?))
 }
 
 /// The path behind the socket's name. A drive that is searched on USB has no fixed port.
-fn place(profile: &str, device: &Device) -> Result<PathBuf, Failure> {
+fn port_path(profile: &str, device: &Device) -> Result<PathBuf, Failure> {
     match device.kind {
         DeviceKind::Sim => Ok(PathBuf::from(format!("-{profile}"))),
         _ if device.is_looked_for() => Ok(PathBuf::from(LOOKED_FOR)),
-        _ => ports::place(profile, device, Looks::Once, &ConnectedDevices::default),
+        _ => ports::port_path(profile, device, Search::Once, &ConnectedDevices::default),
     }
 }
 
@@ -58,12 +58,12 @@ fn name_of(place: &Path) -> String {
 /// udev's names for the port.
 #[must_use]
 pub fn candidates(profile: &str, device: &Device) -> Vec<PathBuf> {
-    let Ok(named) = place(profile, device) else {
+    let Ok(named) = port_path(profile, device) else {
         return Vec::new();
     };
     let mut places = vec![named];
     if device.is_looked_for() {
-        places.extend(ports::place(profile, device, Looks::Once, &discover));
+        places.extend(ports::port_path(profile, device, Search::Once, &discover));
     }
     let others: Vec<PathBuf> = places.iter().flat_map(|place| other_names(place)).collect();
     places.extend(others);

@@ -12,30 +12,14 @@ fn json(output: &Output) -> Value {
         .unwrap_or_else(|error| panic!("{error}: {}", printed(output)))
 }
 
-/// Runs a command again if the software drive went silent on a busy machine.
-fn run_with_retries(folder: &std::path::Path, line: &str, again: &str, ready: impl Fn()) -> Output {
-    let mut output = run(folder, line);
-    for _ in 0..3 {
-        if output.status.code() != Some(5) || !super::rig::machine_was_busy(&printed(&output)) {
-            break;
-        }
-        ready();
-        output = run(folder, again);
-    }
-    output
-}
-
 #[test]
 fn a_capture_through_the_daemon_equals_a_direct_one() {
     let folder = place();
-    let line = "capture --speed 56.25 -o own.ply --json";
-    let own = run_with_retries(folder.path(), line, &format!("{line} --force"), || {});
+    let own = run(folder.path(), "capture --speed 56.25 -o own.ply --json");
     assert!(own.status.success(), "{}", printed(&own));
     let daemon = Process::start(folder.path());
     ready(daemon.address);
-    let line = "capture --speed 56.25 -o through.ply --json";
-    let again = format!("{line} --force");
-    let through = run_with_retries(folder.path(), line, &again, || ready(daemon.address));
+    let through = run(folder.path(), "capture --speed 56.25 -o through.ply --json");
     assert!(through.status.success(), "{}", printed(&through));
     let scans = request(daemon.address, "GET", "/api/v1/scans", "", "").json();
     assert!(

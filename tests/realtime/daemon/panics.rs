@@ -27,25 +27,11 @@ fn panicking_daemon(when: AxisTask) -> (Rig, Arc<AtomicBool>) {
 #[test]
 fn a_panic_while_the_axis_moves_stops_it_and_the_daemon_continues() {
     let (rig, defect) = panicking_daemon(AxisTask::Capturing);
-    let mut attempt = 0;
-    let scan = loop {
-        let id = sweep(rig.address);
-        defect.store(true, Ordering::Release);
-        let scan = rig.finished(&id);
-        if scan["why"]
-            .to_string()
-            .contains("an internal error ended the motion")
-        {
-            break scan;
-        }
-        // The software drive went silent on a busy machine.
-        defect.store(false, Ordering::Release);
-        attempt += 1;
-        assert!(
-            attempt < 4 && super::rig::machine_was_busy(&scan["why"].to_string()),
-            "{scan}"
-        );
-    };
+    let id = sweep(rig.address);
+    defect.store(true, Ordering::Release);
+    let scan = rig.finished(&id);
+    let why = scan["why"].to_string();
+    assert!(why.contains("an internal error ended the motion"), "{scan}");
     assert_eq!(scan["state"], "partial", "{scan}");
     assert!(scan["points"].as_u64().unwrap() > 0, "{scan}");
     // The axis was stopped early in the sweep.

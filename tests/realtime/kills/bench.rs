@@ -25,8 +25,6 @@ use units::{Host, Span, Stamp};
 const LIMIT: Duration = Duration::from_secs(60);
 /// A longer time without a control cycle is a stall of the machine.
 const STALL: Duration = Duration::from_millis(20);
-/// Attempts of a command that fails as the drive is silent on a busy machine.
-const ATTEMPTS: usize = 5;
 /// Between two packets of the lidar.
 const PACKET: Duration = Duration::from_millis(5);
 
@@ -138,13 +136,7 @@ impl Bench {
 
     /// Runs a command to its end, which must succeed.
     pub fn run(&self, line: &str) -> Result<(), String> {
-        let mut output = self.command(line).output().map_err(|e| e.to_string())?;
-        for _ in 1..ATTEMPTS {
-            if !machine_was_busy(&String::from_utf8_lossy(&output.stderr)) {
-                break;
-            }
-            output = self.command(line).output().map_err(|e| e.to_string())?;
-        }
+        let output = self.command(line).output().map_err(|e| e.to_string())?;
         match output.status.success() {
             true => Ok(()),
             false => Err(format!(
@@ -291,13 +283,6 @@ fn observe(record: &mut AxisRecord, at: Stamp<Host>, node: &Node) {
 /// Angle of the default axis: 500 lines, 120:1.
 fn degrees(state: &AxisState) -> f64 {
     state.position as f64 / 2f64.powi(32) * 0.0015
-}
-
-/// Whether the drive of this process was silent because the machine was busy.
-pub fn machine_was_busy(messages: &str) -> bool {
-    ["silence", "got none", "heartbeat"]
-        .iter()
-        .any(|sign| messages.contains(sign))
 }
 
 /// Repeats `wanted` until it returns a value.

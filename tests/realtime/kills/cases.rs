@@ -7,10 +7,7 @@ use std::time::Duration;
 
 use firmware_sim::epos2::BrakeState;
 
-use crate::bench::{Aftermath, Bench, machine_was_busy, wait};
-
-/// Attempts of a program that fails because the machine is busy.
-const ATTEMPTS: usize = 5;
+use crate::bench::{Aftermath, Bench, wait};
 
 /// A signal by its name, and whether the program can handle it.
 pub type Signal = (&'static str, bool);
@@ -58,29 +55,6 @@ pub struct Case {
     pub held: bool,
 }
 
-/// Why a case failed.
-#[derive(Debug)]
-enum Miss {
-    /// The axis, or the test itself.
-    Axis(String),
-    /// What the program did or reported.
-    Program(String),
-}
-
-impl Miss {
-    fn text(self) -> String {
-        match self {
-            Self::Axis(why) | Self::Program(why) => why,
-        }
-    }
-}
-
-impl From<String> for Miss {
-    fn from(why: String) -> Self {
-        Self::Axis(why)
-    }
-}
-
 /// The program under test, its messages, and the command that it obeys.
 struct Program {
     child: Child,
@@ -113,19 +87,8 @@ impl Case {
         }
     }
 
-    /// Starts the motion, sends the signal and judges what the axis does. A program that failed
-    /// because the machine was busy is started again; what the axis did is judged each time.
+    /// Starts the motion, sends the signal and judges what the axis does.
     pub fn run(self, bench: &Bench) -> Result<Aftermath, String> {
-        for _ in 1..ATTEMPTS {
-            match self.attempt(bench) {
-                Err(Miss::Program(why)) if machine_was_busy(&why) => {}
-                other => return other.map_err(Miss::text),
-            }
-        }
-        self.attempt(bench).map_err(Miss::text)
-    }
-
-    fn attempt(self, bench: &Bench) -> Result<Aftermath, Miss> {
         bench.forget();
         let mut program = self.start(bench)?;
         match self.moment {
@@ -144,7 +107,7 @@ impl Case {
                     program.send("KILL");
                     let (status, messages) = program.end()?;
                     let why = format!("no motion: {moves:?}, {status}, {messages}");
-                    return Err(Miss::Program(why));
+                    return Err(why);
                 }
             }
             Moment::After(delay) => std::thread::sleep(delay),
@@ -163,7 +126,6 @@ impl Case {
             true => Ok(()),
             false => Err(format!("{rule}: {aftermath:?}, {status}, {messages}")),
         };
-        let said = |holds, what: &str| rule(holds, what).map_err(Miss::Program);
         rule(!aftermath.moves, "moves after 1 s")?;
         match self.held {
             true => rule(aftermath.powered, "held axis without power")?,
@@ -175,11 +137,11 @@ impl Case {
         if self.motion != Motion::Daemon {
             let code = status.code();
             match self.signal {
-                ("STOP", _) => said(
+                ("STOP", _) => rule(
                     messages.contains("did not run") || messages.contains("8130"),
                     "unexplained",
                 )?,
-                (_, true) => said(code == Some(130), "exit code is not 130")?,
+                (_, true) => rule(code == Some(130), "exit code is not 130")?,
                 _ => {}
             }
         }

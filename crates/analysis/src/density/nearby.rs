@@ -30,7 +30,7 @@ pub(super) const SAME: f64 = 1e-9;
 
 /// The cube of a lattice that contains a point. Two points in the same cube are closer than
 /// [`SAME`].
-fn place(point: DVec3) -> [i64; 3] {
+fn cube(point: DVec3) -> [i64; 3] {
     (point * (2.0 / SAME)).round().to_array().map(|c| c as i64)
 }
 
@@ -89,7 +89,7 @@ impl Nearby {
                 continue;
             }
             let mut by_place: Vec<([i64; 3], DVec3)> =
-                own.iter().map(|point| (place(*point), *point)).collect();
+                own.iter().map(|point| (cube(*point), *point)).collect();
             by_place.sort_by_key(|(place, _)| *place);
             by_place.dedup_by_key(|(place, _)| *place);
             kept.extend(by_place.iter().map(|(_, point)| *point));

@@ -81,7 +81,7 @@ impl PlotAxis {
     }
 
     /// Position of a value; `None` if it has none.
-    pub(crate) fn place(&self, value: f64) -> Option<f64> {
+    pub(crate) fn position(&self, value: f64) -> Option<f64> {
         let part = match self.scale {
             _ if !value.is_finite() => return None,
             Scale::Log if value <= 0.0 => return self.zero,
@@ -128,7 +128,7 @@ impl PlotAxis {
                     1 => number::decade(power),
                     _ => number::short(value),
                 };
-                if let Some(at) = self.place(value) {
+                if let Some(at) = self.position(value) {
                     ticks.push(AxisTick { at, label });
                 }
             }
@@ -150,7 +150,7 @@ impl PlotAxis {
             .filter_map(|i| {
                 let value = i as f64 * step;
                 Some(AxisTick {
-                    at: self.place(value)?,
+                    at: self.position(value)?,
                     label: number::short(value),
                 })
             })
@@ -171,14 +171,14 @@ mod tests {
     #[test]
     fn log_axes_label_decades_and_zero() {
         let axis = PlotAxis::new(Scale::Log, [0.0, 2e-6, 150.0].into_iter(), 100.0, 0.0);
-        assert_eq!(axis.place(0.0), Some(96.0));
-        assert!(axis.place(2e-6).unwrap() < 92.0);
+        assert_eq!(axis.position(0.0), Some(96.0));
+        assert!(axis.position(2e-6).unwrap() < 92.0);
         let labels = labels(&axis);
         assert!(labels.contains(&"100".to_owned()), "{labels:?}");
         assert_eq!(labels.last().unwrap(), "0");
-        assert_eq!(axis.place(f64::NAN), None);
+        assert_eq!(axis.position(f64::NAN), None);
         let positive = PlotAxis::new(Scale::Log, [1.0, 2.0].into_iter(), 0.0, 100.0);
-        assert_eq!(positive.place(0.0), None);
+        assert_eq!(positive.position(0.0), None);
     }
 
     #[test]
@@ -198,7 +198,7 @@ mod tests {
             let mut values: Vec<f64> = values.iter().map(|(x, p)| x * 10_f64.powi(*p)).collect();
             values.sort_by(f64::total_cmp);
             let axis = PlotAxis::new(scale, values.iter().copied(), 40.0, 400.0);
-            let places: Vec<f64> = values.iter().map(|v| axis.place(*v).unwrap()).collect();
+            let places: Vec<f64> = values.iter().map(|v| axis.position(*v).unwrap()).collect();
             prop_assert!(places.iter().all(|p| (40.0..=400.0).contains(p)), "{:?}", places);
             prop_assert!(places.is_sorted());
             let ticks = axis.ticks();

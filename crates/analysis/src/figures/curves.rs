@@ -75,13 +75,13 @@ fn plot(title: &str, curves: &[Curve], top: f64) -> String {
     let middle = f64::midpoint(left, right);
     svg += &small(middle, AREA.bottom + 30.0, TextAnchor::Middle, name);
     svg += &AREA.horizontals(&y);
-    if let Some(zero) = y.place(0.0) {
+    if let Some(zero) = y.position(0.0) {
         svg += &AREA.horizontal("tv-zero", zero);
     }
     svg += &AREA.frame();
     for (number, curve) in curves.iter().enumerate() {
         let places = curve.iter();
-        let places = places.filter_map(|(degrees, value)| Some((x(*degrees), y.place(*value)?)));
+        let places = places.filter_map(|(degrees, value)| Some((x(*degrees), y.position(*value)?)));
         svg += &line(&stroke(number), places);
     }
     svg + "</g>\n"

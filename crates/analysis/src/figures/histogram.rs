@@ -91,8 +91,11 @@ fn plot(scan: &AnalyzedScan, number: usize, width: u64, x: &PlotAxis, y: &PlotAx
         .iter()
         .filter(|class| class.bins > 0)
     {
-        let ends = (x.place(class.from as f64), x.place(class.to as f64 + 1.0));
-        if let ((Some(left), Some(right)), Some(top)) = (ends, y.place(class.bins as f64)) {
+        let ends = (
+            x.position(class.from as f64),
+            x.position(class.to as f64 + 1.0),
+        );
+        if let ((Some(left), Some(right)), Some(top)) = (ends, y.position(class.bins as f64)) {
             let right = right.min(AREA.right);
             bars += &format!("M{left:.1} {bottom}V{top:.1}H{right:.1}V{bottom}z");
         }
@@ -107,7 +110,7 @@ fn plot(scan: &AnalyzedScan, number: usize, width: u64, x: &PlotAxis, y: &PlotAx
         (s.mean + s.sd, "tv-sd"),
     ];
     for (value, class) in lines.into_iter().filter(|(value, _)| *value >= 0.0) {
-        if let Some(x) = x.place(value).filter(|x| *x <= AREA.right) {
+        if let Some(x) = x.position(value).filter(|x| *x <= AREA.right) {
             svg += &AREA.vertical(class, x);
         }
     }

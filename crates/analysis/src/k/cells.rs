@@ -43,7 +43,7 @@ pub(super) struct PointCell {
 
 impl PointCell {
     /// Index of the point at a position along a layout.
-    pub(super) fn place(&self, layout: usize, along: usize) -> usize {
+    pub(super) fn point_index(&self, layout: usize, along: usize) -> usize {
         let step = self.layouts.get(layout).map_or(1, |(_, step)| *step) as u64;
         let len = self.len.max(1) as u64;
         // Both factors are below 2^32.

@@ -353,7 +353,7 @@ impl<'a> SamplingWorker<'a> {
     /// Whether a pair of a row is beyond an edge, by the exact test.
     fn is_beyond(&mut self, row: &Row<'_>, lane: usize, edge: usize, share: f64) -> bool {
         let [a, b] = row.map(|(_, cell, layout, along)| {
-            let index = self.cells.index(cell.place(layout, along + lane));
+            let index = self.cells.index(cell.point_index(layout, along + lane));
             index.and_then(|index| self.points.get(index))
         });
         let (Some(a), Some(b)) = (a, b) else {

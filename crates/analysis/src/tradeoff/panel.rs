@@ -122,8 +122,8 @@ fn points<'a>(
     rows.filter_map(|(row, (on, step))| {
         Some(PlotPoint {
             row,
-            x: x.place(row.values.get(trade.cost)?.middle())?,
-            y: y.place(row.values.get(trade.loss)?.middle())?,
+            x: x.position(row.values.get(trade.cost)?.middle())?,
+            y: y.position(row.values.get(trade.loss)?.middle())?,
             on,
             step,
         })
@@ -171,7 +171,7 @@ fn joined(points: &[PlotPoint<'_>], groups: &[&str]) -> String {
 fn spread(point: &PlotPoint<'_>, trade: &Trade, x: &PlotAxis, y: &PlotAxis) -> [Option<Line>; 2] {
     let places = |axis: &PlotAxis, column: usize| {
         let (low, high) = ends(point.row.values.get(column)?);
-        let (low, high) = (axis.place(low)?, axis.place(high)?);
+        let (low, high) = (axis.position(low)?, axis.position(high)?);
         ((high - low).abs() > marks::HALF).then_some((low, high))
     };
     [

@@ -51,11 +51,11 @@ pub struct GuardianOptions<'a> {
 
 /// How long the caller searches for a drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Looks {
+pub enum Search {
     /// The caller searches once.
     Once,
     /// The caller keeps searching.
-    On,
+    UntilFound,
 }
 
 /// The address of a profile's drive: the path of a serial port or the name of a CAN interface. A
@@ -63,14 +63,14 @@ pub enum Looks {
 ///
 /// # Errors
 /// Returns [`Kind::BadInput`] if the profile names no port, [`Kind::NoDevice`] if none is found.
-pub fn place(
+pub fn port_path(
     name: &str,
     device: &Device,
-    looks: Looks,
+    search: Search,
     plugged: &dyn Fn() -> ConnectedDevices,
 ) -> Result<PathBuf, Failure> {
     if device.is_looked_for() {
-        return found(&plugged(), looks);
+        return found(&plugged(), search);
     }
     let (named, key, example) = match device.kind {
         DeviceKind::Can => (
@@ -95,7 +95,7 @@ pub fn place(
 }
 
 /// The EPOS2's serial port on USB.
-fn found(plugged: &ConnectedDevices, looks: Looks) -> Result<PathBuf, Failure> {
+fn found(plugged: &ConnectedDevices, search: Search) -> Result<PathBuf, Failure> {
     if let Some(port) = plugged.epos2.iter().find_map(|unit| unit.port.clone()) {
         return Ok(port);
     }
@@ -109,20 +109,20 @@ fn found(plugged: &ConnectedDevices, looks: Looks) -> Result<PathBuf, Failure> {
         ports => ports.join(", "),
     };
     let what = "an EPOS2 (USB 0403:A8B0) with a serial port";
-    let message = match looks {
-        Looks::Once => {
+    let message = match search {
+        Search::Once => {
             format!("no tilt drive: looked for {what} and found none (serial ports: {ports})")
         }
-        Looks::On => {
+        Search::UntilFound => {
             format!("no drive found yet: looking for {what} (serial ports: {ports})")
         }
     };
-    let help = match (plugged.epos2.is_empty(), looks) {
-        (true, Looks::Once) => {
+    let help = match (plugged.epos2.is_empty(), search) {
+        (true, Search::Once) => {
             "plug the EPOS2 in and switch it on, or name its port in a [device.NAME] of the configuration,\n\
              or use --device sim for software devices"
         }
-        (true, Looks::On) => {
+        (true, Search::UntilFound) => {
             "plug the EPOS2 in and switch it on: it is connected as soon as it is there\n\
              velomotion doctor lists what is there; a drive that is not on USB needs a [device.NAME] of the configuration"
         }

@@ -11,7 +11,7 @@ use super::events::MessageLevel;
 use super::status::{DeviceHealth, DriveSnapshot};
 use super::{DeviceService, Lifetime};
 use crate::config::DeviceKind;
-use crate::devices::drive_port::{self, GuardianOptions, Looks};
+use crate::devices::drive_port::{self, GuardianOptions, Search};
 use crate::devices::lidar_receiver::LidarReceiver;
 use crate::devices::lidar_sockets::{LidarSockets, listen_config};
 use crate::devices::simulated::{self, LidarPorts, Simulated};
@@ -37,10 +37,10 @@ impl Worker {
             return self.open_drive();
         }
         // A drive that is not found is reported before a lidar that cannot be listened to.
-        let place = drive_port::place(
+        let place = drive_port::port_path(
             &service.name,
             &service.device,
-            Looks::Once,
+            Search::Once,
             &*service.environment.plugged,
         )?;
         if lidar {
@@ -108,10 +108,10 @@ impl Worker {
                         .help("see the status of the lidar"),
                 );
             }
-            None => drive_port::place(
+            None => drive_port::port_path(
                 &service.name,
                 &service.device,
-                Looks::On,
+                Search::UntilFound,
                 &*service.environment.plugged,
             )?,
         };

@@ -18,7 +18,7 @@ struct FiringRays<'a> {
 
 impl FiringRays<'_> {
     /// The laser of a packet, and the packet's first firing.
-    const fn place(&self, packet: usize) -> (usize, usize) {
+    const fn laser_and_firing(&self, packet: usize) -> (usize, usize) {
         let (laser, part) = (
             packet / self.packets_per_laser,
             packet % self.packets_per_laser,
@@ -29,7 +29,7 @@ impl FiringRays<'_> {
 
 impl Packets for FiringRays<'_> {
     fn load(&self, packet: usize, lanes: &mut Lanes) -> u64 {
-        let (laser, first) = self.place(packet);
+        let (laser, first) = self.laser_and_firing(packet);
         let mut loaded = 0;
         let firings = self.firings.iter().skip(first).take(LANES);
         for (lane, firing) in firings.enumerate() {
@@ -44,7 +44,7 @@ impl Packets for FiringRays<'_> {
     }
 
     fn take(&mut self, packet: usize, loaded: u64, nearest: &Nearest) {
-        let (laser, first) = self.place(packet);
+        let (laser, first) = self.laser_and_firing(packet);
         let surroundings = self.surroundings;
         let both = self.firings.iter().zip(&mut *self.echoes);
         for (lane, (firing, echoes)) in both.skip(first).take(LANES).enumerate() {

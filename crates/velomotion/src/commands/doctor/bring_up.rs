@@ -12,7 +12,7 @@ use std::time::{Duration, Instant, SystemTime};
 use engine::bring_up::{BringUp, BringUpResult, BringUpStepReport, Judgement, Operator, STEPS};
 use engine::config::{Config, Device};
 use engine::default_paths;
-use engine::devices::drive_port::{self, GuardianOptions, Looks, Opened};
+use engine::devices::drive_port::{self, GuardianOptions, Opened, Search};
 use engine::devices::profile;
 use engine::failure::{Failure, Kind};
 use io::discover::discover;
@@ -111,7 +111,7 @@ pub(super) fn run(
     }
     let axis = profile::axis(&config.axis)?;
     let interrupt = signals::motion_interrupt_flag()?;
-    let port = drive_port::place(&name, &device, Looks::Once, &discover)?;
+    let port = drive_port::port_path(&name, &device, Search::Once, &discover)?;
     let path = arguments.report.clone().unwrap_or_else(|| REPORT.into());
     let mut report = ReportFile::open(&path, &name, &port)?;
     let mut person = Person {
