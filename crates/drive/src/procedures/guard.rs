@@ -38,8 +38,8 @@ pub(super) struct MotionGuard {
     is_suspicious: bool,
     /// How far the latest sample was behind the plan.
     pub lag: Degrees,
-    /// When the previous sample was received, and its progress.
-    last: Option<(Stamp<Host>, f64)>,
+    /// Request and receipt of the previous sample, and its progress.
+    last: Option<(Stamp<Host>, Stamp<Host>, f64)>,
     clock_steps: u8,
 }
 
@@ -105,16 +105,23 @@ impl MotionGuard {
     /// Shifts the start if the host's clock was set: back, so that a sample precedes the previous
     /// one or the axis moved further than the time between them allows, or forward while the axis
     /// moved on by no more than usual. The plan then continues from the position.
+    ///
+    /// A sample may be requested before the previous one is received, and several may be received
+    /// at once: requests are compared with requests and receipts with receipts.
     fn follow_clock(&mut self, sample: &ShaftSample, progress: f64) {
-        let Some((received, before)) = self.last.replace((sample.answer, progress)) else {
+        let this = (sample.request, sample.answer, progress);
+        let Some((requested, received, before)) = self.last.replace(this) else {
             return;
         };
         let moved = progress - before;
         let usual = self.plan.cruise.0 * MAX_GAP.as_secs_f64() + self.ahead;
         let gap = sample.request.saturating_since(received);
-        let between = sample.answer.saturating_since(received).as_secs_f64();
+        let since_request = sample.request.saturating_since(requested);
+        let since_receipt = sample.answer.saturating_since(received);
+        let is_back = since_request < Span::ZERO || since_receipt < Span::ZERO;
+        let between = since_request.max(since_receipt).as_secs_f64();
         let is_too_far = moved > 2.0 * self.plan.cruise.0 * between + DITHER_DEG;
-        let is_step = gap < Span::ZERO || is_too_far || (gap > MAX_GAP && moved > 0.0);
+        let is_step = is_back || is_too_far || (gap > MAX_GAP && moved > 0.0);
         if !is_step || moved.abs() > usual || self.clock_steps == MAX_CLOCK_STEPS {
             return;
         }
@@ -272,6 +279,27 @@ mod tests {
         });
         // 3.3 deg at 56.25 deg/s are 60 ms.
         assert!(found.is_some_and(|n| n * 25 < 550), "{found:?}");
+    }
+
+    /// On a CAN bus a SYNC may be sent before the answer to the previous one is received, and late
+    /// answers are received together. Neither is a step of the clock, which would excuse the axis.
+    #[test]
+    fn an_axis_that_stands_is_found_though_samples_overlap() {
+        for (late_ms, burst_ms) in [(3, 1), (0, 5)] {
+            let mut guard = guard(-45.0, 0.0);
+            let found = (0..1_000).find(|ms| {
+                let angle = -45.0 + guard.plan.travelled(Span::from_millis(*ms.min(&400))).0;
+                let received = (ms + late_ms + burst_ms - 1) / burst_ms * burst_ms;
+                let sample = ShaftSample {
+                    answer: Stamp::from_nanos(received * 1_000_000 + ms * 1_000),
+                    ..sample_at(Stamp::from_nanos(ms * 1_000_000))
+                };
+                guard.check(&sample, Degrees(angle)).is_err()
+            });
+            // 3.3 deg at 56.25 deg/s are 60 ms, and the profile may start 10 ms late.
+            assert!(found.is_some_and(|ms| ms < 475), "{found:?}");
+            assert_eq!(guard.clock_steps, 0);
+        }
     }
 
     #[test]
