@@ -59,8 +59,7 @@ impl Node {
             a if a.index == 0x2070 || a.index == 0x2079 => (0..=15).contains(&number),
             a if a == objects::MODE.address => MODES.map(i64::from).contains(&number),
             a if a == objects::HOMING_METHOD.address => homing_method::exists(number),
-            // The sinusoidal profile, 1, is not simulated.
-            a if a == objects::PROFILE_TYPE.address => number == 0,
+            a if a == objects::PROFILE_TYPE.address => (0..=1).contains(&number),
             _ => true,
         };
         if allowed { Ok(()) } else { Err(Abort::RANGE) }

@@ -35,6 +35,7 @@ mod node;
 mod objects;
 mod position_mode;
 mod profile;
+mod ramp;
 mod rs232;
 mod service;
 mod servo;

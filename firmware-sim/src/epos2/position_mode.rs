@@ -99,6 +99,7 @@ impl Node {
             speed: self.speed_within_limits(speed),
             acceleration: self.acceleration(objects::PROFILE_ACCELERATION),
             deceleration: self.acceleration(objects::PROFILE_DECELERATION),
+            shape: self.profile_shape(),
         }
     }
 

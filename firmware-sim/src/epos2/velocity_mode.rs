@@ -11,6 +11,7 @@ use protocol::epos2::objects::{self, TypedObject};
 
 use super::fixed::Speed;
 use super::node::{Node, bit};
+use super::profile::MotionLimits;
 
 /// Tolerance of the target speed, rpm; FFFFFFFF: reached at the end of the ramp.
 const VELOCITY_WINDOW: TypedObject<u32> = TypedObject::new(0x606D, 0, "Velocity Window");
@@ -57,7 +58,12 @@ impl Node {
                 target: Some(target),
                 ..VelocityMode::default()
             };
-            self.generator.run_at(target, acceleration, deceleration);
+            self.generator.run_at(MotionLimits {
+                speed: target,
+                acceleration,
+                deceleration,
+                shape: self.profile_shape(),
+            });
         }
         self.velocity_mode.reached = self.is_at_speed(target);
     }

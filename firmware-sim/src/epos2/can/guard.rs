@@ -1,5 +1,5 @@
-//! Error control: the heartbeat of the node (1017), the heartbeats it monitors (1016), node guarding
-//! and life guarding (100C, 100D).
+//! Error control: the heartbeat of the node (1017), the heartbeats it monitors (1016), node
+//! guarding and life guarding (100C, 100D).
 
 use protocol::canopen::heartbeat::ConsumerEntry;
 use protocol::canopen::{CanFrame, CommunicationObject, NodeId};

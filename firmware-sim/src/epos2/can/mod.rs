@@ -2,8 +2,8 @@
 //! "CANopen Communication").
 //!
 //! [`CanServer`] joins the services, one file each: NMT and error control, SDO, transmit and
-//! receive PDOs. Not simulated: bit timing and arbitration, LSS, SDO block transfer. A lost master is
-//! error 8130 with the reaction of 6007.
+//! receive PDOs. Not simulated: bit timing and arbitration, LSS, SDO block transfer. A lost master
+//! is error 8130 with the reaction of 6007.
 
 mod guard;
 mod receive;
