@@ -16,7 +16,13 @@ use super::storage::{RESTORE_COB_IDS, check_signature};
 const DOWNLOAD: u16 = 0x2FFF;
 
 /// Simulated modes; the other modes of a real unit are out of range.
-const MODES: [i8; 3] = [mode::PROFILE_POSITION, mode::PROFILE_VELOCITY, mode::HOMING];
+const MODES: [i8; 5] = [
+    mode::VELOCITY,
+    mode::POSITION,
+    mode::PROFILE_POSITION,
+    mode::PROFILE_VELOCITY,
+    mode::HOMING,
+];
 
 impl Node {
     /// Rejects entries that cannot store a value: a download needs the service mode, which the unit

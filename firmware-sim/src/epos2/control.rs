@@ -97,8 +97,8 @@ impl Node {
         if self.state == DeviceState::OperationEnabled && self.sequence == Sequence::Idle {
             match self.mode {
                 mode::HOMING => self.homing_command(old, word),
-                // The mode reads the halt bit itself.
-                mode::PROFILE_VELOCITY => {}
+                // These have no setpoints; profile velocity mode reads the halt bit itself.
+                mode::PROFILE_VELOCITY | mode::POSITION | mode::VELOCITY => {}
                 _ => self.position_command(old, word),
             }
         }

@@ -24,7 +24,7 @@ const SPEED_IS_ZERO: u16 = 1 << 12;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct VelocityMode {
     /// The speed at the end of the ramp; `None` before the first.
-    target: Option<Speed>,
+    pub target: Option<Speed>,
     /// Bit 10.
     reached: bool,
     in_window_ms: u16,
@@ -73,9 +73,7 @@ impl Node {
         if self.controlword & control::HALT != 0 {
             return Speed::ZERO;
         }
-        let rpm = self.dictionary.get(objects::TARGET_VELOCITY);
-        let Speed(limited) = self.speed_within_limits(rpm.unsigned_abs());
-        Speed(limited * i64::from(rpm.signum()))
+        self.signed_speed_within_limits(self.dictionary.get(objects::TARGET_VELOCITY))
     }
 
     fn is_at_speed(&mut self, target: Speed) -> bool {
