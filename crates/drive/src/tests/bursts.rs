@@ -3,9 +3,10 @@
 use protocol::record::DriveLink;
 use units::{Host, Span, Stamp};
 
-use super::fake::{Distortion, ENABLED};
 use super::rig::{Rig, to};
+use super::unit::Distortion;
 use crate::{CommandOutcome, DriveCommand, DriveError};
+use protocol::epos2::cia402::DeviceState;
 
 /// Kinds of damage to replies.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,7 +57,7 @@ fn damage_in_bursts_is_survived() {
             for (k, burst) in (0..).zip([2, 20, 50, 75, 100]) {
                 let mut rig = sweeping(link, Span::from_micros(600_000 + 7_310 * k));
                 let until = rig.now + Span::from_millis(burst);
-                rig.fake.distort = distorting(damage, rig.now, until);
+                rig.unit.distort = distorting(damage, rig.now, until);
                 let ended = rig.finish();
                 assert!(
                     matches!(ended, Ok(CommandOutcome::Arrived(_))),
@@ -91,7 +92,7 @@ fn continuous_damage_ends_the_sweep_in_time() {
         for damage in DAMAGES {
             let mut rig = sweeping(link, Span::from_millis(600));
             let (from, for_ever) = (rig.now, rig.now + Span::from_secs(100));
-            rig.fake.distort = distorting(damage, from, for_ever);
+            rig.unit.distort = distorting(damage, from, for_ever);
             let error = rig.finish().unwrap_err();
             let DriveError::NotStopped { cause, .. } = &error else {
                 panic!("{link:?} {damage:?}: {error}")
@@ -113,7 +114,8 @@ fn continuous_damage_ends_the_sweep_in_time() {
                 rig.now - stop
             );
             assert_ne!(
-                rig.fake.state, ENABLED,
+                rig.unit.state(),
+                DeviceState::OperationEnabled,
                 "{link:?} {damage:?}: the drive is still enabled"
             );
         }
@@ -130,7 +132,7 @@ fn silence_ends_the_sweep_after_a_second() {
     for (link, most) in [(DriveLink::Usb, 1_100), (DriveLink::Rs232, 1_520)] {
         let mut rig = sweeping(link, Span::from_millis(600));
         let from = rig.now;
-        rig.fake.distort = Box::new(|_, _| Vec::new());
+        rig.unit.distort = Box::new(|_, _| Vec::new());
         let error = rig.finish().unwrap_err();
         let DriveError::NotStopped { cause, .. } = &error else {
             panic!("{link:?}: {error}")
@@ -149,7 +151,7 @@ fn silence_ends_the_sweep_after_a_second() {
 fn a_damaged_heartbeat_is_ignored() {
     let mut rig = sweeping(DriveLink::Can, Span::from_millis(600));
     let mut n = 0;
-    rig.fake.distort = Box::new(move |_, mut bytes| {
+    rig.unit.distort = Box::new(move |_, mut bytes| {
         if bytes[..2] == [0, 0] && bytes[2..4] == [0x07, 0x01] {
             n += 1;
             if n % 2 == 0 {

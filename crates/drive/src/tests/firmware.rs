@@ -5,8 +5,7 @@ mod load;
 
 use std::collections::VecDeque;
 
-use firmware_sim::epos2::{BrakeState, CanServer, Node, NodeConfig, Rs232Server, Servo, UsbServer};
-use protocol::canopen::CanFrame;
+use firmware_sim::epos2::{BrakeState, Node, NodeConfig, Servo};
 use protocol::epos2::cia402::DeviceState;
 use protocol::epos2::objects::Address;
 use protocol::epos2::{Bounded, CommError, DeviceError};
@@ -14,8 +13,8 @@ use protocol::record::DriveLink;
 use units::{Host, Rpm, Span, Stamp};
 
 use super::bursts::{DAMAGES, distorting};
-use super::fake::Distortion;
 use super::rig::to;
+use super::unit::{Distortion, Server};
 use crate::{
     AngleSource, AxisConfig, CommandOutcome, CommandProgress, DriveClient, DriveCommand,
     DriveError, DriveEvent, MoveCommand, MovePlan, PositionValidity, ShaftSample, StopReport,
@@ -23,53 +22,13 @@ use crate::{
 
 const LINKS: [DriveLink; 3] = [DriveLink::Usb, DriveLink::Rs232, DriveLink::Can];
 
-#[allow(clippy::large_enum_variant)] // one or two of them in a test
-enum Server {
-    Usb(UsbServer),
-    Rs232(Rs232Server),
-    Can(Box<CanServer>),
-}
-
-impl Server {
-    fn new(link: DriveLink) -> Self {
-        match link {
-            DriveLink::Usb => Self::Usb(UsbServer::new(7)),
-            DriveLink::Rs232 => Self::Rs232(Rs232Server::new(7)),
-            DriveLink::Can => Self::Can(Box::default()),
-        }
-    }
-
-    /// One-way delay through wire, adapter and unit.
-    fn delay(&self, bytes: usize) -> Span {
-        match self {
-            Self::Usb(_) => Span::from_micros(300),
-            // 115,200 baud, 8N1.
-            Self::Rs232(_) => Span::from_micros(200 + 87 * bytes as i64),
-            Self::Can(_) => Span::from_micros(160),
-        }
-    }
-
-    fn input(&mut self, node: &mut Node, bytes: &[u8]) -> Vec<Vec<u8>> {
-        let mut answers = Vec::new();
-        match self {
-            Self::Usb(server) => server.input(node, bytes, &mut |b| answers.push(b.to_vec())),
-            Self::Rs232(server) => server.input(node, bytes, &mut |b| answers.push(b.to_vec())),
-            Self::Can(server) => {
-                let frame = CanFrame::from_socketcan(bytes).unwrap();
-                server.input(node, &frame, &mut |f| {
-                    answers.push(f.to_socketcan().to_vec())
-                });
-            }
-        }
-        answers
-    }
-
-    fn poll(&mut self, node: &mut Node) -> Vec<Vec<u8>> {
-        let mut replies = Vec::new();
-        if let Self::Can(server) = self {
-            server.poll(node, &mut |f| replies.push(f.to_socketcan().to_vec()));
-        }
-        replies
+/// One-way delay through wire, adapter and unit.
+fn delay(link: DriveLink, bytes: usize) -> Span {
+    match link {
+        DriveLink::Usb => Span::from_micros(300),
+        // 115,200 baud, 8N1.
+        DriveLink::Rs232 => Span::from_micros(200 + 87 * bytes as i64),
+        DriveLink::Can => Span::from_micros(160),
     }
 }
 
@@ -135,7 +94,7 @@ impl World {
             if is_quick_stop(&frame) {
                 self.quick_stops.push(self.now);
             }
-            let delay = self.server.delay(frame.len());
+            let delay = delay(self.client.link(), frame.len());
             let free = self.to_node.back().map_or(self.now, |m| m.0);
             if !self.cut {
                 self.to_node
@@ -163,7 +122,7 @@ impl World {
 
     fn deliver(&mut self, replies: Vec<Vec<u8>>) {
         for bytes in replies {
-            let delay = self.server.delay(bytes.len());
+            let delay = delay(self.client.link(), bytes.len());
             let free = self.to_host.back().map_or(self.now, |m| m.0);
             if !self.cut {
                 self.to_host
