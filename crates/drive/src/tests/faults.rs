@@ -14,12 +14,6 @@ use crate::error::Deviation;
 use crate::{AxisConfig, CommandOutcome, CommandProgress, DriveCommand, DriveError, MoveCommand};
 use protocol::epos2::cia402::DeviceState;
 
-fn made_safe(rig: &Rig) -> bool {
-    rig.progress()
-        .iter()
-        .any(|p| matches!(p, CommandProgress::MadeSafe(_)))
-}
-
 fn is_read(request: &SerialRequest, index: u16) -> bool {
     matches!(request, SerialRequest::ReadObject(read) if read.address.index == index)
 }
@@ -28,14 +22,8 @@ fn is_write(request: &SerialRequest, index: u16, value: u32) -> bool {
     matches!(request, SerialRequest::WriteObject(w) if w.address.index == index && w.value == value)
 }
 
-/// A rig in mid-move, without the record of the start.
 fn moving() -> Rig {
-    let mut rig = Rig::homed();
-    rig.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
-    assert_eq!(rig.run_for(Span::from_millis(400)), None);
-    let moved = rig.unit.position(rig.now) + 40_000;
-    assert!(moved > 5_000, "{moved}");
-    rig
+    Rig::sweeping_on(DriveLink::Usb, Span::from_millis(400))
 }
 
 #[test]
@@ -49,7 +37,7 @@ fn a_fault_in_mid_sweep_is_named_and_the_axis_is_made_safe() {
             error: Some(DeviceError::POSITIVE_LIMIT)
         })
     );
-    assert!(made_safe(&rig));
+    assert!(rig.made_safe().is_some());
     assert_eq!(rig.unit.state(), DeviceState::Fault);
     let quick_stop = rig
         .unit
@@ -85,7 +73,7 @@ fn a_blocked_axis_is_stopped_once_it_is_behind_its_plan() {
     // 1 deg of the plan takes 105 ms; the rest is preparation.
     let took = (rig.now - began).as_secs_f64();
     assert!(took < 0.5, "{took}");
-    assert!(made_safe(&rig));
+    assert!(rig.made_safe().is_some());
     assert_eq!(rig.unit.state(), DeviceState::SwitchOnDisabled);
 }
 
@@ -104,7 +92,7 @@ fn homing_that_never_ends_is_stopped() {
         rig.run(DriveCommand::Home),
         Err(DriveError::HomingTime { method: 17, .. })
     ));
-    assert!(made_safe(&rig));
+    assert!(rig.made_safe().is_some());
 }
 
 #[test]

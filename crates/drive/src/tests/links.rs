@@ -10,8 +10,8 @@ use super::rig::{Rig, to};
 use super::unit::{Fate, SERIAL};
 use crate::error::Deviation;
 use crate::{
-    AngleSource, AxisConfig, CommandOutcome, CommandProgress, DriveCommand, DriveError,
-    Observation, PositionValidity, ShaftSample, StopReport,
+    AngleSource, AxisConfig, CommandOutcome, DriveCommand, DriveError, Observation,
+    PositionValidity, ShaftSample,
 };
 use protocol::epos2::cia402::DeviceState;
 
@@ -21,19 +21,7 @@ const LINKS: [DriveLink; 3] = [DriveLink::Usb, DriveLink::Rs232, DriveLink::Can]
 const REACTION: Span = Span::from_millis(100);
 
 fn moving_on(link: DriveLink) -> Rig {
-    let mut rig = Rig::homed_on(link);
-    rig.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
-    assert_eq!(rig.run_for(Span::from_millis(600)), None, "{link:?}");
-    let moved = rig.unit.position(rig.now) + 40_000;
-    assert!(moved > 5_000, "{link:?}: {moved}");
-    rig
-}
-
-fn made_safe(rig: &Rig) -> Option<StopReport> {
-    rig.progress().iter().find_map(|p| match p {
-        CommandProgress::MadeSafe(stopped) => Some(*stopped),
-        _ => None,
-    })
+    Rig::sweeping_on(link, Span::from_millis(600))
 }
 
 #[test]
@@ -164,6 +152,7 @@ fn a_fault_in_mid_sweep_stops_it() {
     for link in LINKS {
         for (code, place) in [
             (0x8611, PositionValidity::Valid),
+            (0x2310, PositionValidity::Valid),
             (0xFF07, PositionValidity::Valid),
             (
                 0x7320,
@@ -177,7 +166,7 @@ fn a_fault_in_mid_sweep_stops_it() {
             rig.unit.fault_at = Some((at, DeviceError(code)));
             let error = Some(DeviceError(code));
             assert_eq!(rig.finish(), Err(DriveError::Fault { error }), "{link:?}");
-            let stopped = made_safe(&rig).unwrap();
+            let stopped = rig.made_safe().unwrap();
             assert_eq!((stopped.validity, stopped.fault), (place, true));
             assert_eq!(stopped.angle.is_some(), place == PositionValidity::Valid);
             assert_eq!(rig.unit.state(), DeviceState::Fault);
@@ -204,7 +193,7 @@ fn a_restart_in_mid_sweep_is_reported_and_the_position_is_lost() {
             "{link:?}: {error}"
         );
         assert!(error.help().contains("home again"));
-        let stopped = made_safe(&rig).unwrap();
+        let stopped = rig.made_safe().unwrap();
         assert_eq!(stopped.validity, PositionValidity::Lost { error: None });
         assert_eq!(stopped.angle, None);
         let reaction = rig.quick_stop().unwrap() - at;
@@ -216,7 +205,10 @@ fn a_restart_in_mid_sweep_is_reported_and_the_position_is_lost() {
             "{link:?}: {reaction:?}"
         );
         // The drive must be connected before it moves.
-        assert!(rig.run(DriveCommand::Goto(to(0.0))).is_err());
+        assert!(matches!(
+            rig.run(DriveCommand::Goto(to(0.0))),
+            Err(DriveError::Restarted { .. })
+        ));
         rig.run(DriveCommand::Connect).unwrap();
         rig.run(DriveCommand::Home).unwrap();
         assert!(rig.run(DriveCommand::Goto(to(0.0))).is_ok(), "{link:?}");
@@ -361,7 +353,7 @@ fn a_host_delayed_on_can_reports_that_the_drive_stopped() {
         error: Some(DeviceError(0x8130)),
     };
     assert_eq!(error, error_8130);
-    assert_eq!(made_safe(&rig).unwrap().validity, PositionValidity::Valid);
+    assert_eq!(rig.made_safe().unwrap().validity, PositionValidity::Valid);
 }
 
 /// A state change and a standstill during a delay of the host are detected, too.

@@ -156,7 +156,7 @@ fn samples_lie_between_their_stamps() {
         .unwrap();
     let t0 = samples[began + 1].request;
     for s in samples.iter().skip(began + 1).take(600) {
-        // The scripted drive samples when the request arrives.
+        // The unit reads its counter when the request arrives.
         let way = 37_500.0 * (s.request - t0).as_secs_f64();
         let got = f64::from(s.position.0 - samples[began + 1].position.0);
         assert!((got - way).abs() <= 1.0, "{got} {way}");

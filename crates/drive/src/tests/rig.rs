@@ -8,7 +8,7 @@ use units::{Degrees, Host, Rpm, RpmPerS, Span, Stamp};
 use super::unit::{Unit, near_its_switch};
 use crate::{
     AxisConfig, CommandOutcome, CommandProgress, DriveClient, DriveCommand, DriveError, DriveEvent,
-    DriveListener, MoveCommand, Observation, ShaftSample,
+    DriveListener, MoveCommand, Observation, ShaftSample, StopReport,
 };
 
 pub struct Rig {
@@ -48,6 +48,17 @@ impl Rig {
         let mut rig = Self::on(link, AxisConfig::default());
         rig.run(DriveCommand::Connect).unwrap();
         rig.run(DriveCommand::Home).unwrap();
+        rig.forget();
+        rig
+    }
+
+    /// In mid-sweep to 45 degrees, after `span`.
+    pub fn sweeping_on(link: DriveLink, span: Span) -> Self {
+        let mut rig = Self::homed_on(link);
+        rig.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
+        assert_eq!(rig.run_for(span), None, "{link:?}");
+        let moved = rig.unit.position(rig.now) + 40_000;
+        assert!(moved > 5_000, "{link:?}: {moved}");
         rig.forget();
         rig
     }
@@ -131,6 +142,14 @@ impl Rig {
         let is_stop = |request: &SerialRequest| matches!(request, SerialRequest::WriteObject(w) if w.address.index == 0x6040 && w.value == 0x0B);
         let stop = self.unit.requests.iter().find(|(_, r)| is_stop(r));
         stop.map(|(at, _)| *at)
+    }
+
+    /// The client's report of the stopped axis.
+    pub fn made_safe(&self) -> Option<StopReport> {
+        self.progress().iter().find_map(|progress| match progress {
+            CommandProgress::MadeSafe(stopped) => Some(*stopped),
+            _ => None,
+        })
     }
 
     pub fn samples(&self) -> Vec<ShaftSample> {

@@ -1,6 +1,8 @@
 //! The software EPOS2 of firmware-sim in virtual time, on a link that loses, delays, damages,
 //! repeats or replaces any reply. Unit and client share only the frames.
 
+use std::collections::VecDeque;
+
 use firmware_sim::epos2::{CanServer, Node, NodeConfig, Rs232Server, UnitIdentity, UsbServer};
 use protocol::canopen::CanFrame;
 use protocol::epos2::cia402::DeviceState;
@@ -40,7 +42,7 @@ pub type Distortion = Box<dyn FnMut(Stamp<Host>, Vec<u8>) -> Vec<u8>>;
 
 /// The unit's side of a link.
 #[allow(clippy::large_enum_variant)] // one or two of them in a test
-pub enum Server {
+pub(super) enum Server {
     Usb(UsbServer),
     Rs232(Rs232Server),
     Can(Box<CanServer>),
@@ -100,12 +102,20 @@ pub struct Unit {
     pub fault_at: Option<(Stamp<Host>, DeviceError)>,
     pub hand: Hand,
     pub distort: Distortion,
+    /// Delay of the host's bytes, and of each byte either way.
+    pub forth: Span,
+    pub per_byte: Span,
     pub turnaround: Span,
+    /// Bytes on their way to the unit.
+    inbound: VecDeque<(Stamp<Host>, Vec<u8>)>,
     answers: Vec<(Stamp<Host>, Vec<u8>)>,
+    is_cut: bool,
     pub requests: Vec<(Stamp<Host>, SerialRequest)>,
     /// The unit's last start, and its present control cycle.
     pub started: Stamp<Host>,
     cycle: Stamp<Host>,
+    /// Start of each control cycle, and the shaft's motion through it, world qc.
+    truth: Vec<(Stamp<Host>, f64, f64)>,
 }
 
 /// A unit with factory settings that is used without a CAN bus, close to its negative switch so
@@ -134,20 +144,42 @@ impl Unit {
             fault_at: None,
             hand: Box::new(|_, _| Fate::Sent),
             distort: Box::new(|_, bytes| bytes),
+            forth: match link {
+                DriveLink::Can => Span::from_micros(120),
+                DriveLink::Usb | DriveLink::Rs232 => Span::ZERO,
+            },
+            per_byte: Span::ZERO,
             turnaround: Span::from_micros(800),
+            inbound: VecDeque::new(),
             answers: Vec::new(),
+            is_cut: false,
             requests: Vec::new(),
             started: now,
             cycle: now,
+            truth: Vec::new(),
         }
     }
 
-    /// Takes bytes from the host.
+    /// Sends bytes to the unit.
     pub fn input(&mut self, bytes: &[u8], now: Stamp<Host>) {
+        if self.is_cut {
+            return;
+        }
+        let before = self.inbound.back().map_or(now, |inbound| inbound.0);
+        let at = (now + self.forth + self.wire_time(bytes)).max(before);
+        self.inbound.push_back((at, bytes.to_vec()));
         self.live(now);
-        let mut tap = std::mem::replace(&mut self.tap, RequestTap::Gone);
-        tap.input(self, bytes, now);
-        self.tap = tap;
+    }
+
+    fn wire_time(&self, bytes: &[u8]) -> Span {
+        Span::from_nanos(self.per_byte.as_nanos() * bytes.len() as i64)
+    }
+
+    /// Cuts the cable.
+    pub fn cut(&mut self) {
+        self.is_cut = true;
+        self.inbound.clear();
+        self.answers.clear();
     }
 
     /// Gives writes of an object this fate, and other requests none.
@@ -169,9 +201,9 @@ impl Unit {
     /// Advances the unit.
     pub fn live(&mut self, now: Stamp<Host>) {
         loop {
-            let sync = self.bus.next_sync();
+            let input = self.inbound.front().map(|inbound| inbound.0);
             let fault = self.fault_at.map(|(at, _)| at);
-            let due = [sync, fault].into_iter().flatten();
+            let due = [input, fault].into_iter().flatten();
             let next = due.fold(self.cycle + CYCLE, Stamp::min);
             if next > now {
                 break;
@@ -180,11 +212,15 @@ impl Unit {
             if next == self.cycle + CYCLE {
                 self.node.tick();
                 self.cycle = next;
+                let way = self.node.segment();
+                let [start, end] = [way.start, way.end].map(|q32| q32 as f64 / 2f64.powi(32));
+                self.truth.push((next, start, end));
             } else if let Some((_, error)) = self.fault_at.take_if(|fault| fault.0 <= next) {
                 self.node.inject(error);
-            } else if let Some(frame) = self.bus.take_sync(next) {
-                let sent = self.server.input(&mut self.node, &frame);
-                self.on_bus(sent, next);
+            } else if let Some((at, bytes)) = self.inbound.pop_front() {
+                let mut tap = std::mem::replace(&mut self.tap, RequestTap::Gone);
+                tap.input(self, &bytes, at);
+                self.tap = tap;
             }
             let sent = self.server.poll(&mut self.node);
             self.on_bus(sent, next);
@@ -205,21 +241,26 @@ impl Unit {
 
     /// Sends bytes after the turnaround and `by`, after those already queued.
     pub fn send(&mut self, bytes: Vec<u8>, by: Span, now: Stamp<Host>) {
-        let earliest = now + self.turnaround;
+        let earliest = now + self.turnaround + self.wire_time(&bytes);
         let at = self.answers.last().map_or(earliest, |a| a.0.max(earliest));
-        self.answers.push((at + by, bytes));
+        if !self.is_cut {
+            self.answers.push((at + by, bytes));
+        }
     }
 
     /// Sends a frame without a request.
     pub fn send_at(&mut self, bytes: Vec<u8>, at: Stamp<Host>) {
-        self.answers.push((at, bytes));
-        self.answers.sort_by_key(|a| a.0);
+        if !self.is_cut {
+            self.answers.push((at, bytes));
+            self.answers.sort_by_key(|a| a.0);
+        }
     }
 
     /// The next instant at which the unit may send something.
     pub fn next_answer(&self) -> Stamp<Host> {
         let answer = self.answers.first().map(|a| a.0);
-        let due = [answer, self.bus.next_sync()].into_iter().flatten();
+        let input = self.inbound.front().map(|inbound| inbound.0);
+        let due = [answer, input].into_iter().flatten();
         due.fold(self.cycle + CYCLE, Stamp::min)
     }
 
@@ -232,6 +273,7 @@ impl Unit {
     /// Restarts the unit: settings, reference and NMT state are lost.
     pub fn restart(&mut self, now: Stamp<Host>) {
         self.live(now);
+        self.inbound.clear();
         self.answers.clear();
         self.node.power_cycle();
         (self.started, self.cycle) = (now, now);
@@ -241,6 +283,18 @@ impl Unit {
         self.tap = RequestTap::new(self.link);
         let sent = self.server.poll(&mut self.node);
         self.on_bus(sent, now);
+    }
+
+    /// World position of the shaft at an instant.
+    pub fn world_qc(&self, at: Stamp<Host>) -> f64 {
+        let after = self.truth.partition_point(|t| t.0 <= at);
+        let (t0, p0, p1) = self.truth[after - 1];
+        p0 + (p1 - p0) * (at - t0).as_secs_f64() / 1e-3
+    }
+
+    pub fn is_at_rest(&self) -> bool {
+        let way = self.node.segment();
+        way.start == way.end
     }
 
     pub fn state(&self) -> DeviceState {

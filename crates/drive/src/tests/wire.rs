@@ -42,39 +42,24 @@ pub enum Handshake {
 pub struct BusFaults {
     /// The heartbeat is off.
     pub silent: bool,
-    /// Delay from SYNC to the sample, and from there to the frame's arrival.
-    pub forth: Span,
+    /// Delay from the sample to the arrival of its frame.
     pub back: Span,
     /// Decides whether the n-th frame of the stream is sent, and how often.
     pub copies: Box<dyn FnMut(usize) -> usize + Send>,
     streamed: usize,
     /// When the host sent SYNCs.
     pub syncs: Vec<Stamp<Host>>,
-    under_way: Vec<(Stamp<Host>, Vec<u8>)>,
 }
 
 impl Default for BusFaults {
     fn default() -> Self {
         Self {
             silent: false,
-            forth: Span::from_micros(120),
             back: Span::from_micros(180),
             copies: Box::new(|_| 1),
             streamed: 0,
             syncs: Vec::new(),
-            under_way: Vec::new(),
         }
-    }
-}
-
-impl BusFaults {
-    pub fn next_sync(&self) -> Option<Stamp<Host>> {
-        self.under_way.first().map(|sync| sync.0)
-    }
-
-    pub fn take_sync(&mut self, now: Stamp<Host>) -> Option<Vec<u8>> {
-        let due = self.next_sync().is_some_and(|at| at <= now);
-        due.then(|| self.under_way.remove(0).1)
     }
 }
 
@@ -260,20 +245,15 @@ fn harmless(request: &SerialRequest, body: Vec<u8>) -> Vec<u8> {
 fn can(unit: &mut Unit, bytes: &[u8], now: Stamp<Host>) {
     let frame = CanFrame::from_socketcan(bytes).unwrap();
     match BusMessage::parse(&frame).unwrap() {
-        BusMessage::Sync(_) => {
-            unit.bus.syncs.push(now);
-            let at = now + unit.bus.forth;
-            unit.bus.under_way.push((at, bytes.to_vec()));
-        }
         BusMessage::SdoRequest(to, request) => {
             assert_eq!(to, node_id());
-            sdo_request(unit, &request, bytes, now);
+            return sdo_request(unit, &request, bytes, now);
         }
-        _ => {
-            let sent = unit.server.input(&mut unit.node, bytes);
-            unit.on_bus(sent, now);
-        }
+        BusMessage::Sync(_) => unit.bus.syncs.push(now - unit.forth),
+        _ => {}
     }
+    let sent = unit.server.input(&mut unit.node, bytes);
+    unit.on_bus(sent, now);
 }
 
 fn sdo_request(unit: &mut Unit, request: &sdo::SdoRequest, bytes: &[u8], now: Stamp<Host>) {
