@@ -513,18 +513,35 @@ pub struct FirmwareSim {
     /// Create a symbolic link to the port
     #[arg(long, value_name = "PATH", conflicts_with = "can")]
     pub link: Option<PathBuf>,
-    /// Let gravity accelerate the axis without power, positive towards larger angles; without it
-    /// and --friction the axis stays in place
-    #[arg(long, value_name = "DEG_PER_S2", allow_negative_numbers = true)]
+    /// Let gravity accelerate the axis without power, positive towards larger angles; without it,
+    /// --friction and --brake the axis stays in place
+    #[arg(
+        long,
+        value_name = "DEG_PER_S2",
+        allow_negative_numbers = true,
+        value_parser = acceleration
+    )]
     pub gravity: Option<f64>,
     /// Let the axis coast without power until friction has stopped it
-    #[arg(long, value_name = "DEG_PER_S2")]
+    #[arg(
+        long,
+        value_name = "DEG_PER_S2",
+        allow_negative_numbers = true,
+        value_parser = deceleration
+    )]
     pub friction: Option<f64>,
-    /// Fit a holding brake that opens and closes in these times; it needs --gravity or --friction
+    /// Fit a holding brake that opens and closes in these times; without --friction the axis coasts
+    /// until it holds
     #[arg(long, value_name = "OPEN_MS,CLOSE_MS", value_parser = two_times)]
     pub brake: Option<(u16, u16)>,
     /// Deceleration by the closed brake; less than gravity slips [default: holds any load]
-    #[arg(long, value_name = "DEG_PER_S2", requires = "brake")]
+    #[arg(
+        long,
+        value_name = "DEG_PER_S2",
+        requires = "brake",
+        allow_negative_numbers = true,
+        value_parser = deceleration
+    )]
     pub brake_holds: Option<f64>,
     /// Let the encoder's count deviate by up to this many quadcounts at rest under power
     #[arg(long, value_name = "QC", default_value_t = 0)]
@@ -536,6 +553,22 @@ fn two_times(text: &str) -> Result<(u16, u16), String> {
     text.split_once(',')
         .and_then(|(open, close)| Some((open.parse().ok()?, close.parse().ok()?)))
         .ok_or_else(|| "expected two times from 0 to 65535 ms: OPEN,CLOSE".to_owned())
+}
+
+/// Parses an acceleration of the axis, deg/s2; 1e6 is far beyond any motor.
+fn acceleration(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.abs() <= 1e6 => Ok(value),
+        _ => Err("expected an acceleration from -1000000 to 1000000 deg/s2".to_owned()),
+    }
+}
+
+/// Parses a deceleration of the axis, deg/s2.
+fn deceleration(text: &str) -> Result<f64, String> {
+    acceleration(text)
+        .ok()
+        .filter(|value| *value >= 0.0)
+        .ok_or_else(|| "expected a deceleration from 0 to 1000000 deg/s2".to_owned())
 }
 
 /// Parses a share below 1.
@@ -586,6 +619,24 @@ mod tests {
             cli.command,
             Command::Capture(Capture { speed: 56.25, .. })
         ));
+    }
+
+    #[test]
+    fn loads_of_the_simulated_axis_are_finite_and_decelerations_positive() {
+        let accepts = |option: &str, value: &str| {
+            let line = ["velomotion", "firmware-sim", "--usb", "--brake", "5,5"];
+            Cli::try_parse_from(line.into_iter().chain([option, value])).is_ok()
+        };
+        assert!(accepts("--gravity", "-250") && accepts("--friction", "0"));
+        for option in ["--gravity", "--friction", "--brake-holds"] {
+            assert!(accepts(option, "250.5"), "{option}");
+            for value in ["NaN", "inf", "1e9", "x"] {
+                assert!(!accepts(option, value), "{option} {value}");
+            }
+        }
+        for option in ["--friction", "--brake-holds"] {
+            assert!(!accepts(option, "-0.1"), "{option}");
+        }
     }
 
     #[test]

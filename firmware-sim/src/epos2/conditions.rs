@@ -16,7 +16,13 @@ use super::storage::{RESTORE_COB_IDS, check_signature};
 const DOWNLOAD: u16 = 0x2FFF;
 
 /// Simulated modes; the other modes of a real unit are out of range.
-const MODES: [i8; 3] = [mode::PROFILE_POSITION, mode::PROFILE_VELOCITY, mode::HOMING];
+const MODES: [i8; 5] = [
+    mode::VELOCITY,
+    mode::POSITION,
+    mode::PROFILE_POSITION,
+    mode::PROFILE_VELOCITY,
+    mode::HOMING,
+];
 
 impl Node {
     /// Rejects entries that cannot store a value: a download needs the service mode, which the unit
@@ -59,8 +65,7 @@ impl Node {
             a if a.index == 0x2070 || a.index == 0x2079 => (0..=15).contains(&number),
             a if a == objects::MODE.address => MODES.map(i64::from).contains(&number),
             a if a == objects::HOMING_METHOD.address => homing_method::exists(number),
-            // The sinusoidal profile, 1, is not simulated.
-            a if a == objects::PROFILE_TYPE.address => number == 0,
+            a if a == objects::PROFILE_TYPE.address => (0..=1).contains(&number),
             _ => true,
         };
         if allowed { Ok(()) } else { Err(Abort::RANGE) }

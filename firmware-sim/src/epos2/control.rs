@@ -11,6 +11,7 @@ use protocol::epos2::objects::{self, TypedObject};
 use super::brake::StandstillTimer;
 use super::node::Node;
 use super::position_mode::PositionMode;
+use super::ramp::RampShape;
 
 /// A state transition that takes time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,8 +97,8 @@ impl Node {
         if self.state == DeviceState::OperationEnabled && self.sequence == Sequence::Idle {
             match self.mode {
                 mode::HOMING => self.homing_command(old, word),
-                // The mode reads the halt bit itself.
-                mode::PROFILE_VELOCITY => {}
+                // These have no setpoints; profile velocity mode reads the halt bit itself.
+                mode::PROFILE_VELOCITY | mode::POSITION | mode::VELOCITY => {}
                 _ => self.position_command(old, word),
             }
         }
@@ -183,10 +184,24 @@ impl Node {
         self.homing.abandon();
     }
 
-    /// Ramps to rest at a deceleration, limited by 60C5.
+    /// Ramps to rest at a deceleration, limited by 60C5. The profile type (6086) shapes the profile
+    /// deceleration alone: the ramps of quick stop and homing are linear.
     pub(super) fn ramp_down(&mut self, deceleration: TypedObject<u32>) {
         let rate = self.acceleration(deceleration);
-        self.generator.stop(rate);
+        let shape = if deceleration.address == objects::PROFILE_DECELERATION.address {
+            self.profile_shape()
+        } else {
+            RampShape::Linear
+        };
+        self.generator.stop(rate, shape);
+    }
+
+    /// Shape of the ramps of profile position and profile velocity mode (6086).
+    pub(super) fn profile_shape(&self) -> RampShape {
+        match self.dictionary.get(objects::PROFILE_TYPE) {
+            1 => RampShape::Sin2,
+            _ => RampShape::Linear,
+        }
     }
 
     /// An acceleration, limited by 60C5.

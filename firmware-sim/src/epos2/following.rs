@@ -13,7 +13,7 @@ impl Node {
         let controlled = matches!(
             self.state,
             DeviceState::OperationEnabled | DeviceState::QuickStopActive
-        ) && self.mode != mode::PROFILE_VELOCITY;
+        ) && !self.controls_velocity();
         let most = self.dictionary.get(objects::MAX_FOLLOWING_ERROR);
         if controlled && self.following_error().unsigned_abs() > u64::from(most) {
             self.lost_demand = true;
@@ -23,13 +23,18 @@ impl Node {
 
     /// A velocity controller has no target position: a blocked shaft keeps its demand with it.
     pub(super) fn follow_shaft(&mut self) {
-        if self.mode == mode::PROFILE_VELOCITY && self.shaft.held {
+        if self.controls_velocity() && self.shaft.held {
             let behind = self.shaft.give_way(self.generator.position);
             self.velocity_mode.held = self.generator.speed.0.signum() as i16;
             self.generator.shift(behind);
         } else {
             self.velocity_mode.held = 0;
         }
+    }
+
+    /// Whether the mode has a velocity controller alone.
+    const fn controls_velocity(&self) -> bool {
+        matches!(self.mode, mode::PROFILE_VELOCITY | mode::VELOCITY)
     }
 
     /// Demand minus shaft, qc.

@@ -3,6 +3,7 @@
 use super::fixed::{Fine, MS, Speed, WORLD_END};
 use super::leg::ProfileLeg;
 use super::profile::{MotionLimits, TrapezoidalProfile, UnusableParameters};
+use super::ramp::RampShape;
 
 /// The demand and its motion.
 #[derive(Clone, Copy, Debug)]
@@ -78,19 +79,27 @@ impl Generator {
     }
 
     /// Ramps to rest.
-    pub fn stop(&mut self, deceleration: u32) {
-        self.run_at(Speed::ZERO, deceleration, deceleration);
+    pub fn stop(&mut self, deceleration: u32, shape: RampShape) {
+        self.run_at(MotionLimits {
+            speed: Speed::ZERO,
+            acceleration: deceleration,
+            deceleration,
+            shape,
+        });
     }
 
-    /// Ramps to `speed` and holds it; speed zero is a stop.
-    pub fn run_at(&mut self, speed: Speed, acceleration: u32, deceleration: u32) {
+    /// Ramps to a speed of either direction and holds it; speed zero is a stop.
+    pub fn run_at(&mut self, limits: MotionLimits) {
+        let MotionLimits { speed, shape, .. } = limits;
+        let [acceleration, deceleration] =
+            [limits.acceleration, limits.deceleration].map(|peak| shape.mean_rate(peak));
         if speed == Speed::ZERO && self.speed == Speed::ZERO {
             self.freeze();
             return;
         }
         let reverses = self.speed.0.signum() * speed.0.signum() < 0;
         let turn = if reverses { Speed::ZERO } else { self.speed };
-        let stop = ProfileLeg::change(self.position, self.speed, turn, deceleration);
+        let stop = ProfileLeg::change(self.position, self.speed, turn, deceleration, shape);
         let from = if reverses {
             stop.finish(self.qc_per_turn)
         } else {
@@ -98,7 +107,7 @@ impl Generator {
         };
         let slows = speed.0.unsigned_abs() < turn.0.unsigned_abs();
         let rate = if slows { deceleration } else { acceleration };
-        let change = ProfileLeg::change(from, turn, speed, rate);
+        let change = ProfileLeg::change(from, turn, speed, rate, shape);
         self.begin(DemandMotion::Ramp([stop, change]));
     }
 
@@ -155,22 +164,31 @@ mod tests {
     use super::super::fixed::{FINE_PER_QC, fine, floor_qc};
     use super::*;
 
+    fn linear(rpm: i32, acceleration: u32, deceleration: u32) -> MotionLimits {
+        MotionLimits {
+            speed: Speed::from_rpm(rpm),
+            acceleration,
+            deceleration,
+            shape: RampShape::Linear,
+        }
+    }
+
     #[test]
     fn a_ramp_reverses_through_zero_and_keeps_its_speed() {
         let mut generator = Generator::new(0, 2000);
-        generator.run_at(Speed::from_rpm(60), 600, 600); // 2 qc/ms after 100 ms
+        generator.run_at(linear(60, 600, 600)); // 2 qc/ms after 100 ms
         for _ in 0..200 {
             generator.step();
         }
         assert_eq!(generator.speed, Speed::from_rpm(60));
         assert_eq!(floor_qc(generator.position), 100 + 200);
-        generator.run_at(Speed::from_rpm(-60), 600, 600);
+        generator.run_at(linear(-60, 600, 600));
         for _ in 0..300 {
             generator.step();
         }
         assert_eq!(generator.position, fine(300 - 200));
         assert_eq!(generator.speed, Speed::from_rpm(-60));
-        generator.stop(600);
+        generator.stop(600, RampShape::Linear);
         for _ in 0..100 {
             generator.step();
         }
@@ -182,7 +200,7 @@ mod tests {
     fn a_slow_ramp_does_not_drift_in_a_quarter_of_an_hour() {
         // 1 rpm is 1/30 qc/ms, which has no finite binary representation.
         let mut generator = Generator::new(0, 2000);
-        generator.run_at(Speed::from_rpm(1), 1000, 1); // at speed after 1 ms
+        generator.run_at(linear(1, 1000, 1)); // at speed after 1 ms
         for _ in 0..900_001 {
             generator.step();
         }
@@ -192,7 +210,7 @@ mod tests {
     #[test]
     fn the_generator_stops_at_the_end_of_the_position_range() {
         let mut generator = Generator::new(WORLD_END - 5, 10_000_000);
-        generator.run_at(Speed::from_rpm(25_000), u32::MAX, 1);
+        generator.run_at(linear(25_000, u32::MAX, 1));
         for _ in 0..3 {
             generator.step();
         }

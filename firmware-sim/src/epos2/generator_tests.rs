@@ -8,6 +8,7 @@ use proptest::prelude::*;
 
 use super::super::fixed::{FINE_PER_QC, MS, Speed, fine};
 use super::super::profile::MotionLimits;
+use super::super::ramp::RampShape;
 use super::Generator;
 
 const QC_PER_TURN: u32 = 2000;
@@ -156,6 +157,7 @@ impl DemandMotion {
             speed: Speed::from_rpm(self.speed_rpm),
             acceleration: self.a,
             deceleration: self.d,
+            shape: RampShape::Linear,
         }
     }
 
@@ -231,7 +233,7 @@ proptest! {
         let mut generator = running(first, m, after);
         let v0 = speed(&generator);
         let textbook = Textbook::speed(qc(&generator), v0, 0.0, 1.0, f64::from(d) * PER_RPM);
-        generator.stop(d);
+        generator.stop(d, RampShape::Linear);
         follow(&mut generator, &textbook);
         prop_assert!(textbook.duration() > 2.0 || !generator.is_moving());
     }
@@ -249,7 +251,7 @@ proptest! {
         let [_, a, d] = n.scaled();
         let v1 = f64::from(rpm) * PER_RPM;
         let textbook = Textbook::speed(qc(&generator), speed(&generator), v1, a, d);
-        generator.run_at(Speed::from_rpm(rpm), n.a, n.d);
+        generator.run_at(MotionLimits { speed: Speed::from_rpm(rpm), ..n.limits() });
         follow(&mut generator, &textbook);
     }
 }

@@ -12,6 +12,7 @@ use super::fixed::{Speed, fine, floor_qc};
 use super::homing_method::{HomingMethod, ReferenceSearch, method};
 use super::node::{Node, bit};
 use super::profile::MotionLimits;
+use super::ramp::RampShape;
 
 /// State of the present homing and result of the last one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -249,6 +250,7 @@ impl Node {
             speed: self.homing_speed(true),
             acceleration,
             deceleration: acceleration,
+            shape: RampShape::Linear,
         };
         let target = fine(reference.saturating_add(offset.into()));
         if self.generator.go_to(target, limits).is_ok() {
@@ -277,8 +279,12 @@ impl Node {
     fn run(&mut self, direction: i32, fast: bool) {
         let Speed(speed) = self.homing_speed(fast);
         let acceleration = self.homing_acceleration();
-        let speed = Speed(speed * i64::from(direction));
-        self.generator.run_at(speed, acceleration, acceleration);
+        self.generator.run_at(MotionLimits {
+            speed: Speed(speed * i64::from(direction)),
+            acceleration,
+            deceleration: acceleration,
+            shape: RampShape::Linear,
+        });
     }
 
     fn is_going(&self, direction: i32) -> bool {

@@ -1,22 +1,31 @@
-//! Motion at constant acceleration in closed form, without accumulation over milliseconds.
+//! A change of speed, or motion at constant speed, in closed form, without accumulation over
+//! milliseconds.
 
 use super::fixed::{BITS, Fine, Speed, distance, div_ceil};
+use super::ramp::{RampShape, Sin2Progress};
 
-/// Constant acceleration from `from` and `start` to the speed `end`.
+/// Motion from `from` and `start` to the speed `end`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct ProfileLeg {
     pub from: Fine,
     pub start: Speed,
     pub end: Speed,
-    /// rpm/s, equal to millirpm/ms; unsigned.
+    /// Mean, rpm/s, equal to millirpm/ms; unsigned.
     pub acceleration: u32,
+    pub shape: RampShape,
     /// ms with 32 fractional bits.
     pub duration: i128,
 }
 
 impl ProfileLeg {
-    /// A change of speed. An acceleration of 0 counts as 1.
-    pub fn change(from: Fine, start: Speed, end: Speed, acceleration: u32) -> Self {
+    /// A change of speed with a mean acceleration, of which 0 counts as 1.
+    pub fn change(
+        from: Fine,
+        start: Speed,
+        end: Speed,
+        acceleration: u32,
+        shape: RampShape,
+    ) -> Self {
         let acceleration = acceleration.max(1);
         let change = i128::from(end.0) - i128::from(start.0);
         Self {
@@ -24,6 +33,7 @@ impl ProfileLeg {
             start,
             end,
             acceleration,
+            shape,
             duration: div_ceil(change.abs(), i128::from(acceleration)),
         }
     }
@@ -35,12 +45,22 @@ impl ProfileLeg {
             start: speed,
             end: speed,
             acceleration: 0,
+            shape: RampShape::Linear,
             duration,
         }
     }
 
     /// Position and speed at `time` into the leg.
     pub fn at(&self, time: i128, qc_per_turn: u32) -> (Fine, Speed) {
+        let (work, speed) = match self.shape {
+            RampShape::Linear => self.linear(time),
+            RampShape::Sin2 => self.sin2(time),
+        };
+        let moved = distance(work, qc_per_turn);
+        (self.from.saturating_add(moved), Speed(speed as i64))
+    }
+
+    fn linear(&self, time: i128) -> (i128, i128) {
         let gained = i128::from(self.acceleration).saturating_mul(time);
         let (start, end) = (i128::from(self.start.0), i128::from(self.end.0));
         let speed = if end >= start {
@@ -48,8 +68,14 @@ impl ProfileLeg {
         } else {
             (start - gained).max(end)
         };
-        let moved = distance((start + speed).saturating_mul(time), qc_per_turn);
-        (self.from.saturating_add(moved), Speed(speed as i64))
+        ((start + speed).saturating_mul(time), speed)
+    }
+
+    fn sin2(&self, time: i128) -> (i128, i128) {
+        let progress = Sin2Progress::at(time, self.duration);
+        let (start, end) = (i128::from(self.start.0), i128::from(self.end.0));
+        let work = 2 * start * time + (end - start) * progress.integral;
+        (work, start + progress.of(end - start))
     }
 
     /// Position at the end of a change of speed, from the squares of the speeds and so without the

@@ -7,9 +7,10 @@
 //! [`SlcanServer`] the same through a serial CAN adapter. Sources are the EPOS2 Firmware
 //! Specification and Communication Guide; comments mark behaviour that they leave open.
 //!
-//! Not simulated: modes that a tilt axis does not use, and the electrical side. The shaft follows
-//! its demand exactly unless the configuration has a servo with a lag ([`Servo`]) or something
-//! blocks it; an unpowered shaft stays in place unless the configuration has a load ([`AxisLoad`]).
+//! Not simulated: the modes of current, interpolation and encoder following, and the electrical
+//! side. The shaft follows its demand exactly unless the configuration has a servo with a lag
+//! ([`Servo`]) or something blocks it; an unpowered shaft stays in place unless the configuration
+//! has a load ([`AxisLoad`]).
 
 mod brake;
 mod can;
@@ -35,9 +36,11 @@ mod node;
 mod objects;
 mod position_mode;
 mod profile;
+mod ramp;
 mod rs232;
 mod service;
 mod servo;
+mod setting_modes;
 mod shaft;
 mod slcan;
 mod storage;

@@ -144,6 +144,8 @@ impl Node {
             match self.mode {
                 mode::HOMING => self.advance_homing(),
                 mode::PROFILE_VELOCITY => self.advance_velocity_mode(),
+                mode::POSITION => self.advance_position_setting(),
+                mode::VELOCITY => self.advance_velocity_setting(),
                 _ => self.advance_position_mode(),
             }
         }
@@ -213,6 +215,7 @@ impl Node {
         let of_mode = match self.mode {
             mode::HOMING => self.homing.status_bits(),
             mode::PROFILE_VELOCITY => self.velocity_mode.status_bits(self.velocity_actual_rpm()),
+            mode::VELOCITY => 0,
             _ => self.position_mode.status_bits() | bit(self.lost_demand, status::FOLLOWING_ERROR),
         };
         self.state.pattern()

@@ -25,8 +25,8 @@ const VELOCITY_SENSOR: Address = Address::new(0x6069, 0);
 /// 1010:1 reads as "saves on command" (CiA 301).
 const SAVES_ON_COMMAND: u32 = 1;
 /// 6502: of the modes of a real unit (003F0065) those simulated: profile position, profile
-/// velocity, homing.
-const MODES: u32 = 1 << 0 | 1 << 2 | 1 << 5;
+/// velocity, homing; position and velocity mode (-1, -2) are the first two of bits 16 to 21.
+const MODES: u32 = 1 << 0 | 1 << 2 | 1 << 5 | 1 << 16 | 1 << 17;
 
 impl Node {
     /// Reads an object.

@@ -99,6 +99,7 @@ impl Node {
             speed: self.speed_within_limits(speed),
             acceleration: self.acceleration(objects::PROFILE_ACCELERATION),
             deceleration: self.acceleration(objects::PROFILE_DECELERATION),
+            shape: self.profile_shape(),
         }
     }
 
@@ -112,7 +113,7 @@ impl Node {
     }
 
     /// Whether a position of the unit lies within the software limits (607D).
-    fn is_allowed(&self, position: i64) -> bool {
+    pub(super) fn is_allowed(&self, position: i64) -> bool {
         let lowest = self.dictionary.get(objects::MIN_POSITION).into();
         let highest = self.dictionary.get(objects::MAX_POSITION).into();
         (lowest..=highest).contains(&position)

@@ -1,23 +1,25 @@
-//! The trapezoidal position profile (Firmware Specification, "Profile Position Mode", "Motion
-//! Profile Type" 0).
+//! The position profile (Firmware Specification, "Profile Position Mode"): a trapezoid of speed
+//! with linear or sin2 ramps ("Motion Profile Type" 0 and 1).
 //!
 //! Planned once, then evaluated in closed form at each millisecond: brake if the target is behind,
 //! change to the cruise speed, cruise, and a landing counted backwards from the target, which is
-//! therefore met exactly. A move too short for the cruise speed becomes a triangle. Not here: the
-//! sinusoidal profile (type 1) and the limits' sources (607F, 60C5).
+//! therefore met exactly. A move too short for the cruise speed has none. A new plan begins at the
+//! present speed without acceleration. Not here: the limits' sources (607F, 60C5).
 
 use super::fixed::{BITS, Fine, MS, Speed, distance, div_ceil};
 use super::leg::ProfileLeg;
+use super::ramp::{RampShape, Sin2Progress};
 
 /// What a move may not exceed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct MotionLimits {
-    /// Cruise speed, above zero.
+    /// Cruise speed, above zero; signed where it is a speed to hold.
     pub speed: Speed,
-    /// rpm/s, above zero.
+    /// Peak, rpm/s, above zero.
     pub acceleration: u32,
-    /// rpm/s, above zero.
+    /// Peak, rpm/s, above zero.
     pub deceleration: u32,
+    pub shape: RampShape,
 }
 
 /// The generator cannot use the parameters: a limit is zero or the move would last longer than 2^31
@@ -39,7 +41,9 @@ pub(super) struct TrapezoidalProfile {
 struct Landing {
     target: Fine,
     forward: bool,
+    /// Mean.
     deceleration: u32,
+    shape: RampShape,
     duration: i128,
     /// Where it begins: its speed and what is left to go. The duration is rounded up, so its
     /// formula alone would begin a fraction above both.
@@ -62,7 +66,13 @@ impl TrapezoidalProfile {
         if limits.speed <= Speed::ZERO || limits.acceleration == 0 || limits.deceleration == 0 {
             return Err(UnusableParameters);
         }
-        let brake = ProfileLeg::change(from, speed, Speed::ZERO, limits.deceleration);
+        // Ramps of one mean acceleration cover one distance, whatever their shape.
+        let limits = MotionLimits {
+            acceleration: limits.shape.mean_rate(limits.acceleration),
+            deceleration: limits.shape.mean_rate(limits.deceleration),
+            ..limits
+        };
+        let brake = ProfileLeg::change(from, speed, Speed::ZERO, limits.deceleration, limits.shape);
         let standstill = brake.finish(qc_per_turn);
         let (brake, from, entry) = if overshoots(from, speed, standstill, target) {
             (brake, standstill, Speed::ZERO)
@@ -95,7 +105,13 @@ impl TrapezoidalProfile {
         } else {
             limits.acceleration
         };
-        let change = ProfileLeg::change(from, signed(entry), signed(peak), acceleration);
+        let change = ProfileLeg::change(
+            from,
+            signed(entry),
+            signed(peak),
+            acceleration,
+            limits.shape,
+        );
         let cruise_from = change.finish(qc_per_turn);
         let work = peak.squared() / i128::from(limits.deceleration);
         let landing_length = distance(work, qc_per_turn);
@@ -118,6 +134,7 @@ impl TrapezoidalProfile {
                 target,
                 forward,
                 deceleration: limits.deceleration,
+                shape: limits.shape,
                 duration: div_ceil(i128::from(peak.0), i128::from(limits.deceleration)),
                 peak,
                 length: landing_length,
@@ -152,9 +169,19 @@ impl Landing {
         if left <= 0 {
             return None;
         }
-        let speed = i128::from(self.deceleration) * left;
-        let to_go = distance(speed.saturating_mul(left), qc_per_turn).min(self.length);
-        let speed = speed.min(i128::from(self.peak.0)) as i64;
+        let peak = i128::from(self.peak.0);
+        let (work, speed) = match self.shape {
+            RampShape::Linear => {
+                let speed = i128::from(self.deceleration) * left;
+                (speed.saturating_mul(left), speed.min(peak))
+            }
+            RampShape::Sin2 => {
+                let progress = Sin2Progress::at(left, self.duration);
+                (peak * progress.integral, progress.of(peak))
+            }
+        };
+        let to_go = distance(work, qc_per_turn).min(self.length);
+        let speed = speed as i64;
         Some(if self.forward {
             (self.target.saturating_sub(to_go), Speed(speed))
         } else {

@@ -6,6 +6,7 @@ use proptest::prelude::*;
 
 use super::super::fixed::{FINE_PER_QC, MAX_QC_PER_TURN, MS, Speed, WORLD_END, fine};
 use super::super::generator::Generator;
+use super::super::ramp::RampShape;
 use super::{MotionLimits, TrapezoidalProfile, UnusableParameters};
 
 const QC_PER_TURN: u32 = 2000;
@@ -15,6 +16,7 @@ fn limits(speed_rpm: i32, acceleration: u32, deceleration: u32) -> MotionLimits 
         speed: Speed::from_rpm(speed_rpm),
         acceleration,
         deceleration,
+        shape: RampShape::Linear,
     }
 }
 
@@ -206,6 +208,10 @@ fn degenerate_profiles_are_valid() {
     }
 }
 
+fn shape() -> impl Strategy<Value = RampShape> {
+    prop_oneof![Just(RampShape::Linear), Just(RampShape::Sin2)]
+}
+
 fn any_limits() -> impl Strategy<Value = MotionLimits> {
     // Log-uniform, so that slow and fast are equally likely.
     let power = |bits: u32| {
@@ -286,7 +292,7 @@ proptest! {
             generator.step();
         }
         let (from, speed) = (qc(generator.position), generator.speed);
-        generator.stop(l.deceleration);
+        generator.stop(l.deceleration, l.shape);
         let mut steps = 0u32;
         while generator.is_moving() {
             generator.step();
@@ -303,19 +309,25 @@ proptest! {
 #[derive(Clone, Copy, Debug)]
 enum Operation {
     GoTo(i64, MotionLimits),
-    RunAt(i32, u32),
+    RunAt(MotionLimits),
     Steps(u16),
 }
 
 fn operation() -> impl Strategy<Value = Operation> {
     let extreme = prop_oneof![any::<u32>(), 0u32..3, Just(u32::MAX)];
-    let limits =
-        (0i32..=25_000, extreme.clone(), extreme.clone()).prop_map(|(v, a, d)| limits(v, a, d));
+    let limits = |slowest: i32| {
+        (slowest..=25_000, extreme.clone(), extreme.clone(), shape()).prop_map(
+            |(v, a, d, shape)| MotionLimits {
+                shape,
+                ..limits(v, a, d)
+            },
+        )
+    };
     // Outside the position range: a 32-bit position from an origin equally far away.
     let target = (any::<i32>(), any::<i32>()).prop_map(|(a, b)| fine(i64::from(a) + i64::from(b)));
     prop_oneof![
-        (target, limits).prop_map(|(target, limits)| Operation::GoTo(target, limits)),
-        (-25_000i32..=25_000, extreme).prop_map(|(speed, a)| Operation::RunAt(speed, a)),
+        (target, limits(0)).prop_map(|(target, limits)| Operation::GoTo(target, limits)),
+        limits(-25_000).prop_map(Operation::RunAt),
         (0u16..300).prop_map(Operation::Steps),
     ]
 }
@@ -335,7 +347,7 @@ proptest! {
                 Operation::GoTo(target, limits) => {
                     let _ = generator.go_to(target, limits);
                 }
-                Operation::RunAt(speed, acceleration) => generator.run_at(Speed::from_rpm(speed), acceleration, acceleration),
+                Operation::RunAt(limits) => generator.run_at(limits),
                 Operation::Steps(n) => {
                     for _ in 0..n {
                         generator.step();
@@ -345,5 +357,96 @@ proptest! {
                 }
             }
         }
+    }
+}
+
+/// A sin2 ramp of `seconds` between two speeds (qc/s): the way after `t` seconds.
+fn sin2_way(v0: f64, v1: f64, seconds: f64, t: f64) -> f64 {
+    use std::f64::consts::PI;
+    v0 * t + (v1 - v0) * (t / 2.0 - seconds / (2.0 * PI) * (PI * t / seconds).sin())
+}
+
+#[test]
+fn the_papers_sweep_with_sin2_ramps_has_the_peak_acceleration_of_6083() {
+    use std::f64::consts::PI;
+    let l = MotionLimits {
+        shape: RampShape::Sin2,
+        ..limits(1125, 10_000, 10_000)
+    };
+    let (v, a) = (37_500.0, 10_000.0 * 2000.0 / 60.0);
+    // The peak acceleration of a sin2 ramp is pi/2 times its mean.
+    let ramp = PI / 2.0 * v / a;
+    let cruise = 30_000.0 / v - ramp;
+    let mut generator = Generator::new(fine(-15_000), QC_PER_TURN);
+    generator.go_to(fine(15_000), l).unwrap();
+    let (mut last, mut speed, mut steepest) = (-15_000.0, 0.0, 0.0_f64);
+    let steps = run(&mut generator, fine(15_000), l, 2_000, |ms, position| {
+        let t = ms as f64 * 1e-3;
+        let way = if t < ramp {
+            sin2_way(0.0, v, ramp, t)
+        } else if t < ramp + cruise {
+            v * (t - ramp / 2.0)
+        } else {
+            let left = (2.0 * ramp + cruise - t).max(0.0);
+            30_000.0 - sin2_way(0.0, v, ramp, left)
+        };
+        // Whole rpm/s in the mean: 4e-5 of the ramps.
+        assert!(
+            (position + 15_000.0 - way).abs() < 0.3,
+            "{ms}: {position} {way}"
+        );
+        let now = (position - last) / 1e-3;
+        steepest = steepest.max((now - speed).abs() / 1e-3);
+        (last, speed) = (position, now);
+    });
+    assert!((steepest / a - 1.0).abs() < 1e-3, "{steepest} {a}");
+    let expected = (ramp + 30_000.0 / v) * 1e3;
+    assert!((steps as f64 - expected).abs() < 1.5, "{steps} {expected}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    /// Targets, halts and speeds in motion have the distance and the duration of the linear ramp of
+    /// the same mean acceleration, and keep the peak.
+    #[test]
+    fn sin2_motions_end_exactly_and_keep_their_peaks(
+        first in -100_000i64..100_000,
+        second in -100_000i64..100_000,
+        l in any_limits(),
+        after in 0usize..400,
+    ) {
+        let sin2 = MotionLimits { shape: RampShape::Sin2, ..l };
+        let (first, second) = (shorten(first, l), shorten(second, l));
+        let mut generator = Generator::new(0, QC_PER_TURN);
+        generator.go_to(fine(first), sin2).unwrap();
+        for _ in 0..after {
+            generator.step();
+        }
+        let [a, d] = [l.acceleration, l.deceleration].map(|rate| RampShape::Sin2.mean_rate(rate));
+        let mean = MotionLimits { acceleration: a, deceleration: d, ..l };
+        let mut linear = generator;
+        let mut halted = generator;
+        generator.go_to(fine(second), sin2).unwrap();
+        linear.go_to(fine(second), mean).unwrap();
+        // A mean of 1 rpm/s may stand for a peak of 1 rpm/s: two at most.
+        let rates = MotionLimits {
+            acceleration: l.acceleration.saturating_mul(2),
+            deceleration: l.deceleration.saturating_mul(2),
+            ..l
+        };
+        let steps = run(&mut generator, fine(second), rates, 10_000_000, |_, _| {});
+        let expected = run(&mut linear, fine(second), mean, 10_000_000, |_, _| {});
+        prop_assert_eq!(steps, expected);
+        let mut linear = halted;
+        halted.stop(l.deceleration, RampShape::Sin2);
+        linear.stop(d, RampShape::Linear);
+        while halted.is_moving() {
+            prop_assert!(linear.is_moving());
+            halted.step();
+            linear.step();
+        }
+        prop_assert!(!linear.is_moving());
+        prop_assert!((halted.position - linear.position).abs() < FINE_PER_QC / 1_000);
     }
 }

@@ -11,6 +11,7 @@ use protocol::epos2::objects::{self, TypedObject};
 
 use super::fixed::Speed;
 use super::node::{Node, bit};
+use super::profile::MotionLimits;
 
 /// Tolerance of the target speed, rpm; FFFFFFFF: reached at the end of the ramp.
 const VELOCITY_WINDOW: TypedObject<u32> = TypedObject::new(0x606D, 0, "Velocity Window");
@@ -23,7 +24,7 @@ const SPEED_IS_ZERO: u16 = 1 << 12;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct VelocityMode {
     /// The speed at the end of the ramp; `None` before the first.
-    target: Option<Speed>,
+    pub target: Option<Speed>,
     /// Bit 10.
     reached: bool,
     in_window_ms: u16,
@@ -57,7 +58,12 @@ impl Node {
                 target: Some(target),
                 ..VelocityMode::default()
             };
-            self.generator.run_at(target, acceleration, deceleration);
+            self.generator.run_at(MotionLimits {
+                speed: target,
+                acceleration,
+                deceleration,
+                shape: self.profile_shape(),
+            });
         }
         self.velocity_mode.reached = self.is_at_speed(target);
     }
@@ -67,9 +73,7 @@ impl Node {
         if self.controlword & control::HALT != 0 {
             return Speed::ZERO;
         }
-        let rpm = self.dictionary.get(objects::TARGET_VELOCITY);
-        let Speed(limited) = self.speed_within_limits(rpm.unsigned_abs());
-        Speed(limited * i64::from(rpm.signum()))
+        self.signed_speed_within_limits(self.dictionary.get(objects::TARGET_VELOCITY))
     }
 
     fn is_at_speed(&mut self, target: Speed) -> bool {

@@ -148,6 +148,10 @@ pub mod control {
 
 /// Modes of operation (6060, 6061) that the tilt axis uses.
 pub mod mode {
+    /// Follows a velocity without a profile.
+    pub const VELOCITY: i8 = -2;
+    /// Follows a position without a profile.
+    pub const POSITION: i8 = -1;
     /// Moves to a target with a profile.
     pub const PROFILE_POSITION: i8 = 1;
     /// Runs at a speed with a profile.

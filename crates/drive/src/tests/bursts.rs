@@ -3,13 +3,14 @@
 use protocol::record::DriveLink;
 use units::{Host, Span, Stamp};
 
-use super::fake::{Distortion, ENABLED};
-use super::rig::{Rig, to};
-use crate::{CommandOutcome, DriveCommand, DriveError};
+use super::rig::Rig;
+use super::unit::Distortion;
+use crate::{CommandOutcome, DriveError};
+use protocol::epos2::cia402::DeviceState;
 
 /// Kinds of damage to replies.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Damage {
+enum Damage {
     /// One bit is flipped, another one each time.
     Bits,
     /// The last byte is wrong.
@@ -20,10 +21,10 @@ pub enum Damage {
     Head,
 }
 
-pub const DAMAGES: [Damage; 4] = [Damage::Bits, Damage::Crc, Damage::Half, Damage::Head];
+const DAMAGES: [Damage; 4] = [Damage::Bits, Damage::Crc, Damage::Half, Damage::Head];
 
 /// Damages input during an interval. CAN frames keep their length on the way to the client.
-pub fn distorting(damage: Damage, from: Stamp<Host>, until: Stamp<Host>) -> Distortion {
+fn distorting(damage: Damage, from: Stamp<Host>, until: Stamp<Host>) -> Distortion {
     let mut seed = 0x9E37_79B9_u32;
     Box::new(move |now, mut bytes| {
         if now < from || now >= until || bytes.is_empty() {
@@ -41,22 +42,14 @@ pub fn distorting(damage: Damage, from: Stamp<Host>, until: Stamp<Host>) -> Dist
     })
 }
 
-fn sweeping(link: DriveLink, after: Span) -> Rig {
-    let mut rig = Rig::homed_on(link);
-    rig.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
-    assert_eq!(rig.run_for(after), None, "{link:?}");
-    rig.forget();
-    rig
-}
-
 #[test]
 fn damage_in_bursts_is_survived() {
     for link in [DriveLink::Usb, DriveLink::Rs232] {
         for damage in DAMAGES {
             for (k, burst) in (0..).zip([2, 20, 50, 75, 100]) {
-                let mut rig = sweeping(link, Span::from_micros(600_000 + 7_310 * k));
+                let mut rig = Rig::sweeping_on(link, Span::from_micros(600_000 + 7_310 * k));
                 let until = rig.now + Span::from_millis(burst);
-                rig.fake.distort = distorting(damage, rig.now, until);
+                rig.unit.distort = distorting(damage, rig.now, until);
                 let ended = rig.finish();
                 assert!(
                     matches!(ended, Ok(CommandOutcome::Arrived(_))),
@@ -89,9 +82,9 @@ fn damage_in_bursts_is_survived() {
 fn continuous_damage_ends_the_sweep_in_time() {
     for link in [DriveLink::Usb, DriveLink::Rs232] {
         for damage in DAMAGES {
-            let mut rig = sweeping(link, Span::from_millis(600));
+            let mut rig = Rig::sweeping_on(link, Span::from_millis(600));
             let (from, for_ever) = (rig.now, rig.now + Span::from_secs(100));
-            rig.fake.distort = distorting(damage, from, for_ever);
+            rig.unit.distort = distorting(damage, from, for_ever);
             let error = rig.finish().unwrap_err();
             let DriveError::NotStopped { cause, .. } = &error else {
                 panic!("{link:?} {damage:?}: {error}")
@@ -113,9 +106,11 @@ fn continuous_damage_ends_the_sweep_in_time() {
                 rig.now - stop
             );
             assert_ne!(
-                rig.fake.state, ENABLED,
+                rig.unit.state(),
+                DeviceState::OperationEnabled,
                 "{link:?} {damage:?}: the drive is still enabled"
             );
+            assert!(rig.unit.is_at_rest(), "{link:?} {damage:?}: {error}");
         }
     }
 }
@@ -128,9 +123,9 @@ const BLIND_STOP: Span = Span::from_millis(240);
 #[test]
 fn silence_ends_the_sweep_after_a_second() {
     for (link, most) in [(DriveLink::Usb, 1_100), (DriveLink::Rs232, 1_520)] {
-        let mut rig = sweeping(link, Span::from_millis(600));
+        let mut rig = Rig::sweeping_on(link, Span::from_millis(600));
         let from = rig.now;
-        rig.fake.distort = Box::new(|_, _| Vec::new());
+        rig.unit.distort = Box::new(|_, _| Vec::new());
         let error = rig.finish().unwrap_err();
         let DriveError::NotStopped { cause, .. } = &error else {
             panic!("{link:?}: {error}")
@@ -147,9 +142,9 @@ fn silence_ends_the_sweep_after_a_second() {
 /// A heartbeat with an unknown state is a damaged one: SLCAN has no checksum.
 #[test]
 fn a_damaged_heartbeat_is_ignored() {
-    let mut rig = sweeping(DriveLink::Can, Span::from_millis(600));
+    let mut rig = Rig::sweeping_on(DriveLink::Can, Span::from_millis(600));
     let mut n = 0;
-    rig.fake.distort = Box::new(move |_, mut bytes| {
+    rig.unit.distort = Box::new(move |_, mut bytes| {
         if bytes[..2] == [0, 0] && bytes[2..4] == [0x07, 0x01] {
             n += 1;
             if n % 2 == 0 {

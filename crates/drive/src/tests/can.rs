@@ -1,16 +1,18 @@
 //! Features of a CAN bus: the stream at SYNC, NMT states, heartbeats both ways, boot-up.
 
-use protocol::canopen::nmt::NmtState;
+use protocol::canopen::nmt::NmtCommand;
+use protocol::epos2::CommError;
 use protocol::epos2::message::SerialRequest;
 use protocol::record::DriveLink;
 use units::{Host, Span, Stamp};
 
-use super::fake::{FAULT, Fate};
 use super::rig::{Rig, to};
+use super::unit::Fate;
 use crate::{
     AngleSource, AxisConfig, CommandOutcome, CommandProgress, DriveCommand, DriveError,
     Observation, ShaftSample,
 };
+use protocol::epos2::cia402::DeviceState;
 
 fn can() -> Rig {
     Rig::on(DriveLink::Can, AxisConfig::default())
@@ -24,9 +26,9 @@ fn homed() -> Rig {
 fn the_stream_is_sampled_at_1_khz_with_none_lost() {
     let mut rig = homed();
     let until = rig.now + Span::from_secs(60);
-    let before = rig.fake.bus.syncs.len();
+    let before = rig.unit.bus.syncs.len();
     rig.run(DriveCommand::Hold { until }).unwrap();
-    let syncs = &rig.fake.bus.syncs[before..];
+    let syncs = &rig.unit.bus.syncs[before..];
     let samples = rig.samples();
     assert!(samples.len() > 59_500, "{}", samples.len());
     assert!(
@@ -59,14 +61,16 @@ fn the_stream_continues_while_the_state_is_read() {
     assert!((905..=920).contains(&moving.len()), "{}", moving.len());
     // The position was not polled.
     let is_position_read = |(_, request): &(Stamp<Host>, SerialRequest)| matches!(request, SerialRequest::ReadObject(r) if r.address.index == 0x6064);
-    assert!(!rig.fake.requests.iter().any(is_position_read));
+    assert!(!rig.unit.requests.iter().any(is_position_read));
 }
 
 #[test]
 fn a_drive_that_refuses_the_mapping_is_polled() {
     for refused in [(0x1A00, 2), (0x1A00, 0), (0x1800, 1), (0x1800, 2)] {
         let mut rig = can();
-        rig.fake.refuses = vec![refused];
+        let (index, sub) = refused;
+        rig.unit
+            .on_write(index, sub, Fate::Refused(CommError::PDO_MAPPING));
         let Ok(CommandOutcome::Connected(connected)) = rig.run(DriveCommand::Connect) else {
             panic!("{:?}", rig.events.last())
         };
@@ -81,7 +85,8 @@ fn a_drive_that_refuses_the_mapping_is_polled() {
 #[test]
 fn a_refused_inhibit_time_keeps_the_stream() {
     let mut rig = can();
-    rig.fake.refuses = vec![(0x1800, 3)];
+    rig.unit
+        .on_write(0x1800, 3, Fate::Refused(CommError::PDO_MAPPING));
     let Ok(CommandOutcome::Connected(connected)) = rig.run(DriveCommand::Connect) else {
         panic!("{:?}", rig.events.last())
     };
@@ -91,7 +96,8 @@ fn a_refused_inhibit_time_keeps_the_stream() {
 #[test]
 fn a_drive_without_host_monitoring_is_reported() {
     let mut rig = can();
-    rig.fake.refuses = vec![(0x1016, 1)];
+    rig.unit
+        .on_write(0x1016, 1, Fate::Refused(CommError::PDO_MAPPING));
     let Ok(CommandOutcome::Connected(connected)) = rig.run(DriveCommand::Connect) else {
         panic!("{:?}", rig.events.last())
     };
@@ -103,7 +109,7 @@ fn a_drive_without_host_monitoring_is_reported() {
 #[test]
 fn a_stalled_stream_is_replaced_by_polls() {
     let mut rig = homed();
-    rig.fake.bus.copies = Box::new(|n| usize::from(!(300..600).contains(&n)));
+    rig.unit.bus.copies = Box::new(|n| usize::from(!(300..600).contains(&n)));
     rig.run(DriveCommand::Sweep(to(-15.0))).unwrap();
     let samples = rig.samples();
     for pair in samples.windows(2) {
@@ -116,7 +122,7 @@ fn a_stalled_stream_is_replaced_by_polls() {
 #[test]
 fn lost_and_repeated_stream_frames_do_not_affect_the_others() {
     let mut rig = homed();
-    rig.fake.bus.copies = Box::new(|n| match n % 17 {
+    rig.unit.bus.copies = Box::new(|n| match n % 17 {
         3 => 0,
         9 => 2,
         _ => 1,
@@ -157,7 +163,7 @@ fn logged_samples_have_the_drives_time() {
             assert_eq!(address.index, 0x1013);
             assert_eq!(*request, sample.request);
             let latched = sample.request + Span::from_micros(120);
-            assert_eq!(*value, super::fake::device_us(latched));
+            assert_eq!(*value, rig.unit.device_us(latched));
             timed += 1;
         }
     }
@@ -181,15 +187,18 @@ fn the_drive_stops_when_the_host_dies() {
     let mut rig = homed();
     rig.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
     assert_eq!(rig.run_for(Span::from_millis(600)), None);
-    assert_eq!(rig.fake.objects[&(0x1016, 1)], 127 << 16 | 500);
+    assert_eq!(rig.unit.get(0x1016, 1), 127 << 16 | 500);
     // The host stops calling the client.
     let died = rig.now;
-    while rig.fake.state != FAULT {
+    while rig.unit.state() == DeviceState::OperationEnabled {
         rig.now += Span::from_millis(1);
-        rig.fake.live(rig.now);
+        rig.unit.live(rig.now);
         assert!(rig.now - died < Span::from_millis(550));
     }
-    assert_eq!(rig.fake.objects[&(0x1003, 1)], 0x8130);
+    // The ramp from 1125 rpm takes 57 ms, then the standstill and the brake.
+    rig.unit.live(rig.now + Span::from_millis(150));
+    assert_eq!(rig.unit.state(), DeviceState::Fault);
+    assert_eq!(rig.unit.get(0x1003, 1), 0x8130);
 }
 
 #[test]
@@ -216,12 +225,12 @@ fn the_host_may_be_silent_once_the_power_is_off() {
     rig.run(DriveCommand::Goto(to(0.0))).unwrap();
     rig.run(DriveCommand::Brake).unwrap();
     rig.now += Span::from_secs(30);
-    rig.fake.live(rig.now);
-    assert_ne!(rig.fake.state, FAULT);
+    rig.unit.live(rig.now);
+    assert_ne!(rig.unit.state(), DeviceState::Fault);
     rig.run(DriveCommand::Goto(to(10.0))).unwrap();
     rig.now += Span::from_secs(30);
-    rig.fake.live(rig.now);
-    assert_eq!(rig.fake.state, FAULT);
+    rig.unit.live(rig.now);
+    assert_eq!(rig.unit.state(), DeviceState::Fault);
 }
 
 #[test]
@@ -230,7 +239,7 @@ fn a_missing_heartbeat_in_mid_sweep_stops_the_axis() {
     rig.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
     assert_eq!(rig.run_for(Span::from_millis(600)), None);
     let at = rig.now;
-    rig.fake.bus.silent = true;
+    rig.unit.bus.silent = true;
     let error = rig.finish().unwrap_err();
     assert!(
         matches!(error, DriveError::NodeSilent { node: 1, .. }),
@@ -247,7 +256,7 @@ fn a_node_stopped_by_another_master_is_reported() {
     let mut rig = homed();
     rig.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
     assert_eq!(rig.run_for(Span::from_millis(600)), None);
-    rig.fake.bus.state = NmtState::PreOperational;
+    rig.unit.node.nmt(NmtCommand::EnterPreOperational);
     let error = rig.finish().unwrap_err();
     assert!(matches!(error, DriveError::NodeLeft { .. }), "{error}");
 }
@@ -255,7 +264,7 @@ fn a_node_stopped_by_another_master_is_reported() {
 #[test]
 fn a_restart_between_commands_prevents_the_next_move() {
     let mut rig = homed();
-    rig.fake.restart(rig.now);
+    rig.unit.restart(rig.now);
     rig.now += Span::from_millis(5);
     let error = rig.run(DriveCommand::Goto(to(0.0))).unwrap_err();
     assert!(matches!(error, DriveError::Restarted { .. }), "{error}");
@@ -296,11 +305,12 @@ fn replies_about_another_object_or_of_another_node_are_ignored() {
 #[test]
 fn a_late_reply_is_not_used_for_the_next_read_of_the_same_object() {
     let mut rig = can();
-    rig.fake.refuses = vec![(0x1A00, 0)];
+    rig.unit
+        .on_write(0x1A00, 0, Fate::Refused(CommError::PDO_MAPPING));
     rig.run(DriveCommand::Connect).unwrap();
     rig.run(DriveCommand::Home).unwrap();
     rig.forget();
-    rig.fake.hand = Box::new(|n, request| match request {
+    rig.unit.hand = Box::new(|n, request| match request {
         SerialRequest::ReadObject(read) if read.address.index == 0x6064 && n % 37 == 0 => {
             Fate::Late(Span::from_millis(150))
         }

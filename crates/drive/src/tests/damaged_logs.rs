@@ -20,6 +20,8 @@ type Record = (Direction, Vec<u8>, Stamp<Host>);
 struct Recorded {
     log: Vec<Record>,
     samples: Vec<ShaftSample>,
+    /// Start of the unit's clock.
+    started: Stamp<Host>,
 }
 
 /// A short move with standstill before and after, recorded once.
@@ -35,6 +37,7 @@ fn recorded(link: DriveLink) -> &'static Recorded {
         .unwrap();
         Recorded {
             samples: rig.samples(),
+            started: rig.unit.started,
             log: rig.log,
         }
     })
@@ -56,7 +59,7 @@ fn listen(link: DriveLink, log: &[Record]) -> Vec<ShaftSample> {
 #[test]
 fn a_clean_log_gives_the_clients_own_samples() {
     for link in LINKS {
-        let Recorded { log, samples } = recorded(link);
+        let Recorded { log, samples, .. } = recorded(link);
         let observed = listen(link, log);
         assert_eq!(observed.len(), samples.len(), "{link:?}");
         for (client, log) in samples.iter().zip(&observed) {
@@ -73,10 +76,13 @@ fn a_clean_log_gives_the_clients_own_samples() {
 /// The drive's time is that of the sample: 120 us after the SYNC here.
 #[test]
 fn the_drives_time_belongs_to_the_position() {
-    let Recorded { samples, .. } = recorded(DriveLink::Can);
+    let Recorded {
+        samples, started, ..
+    } = recorded(DriveLink::Can);
     for sample in samples {
         let latched = sample.request + Span::from_micros(120);
-        assert_eq!(sample.device_us, Some(super::fake::device_us(latched)));
+        let us = (latched - *started).as_nanos() / 1_000;
+        assert_eq!(sample.device_us, Some(us as u32));
     }
 }
 
@@ -173,7 +179,7 @@ fn is_one_of(link: DriveLink, observed: &ShaftSample, samples: &[ShaftSample]) -
 #[test]
 fn one_missing_reply_costs_one_sample() {
     for link in LINKS {
-        let Recorded { log, samples } = recorded(link);
+        let Recorded { log, samples, .. } = recorded(link);
         let replies = (0..log.len()).filter(|at| log[*at].0 == Direction::FromDevice);
         let middle = replies.clone().count() / 2;
         for missing in replies.skip(middle).take(12) {
@@ -229,7 +235,7 @@ fn a_write_without_its_confirmation_is_reported() {
 #[test]
 fn missing_replies_cost_their_own_samples() {
     for link in LINKS {
-        let Recorded { log, samples } = recorded(link);
+        let Recorded { log, samples, .. } = recorded(link);
         let mut count = 0;
         let mut missing = 0;
         let mut log = log.clone();
@@ -253,7 +259,7 @@ proptest! {
     #[test]
     fn a_damaged_log_gives_no_wrong_samples(which in 0..3_usize, damages in damages()) {
         let link = LINKS[which];
-        let Recorded { log, samples } = recorded(link);
+        let Recorded { log, samples, .. } = recorded(link);
         let mut log = log.clone();
         for one in &damages {
             damage_log(link, &mut log, one);
@@ -268,7 +274,7 @@ proptest! {
     #[test]
     fn reordered_records_give_only_recorded_values(which in 0..3_usize, swaps in proptest::collection::vec(any::<Index>(), 1..40)) {
         let link = LINKS[which];
-        let Recorded { log, samples } = recorded(link);
+        let Recorded { log, samples, .. } = recorded(link);
         let mut log = log.clone();
         for swap in swaps {
             let at = swap.index(log.len() - 1);

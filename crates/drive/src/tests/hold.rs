@@ -5,7 +5,8 @@ use protocol::epos2::cia402::DeviceState;
 use protocol::record::DriveLink;
 use units::{Degrees, Rpm, RpmPerS};
 
-use super::firmware::World;
+use super::firmware::rig_with;
+use super::rig::Rig;
 use crate::client::DriveClient;
 use crate::command::{DriveCommand, MoveCommand};
 use crate::config::AxisConfig;
@@ -20,20 +21,20 @@ fn config() -> AxisConfig {
     }
 }
 
-fn is_powered(world: &World) -> bool {
+fn is_powered(rig: &Rig) -> bool {
     matches!(
-        world.node.state(),
+        rig.unit.node.state(),
         DeviceState::OperationEnabled | DeviceState::QuickStopActive
     )
 }
 
 /// Runs a command to its end; the axis must stay powered.
-fn run_powered(world: &mut World, command: DriveCommand) -> Result<CommandOutcome, DriveError> {
-    world.client.start(command)?;
+fn run_powered(rig: &mut Rig, command: DriveCommand) -> Result<CommandOutcome, DriveError> {
+    rig.client.start(command)?;
     loop {
-        assert!(is_powered(world), "{command:?}");
-        if let Some(end) = world.step() {
-            assert!(is_powered(world), "{command:?}");
+        assert!(is_powered(rig), "{command:?}");
+        if let Some(end) = rig.step() {
+            assert!(is_powered(rig), "{command:?}");
             return end;
         }
     }
@@ -48,39 +49,39 @@ fn goto(to: f64) -> DriveCommand {
 }
 
 /// A homed axis, at rest and held.
-fn held_on(link: DriveLink) -> World {
-    let mut world = World::on(link, NodeConfig::default());
-    world.client = DriveClient::new(config(), link);
+fn held_on(link: DriveLink) -> Rig {
+    let mut rig = rig_with(link, NodeConfig::default());
+    rig.client = DriveClient::new(config(), link);
     for command in [DriveCommand::Connect, DriveCommand::Home] {
-        world.client.start(command).unwrap();
-        while world.step().is_none() {}
+        rig.client.start(command).unwrap();
+        while rig.step().is_none() {}
     }
-    world
+    rig
 }
 
 #[test]
 fn an_axis_without_a_brake_stays_powered_from_move_to_move() {
     for link in [DriveLink::Usb, DriveLink::Rs232, DriveLink::Can] {
-        let mut world = held_on(link);
-        let Ok(CommandOutcome::Stopped(rest)) = run_powered(&mut world, DriveCommand::Brake) else {
+        let mut rig = held_on(link);
+        let Ok(CommandOutcome::Stopped(rest)) = run_powered(&mut rig, DriveCommand::Brake) else {
             panic!("{link:?}: not at rest")
         };
         assert!(rest.held && !rest.brake, "{link:?}");
         // A stop in mid-move, then another program.
-        world.client.start(goto(-20.0)).unwrap();
+        rig.client.start(goto(-20.0)).unwrap();
         for _ in 0..2_000 {
-            assert!(world.step().is_none(), "{link:?}");
+            assert!(rig.step().is_none(), "{link:?}");
         }
-        let stopped = run_powered(&mut world, DriveCommand::Stop);
+        let stopped = run_powered(&mut rig, DriveCommand::Stop);
         assert!(matches!(stopped, Ok(CommandOutcome::Stopped(rest)) if rest.held));
-        world.client = DriveClient::new(config(), link);
+        rig.client = DriveClient::new(config(), link);
         for command in [
             DriveCommand::Connect,
             goto(-40.0),
             DriveCommand::Home,
             DriveCommand::Brake,
         ] {
-            let done = run_powered(&mut world, command);
+            let done = run_powered(&mut rig, command);
             assert!(done.is_ok(), "{link:?} {command:?}: {done:?}");
         }
     }
@@ -88,18 +89,18 @@ fn an_axis_without_a_brake_stays_powered_from_move_to_move() {
 
 #[test]
 fn a_held_axis_stays_powered_when_the_host_dies_on_can() {
-    let mut world = held_on(DriveLink::Can);
-    world.client.start(goto(-20.0)).unwrap();
+    let mut rig = held_on(DriveLink::Can);
+    rig.client.start(goto(-20.0)).unwrap();
     for _ in 0..2_000 {
-        assert!(world.step().is_none());
+        assert!(rig.step().is_none());
     }
-    world.cut = true;
-    let limit = world.node.time_us() + 500_000;
-    while world.node.time_us() < limit {
-        assert!(is_powered(&world));
-        if world.step().is_some() {
+    rig.unit.cut();
+    let limit = rig.unit.node.time_us() + 500_000;
+    while rig.unit.node.time_us() < limit {
+        assert!(is_powered(&rig));
+        if rig.step().is_some() {
             break;
         }
     }
-    assert_eq!(world.node.state(), DeviceState::QuickStopActive);
+    assert_eq!(rig.unit.node.state(), DeviceState::QuickStopActive);
 }

@@ -4,8 +4,8 @@ use proptest::prelude::*;
 use protocol::record::{Direction, DriveLink};
 use units::Span;
 
-use super::fake::Fate;
 use super::rig::{Rig, to};
+use super::unit::Fate;
 use crate::{DriveCommand, DriveListener, Observation, ShaftSample};
 
 fn sampled(observed: &[Observation]) -> Vec<ShaftSample> {
@@ -41,7 +41,7 @@ fn a_log_gives_the_clients_samples_writes_and_states() {
 #[test]
 fn lost_and_late_answers_do_not_corrupt_the_log() {
     let mut rig = Rig::homed();
-    rig.fake.hand = Box::new(|n, request| match n % 31 {
+    rig.unit.hand = Box::new(|n, request| match n % 31 {
         _ if matches!(
             request,
             protocol::epos2::message::SerialRequest::WriteObject(_)

@@ -1,18 +1,19 @@
-//! Tests of the whole client against a scripted drive, in virtual time.
+//! Tests of the whole client with the software EPOS2 of firmware-sim, in virtual time.
 
 mod bursts;
 mod can;
 mod damaged_logs;
-mod fake;
 mod faults;
 mod firmware;
 mod hold;
 mod link;
 mod links;
 mod listener;
+mod long_object;
 mod objects;
 mod procedures;
 mod rig;
 mod rs232;
 mod script;
+mod unit;
 mod wire;

@@ -1,19 +1,33 @@
 //! Direct access to any object, expedited and in segments, both ways, with aborts.
 
 use protocol::canopen::sdo::TransferError;
+use protocol::epos2::message::SerialRequest;
 use protocol::epos2::objects::Address;
 use protocol::epos2::{Bounded, CommError};
 use protocol::record::DriveLink;
 
-use super::fake::Fate;
+use super::long_object::LongObject;
 use super::rig::{Rig, to};
+use super::unit::Fate;
 use crate::{AxisConfig, CommandOutcome, DriveCommand, DriveError, Observation};
 
 const LINKS: [DriveLink; 3] = [DriveLink::Usb, DriveLink::Rs232, DriveLink::Can];
 const NAME: Address = Address::new(0x1008, 0);
+const SERIAL: Address = Address::new(0x1018, 4);
 
+/// A drive with a long object, which the software EPOS2 has not, instead of its name.
 fn rig(link: DriveLink) -> Rig {
-    Rig::on(link, AxisConfig::default())
+    with_name(Rig::on(link, AxisConfig::default()))
+}
+
+fn with_name(mut rig: Rig) -> Rig {
+    let on_can = rig.unit.link == DriveLink::Can;
+    rig.unit.long_object = Some(LongObject::new(on_can));
+    rig
+}
+
+fn name(rig: &mut Rig) -> &mut LongObject {
+    rig.unit.long_object.as_mut().unwrap()
 }
 
 fn write(address: Address, bytes: &[u8]) -> DriveCommand {
@@ -44,10 +58,10 @@ fn long_objects_are_written_and_read_back() {
                 Ok(CommandOutcome::Written(NAME)),
                 "{link:?} {len}"
             );
-            assert_eq!(rig.fake.name, bytes, "{link:?}");
+            assert_eq!(name(&mut rig).bytes, bytes, "{link:?}");
             assert_eq!(read(&mut rig, NAME).unwrap(), bytes, "{link:?}");
         }
-        assert_eq!(rig.fake.aborts, []);
+        assert_eq!(rig.unit.aborts, []);
         assert_eq!(rig.client.link_stats().lost, 0);
         // The log can be decoded.
         let is_noise = |seen: &&Observation| matches!(seen, Observation::Noise { .. });
@@ -60,16 +74,16 @@ fn short_objects_take_one_exchange_of_their_width() {
     for link in LINKS {
         let mut rig = rig(link);
         for (index, sub, bytes) in [
-            (0x6060, 0, &[0xFA_u8][..]),
+            (0x2300, 4, &[0xFA_u8][..]),
             (0x2100, 1, &[0x90, 0x01]),
             (0x6081, 0, &[0x78, 0x56, 0x34, 0x12]),
         ] {
-            rig.fake.requests.clear();
+            rig.unit.requests.clear();
             rig.run(write(Address::new(index, sub), bytes)).unwrap();
             let mut value = [0; 4];
             value[..bytes.len()].copy_from_slice(bytes);
-            assert_eq!(rig.fake.objects[&(index, sub)], u32::from_le_bytes(value));
-            assert_eq!(rig.fake.requests.len(), 2, "the statusword, and it");
+            assert_eq!(rig.unit.get(index, sub), u32::from_le_bytes(value));
+            assert_eq!(rig.unit.requests.len(), 2, "the statusword, and it");
         }
     }
 }
@@ -91,7 +105,7 @@ fn aborts_by_the_drive_are_reported_at_the_start_and_at_the_end() {
             let begin = format!("writing {len} bytes to object {address} refused by the drive");
             assert!(error.to_string().starts_with(&begin), "{error}");
         }
-        rig.fake.refuses = vec![(0x1008, 0)];
+        name(&mut rig).refuses = true;
         let error = rig.run(write(NAME, b"a longer name")).unwrap_err();
         assert!(
             matches!(
@@ -108,8 +122,8 @@ fn aborts_by_the_drive_are_reported_at_the_start_and_at_the_end() {
             Err(DriveError::Refused { .. })
         ));
         // The node's abort ends the transfer, and the next one works.
-        assert_eq!(rig.fake.aborts, []);
-        assert_eq!(rig.fake.name, b"EPOS2");
+        assert_eq!(rig.unit.aborts, []);
+        assert_eq!(name(&mut rig).bytes, b"EPOS2");
         assert_eq!(read(&mut rig, NAME).unwrap(), b"EPOS2");
     }
 }
@@ -118,7 +132,7 @@ fn aborts_by_the_drive_are_reported_at_the_start_and_at_the_end() {
 fn a_wrong_toggle_bit_aborts_a_write() {
     for link in LINKS {
         let mut rig = rig(link);
-        rig.fake.wrong_toggle = true;
+        name(&mut rig).wrong_toggle = true;
         let error = rig.run(write(NAME, b"another name")).unwrap_err();
         assert_eq!(
             error.to_string(),
@@ -131,9 +145,9 @@ fn a_wrong_toggle_bit_aborts_a_write() {
             Vec::new()
         };
         // The pending abort is sent with the next command.
-        rig.fake.wrong_toggle = false;
-        assert_eq!(read(&mut rig, NAME).unwrap().len(), rig.fake.name.len());
-        assert_eq!(rig.fake.aborts, aborts, "{link:?}");
+        name(&mut rig).wrong_toggle = false;
+        assert_eq!(read(&mut rig, NAME).unwrap(), name(&mut rig).bytes);
+        assert_eq!(rig.unit.aborts, aborts, "{link:?}");
     }
 }
 
@@ -142,7 +156,7 @@ fn a_lost_segment_is_not_repeated() {
     for link in LINKS {
         for lost in 1..4 {
             let mut rig = rig(link);
-            rig.fake.hand = Box::new(move |n, _| if n == lost { Fate::Lost } else { Fate::Sent });
+            rig.unit.hand = Box::new(move |n, _| if n == lost { Fate::Lost } else { Fate::Sent });
             let ended = rig.run(write(NAME, b"fourteen bytes"));
             // A single segment suffices on a serial link.
             if lost == 3 && link != DriveLink::Can {
@@ -154,9 +168,9 @@ fn a_lost_segment_is_not_repeated() {
                 matches!(error, DriveError::NoAnswer { attempts: 1, .. }),
                 "{link:?} {lost}: {error}"
             );
-            rig.fake.hand = Box::new(|_, _| Fate::Sent);
+            rig.unit.hand = Box::new(|_, _| Fate::Sent);
             read(&mut rig, NAME).unwrap();
-            let timed_out = rig.fake.aborts == [CommError::TIMEOUT];
+            let timed_out = rig.unit.aborts == [CommError::TIMEOUT];
             assert_eq!(timed_out, link == DriveLink::Can, "{link:?} {lost}");
         }
     }
@@ -166,7 +180,7 @@ fn a_lost_segment_is_not_repeated() {
 fn reading_an_oversized_object_fails() {
     for link in LINKS {
         let mut rig = rig(link);
-        rig.fake.name = vec![b'x'; 300];
+        name(&mut rig).bytes = vec![b'x'; 300];
         let error = read(&mut rig, NAME).unwrap_err();
         assert!(
             matches!(
@@ -178,7 +192,7 @@ fn reading_an_oversized_object_fails() {
             ),
             "{error}"
         );
-        rig.fake.name.truncate(256);
+        name(&mut rig).bytes.truncate(256);
         assert_eq!(read(&mut rig, NAME).unwrap().len(), 256, "{link:?}");
     }
 }
@@ -186,7 +200,7 @@ fn reading_an_oversized_object_fails() {
 #[test]
 fn direct_writes_are_refused_for_the_controlword_and_while_enabled() {
     for link in LINKS {
-        let mut rig = Rig::homed_on(link);
+        let mut rig = with_name(Rig::homed_on(link));
         let controlword = Address::new(0x6040, 0);
         let error = rig.run(write(controlword, &[0x1F, 0])).unwrap_err();
         assert!(matches!(error, DriveError::Reserved { .. }), "{error}");
@@ -194,7 +208,7 @@ fn direct_writes_are_refused_for_the_controlword_and_while_enabled() {
         rig.forget();
         let error = rig.run(write(NAME, b"a new name")).unwrap_err();
         assert!(matches!(error, DriveError::State { .. }), "{error}");
-        assert_eq!(rig.fake.requests.len(), 1, "{link:?}: the statusword");
+        assert_eq!(rig.unit.requests.len(), 1, "{link:?}: the statusword");
         rig.run(DriveCommand::Brake).unwrap();
         assert!(rig.run(write(NAME, b"a new name")).is_ok());
     }
@@ -211,20 +225,23 @@ fn every_byte_value_passes_at_every_position() {
                 let value = u32::from_le_bytes(std::array::from_fn(|at| {
                     if mask & 1 << at == 0 { 0x11 } else { special }
                 }));
-                rig.fake.objects.insert((0x1018, 4), value);
+                rig.unit.hand = Box::new(move |_, request| match request {
+                    SerialRequest::ReadObject(read) if read.address == SERIAL => Fate::Value(value),
+                    _ => Fate::Sent,
+                });
                 let Ok(CommandOutcome::Status(status)) = rig.run(DriveCommand::Status) else {
                     panic!("{link:?}: {:?}", rig.events.last())
                 };
                 assert_eq!(status.identity.serial, value, "{link:?}");
                 let object = Address::new(0x6065, 0);
                 rig.run(write(object, &value.to_le_bytes())).unwrap();
-                assert_eq!(rig.fake.objects[&(0x6065, 0)], value, "{link:?}");
+                assert_eq!(rig.unit.get(0x6065, 0), value, "{link:?}");
             }
             for (len, at) in (5..16).flat_map(|len| (0..len).map(move |at| (len, at))) {
                 let mut bytes = vec![0x11; len];
                 bytes[at] = special;
                 rig.run(write(NAME, &bytes)).unwrap();
-                assert_eq!(rig.fake.name, bytes, "{link:?}");
+                assert_eq!(name(&mut rig).bytes, bytes, "{link:?}");
                 assert_eq!(read(&mut rig, NAME).unwrap(), bytes, "{link:?}");
             }
         }

@@ -1,10 +1,14 @@
 //! Each command from its first frame to its outcome.
 
+use firmware_sim::epos2::NodeConfig;
 use protocol::epos2::DeviceError;
+use protocol::record::DriveLink;
 use units::{Degrees, Quadcounts, Rpm, Span};
 
-use super::fake::{DISABLED, ENABLED, Fake};
+use protocol::epos2::cia402::DeviceState;
+
 use super::rig::{Rig, to};
+use super::unit::{SERIAL, near_its_switch};
 use crate::{AxisConfig, CommandKind, CommandOutcome, CommandProgress, DriveCommand, DriveError};
 
 fn target(qc: i32) -> (u16, u8, u32) {
@@ -18,15 +22,15 @@ fn connect_identifies_the_drive_clears_faults_and_configures() {
         panic!("{:?}", rig.events)
     };
     assert_eq!(connected.identity.software, 0x2126);
-    assert_eq!(connected.identity.serial, 0x9090_9090);
+    assert_eq!(connected.identity.serial, SERIAL);
     assert_eq!(connected.history, [DeviceError::CAN_PASSIVE]);
     assert!(!connected.referenced);
-    assert_eq!(rig.fake.state, DISABLED);
+    assert_eq!(rig.unit.state(), DeviceState::SwitchOnDisabled);
     let cleared = CommandProgress::FaultCleared {
         error: Some(DeviceError::CAN_PASSIVE),
     };
     assert!(rig.progress().contains(&cleared));
-    let held = |index, sub| rig.fake.objects[&(index, sub)];
+    let held = |index, sub| rig.unit.get(index, sub);
     assert_eq!(held(0x2071, 4), 8 | 3, "2071:4 stops at both switches");
     assert_eq!(held(0x607D, 1) as i32, -40_000);
     assert_eq!(held(0x607D, 2) as i32, 40_000);
@@ -48,9 +52,9 @@ fn missing_switches_and_brake_are_not_configured() {
         ..AxisConfig::default()
     });
     rig.run(DriveCommand::Connect).unwrap();
-    let fresh = Fake::new();
-    for entry in [(0x2071, 4), (0x2079, 1), (0x2078, 2), (0x2100, 1)] {
-        assert_eq!(rig.fake.objects[&entry], fresh.objects[&entry]);
+    let fresh = Rig::new(AxisConfig::default()).unit;
+    for (index, sub) in [(0x2071, 4), (0x2079, 1), (0x2078, 2), (0x2100, 1)] {
+        assert_eq!(rig.unit.get(index, sub), fresh.get(index, sub));
     }
 }
 
@@ -59,13 +63,13 @@ fn connect_stops_an_axis_left_moving() {
     let mut rig = Rig::homed();
     rig.client.start(DriveCommand::Goto(to(45.0))).unwrap();
     assert_eq!(rig.run_for(Span::from_millis(300)), None);
-    assert_eq!(rig.fake.state, ENABLED);
+    assert_eq!(rig.unit.state(), DeviceState::OperationEnabled);
     // Another process takes over.
     rig.client = crate::DriveClient::new(AxisConfig::default(), crate::DriveLink::Usb);
     rig.forget();
     rig.run(DriveCommand::Connect).unwrap();
     assert_eq!(rig.writes()[0], (0x6040, 0, 0x0B));
-    assert_eq!(rig.fake.state, DISABLED);
+    assert_eq!(rig.unit.state(), DeviceState::SwitchOnDisabled);
 }
 
 #[test]
@@ -84,22 +88,29 @@ fn home_finds_the_home_position() {
     for wanted in [(0x6098, 0, 17), (0x607C, 0, 3333), (0x6040, 0, 0x1F)] {
         assert!(writes.contains(&wanted), "{wanted:X?}");
     }
-    assert_eq!(rig.fake.objects[&(0x6060, 0)], 1, "profile position again");
+    assert_eq!(rig.unit.get(0x6060, 0), 1, "profile position again");
 }
 
 #[test]
 fn homing_by_current_writes_its_threshold_and_others_do_not() {
-    let threshold = |method| {
+    let threshold = |method, offset| {
         let mut config = AxisConfig::default();
-        config.homing.method = method;
-        let mut rig = Rig::new(config);
-        rig.fake.objects.insert((0x2080, 0), 0);
+        (config.homing.method, config.homing.offset) = (method, Degrees(offset));
+        // A mechanical stop half a degree above.
+        let unit = NodeConfig {
+            hard_stops: [None, Some(-42_967)],
+            switches: [None; 4],
+            ..near_its_switch()
+        };
+        let mut rig = Rig::with(DriveLink::Usb, config, unit);
+        rig.unit.set(0x2080, 0, 0);
         rig.run(DriveCommand::Connect).unwrap();
-        rig.run(DriveCommand::Home).unwrap();
-        rig.fake.objects[&(0x2080, 0)]
+        let homed = rig.run(DriveCommand::Home);
+        assert!(homed.is_ok(), "method {method}: {homed:?}");
+        rig.unit.get(0x2080, 0)
     };
-    assert_eq!(threshold(-3), 500);
-    assert_eq!(threshold(23), 0);
+    assert_eq!(threshold(-3, -5.0), 500);
+    assert_eq!(threshold(35, 0.0), 0);
 }
 
 #[test]
@@ -128,7 +139,7 @@ fn sweeps_are_sampled_from_standstill_to_standstill() {
         assert!(pair[0].answer <= pair[1].request);
         assert!(pair[0].request < pair[0].answer);
         let apart = pair[1].request - pair[0].request;
-        assert!(apart >= rig.fake.turnaround, "{apart:?}");
+        assert!(apart >= rig.unit.turnaround, "{apart:?}");
         assert!(apart < Span::from_millis(60), "{apart:?}");
     }
 }
@@ -145,7 +156,7 @@ fn samples_lie_between_their_stamps() {
         .unwrap();
     let t0 = samples[began + 1].request;
     for s in samples.iter().skip(began + 1).take(600) {
-        // The scripted drive samples when the request arrives.
+        // The unit reads its counter when the request arrives.
         let way = 37_500.0 * (s.request - t0).as_secs_f64();
         let got = f64::from(s.position.0 - samples[began + 1].position.0);
         assert!((got - way).abs() <= 1.0, "{got} {way}");
@@ -157,7 +168,7 @@ fn polls_follow_each_answer_immediately() {
     let mut config = AxisConfig::default();
     config.timing.poll_period = Span::ZERO;
     let mut rig = Rig::new(config);
-    rig.fake.turnaround = Span::from_micros(250);
+    rig.unit.turnaround = Span::from_micros(250);
     rig.run(DriveCommand::Connect).unwrap();
     rig.run(DriveCommand::Home).unwrap();
     rig.forget();
@@ -204,7 +215,7 @@ fn brake_switches_the_power_off_without_a_quick_stop() {
     assert_eq!(stopped.angle, Some(Degrees(-60.0)));
     assert!(stopped.brake && !stopped.fault);
     assert_eq!(rig.writes(), [(0x6040, 0, 0)]);
-    assert_eq!(rig.fake.state, DISABLED);
+    assert_eq!(rig.unit.state(), DeviceState::SwitchOnDisabled);
 }
 
 #[test]
@@ -215,7 +226,7 @@ fn status_changes_nothing() {
     };
     assert_eq!(status.state, Some(crate::cia402::DeviceState::Fault));
     assert_eq!(status.history, [DeviceError::CAN_PASSIVE]);
-    assert_eq!((status.angle, status.position.0), (None, 1234));
+    assert_eq!((status.angle, status.position.0), (None, 0));
     assert_eq!(status.mode, 1);
     assert!(rig.writes().is_empty());
 }
@@ -229,7 +240,7 @@ fn clear_faults_clears_the_fault() {
             DeviceError::CAN_PASSIVE
         ]))
     );
-    assert_eq!(rig.fake.state, DISABLED);
+    assert_eq!(rig.unit.state(), DeviceState::SwitchOnDisabled);
 }
 
 #[test]

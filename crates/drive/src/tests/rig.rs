@@ -1,18 +1,19 @@
-//! The client with the scripted drive in virtual time; records everything on the wire.
+//! The client with the software EPOS2 in virtual time; records everything on the wire.
 
+use firmware_sim::epos2::NodeConfig;
 use protocol::epos2::message::SerialRequest;
 use protocol::record::{Direction, DriveLink};
 use units::{Degrees, Host, Rpm, RpmPerS, Span, Stamp};
 
-use super::fake::Fake;
+use super::unit::{Unit, near_its_switch};
 use crate::{
     AxisConfig, CommandOutcome, CommandProgress, DriveClient, DriveCommand, DriveError, DriveEvent,
-    DriveListener, MoveCommand, Observation, ShaftSample,
+    DriveListener, MoveCommand, Observation, ShaftSample, StopReport,
 };
 
 pub struct Rig {
     pub client: DriveClient,
-    pub fake: Fake,
+    pub unit: Unit,
     pub now: Stamp<Host>,
     pub events: Vec<DriveEvent>,
     pub log: Vec<(Direction, Vec<u8>, Stamp<Host>)>,
@@ -24,10 +25,15 @@ impl Rig {
     }
 
     pub fn on(link: DriveLink, config: AxisConfig) -> Self {
+        Self::with(link, config, near_its_switch())
+    }
+
+    pub fn with(link: DriveLink, config: AxisConfig, unit: NodeConfig) -> Self {
+        let now = Stamp::from_nanos(1_795_000_000_000_000_000);
         Self {
             client: DriveClient::new(config, link),
-            fake: Fake::on(link),
-            now: Stamp::from_nanos(1_795_000_000_000_000_000),
+            unit: Unit::new(link, unit, now),
+            now,
             events: Vec::new(),
             log: Vec::new(),
         }
@@ -46,8 +52,19 @@ impl Rig {
         rig
     }
 
+    /// In mid-sweep to 45 degrees, after `span`.
+    pub fn sweeping_on(link: DriveLink, span: Span) -> Self {
+        let mut rig = Self::homed_on(link);
+        rig.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
+        assert_eq!(rig.run_for(span), None, "{link:?}");
+        let moved = rig.unit.position(rig.now) + 40_000;
+        assert!(moved > 5_000, "{link:?}: {moved}");
+        rig.forget();
+        rig
+    }
+
     pub fn forget(&mut self) {
-        self.fake.requests.clear();
+        self.unit.requests.clear();
         self.events.clear();
         self.log.clear();
     }
@@ -81,7 +98,7 @@ impl Rig {
 
     fn transmit(&mut self) {
         while let Some(frame) = self.client.poll_transmit(self.now) {
-            self.fake.input(&frame, self.now);
+            self.unit.input(&frame, self.now);
             self.log.push((Direction::ToDevice, frame, self.now));
         }
     }
@@ -103,15 +120,14 @@ impl Rig {
                 DriveEvent::Sample(_) | DriveEvent::Progress(_) => {}
             }
         }
-        let next = [self.fake.next_answer(), self.client.poll_timeout()];
-        let next = next
-            .into_iter()
-            .flatten()
-            .min()
-            .expect("nothing to wait for");
+        let answer = self.unit.next_answer();
+        let next = self
+            .client
+            .poll_timeout()
+            .map_or(answer, |at| at.min(answer));
         // Virtual time always advances.
         self.now = next.max(self.now + Span::from_nanos(1));
-        while let Some(bytes) = self.fake.take_answer(self.now) {
+        while let Some(bytes) = self.unit.take_answer(self.now) {
             self.client.handle_input(&bytes, self.now);
             self.log.push((Direction::FromDevice, bytes, self.now));
         }
@@ -124,8 +140,16 @@ impl Rig {
     /// When the drive received the first quick stop.
     pub fn quick_stop(&self) -> Option<Stamp<Host>> {
         let is_stop = |request: &SerialRequest| matches!(request, SerialRequest::WriteObject(w) if w.address.index == 0x6040 && w.value == 0x0B);
-        let stop = self.fake.requests.iter().find(|(_, r)| is_stop(r));
+        let stop = self.unit.requests.iter().find(|(_, r)| is_stop(r));
         stop.map(|(at, _)| *at)
+    }
+
+    /// The client's report of the stopped axis.
+    pub fn made_safe(&self) -> Option<StopReport> {
+        self.progress().iter().find_map(|progress| match progress {
+            CommandProgress::MadeSafe(stopped) => Some(*stopped),
+            _ => None,
+        })
     }
 
     pub fn samples(&self) -> Vec<ShaftSample> {
@@ -150,7 +174,7 @@ impl Rig {
 
     /// Writes that reached the drive: index, sub, value.
     pub fn writes(&self) -> Vec<(u16, u8, u32)> {
-        self.fake
+        self.unit
             .requests
             .iter()
             .filter_map(|(_, request)| match request {

@@ -1,65 +1,60 @@
-//! The scripted drive's side of each link: bytes to requests, answers and their fates to bytes, and
-//! the CAN services other than SDO.
+//! Faults of each link: requests on their way to the software EPOS2, its replies, and the CAN
+//! services other than SDO.
 
-use protocol::canopen::emcy::Emergency;
-use protocol::canopen::heartbeat::Heartbeat;
-use protocol::canopen::nmt::{NmtCommand, NmtState};
-use protocol::canopen::pdo::{MappedObject, Pdo};
+use firmware_sim::epos2::Node;
+use protocol::canopen::pdo::Pdo;
 use protocol::canopen::sdo::{self, Expedited, Initiate};
-use protocol::canopen::{BusMessage, CanFrame, NodeId, PdoNumber};
+use protocol::canopen::{BusMessage, CanFrame, CanId, CommunicationObject, NodeId, PdoNumber};
 use protocol::epos2::message::{
     InitiateSegmentedRead, InitiateSegmentedWrite, ReadObject, SegmentedRead, SegmentedWrite,
     SerialAnswer, SerialRequest, WriteObject, WriteSegment,
 };
 use protocol::epos2::objects::Address;
-use protocol::epos2::rs232::{BodyDecoder, FAILED, OKAY, encode_body};
+use protocol::epos2::rs232::{BodyDecoder, OKAY, encode_body};
 use protocol::epos2::usb::{self, UsbDecoder};
-use protocol::epos2::{Bounded, CommError, SerialFrame};
+use protocol::epos2::{Bounded, SerialFrame};
 use protocol::record::DriveLink;
 use units::{Host, Span, Stamp};
 
-use super::fake::{Fake, Fate, device_us, width};
+use super::unit::{Fate, Unit};
 
-pub enum Wire {
-    Usb(UsbDecoder),
-    Rs232(UnitState),
+/// Recognises the requests in the host's bytes.
+pub enum RequestTap {
+    Usb {
+        decoder: UsbDecoder,
+        bytes: Vec<u8>,
+    },
+    Rs232(Handshake),
     Can,
-    /// Placeholder while the wire is in use.
+    /// Placeholder while the tap is in use.
     Gone,
 }
 
-/// State of the RS232 dialogue in the unit.
-pub enum UnitState {
+/// Where the RS232 handshake is.
+pub enum Handshake {
     Opcode,
-    Body(BodyDecoder),
-    Ready(SerialFrame, Fate),
+    Body(BodyDecoder, Vec<u8>),
+    Ready(Fate, Option<SerialFrame>),
     Receipt,
 }
 
-/// CAN services of the drive other than SDO.
-pub struct FakeBus {
-    pub state: NmtState,
-    next_heartbeat: Option<Stamp<Host>>,
+/// Faults of the CAN services other than SDO.
+pub struct BusFaults {
     /// The heartbeat is off.
     pub silent: bool,
-    host_heartbeat: Option<Stamp<Host>>,
-    /// Delay from SYNC to the sample, and from there to the frame's arrival.
-    pub forth: Span,
+    /// Delay from the sample to the arrival of its frame.
     pub back: Span,
     /// Decides whether the n-th frame of the stream is sent, and how often.
     pub copies: Box<dyn FnMut(usize) -> usize + Send>,
     streamed: usize,
+    /// When the host sent SYNCs.
     pub syncs: Vec<Stamp<Host>>,
 }
 
-impl Default for FakeBus {
+impl Default for BusFaults {
     fn default() -> Self {
         Self {
-            state: NmtState::PreOperational,
-            next_heartbeat: None,
             silent: false,
-            host_heartbeat: None,
-            forth: Span::from_micros(120),
             back: Span::from_micros(180),
             copies: Box::new(|_| 1),
             streamed: 0,
@@ -70,47 +65,41 @@ impl Default for FakeBus {
 
 const NODE: u8 = 1;
 
-fn node() -> NodeId {
+fn node_id() -> NodeId {
     NodeId::new(NODE).unwrap()
 }
 
-impl Wire {
+impl RequestTap {
     pub fn new(link: DriveLink) -> Self {
         match link {
-            DriveLink::Usb => Self::Usb(UsbDecoder::new()),
-            DriveLink::Rs232 => Self::Rs232(UnitState::Opcode),
+            DriveLink::Usb => Self::Usb {
+                decoder: UsbDecoder::new(),
+                bytes: Vec::new(),
+            },
+            DriveLink::Rs232 => Self::Rs232(Handshake::Opcode),
             DriveLink::Can => Self::Can,
         }
     }
 
-    pub fn link(&self) -> DriveLink {
+    pub fn input(&mut self, unit: &mut Unit, input: &[u8], now: Stamp<Host>) {
         match self {
-            Self::Usb(_) => DriveLink::Usb,
-            Self::Rs232(_) => DriveLink::Rs232,
-            Self::Can | Self::Gone => DriveLink::Can,
-        }
-    }
-
-    pub fn input(&mut self, fake: &mut Fake, bytes: &[u8], now: Stamp<Host>) {
-        match self {
-            Self::Usb(decoder) => {
-                for &byte in bytes {
+            Self::Usb { decoder, bytes } => {
+                for &byte in input {
+                    bytes.push(byte);
                     if let Some(Ok(frame)) = decoder.push(byte) {
-                        let request = SerialRequest::parse(&frame).unwrap().unwrap();
-                        let (answer, fate) = fake.execute(request, now);
-                        usb_answer(fake, &answer, fate, now);
+                        usb(unit, &frame, std::mem::take(bytes), now);
                     }
                 }
             }
-            Self::Rs232(state) => {
-                for &byte in bytes {
-                    let was = std::mem::replace(state, UnitState::Opcode);
-                    *state = rs232(was, fake, byte, now);
+            Self::Rs232(handshake) => {
+                for &byte in input {
+                    let was = std::mem::replace(handshake, Handshake::Opcode);
+                    *handshake = rs232(was, unit, byte, now);
                 }
             }
             Self::Can => {
-                for bytes in bytes.chunks(16) {
-                    can(fake, &CanFrame::from_socketcan(bytes).unwrap(), now);
+                for bytes in input.chunks(16) {
+                    can(unit, bytes, now);
                 }
             }
             Self::Gone => {}
@@ -118,148 +107,220 @@ impl Wire {
     }
 }
 
-/// The reply to a request of another kind: a read instead of a write, and vice versa.
-fn another(answer: &SerialFrame) -> SerialFrame {
-    if SerialAnswer::parse(answer).unwrap().data.is_empty() {
-        ReadObject::answer(Ok(0x1234))
-    } else {
-        WriteObject::answer(Ok(()))
+/// The answer of a script instead of the unit's.
+fn scripted(unit: &mut Unit, request: &SerialRequest, fate: Fate) -> Option<SerialFrame> {
+    if let Some(answer) = unit.long_object.as_mut().and_then(|it| it.answer(request)) {
+        return Some(answer);
+    }
+    match (fate, request) {
+        // A read instead of a write, and vice versa.
+        (Fate::Another, SerialRequest::WriteObject(_)) => Some(ReadObject::answer(Ok(0x1234))),
+        (Fate::Another | Fate::Ignored, _) => Some(WriteObject::answer(Ok(()))),
+        (Fate::Refused(error), _) => Some(SerialAnswer::bare(error).to_frame()),
+        (Fate::Value(value), _) => Some(ReadObject::answer(Ok(value))),
+        _ => None,
     }
 }
 
-fn usb_answer(fake: &mut Fake, answer: &SerialFrame, fate: Fate, now: Stamp<Host>) {
-    let other = another(answer);
-    let answer = if fate == Fate::Another {
-        &other
-    } else {
-        answer
-    };
-    let mut bytes = usb::to_bytes(answer).to_vec();
+/// Whether a request with this fate changes the unit.
+fn is_executed(fate: Fate) -> bool {
+    !matches!(fate, Fate::Ignored | Fate::Refused(_))
+}
+
+fn reply(unit: &mut Unit, mut bytes: Vec<u8>, fate: Fate, now: Stamp<Host>) {
     let by = match fate {
         Fate::Lost => return,
         Fate::Late(by) => by,
         _ => Span::ZERO,
     };
     if fate == Fate::Damaged {
-        *bytes.last_mut().unwrap() ^= 0x55;
+        match unit.link {
+            // A damaged CAN frame does not arrive; a wrong length comes closest.
+            DriveLink::Can => bytes[4] = 7,
+            _ => *bytes.last_mut().unwrap() ^= 0x55,
+        }
     }
     if fate == Fate::Twice {
-        fake.send(bytes.clone(), by, now);
+        unit.send(bytes.clone(), by, now);
     }
-    fake.send(bytes, by, now);
+    unit.send(bytes, by, now);
 }
 
-fn rs232(state: UnitState, fake: &mut Fake, byte: u8, now: Stamp<Host>) -> UnitState {
-    match state {
-        UnitState::Opcode if [0x10, 0x11, 0x12, 0x13, 0x14, 0x15].contains(&byte) => {
-            fake.send(vec![OKAY], Span::ZERO, now);
-            UnitState::Body(BodyDecoder::new(byte))
-        }
-        UnitState::Opcode => {
-            fake.send(vec![FAILED], Span::ZERO, now);
-            UnitState::Opcode
-        }
-        UnitState::Body(mut decoder) => match decoder.push(byte) {
-            None => UnitState::Body(decoder),
-            Some(Err(_)) => {
-                fake.send(vec![FAILED], Span::ZERO, now);
-                UnitState::Opcode
-            }
-            Some(Ok(frame)) => {
-                let request = SerialRequest::parse(&frame).unwrap().unwrap();
-                let (answer, fate) = fake.execute(request, now);
-                match fate {
-                    Fate::Rejected => {
-                        fake.send(vec![FAILED], Span::ZERO, now);
-                        return UnitState::Opcode;
-                    }
-                    Fate::Lost => {}
-                    Fate::Late(by) => fake.send(vec![OKAY, 0], by, now),
-                    _ => fake.send(vec![OKAY, 0], Span::ZERO, now),
+fn usb(unit: &mut Unit, frame: &SerialFrame, mut bytes: Vec<u8>, now: Stamp<Host>) {
+    let request = SerialRequest::parse(frame).unwrap().unwrap();
+    let fate = unit.meet(request, now);
+    let script = scripted(unit, &request, fate);
+    if fate == Fate::Rejected {
+        *bytes.last_mut().unwrap() ^= 0x55;
+    }
+    let mut answers = Vec::new();
+    if is_executed(fate) {
+        answers = unit.server.input(&mut unit.node, &bytes);
+    }
+    if let Some(answer) = script {
+        answers = vec![usb::to_bytes(&answer).to_vec()];
+    }
+    for answer in answers {
+        reply(unit, answer, fate, now);
+    }
+}
+
+/// The unit receives the byte of the handshake, or a request as a whole.
+fn rs232(handshake: Handshake, unit: &mut Unit, byte: u8, now: Stamp<Host>) -> Handshake {
+    let mut bytes = vec![byte];
+    let (fate, next) = match handshake {
+        Handshake::Opcode if SerialRequest::OPCODES.contains(&byte) => (
+            Fate::Sent,
+            Handshake::Body(BodyDecoder::new(byte), Vec::new()),
+        ),
+        Handshake::Opcode => (Fate::Sent, Handshake::Opcode),
+        Handshake::Body(mut decoder, mut body) => {
+            body.push(byte);
+            match decoder.push(byte) {
+                None => return Handshake::Body(decoder, body),
+                Some(Err(_)) => {
+                    bytes = body;
+                    (Fate::Sent, Handshake::Opcode)
                 }
-                UnitState::Ready(answer, fate)
+                Some(Ok(frame)) => {
+                    let request = SerialRequest::parse(&frame).unwrap().unwrap();
+                    let fate = unit.meet(request, now);
+                    let script = scripted(unit, &request, fate);
+                    bytes = body;
+                    if fate == Fate::Rejected {
+                        *bytes.last_mut().unwrap() ^= 0x55;
+                    } else if !is_executed(fate) {
+                        bytes = harmless(&request, bytes);
+                    }
+                    let next = match fate {
+                        Fate::Rejected => Handshake::Opcode,
+                        _ => Handshake::Ready(fate, script),
+                    };
+                    // Damage and repetition are for the answer.
+                    let fate = match fate {
+                        Fate::Lost | Fate::Late(_) => fate,
+                        _ => Fate::Sent,
+                    };
+                    (fate, next)
+                }
             }
-        },
-        UnitState::Ready(mut answer, fate) if byte == OKAY => {
-            if fate == Fate::Another {
-                answer = another(&answer);
-            }
-            let mut body = Vec::new();
-            encode_body(&answer, &mut body).unwrap();
-            if fate == Fate::Damaged {
-                *body.last_mut().unwrap() ^= 0x55;
-            }
-            if fate == Fate::Twice {
-                fake.send(body.clone(), Span::ZERO, now);
-            }
-            fake.send(body, Span::ZERO, now);
-            UnitState::Receipt
         }
-        UnitState::Ready(..) | UnitState::Receipt => UnitState::Opcode,
-    }
-}
-
-fn can(fake: &mut Fake, frame: &CanFrame, now: Stamp<Host>) {
-    match BusMessage::parse(frame).unwrap() {
-        BusMessage::Nmt(nmt) => match nmt.command {
-            NmtCommand::Start => fake.bus.state = NmtState::Operational,
-            NmtCommand::EnterPreOperational => fake.bus.state = NmtState::PreOperational,
-            other => panic!("{other:?}"),
-        },
-        BusMessage::Sync(_) => fake.sync(now),
-        BusMessage::Heartbeat(heartbeat) => {
-            assert_eq!(heartbeat.node.get(), 127);
-            fake.bus.host_heartbeat = Some(now);
-        }
-        BusMessage::SdoRequest(to, request) => {
-            assert_eq!(to, node());
-            sdo_request(fake, &request, now);
-        }
-        other => panic!("{other:?}"),
-    }
-}
-
-fn sdo_request(fake: &mut Fake, request: &sdo::SdoRequest, now: Stamp<Host>) {
-    let (wire, address) = match *request {
-        sdo::SdoRequest::InitiateUpload { address } if address.index == 0x1008 => {
-            let open = InitiateSegmentedRead {
-                node: NODE,
-                address,
+        Handshake::Ready(fate, script) if byte == OKAY => {
+            let mut answers = unit.server.input(&mut unit.node, &bytes);
+            if let Some(frame) = script {
+                let mut body = Vec::new();
+                encode_body(&frame, &mut body).unwrap();
+                answers = vec![body];
+            }
+            // A late reply was late with its handshake.
+            let fate = match fate {
+                Fate::Lost | Fate::Late(_) => Fate::Sent,
+                _ => fate,
             };
+            for answer in answers {
+                reply(unit, answer, fate, now);
+            }
+            return Handshake::Receipt;
+        }
+        Handshake::Ready(..) | Handshake::Receipt => (Fate::Sent, Handshake::Opcode),
+    };
+    for answer in unit.server.input(&mut unit.node, &bytes) {
+        reply(unit, answer, fate, now);
+    }
+    next
+}
+
+/// The body of a request that the unit refuses, with its handshake.
+fn harmless(request: &SerialRequest, body: Vec<u8>) -> Vec<u8> {
+    let SerialRequest::WriteObject(write) = *request else {
+        return body;
+    };
+    let address = Address::new(0x5FFF, 0);
+    let frame = WriteObject { address, ..write }.to_frame();
+    let mut body = Vec::new();
+    encode_body(&frame, &mut body).unwrap();
+    body
+}
+
+fn can(unit: &mut Unit, bytes: &[u8], now: Stamp<Host>) {
+    let frame = CanFrame::from_socketcan(bytes).unwrap();
+    match BusMessage::parse(&frame).unwrap() {
+        BusMessage::SdoRequest(to, request) => {
+            assert_eq!(to, node_id());
+            return sdo_request(unit, &request, bytes, now);
+        }
+        BusMessage::Sync(_) => unit.bus.syncs.push(now - unit.forth),
+        _ => {}
+    }
+    let sent = unit.server.input(&mut unit.node, bytes);
+    unit.on_bus(sent, now);
+}
+
+fn sdo_request(unit: &mut Unit, request: &sdo::SdoRequest, bytes: &[u8], now: Stamp<Host>) {
+    if let sdo::SdoRequest::Abort { error, .. } = *request {
+        unit.aborts.push(error);
+        unit.server.input(&mut unit.node, bytes);
+        return;
+    }
+    let (wire, address) = serial_request(request);
+    let fate = unit.meet(wire, now);
+    let script = scripted(unit, &wire, fate);
+    if is_executed(fate) && script.is_none() {
+        for bytes in unit.server.input(&mut unit.node, bytes) {
+            let frame = CanFrame::from_socketcan(&bytes).unwrap();
+            if channel(&frame) == Some(CommunicationObject::SdoResponse(node_id())) {
+                reply(unit, bytes, fate, now);
+            } else {
+                unit.on_bus(vec![bytes], now);
+            }
+        }
+    }
+    let Some(script) = script else {
+        return;
+    };
+    let answer = if fate == Fate::Another {
+        // Even of the same kind.
+        let address = Address::new(address.index + 1, address.sub);
+        let transfer = Initiate::Expedited(Expedited::of(0x1234_u32));
+        sdo::SdoResponse::InitiateUpload { address, transfer }
+    } else {
+        sdo_answer(&unit.node, &wire, address, &script)
+    };
+    let bytes = answer.to_frame(node_id()).to_socketcan().to_vec();
+    reply(unit, bytes, fate, now);
+}
+
+/// The serial request of the same meaning, and the object.
+fn serial_request(request: &sdo::SdoRequest) -> (SerialRequest, Address) {
+    const NAME: Address = Address::new(0x1008, 0);
+    let node = NODE;
+    match *request {
+        sdo::SdoRequest::InitiateUpload { address } if address == NAME => {
+            let open = InitiateSegmentedRead { node, address };
             (SerialRequest::InitiateSegmentedRead(open), address)
         }
         sdo::SdoRequest::InitiateUpload { address } => {
-            let node = NODE;
-            (
-                SerialRequest::ReadObject(ReadObject { node, address }),
-                address,
-            )
+            let read = ReadObject { node, address };
+            (SerialRequest::ReadObject(read), address)
         }
         sdo::SdoRequest::InitiateDownload {
             address,
             transfer: Initiate::Expedited(data),
         } => {
-            assert_eq!(
-                data.as_slice().len(),
-                usize::from(width(address)),
-                "{address}"
-            );
             let write = WriteObject {
-                node: NODE,
+                node,
                 address,
                 value: data.to_u32(),
             };
             (SerialRequest::WriteObject(write), address)
         }
-        sdo::SdoRequest::UploadSegment { toggle } => (
-            SerialRequest::SegmentedRead(SegmentedRead { toggle }),
-            Address::new(0x1008, 0),
-        ),
+        sdo::SdoRequest::UploadSegment { toggle } => {
+            (SerialRequest::SegmentedRead(SegmentedRead { toggle }), NAME)
+        }
         sdo::SdoRequest::InitiateDownload {
             address,
             transfer: Initiate::Segmented { size: Some(len) },
         } => {
-            let node = NODE;
             let open = InitiateSegmentedWrite { node, address, len };
             (SerialRequest::InitiateSegmentedWrite(open), address)
         }
@@ -268,41 +329,19 @@ fn sdo_request(fake: &mut Fake, request: &sdo::SdoRequest, now: Stamp<Host>) {
             bytes.extend(segment.bytes.iter().copied());
             let toggle = segment.toggle;
             let write = SegmentedWrite(WriteSegment { toggle, bytes });
-            (
-                SerialRequest::SegmentedWrite(write),
-                Address::new(0x1008, 0),
-            )
-        }
-        sdo::SdoRequest::Abort { error, .. } => {
-            fake.aborts.push(error);
-            return;
+            (SerialRequest::SegmentedWrite(write), NAME)
         }
         other => panic!("{other:?}"),
-    };
-    let (answer, fate) = fake.execute(wire, now);
-    let mut answer = sdo_answer(&wire, address, &answer);
-    if fate == Fate::Another {
-        // Even of the same kind.
-        let address = Address::new(address.index + 1, address.sub);
-        let transfer = Initiate::Expedited(Expedited::of(0x1234_u32));
-        answer = sdo::SdoResponse::InitiateUpload { address, transfer };
     }
-    let mut bytes = answer.to_frame(node()).to_socketcan().to_vec();
-    let by = match fate {
-        Fate::Lost => return,
-        Fate::Late(by) => by,
-        _ => Span::ZERO,
-    };
-    match fate {
-        // A damaged CAN frame does not arrive; a wrong length comes closest.
-        Fate::Damaged => bytes[4] = 7,
-        Fate::Twice => fake.send(bytes.clone(), by, now),
-        _ => {}
-    }
-    fake.send(bytes, by, now);
 }
 
-fn sdo_answer(request: &SerialRequest, address: Address, answer: &SerialFrame) -> sdo::SdoResponse {
+/// A script's answer on CAN.
+fn sdo_answer(
+    node: &Node,
+    request: &SerialRequest,
+    address: Address,
+    answer: &SerialFrame,
+) -> sdo::SdoResponse {
     let parsed = SerialAnswer::parse(answer).unwrap();
     let error = parsed.error;
     if !error.is_none() {
@@ -328,7 +367,8 @@ fn sdo_answer(request: &SerialRequest, address: Address, answer: &SerialFrame) -
         }
         _ => {
             let value = parsed.value().unwrap().to_le_bytes();
-            let data = Expedited::new(&value[..usize::from(width(address))]).unwrap();
+            let width = node.read(address).unwrap().bytes().len();
+            let data = Expedited::new(&value[..width]).unwrap();
             sdo::SdoResponse::InitiateUpload {
                 address,
                 transfer: Initiate::Expedited(data),
@@ -337,91 +377,29 @@ fn sdo_answer(request: &SerialRequest, address: Address, answer: &SerialFrame) -
     }
 }
 
-impl Fake {
-    /// Sends the boot-up message and starts the heartbeat.
-    pub fn start_bus(&mut self, now: Stamp<Host>) {
-        let state = self.bus.state;
-        self.bus = FakeBus::default();
-        if state != NmtState::PreOperational {
-            self.send_frame(
-                &Heartbeat {
-                    node: node(),
-                    state: NmtState::BootUp,
+fn channel(frame: &CanFrame) -> Option<CommunicationObject> {
+    frame.cob_id().map(CommunicationObject::of)
+}
+
+impl Unit {
+    /// Frames that the unit sends on its own at `now`.
+    pub(super) fn on_bus(&mut self, sent: Vec<Vec<u8>>, now: Stamp<Host>) {
+        let stream = Pdo::Transmit(PdoNumber::One).channel(node_id());
+        for bytes in sent {
+            let frame = CanFrame::from_socketcan(&bytes).unwrap();
+            if frame.id() == CanId::Standard(stream.cob_id()) {
+                let n = self.bus.streamed;
+                self.bus.streamed += 1;
+                for copy in 0..(self.bus.copies)(n) {
+                    let at = now + self.bus.back + Span::from_micros(100 * copy as i64);
+                    self.send_at(bytes.clone(), at);
                 }
-                .to_frame(),
-                now,
-            );
-        }
-    }
-
-    pub fn next_of_bus(&self) -> Option<Stamp<Host>> {
-        self.bus.next_heartbeat.or(self.fault_at.map(|(at, _)| at))
-    }
-
-    pub fn live_on_bus(&mut self, now: Stamp<Host>) {
-        let period = i64::from(self.objects[&(0x1017, 0)]);
-        if period == 0 || self.bus.silent {
-            self.bus.next_heartbeat = None;
-        } else if self.bus.next_heartbeat.is_none_or(|at| at <= now) {
-            self.bus.next_heartbeat = Some(now + Span::from_millis(period));
-            let state = self.bus.state;
-            self.send_frame(
-                &Heartbeat {
-                    node: node(),
-                    state,
-                }
-                .to_frame(),
-                now,
-            );
-        }
-        let entry = self.objects[&(0x1016, 1)];
-        let limit = Span::from_millis(i64::from(entry & 0xFFFF));
-        let observed = self.bus.host_heartbeat;
-        if entry == 0 {
-            self.bus.host_heartbeat = None;
-        } else if observed.is_some_and(|at| now - at > limit) {
-            self.bus.host_heartbeat = None;
-            self.fault(0x8130, now);
-        }
-    }
-
-    pub fn emergency(&mut self, code: u16, now: Stamp<Host>) {
-        if self.bus.state == NmtState::Operational {
-            self.send_frame(&Emergency::new(node(), code, 1).to_frame(), now);
-        }
-    }
-
-    pub fn send_frame(&mut self, frame: &CanFrame, now: Stamp<Host>) {
-        let at = now + Span::from_micros(150);
-        self.send_at(frame.to_socketcan().to_vec(), at);
-    }
-
-    fn sync(&mut self, now: Stamp<Host>) {
-        self.bus.syncs.push(now);
-        let object = |entry| self.objects[&entry];
-        let in_use = object((0x1800, 1)) & 1 << 31 == 0 && object((0x1800, 2)) == 1;
-        if !in_use || self.bus.state != NmtState::Operational {
-            return;
-        }
-        let at = now + self.bus.forth;
-        let mut data = Vec::new();
-        for sub in 1..=object((0x1A00, 0)) as u8 {
-            let entry = MappedObject::from_u32(self.objects[&(0x1A00, sub)]);
-            let value = match (entry.address.index, entry.address.sub) {
-                (0x1013, 0) => device_us(at),
-                _ => self
-                    .get(entry.address, at)
-                    .unwrap_or_else(|e: CommError| panic!("{e}")),
-            };
-            data.extend_from_slice(&value.to_le_bytes()[..usize::from(entry.bits / 8)]);
-        }
-        let id = Pdo::Transmit(PdoNumber::One).channel(node()).cob_id();
-        let frame = CanFrame::new(id, &data).unwrap();
-        let n = self.bus.streamed;
-        self.bus.streamed += 1;
-        for copy in 0..(self.bus.copies)(n) {
-            let at = at + self.bus.back + Span::from_micros(100 * copy as i64);
-            self.send_at(frame.to_socketcan().to_vec(), at);
+                continue;
+            }
+            let is_heartbeat = channel(&frame) == Some(CommunicationObject::Heartbeat(node_id()));
+            if !(is_heartbeat && self.bus.silent) {
+                self.send_at(bytes, now + Span::from_micros(150));
+            }
         }
     }
 }

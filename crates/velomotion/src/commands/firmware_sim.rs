@@ -59,7 +59,7 @@ pub fn run(arguments: &cli::FirmwareSim, common: &Common) -> Result<CommandOutpu
 /// What moves and holds the unpowered axis.
 fn load(arguments: &cli::FirmwareSim, axis: &AxisConfig) -> Option<AxisLoad> {
     let motor = |deg_s2: f64| axis.gearing.rpm_per_s(DegPerS2(deg_s2)).0;
-    if arguments.gravity.is_none() && arguments.friction.is_none() {
+    if arguments.gravity.is_none() && arguments.friction.is_none() && arguments.brake.is_none() {
         return None;
     }
     let gravity = arguments.gravity.unwrap_or_default();
@@ -151,5 +151,53 @@ impl Link {
 impl Drop for Link {
     fn drop(&mut self) {
         let _ = std::fs::remove_file(&self.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+
+    fn load_of(options: &str) -> Option<AxisLoad> {
+        let line = format!("velomotion firmware-sim --usb {options}");
+        let parsed = cli::Cli::parse_from(line.split_whitespace());
+        let cli::Command::FirmwareSim(arguments) = parsed.command else {
+            panic!("{line}")
+        };
+        load(&arguments, &AxisConfig::default())
+    }
+
+    /// The default gear has 0.05 deg/s per rpm.
+    #[test]
+    fn each_option_alone_loads_the_axis() {
+        assert_eq!(load_of(""), None);
+        let unloaded = AxisLoad::default();
+        let gravity_rpm_s = -5_000;
+        assert_eq!(
+            load_of("--gravity -250"),
+            Some(AxisLoad {
+                gravity_rpm_s,
+                ..unloaded
+            })
+        );
+        let friction_rpm_s = 600;
+        assert_eq!(
+            load_of("--friction 30"),
+            Some(AxisLoad {
+                friction_rpm_s,
+                ..unloaded
+            })
+        );
+        let brake = Some(HoldingBrake {
+            opening_ms: 20,
+            closing_ms: 40,
+            holding_rpm_s: u32::MAX,
+        });
+        assert_eq!(
+            load_of("--brake 20,40"),
+            Some(AxisLoad { brake, ..unloaded })
+        );
     }
 }

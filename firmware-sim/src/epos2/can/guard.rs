@@ -1,10 +1,10 @@
-//! Error control: the heartbeat of the node (1017), the heartbeats it monitors (1016), and answers
-//! to guarding requests.
+//! Error control: the heartbeat of the node (1017), the heartbeats it monitors (1016), node
+//! guarding and life guarding (100C, 100D).
 
 use protocol::canopen::heartbeat::ConsumerEntry;
 use protocol::canopen::{CanFrame, CommunicationObject, NodeId};
 use protocol::epos2::DeviceError;
-use protocol::epos2::objects::{self, Address};
+use protocol::epos2::objects::{self, Address, TypedObject};
 
 use crate::epos2::node::Node;
 
@@ -41,18 +41,27 @@ impl HeartbeatTimer {
     }
 }
 
-/// Node guarding: the toggle bit of the next answer.
+/// Guard time, ms.
+const GUARD_TIME: TypedObject<u16> = TypedObject::new(0x100C, 0, "Guard Time");
+/// The life time is the guard time times this factor.
+const LIFE_TIME_FACTOR: TypedObject<u8> = TypedObject::new(0x100D, 0, "Lifetime Factor");
+
+/// Node guarding by a master, and life guarding of that master. The heartbeat excludes both.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct NodeGuarding {
+    /// The toggle bit of the next answer.
     toggle: bool,
+    /// Time of the last request; the first starts life guarding.
+    last_us: Option<u64>,
 }
 
 impl NodeGuarding {
-    /// The answer to a request; `None` while the heartbeat is on, which excludes guarding.
+    /// The answer to a request; `None` while the heartbeat is on.
     pub fn answer(&mut self, node: &Node, id: NodeId) -> Option<CanFrame> {
         if node.dictionary.get(objects::PRODUCER_HEARTBEAT) != 0 {
             return None;
         }
+        self.last_us = Some(node.time_us());
         let toggle = if self.toggle { 0x80 } else { 0 };
         self.toggle = !self.toggle;
         let state = node.nmt_state().to_u8();
@@ -61,6 +70,28 @@ impl NodeGuarding {
             [state | toggle],
         ))
     }
+
+    /// Raises error 8130 when requests have been missing for the life time (100C times 100D; 0:
+    /// not monitored). The drive reacts by 6007.
+    pub fn watch(&mut self, node: &mut Node, now_us: u64) {
+        let life_ms = u64::from(node.dictionary.get(GUARD_TIME))
+            * u64::from(node.dictionary.get(LIFE_TIME_FACTOR));
+        if life_ms == 0 || node.dictionary.get(objects::PRODUCER_HEARTBEAT) != 0 {
+            self.last_us = None;
+        }
+        if let Some(last_us) = self.last_us
+            && now_us.saturating_sub(last_us) > 1000 * life_ms
+        {
+            self.last_us = None;
+            lose_master(node);
+        }
+    }
+}
+
+/// Reacts to a monitored master that is silent.
+fn lose_master(node: &mut Node) {
+    node.lose_connection(DeviceError::CAN_LIFE_GUARD);
+    node.leave_operational();
 }
 
 /// Monitor of one entry of 1016.
@@ -87,8 +118,7 @@ impl HeartbeatMonitor {
         };
         if now_us.saturating_sub(last_us) > 1000 * u64::from(entry.time_ms) {
             self.last_us = None;
-            node.lose_connection(DeviceError::CAN_LIFE_GUARD);
-            node.leave_operational();
+            lose_master(node);
         }
     }
 

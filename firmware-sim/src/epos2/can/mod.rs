@@ -2,9 +2,8 @@
 //! "CANopen Communication").
 //!
 //! [`CanServer`] joins the services, one file each: NMT and error control, SDO, transmit and
-//! receive PDOs. Not simulated: bit timing and arbitration, LSS, SDO block transfer, life guarding
-//! (100C, 100D; guarding requests are answered). A lost master is error 8130 with the reaction of
-//! 6007.
+//! receive PDOs. Not simulated: bit timing and arbitration, LSS, SDO block transfer. A lost master
+//! is error 8130 with the reaction of 6007.
 
 mod guard;
 mod receive;
@@ -61,7 +60,8 @@ impl CanServer {
         for (sub, monitor) in (1..).zip(&mut self.monitors) {
             monitor.watch(node, sub, now_us);
         }
-        // A heartbeat monitor may have changed it.
+        self.guarding.watch(node, now_us);
+        // A lost master may have changed it.
         self.follow_state(node);
         if node.nmt_state() != NmtState::Stopped {
             send_emergencies(node, id, out);

@@ -9,6 +9,7 @@ mod homing;
 mod limits;
 mod load;
 mod position;
+mod setting_modes;
 mod states;
 mod storage;
 mod velocity;

@@ -29,6 +29,28 @@ fn the_papers_sweep_takes_its_time() {
 }
 
 #[test]
+fn sin2_ramps_lengthen_the_sweep_by_pi_half_minus_1_ramps() {
+    let mut node = enabled();
+    set(&mut node, objects::PROFILE_VELOCITY, 1125);
+    set(&mut node, objects::PROFILE_TYPE, 1);
+    go(&mut node, 30_000, control::START_ABSOLUTE);
+    let took = until(&mut node, 2000, |node| has(node, status::TARGET_REACHED));
+    // 800 ms at 56.25 deg/s and one ramp of pi/2 x 112.5 ms.
+    assert!((977..981).contains(&took), "{took}");
+    assert_eq!(position(&node), 30_000);
+    // A halt from full speed has the same ramp.
+    go(&mut node, 0, control::START_ABSOLUTE);
+    ticks(&mut node, 400);
+    assert_eq!(get(&node, objects::VELOCITY_ACTUAL), -1125);
+    let from = get(&node, objects::POSITION_DEMAND);
+    command(&mut node, control::HALT_MOTION);
+    let took = until(&mut node, 500, |node| has(node, status::TARGET_REACHED));
+    assert!((177..181).contains(&took), "{took}");
+    // At the mean of the speed, 18,750 qc/s.
+    assert!((position(&node) - from + 3_313).abs() <= 2);
+}
+
+#[test]
 fn speed_and_acceleration_are_limited_by_607f_and_60c5() {
     let mut node = enabled();
     set(&mut node, objects::PROFILE_VELOCITY, 20_000);

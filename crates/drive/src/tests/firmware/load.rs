@@ -32,22 +32,22 @@ fn sweep_and_brake(
     link: DriveLink,
     load: AxisLoad,
 ) -> (Result<StopReport, DriveError>, f64, Option<f64>) {
-    let mut world = World::on(link, loaded(load));
-    world.run(DriveCommand::Connect).unwrap();
-    world.run(DriveCommand::Home).unwrap();
-    let swept = world.run(DriveCommand::Sweep(to(-15.0)));
+    let mut rig = rig_with(link, loaded(load));
+    rig.run(DriveCommand::Connect).unwrap();
+    rig.run(DriveCommand::Home).unwrap();
+    let swept = rig.run(DriveCommand::Sweep(to(-15.0)));
     let Ok(CommandOutcome::Arrived(arrived)) = swept else {
         panic!("{link:?}: {swept:?}")
     };
     assert!(arrived.position.0.abs_diff(-10_000) <= 2, "{arrived:?}");
-    let target = world.world_qc(world.now);
-    let stopped = world.run(DriveCommand::Brake).map(|outcome| match outcome {
+    let target = rig.unit.world_qc(rig.now);
+    let stopped = rig.run(DriveCommand::Brake).map(|outcome| match outcome {
         CommandOutcome::Stopped(report) => report,
         other => panic!("{link:?}: {other:?}"),
     });
-    world.run_for(Span::from_secs(1));
-    let fallen = world.world_qc(world.now) - target;
-    let dropped = world.events.iter().find_map(|event| match event {
+    assert_eq!(rig.run_for(Span::from_secs(1)), None);
+    let fallen = rig.unit.world_qc(rig.now) - target;
+    let dropped = rig.events.iter().find_map(|event| match event {
         DriveEvent::Progress(CommandProgress::Dropped(moved)) => Some(moved.0),
         _ => None,
     });

@@ -149,3 +149,71 @@ fn guarding_requests_are_answered_with_a_toggle() {
     bus.send_remote(0x701);
     assert_eq!(bus.take(), [], "heartbeat excludes guarding");
 }
+
+/// A unit in motion, guarded every 40 ms with a life time of 3 x 40 ms and this reaction.
+fn guarded(option: u32) -> Bus {
+    let mut bus = Bus::new();
+    bus.write(0x100C, 0, 40);
+    bus.write(0x100D, 0, 3);
+    bus.write(0x6007, 0, option);
+    bus.nmt(NmtCommand::Start);
+    bus.go(100_000);
+    bus.ticks(200);
+    assert_eq!(
+        bus.read(0x6041, 0) & 0x417F,
+        0x0137,
+        "the first request starts life guarding"
+    );
+    for _ in 0..5 {
+        bus.send_remote(0x701);
+        bus.ticks(110);
+    }
+    bus.send_remote(0x701);
+    bus.take();
+    bus
+}
+
+#[test]
+fn the_axis_stops_when_guarding_requests_end() {
+    let mut bus = guarded(1);
+    bus.send_remote(0x702);
+    bus.ticks(120);
+    assert_eq!(bus.read(0x6041, 0) & 0x417F, 0x0137);
+    assert_eq!(bus.with(0x081), Vec::<Vec<u8>>::new());
+    bus.ticks(1);
+    assert_eq!(bus.read(0x6041, 0) & 0x417F, 0x011F, "ramping down");
+    assert_eq!(bus.node.nmt_state(), NmtState::PreOperational);
+    assert_eq!(bus.with(0x081), [[0x30, 0x81, 0x11, 0, 0, 0, 0, 0]]);
+    bus.ticks(150);
+    assert_eq!(bus.read(0x6041, 0) & 0x417F, 0x0108);
+    assert_eq!(bus.read(0x1003, 1), 0x8130);
+    // Reported once; a request restarts life guarding, and the toggle bit continues.
+    bus.ticks(500);
+    bus.take();
+    bus.send_remote(0x701);
+    assert_eq!(bus.with(0x701), [[0x7F]]);
+    bus.ticks(121);
+    assert_eq!(bus.with(0x081).len(), 1);
+}
+
+#[test]
+fn the_abort_connection_option_decides_what_a_missing_guard_causes() {
+    for (option, state) in [(0, 0x0137), (1, 0x0108), (2, 0x0140), (3, 0x0117)] {
+        let mut bus = guarded(option);
+        bus.ticks(400);
+        assert_eq!(bus.read(0x6041, 0) & 0x417F, state, "option {option}");
+        assert_eq!(bus.read(0x606C, 0) == 0, option != 0, "option {option}");
+        assert_eq!(bus.read(0x1003, 1), 0x8130);
+    }
+}
+
+#[test]
+fn life_guarding_needs_both_objects_and_no_heartbeat() {
+    for (index, value) in [(0x100C, 0), (0x100D, 0), (0x1017, 1_000)] {
+        let mut bus = guarded(1);
+        bus.write(index, 0, value);
+        bus.ticks(500);
+        assert_eq!(bus.read(0x6041, 0) & 0x417F, 0x0137, "{index:04X}");
+        assert_eq!(bus.read(0x1003, 0), 0, "{index:04X}");
+    }
+}
