@@ -1,0 +1,166 @@
+"""Runs a program on a log and holds its cloud against the truth."""
+
+import json
+import subprocess
+import time
+
+import numpy as np
+
+import lidar
+from mechanism import COUNT_DEG
+from scan import EPOCH_NS
+
+
+class Cloud:
+    """Rows of the program's cloud. Times are seconds since EPOCH_NS, exact to the nanosecond."""
+
+
+def read_csv(path):
+    times, numbers = [], []
+    names = None
+    with open(path) as file:
+        for line in file:
+            if line[0] == "#":
+                continue
+            if names is None:
+                names = line.strip().split(",")
+                when = names.index("time_s")
+                continue
+            fields = line.split(",")
+            whole, _, part = fields[when].partition(".")
+            times.append(int(whole) * 1_000_000_000 + int(part.ljust(9, "0")[:9]))
+            numbers.append(fields)
+    out = Cloud()
+    rows = np.array(numbers, dtype=float).reshape(len(numbers), len(names or ()))
+    columns = {name: rows[:, i] for i, name in enumerate(names or ())} if len(rows) else {}
+    empty = np.zeros(0)
+    out.time = (np.array(times, dtype=np.int64) - EPOCH_NS) / 1e9
+    out.tilt = columns.get("tilt_deg", empty)
+    out.ring = columns.get("ring", empty).astype(int)
+    out.code = columns.get("intensity", empty).astype(int)
+    out.points = np.stack([columns.get(n, empty) for n in ("x_m", "y_m", "z_m")], axis=-1)
+    return out
+
+
+def match(cloud, truths):
+    """Index of the truth and of the shot for each row; -1 where none fits.
+
+    A shot is known by ring and reflectivity, which repeats after 14 ms, and by its coordinate along
+    the tilt axis, which the tilt does not change.
+    """
+    which = np.full(len(cloud.time), -1)
+    shot = np.full(len(cloud.time), -1)
+    best = np.full(len(cloud.time), np.inf)
+    channel = np.argsort(lidar.RING)[cloud.ring] if len(cloud.ring) else cloud.ring
+    for k, truth in enumerate(truths):
+        table = np.full((truth.sequences, 16), -1)
+        table[truth.number, truth.channel] = np.arange(len(truth.t))
+        begin = truth.host[0] - truth.channel[0] * lidar.LASER_S
+        rough = (cloud.time - begin - channel * lidar.LASER_S) / lidar.SEQUENCE_S
+        for _ in range(2):
+            number = np.round((rough - cloud.code) / 256).astype(int) * 256 + cloud.code
+            ok = (number >= 0) & (number < truth.sequences)
+            found = np.where(ok, table[np.where(ok, number, 0), channel], -1)
+            have = found >= 0
+            # The cadence is the lidar's: correct the host's rate against it and look again.
+            late = np.where(have, cloud.time - truth.host[np.maximum(found, 0)], 0.0)
+            rough = number + late / lidar.SEQUENCE_S
+        index = np.maximum(found, 0)
+        along = np.abs(cloud.points[:, 1] - truth.points[index, 1])
+        good = have & (along < 0.02) & (np.abs(late) < best)
+        which[good], shot[good], best[good] = k, found[good], np.abs(late)[good]
+    return which, shot
+
+
+def bound(report, *names):
+    sync = report.get("sync") or {}
+    for name in names:
+        if sync.get(name) is not None:
+            return float(sync[name])
+    return None
+
+
+def worst(values):
+    return float(np.max(np.abs(values))) if len(values) else None
+
+
+def rms(values):
+    return float(np.sqrt(np.mean(values**2))) if len(values) else None
+
+
+def run(program, log, cloud, options=()):
+    command = [program, "replay", str(log), "--json", "--force", "-o", str(cloud), *options]
+    begin = time.monotonic()
+    done = subprocess.run(command, capture_output=True, text=True)
+    took = time.monotonic() - begin
+    try:
+        report = json.loads(done.stdout)
+    except json.JSONDecodeError:
+        report = {}
+    return done.returncode, report, done.stderr, took
+
+
+def measure(program, log, cloud_path, truths, options=()):
+    """One row of the table."""
+    code, report, messages, took = run(program, log, cloud_path, options)
+    row = {
+        "exit": code,
+        "took_s": round(took, 3),
+        "warnings": report.get("warnings", []),
+        "messages": [m for m in messages.splitlines() if not m.startswith("SIMULATED")],
+        "sync": report.get("sync"),
+        "sweeps": report.get("sweeps"),
+        "points": report.get("points", 0),
+    }
+    due = sum(_moving(t).sum() for t in truths)
+    row["due"] = int(due)
+    if not cloud_path.exists():
+        row["kept"] = 0.0
+        return row
+    cloud = read_csv(cloud_path)
+    which, shot = match(cloud, truths)
+    row["unmatched"] = int((which < 0).sum())
+    pieces = [_errors(cloud, which == k, shot, t) for k, t in enumerate(truths)]
+    joined = {n: np.concatenate([p[n] for p in pieces]) for n in pieces[0]}
+    row["kept"] = float(joined["moving"].sum() / due)
+    row["curve_worst_deg"] = worst(joined["curve"])
+    row["curve_rms_deg"] = rms(joined["curve"])
+    row["clock_worst_us"] = worst(joined["clock"] * 1e6)
+    total, rate = joined["total"], joined["rate"]
+    delay = (total @ rate) / (rate @ rate) if len(rate) and rate @ rate > 0 else 0.0
+    row["delay_us"] = float(delay * 1e6)
+    rest = total - delay * rate
+    row["worst_deg"], row["rms_deg"] = worst(rest), rms(rest)
+    row["raw_worst_deg"] = worst(total)
+    row["point_worst_mm"] = worst(joined["point"] * 1e3)
+    row["point_rms_mm"] = rms(joined["point"] * 1e3)
+    angle, clock = bound(report, "angle_bound_deg"), bound(report, "clock_bound_us")
+    row["angle_bound_deg"], row["clock_bound_us"] = angle, clock
+    if angle and row["curve_worst_deg"] is not None:
+        # Homing leaves less than half a count, which no sample shows.
+        row["angle_ratio"] = max(0.0, row["curve_worst_deg"] - COUNT_DEG / 2) / angle
+        row["angle_ratio_plain"] = row["curve_worst_deg"] / angle
+    if clock and row["clock_worst_us"] is not None:
+        row["clock_ratio"] = row["clock_worst_us"] / clock
+    return row
+
+
+def _moving(truth):
+    """Shots between the begin and the end of a move."""
+    return np.any([(truth.t >= b) & (truth.t <= e) for b, e in zip(truth.begins, truth.ends)], axis=0)
+
+
+def _errors(cloud, mine, shot, truth):
+    index = shot[mine]
+    reported = cloud.time[mine]
+    tilt = cloud.tilt[mine]
+    t = truth.t[index]
+    return {
+        "moving": _moving(truth)[index],
+        # The curve at the time that the program gives: nothing of the lidar's clock is in it.
+        "curve": tilt - truth.motion(truth.true_time(reported)),
+        "clock": reported - truth.host[index] - truth.minimum_delay,
+        "total": tilt - truth.tilt[index],
+        "rate": truth.motion.rate(t),
+        "point": np.linalg.norm(cloud.points[mine] - truth.points[index], axis=1),
+    }

@@ -1,0 +1,225 @@
+"""One scan: what is recorded, and the truth beside it."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+import clocks
+import drive
+import lidar
+import log
+import mechanism
+
+RPM_DEG_S = 0.05
+EPOCH_NS = 1_795_000_000_000_000_000
+
+
+@dataclass
+class Move:
+    to: float
+    speed: float
+    accel: float = 500.0
+
+
+@dataclass
+class Setup:
+    """A condition. Everything is a fact of the simulated scanner; nothing tells the program."""
+
+    seed: int = 0
+    start: float = 0.0
+    moves: list = field(default_factory=lambda: [Move(-45.0, 56.25)])
+    servo: mechanism.Servo = field(default_factory=mechanism.Servo)
+    jerk_s: float = 0.0
+    # Per move: arguments of mechanism.move, times relative to the begin of the move.
+    disturb: dict = field(default_factory=dict)
+    mount_m: float = 0.06
+    link: drive.Link = None
+    latch_s: float = 0.0
+    drive_ppm: float = 0.0
+    network: str = "quiet"
+    host_ppm: float = 11.0
+    lidar_ppm: float = -23.0
+    wander_s: float = 5e-6
+    host_steps: tuple = ()
+    host_slews: tuple = ()
+    lidar_steps: tuple = ()
+    settle_s: float = 0.25
+    share: int = 8
+    # Changes the sorted list of records before they are written: f(records, setup, rng).
+    mangle: object = None
+
+
+def usb_400():
+    """400 Hz; a poll takes 0.8 to 2.5 ms, one in fifty up to 5 ms more each way."""
+    delay = clocks.Delay(0.36e-3, "uniform", 0.425e-3, 0.02, 5e-3)
+    return drive.Link(delay, delay, 2.5e-3)
+
+
+def usb_1000():
+    delay = clocks.Delay(0.15e-3, "exponential", 0.06e-3, 0.02, 3e-3)
+    return drive.Link(delay, delay, 1e-3)
+
+
+def usb_100():
+    link = usb_400()
+    link.period = 10e-3
+    return link
+
+
+def usb_latency_timer():
+    """The adapter's factory setting: answers wait for the end of 16 ms."""
+    link = usb_400()
+    link.back_grid = 16e-3
+    return link
+
+
+class Truth:
+    """What the log does not tell. Arrays over the shots that return.
+
+    `t`: true time, `host`: the host's clock without its steps, in seconds since EPOCH_NS.
+    """
+
+    def __init__(self, setup, motion, packets, host, begins, ends):
+        kept = packets.kept
+        self.setup, self.motion, self.host_clock = setup, motion, host
+        self.t = packets.times[kept]
+        self.tilt = motion(self.t)
+        self.host = host.continuous(self.t)
+        self.points = packets.points[kept]
+        number, channel = np.nonzero(kept)
+        self.number, self.ring = number, lidar.RING[channel]
+        self.channel = channel
+        self.begins, self.ends = begins, ends
+        self.minimum_delay = clocks.NETWORKS[setup.network].minimum
+        self.sequences = kept.shape[0]
+
+    def true_time(self, host):
+        return self.host_clock.true_time(host)
+
+
+def comment(setup):
+    move = setup.moves[0]
+    return f"""velomotion = "0.1.0"
+device = "generator"
+simulated = true
+
+[mount]
+d_m = {setup.mount_m}
+
+[lidar]
+range_sd_m = 0.00058
+
+[axis]
+node = 1
+encoder_lines = 500
+gear = [120, 1]
+
+[sweep]
+from_deg = {setup.start}
+to_deg = {move.to}
+cruise_deg_s = {move.speed}
+accel_deg_s2 = {move.accel}
+sweeps = {len(setup.moves)}
+both_ways = {"true" if len(setup.moves) > 1 else "false"}
+"""
+
+
+def generate(setup, path):
+    """Writes the log and returns its truth."""
+    rng = np.random.default_rng(setup.seed)
+    turn = rng.uniform(0.0, 2 * np.pi)
+    host = clocks.Clock(
+        skew_ppm=setup.host_ppm,
+        wander=(setup.wander_s, 160.0, turn),
+        steps=setup.host_steps,
+        slews=setup.host_slews,
+    )
+    device = clocks.Clock(
+        offset=rng.uniform(5.0, 3000.0),
+        skew_ppm=setup.lidar_ppm,
+        wander=(setup.wander_s, 90.0, turn + 1.0),
+        steps=setup.lidar_steps,
+    )
+
+    def host_ns(t):
+        return EPOCH_NS + int(round(float(host.reading(t)) * 1e9))
+
+    motion = mechanism.Motion(setup.start)
+    tick = 1e-3 / (1.0 + setup.drive_ppm * 1e-6)
+    phase = rng.uniform(0.0, tick)
+    talker = drive.Host(
+        setup.link or usb_400(),
+        motion,
+        rng,
+        tick * setup.latch_s / 1e-3,
+        phase,
+        rng.uniform(-0.5, 0.5),
+    )
+    begins, ends = _operate(talker, setup, motion, tick, phase)
+    stop = talker.now + 0.02
+    packets = lidar.fire(device, 0.0, stop, motion, setup.mount_m, rng, share=setup.share)
+    received = clocks.arrivals(rng, packets.sent, clocks.NETWORKS[setup.network])
+    records = drive.records(talker.exchanges, host_ns)
+    for payload, when in zip(packets.payloads, received):
+        data = log.udp(payload, lidar.DATA_PORT)
+        records.append((when, 0, host_ns(when), data, log.INBOUND))
+    for when in np.arange(0.004, stop, 0.00664):
+        stamp = lidar.stamps(device, np.array([when]))[0]
+        data = log.udp(lidar.position_payload(stamp, 0), lidar.POSITION_PORT)
+        when = when + 1e-4
+        records.append((when, 0, host_ns(when), data, log.INBOUND))
+    records.sort(key=lambda r: r[0])
+    if setup.mangle:
+        records = setup.mangle(records, setup, rng)
+    log.write(path, comment(setup), log.USER0, "epos2-usb", records)
+    return Truth(setup, motion, packets, host, begins, ends)
+
+
+def _operate(talker, setup, motion, tick, phase):
+    """The accesses of a capture: settings, target, start, polls, stop."""
+    talker.now = 0.03
+    angle = setup.start
+    begins, ends = [], []
+    talker.read(0x6041, value=0x8137, small=True)
+    talker.read(0x6064)
+    for index, move in enumerate(setup.moves):
+        rpm = int(round(move.speed / RPM_DEG_S))
+        rpm_s = int(round(move.accel / RPM_DEG_S))
+        talker.write(0x6060, 1)
+        talker.read(0x6061, value=1, small=True)
+        for number, value in ((0x6081, rpm), (0x6083, rpm_s), (0x6084, rpm_s)):
+            talker.write(number, value)
+            talker.read(number, value=value)
+        target = int(round(move.to / mechanism.COUNT_DEG))
+        talker.write(0x607A, target)
+        talker.read(0x607A, value=target)
+        talker.write(0x6040, 0x0F)
+        talker.poll_until(talker.now + 0.06, lambda _: 0x8137)
+        commanded = talker.write(0x6040, 0x1F)
+        begin = (np.floor((commanded - phase) / tick) + 1) * tick + phase
+        profile = mechanism.Profile(begin, angle, move.to, rpm * RPM_DEG_S, rpm_s * RPM_DEG_S)
+        arguments = dict(setup.disturb.get(index, {}))
+        for key in ("hold", "pause"):
+            if key in arguments:
+                when, seconds = arguments[key]
+                arguments[key] = (begin + when, seconds)
+        if "extra" in arguments:
+            kind, when, *rest = arguments["extra"]
+            arguments["extra"] = kind(begin + when, *rest)
+        waited = arguments.get("pause", (0, 0.0))[1] + arguments.get("hold", (0, 0.0))[1]
+        end = begin + profile.duration + waited
+        long = end + setup.settle_s + 1.0
+        step = max(1e-4, (long - begin) / 200_000)
+        curve = mechanism.move(
+            profile, setup.servo, begin, long, step, jerk_s=setup.jerk_s, **arguments
+        )
+        motion.add(begin, curve)
+        begins.append(begin)
+        ends.append(end)
+        talker.read(0x6041, value=0x9137, small=True)
+        talker.write(0x6040, 0x0F)
+        talker.poll_until(end + setup.settle_s, lambda t: 0x8537 if t > end else 0x8137)
+        angle = move.to
+    talker.write(0x6040, 0x00)
+    talker.read(0x6041, value=0x8140, small=True)
+    return begins, ends
