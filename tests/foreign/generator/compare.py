@@ -7,6 +7,7 @@ import time
 import numpy as np
 
 import lidar
+from possible import best_spline
 from mechanism import COUNT_DEG
 from scan import EPOCH_NS
 
@@ -132,16 +133,25 @@ def measure(program, log, cloud_path, truths, options=()):
     rest = total - delay * rate
     row["worst_deg"], row["rms_deg"] = worst(rest), rms(rest)
     row["raw_worst_deg"] = worst(total)
+    possible = [best_spline(t.samples, t.motion, t.begins, t.ends) for t in truths]
+    row["possible_deg"] = max((p for p in possible if p is not None), default=None)
     row["point_worst_mm"] = worst(joined["point"] * 1e3)
     row["point_rms_mm"] = rms(joined["point"] * 1e3)
     angle, clock = bound(report, "angle_bound_deg"), bound(report, "clock_bound_us")
     row["angle_bound_deg"], row["clock_bound_us"] = angle, clock
     if angle and row["curve_worst_deg"] is not None:
-        # Homing leaves less than half a count, which no sample shows.
-        row["angle_ratio"] = max(0.0, row["curve_worst_deg"] - COUNT_DEG / 2) / angle
+        # Homing leaves up to half a count that no sample shows, an axis at rest another half.
+        row["angle_ratio"] = max(0.0, row["curve_worst_deg"] - COUNT_DEG) / angle
         row["angle_ratio_plain"] = row["curve_worst_deg"] / angle
     if clock and row["clock_worst_us"] is not None:
-        row["clock_ratio"] = row["clock_worst_us"] / clock
+        # The lidar's stamps are whole microseconds.
+        row["clock_ratio"] = max(0.0, row["clock_worst_us"] - 1.0) / clock
+        row["clock_ratio_plain"] = row["clock_worst_us"] / clock
+    if angle and clock and len(total):
+        allowed = angle + np.abs(rate) * clock * 1e-6
+        known = np.abs(total - rate * joined["minimum_delay"])
+        known -= COUNT_DEG + np.abs(rate) * 1e-6
+        row["total_ratio"] = float(np.max(np.maximum(0.0, known) / allowed))
     return row
 
 
@@ -162,5 +172,6 @@ def _errors(cloud, mine, shot, truth):
         "clock": reported - truth.host[index] - truth.minimum_delay,
         "total": tilt - truth.tilt[index],
         "rate": truth.motion.rate(t),
+        "minimum_delay": np.full(len(t), truth.minimum_delay),
         "point": np.linalg.norm(cloud.points[mine] - truth.points[index], axis=1),
     }

@@ -11,6 +11,7 @@ import mechanism
 from log import INBOUND, OUTBOUND
 
 NODE = 1
+HOST_TIMEOUT_S = 40e-3
 
 
 def crc(words):
@@ -60,9 +61,10 @@ class Link:
 class Exchange:
     """One request with its answer: true times of sending, of sampling and of receipt."""
 
-    def __init__(self, sent, taken, received, request, answer, kind):
+    def __init__(self, sent, taken, received, request, answer, kind, value=None):
         self.sent, self.taken, self.received = sent, taken, received
         self.request, self.answer, self.kind = request, answer, kind
+        self.value = value
 
 
 class Host:
@@ -73,6 +75,8 @@ class Host:
         self.latch_s, self.latch_phase = latch_s, latch_phase
         self.encoder_phase = encoder_phase
         self.exchanges = []
+        self.stall = self.late = None
+        self.status_s = 20e-3
         self.now = 0.0
         self.bus = 0.0
 
@@ -90,6 +94,10 @@ class Host:
         if self.link.back_grid:
             grid = self.link.back_grid
             received = np.ceil((received - self.bus) / grid) * grid + self.bus
+        for begin, seconds in filter(None, (self.stall, self.late)):
+            if begin <= sent < begin + seconds:
+                self.now = sent + HOST_TIMEOUT_S
+                return sent, taken, begin + seconds + 1e-3 if self.late else None
         self.now = received
         return sent, taken, received
 
@@ -103,7 +111,7 @@ class Host:
             value = self.position(taken)
         answer = read_answer(value, int(self.rng.integers(65536)), small)
         self.exchanges.append(
-            Exchange(sent, taken, received, read_request(index, sub), answer, kind)
+            Exchange(sent, taken, received, read_request(index, sub), answer, kind, value)
         )
         self._idle()
         return value
@@ -122,13 +130,13 @@ class Host:
     def poll_until(self, end, status):
         """Reads the position once per period, the statusword every 20 ms."""
         due = self.now
-        next_status = self.now + 20e-3
+        next_status = self.now + self.status_s
         while self.now < end:
             self.now = max(self.now, due + self.rng.exponential(self.link.host_jitter))
             self.read(0x6064)
             if self.now >= next_status:
                 self.read(0x6041, value=status(self.now), small=True)
-                next_status = self.now + 20e-3
+                next_status = self.now + self.status_s
             due = max(due + self.link.period, self.now - self.link.period)
 
 
@@ -136,7 +144,8 @@ def records(exchanges, host_ns, frame=usb_frame):
     out = []
     for e in exchanges:
         out.append((e.sent, 1, host_ns(e.sent), frame(*e.request), OUTBOUND))
-        out.append((e.received, 1, host_ns(e.received), frame(*e.answer), INBOUND))
+        if e.received is not None:
+            out.append((e.received, 1, host_ns(e.received), frame(*e.answer), INBOUND))
     return out
 
 

@@ -173,12 +173,15 @@ def _integrate(servo, t, step, wanted, hold):
     return angles, rates
 
 
-def slip(when, degrees, seconds):
-    """The axis runs ahead by some degrees and stays there."""
+def slip(when, degrees, seconds, back_s=0.08):
+    """The axis runs away by some degrees; its controller brings it back."""
 
     def extra(t):
-        u = np.clip((np.asarray(t) - when) / seconds, 0.0, 1.0)
-        return degrees * u * u * u * (10 - 15 * u + 6 * u * u)
+        s = np.maximum(np.asarray(t) - when, 0.0)
+        u = np.minimum(s / seconds, 1.0)
+        away = u * u * u * (10 - 15 * u + 6 * u * u)
+        after = np.maximum(s - seconds, 0.0) / back_s
+        return degrees * away * (1 + after) * np.exp(-after)
 
     return extra
 

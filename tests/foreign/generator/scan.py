@@ -44,7 +44,15 @@ class Setup:
     host_slews: tuple = ()
     lidar_steps: tuple = ()
     settle_s: float = 0.25
+    # Once: (from, seconds) the drive drops a request, or answers it only after that time. The host
+    # gives up after 40 ms and asks again.
+    stall: tuple = None
+    # The statusword is read this often.
+    status_s: float = 20e-3
+    late: tuple = None
     share: int = 8
+    # Seconds after EPOCH_NS at which the recording begins.
+    epoch_s: float = 0.0
     # Changes the sorted list of records before they are written: f(records, setup, rng).
     mangle: object = None
 
@@ -66,6 +74,12 @@ def usb_100():
     return link
 
 
+def usb_40():
+    link = usb_400()
+    link.period = 25e-3
+    return link
+
+
 def usb_latency_timer():
     """The adapter's factory setting: answers wait for the end of 16 ms."""
     link = usb_400()
@@ -79,22 +93,22 @@ class Truth:
     `t`: true time, `host`: the host's clock without its steps, in seconds since EPOCH_NS.
     """
 
-    def __init__(self, setup, motion, packets, host, begins, ends):
+    def __init__(self, setup, motion, packets, host, begins, ends, samples):
         kept = packets.kept
         self.setup, self.motion, self.host_clock = setup, motion, host
         self.t = packets.times[kept]
         self.tilt = motion(self.t)
-        self.host = host.continuous(self.t)
+        self.host = host.continuous(self.t) + setup.epoch_s
         self.points = packets.points[kept]
         number, channel = np.nonzero(kept)
         self.number, self.ring = number, lidar.RING[channel]
         self.channel = channel
-        self.begins, self.ends = begins, ends
+        self.begins, self.ends, self.samples = begins, ends, samples
         self.minimum_delay = clocks.NETWORKS[setup.network].minimum
         self.sequences = kept.shape[0]
 
     def true_time(self, host):
-        return self.host_clock.true_time(host)
+        return self.host_clock.true_time(host - self.setup.epoch_s)
 
 
 def comment(setup):
@@ -142,7 +156,7 @@ def generate(setup, path):
     )
 
     def host_ns(t):
-        return EPOCH_NS + int(round(float(host.reading(t)) * 1e9))
+        return EPOCH_NS + int(round((float(host.reading(t)) + setup.epoch_s) * 1e9))
 
     motion = mechanism.Motion(setup.start)
     tick = 1e-3 / (1.0 + setup.drive_ppm * 1e-6)
@@ -155,6 +169,7 @@ def generate(setup, path):
         phase,
         rng.uniform(-0.5, 0.5),
     )
+    talker.stall, talker.late, talker.status_s = setup.stall, setup.late, setup.status_s
     begins, ends = _operate(talker, setup, motion, tick, phase)
     stop = talker.now + 0.02
     packets = lidar.fire(device, 0.0, stop, motion, setup.mount_m, rng, share=setup.share)
@@ -172,7 +187,12 @@ def generate(setup, path):
     if setup.mangle:
         records = setup.mangle(records, setup, rng)
     log.write(path, comment(setup), log.USER0, "epos2-usb", records)
-    return Truth(setup, motion, packets, host, begins, ends)
+    samples = [
+        (e.sent, e.received, e.value * mechanism.COUNT_DEG)
+        for e in talker.exchanges
+        if e.kind == "read 6064" and e.received is not None
+    ]
+    return Truth(setup, motion, packets, host, begins, ends, samples)
 
 
 def _operate(talker, setup, motion, tick, phase):
@@ -206,8 +226,7 @@ def _operate(talker, setup, motion, tick, phase):
         if "extra" in arguments:
             kind, when, *rest = arguments["extra"]
             arguments["extra"] = kind(begin + when, *rest)
-        waited = arguments.get("pause", (0, 0.0))[1] + arguments.get("hold", (0, 0.0))[1]
-        end = begin + profile.duration + waited
+        end = begin + profile.duration + arguments.get("pause", (0, 0.0))[1]
         long = end + setup.settle_s + 1.0
         step = max(1e-4, (long - begin) / 200_000)
         curve = mechanism.move(

@@ -1,0 +1,387 @@
+"""The conditions: name, and the setup for a seed."""
+
+import mechanism
+import scan
+from log import INBOUND, OUTBOUND
+from mechanism import Servo
+from scan import Move, Setup
+
+
+class Condition:
+    """`setups(seed)`: one setup, or several whose logs are joined by `join`."""
+
+    def __init__(self, group, name, make, join=None, share=0.95):
+        self.group, self.name, self.make, self.join = group, name, make, join
+        # At least this share of the points can be placed.
+        self.share = share
+
+    def setups(self, seed):
+        made = self.make(seed)
+        return made if isinstance(made, list) else [made]
+
+
+ALL = []
+
+
+def condition(group, name, make, join=None, share=0.95):
+    ALL.append(Condition(group, name, make, join, share))
+
+
+def plain(speed, way=None, accel=500.0, **more):
+    way = way or min(45.0, 1.2 * speed)
+
+    def make(seed):
+        return Setup(seed=seed, moves=[Move(-way, speed, accel)], **more)
+
+    return make
+
+
+# Plain scans.
+for _speed in (56.25, 20.0, 5.0, 98.0, 0.05):
+    condition("plain", f"plain, {_speed:g} deg/s", plain(_speed, way=0.12 if _speed < 1 else None))
+for _name in ("coalescing", "busy"):
+    condition("plain", f"plain, {_name} network", plain(56.25, network=_name))
+condition("plain", "plain, 100 Hz", lambda seed: Setup(seed=seed, link=scan.usb_100()))
+condition("plain", "plain, 1000 Hz", lambda seed: Setup(seed=seed, link=scan.usb_1000()))
+condition(
+    "plain",
+    "plain, both ways",
+    lambda seed: Setup(seed=seed, moves=[Move(-30.0, 56.25), Move(0.0, 56.25)]),
+)
+condition(
+    "plain",
+    "USB latency timer of 16 ms",
+    lambda seed: Setup(seed=seed, link=scan.usb_latency_timer()),
+)
+
+# Servos.
+SERVOS = {
+    "lag 4 ms": Servo(lag_s=4e-3),
+    "30 Hz .5": Servo(hz=30.0, damping=0.5),
+    "15 Hz .5": Servo(hz=15.0, damping=0.5),
+    "15 Hz 1": Servo(hz=15.0, damping=1.0),
+    "8 Hz .7": Servo(hz=8.0, damping=0.7),
+}
+for _name, _servo in SERVOS.items():
+    for _accel in (500.0, 2000.0, 5000.0, 10_000.0):
+        condition(
+            "servo", f"servo {_name}, {_accel:g} deg/s2", plain(56.25, accel=_accel, servo=_servo)
+        )
+for _accel in (500.0, 5000.0):
+    condition(
+        "servo",
+        f"jerk 5 ms, {_accel:g} deg/s2",
+        plain(56.25, accel=_accel, jerk_s=5e-3, servo=SERVOS["30 Hz .5"]),
+    )
+
+# What happens to the head.
+CATCHES_UP = Servo(hz=20.0, damping=0.8)
+
+
+def disturbed(servo=CATCHES_UP, **what):
+    return plain(56.25, servo=servo, disturb={0: what})
+
+
+condition("head", "held 150 ms, catches up", disturbed(hold=(0.35, 0.15)))
+condition("head", "held 200 ms, catches up", disturbed(hold=(0.40, 0.20)))
+condition("head", "held 150 ms, goes on late", disturbed(pause=(0.35, 0.15)))
+condition("head", "held 200 ms, goes on late", disturbed(pause=(0.40, 0.20)))
+condition("head", "slips 1.5 deg in 30 ms", disturbed(extra=(mechanism.slip, 0.4, -1.5, 0.03)))
+condition("head", "slips 0.2 deg in 20 ms", disturbed(extra=(mechanism.slip, 0.5, -0.2, 0.02)))
+condition(
+    "head", "jerked, swings 0.5 deg at 12 Hz", disturbed(extra=(mechanism.swing, 0.4, 0.5, 12, 0.06))
+)
+condition("head", "bumped 0.4 deg for 40 ms", disturbed(extra=(mechanism.bump, 0.45, 0.4, 0.04)))
+condition("head", "bumped 0.05 deg for 40 ms", disturbed(extra=(mechanism.bump, 0.45, 0.05, 0.04)))
+condition("head", "bumped 2 deg for 80 ms", disturbed(extra=(mechanism.bump, 0.45, 2.0, 0.08)))
+
+# A drive that renews 6064 once per millisecond.
+for _speed in (56.25, 5.0, 98.0):
+    for _name, _link in (("400 Hz", scan.usb_400), ("1000 Hz", scan.usb_1000)):
+        condition(
+            "latch",
+            f"latch 1 ms, {_speed:g} deg/s, {_name}",
+            lambda seed, speed=_speed, link=_link: Setup(
+                seed=seed,
+                moves=[Move(-min(45.0, 1.2 * speed), speed)],
+                link=link(),
+                latch_s=1e-3,
+                drive_ppm=37.0 * (seed % 3 - 1),
+            ),
+        )
+condition(
+    "latch",
+    "latch 1 ms, servo 15 Hz .5",
+    lambda seed: Setup(seed=seed, latch_s=1e-3, drive_ppm=20.0, servo=SERVOS["15 Hz .5"]),
+)
+
+# Clocks. A move begins some 0.1 s after the start.
+for _ms in (0.1, -0.1, 0.3, -0.3, 1.2, -1.2, 5.0, -5.0):
+    condition(
+        "clock",
+        f"lidar clock steps {_ms:+g} ms",
+        lambda seed, ms=_ms: Setup(seed=seed, lidar_steps=((0.6, ms * 1e-3),)),
+    )
+for _network, _ms in (("coalescing", 1.2), ("busy", 1.2), ("busy", 5.0)):
+    condition(
+        "clock",
+        f"lidar clock steps {_ms:+g} ms, {_network} network",
+        lambda seed, ms=_ms, network=_network: Setup(
+            seed=seed, network=network, lidar_steps=((0.6, ms * 1e-3),)
+        ),
+    )
+for _ms in (0.3, 1.2, 6.0, -6.0, 20.0, -20.0, 1500.0):
+    condition(
+        "clock",
+        f"host clock steps {_ms:+g} ms",
+        lambda seed, ms=_ms: Setup(seed=seed, host_steps=((0.62, ms * 1e-3),)),
+    )
+condition(
+    "clock",
+    "host clock slewed by 500 ppm",
+    lambda seed: Setup(
+        seed=seed, moves=[Move(-40.0, 10.0)], host_slews=((1.0, 3.0, 500.0),), share=4
+    ),
+)
+condition(
+    "clock",
+    "host and lidar step in one scan",
+    lambda seed: Setup(seed=seed, host_steps=((0.5, 0.02),), lidar_steps=((0.75, 1.2e-3),)),
+)
+
+
+# What is missing in the log.
+POLL = "900210026460000152a2"
+
+
+def _is_poll(r):
+    return r[1] == 1 and r[4] == OUTBOUND and r[3].hex() == POLL
+
+
+def _after(records, i, direction):
+    for j in range(i + 1, len(records)):
+        if records[j][1] == 1 and records[j][4] == direction:
+            return j
+    return None
+
+
+def _polls(records, begin, end):
+    return [i for i, r in enumerate(records) if _is_poll(r) and begin <= r[0] < end]
+
+
+def without(choose):
+    """Drops the records whose indices `choose` returns."""
+
+    def mangle(records, setup, rng):
+        gone = set(choose(records, rng))
+        return [r for i, r in enumerate(records) if i not in gone]
+
+    return mangle
+
+
+def answers_missing(times):
+    def choose(records, rng):
+        return [_after(records, _polls(records, t, t + 1)[0], INBOUND) for t in times]
+
+    return without(choose)
+
+
+def part_missing(begin, end):
+    """Answers only, as where a recorder falls behind."""
+    return without(
+        lambda records, rng: [
+            i
+            for i, r in enumerate(records)
+            if r[1] == 1 and r[4] == INBOUND and begin < r[0] < end
+        ]
+    )
+
+
+def requests_missing(times):
+    return without(lambda records, rng: [_polls(records, t, t + 1)[0] for t in times])
+
+
+def share_of_answers(share):
+    def choose(records, rng):
+        answers = [i for i, r in enumerate(records) if r[1] == 1 and r[4] == INBOUND and r[0] > 0.3]
+        return [i for i in answers if rng.random() < share]
+
+    return without(choose)
+
+
+def acknowledgement_missing(start):
+    def choose(records, rng):
+        for i, r in enumerate(records):
+            if r[1] == 1 and r[4] == OUTBOUND and r[3].hex().startswith(start):
+                return [_after(records, i, INBOUND)]
+        raise ValueError(start)
+
+    return without(choose)
+
+
+def other_answer_missing(start, when=0.5):
+    def choose(records, rng):
+        for i, r in enumerate(records):
+            asked = r[1] == 1 and r[4] == OUTBOUND and r[0] > when
+            if asked and r[3].hex().startswith(start):
+                return [_after(records, i, INBOUND)]
+        raise ValueError(start)
+
+    return without(choose)
+
+
+def packets_missing(when, count):
+    def choose(records, rng):
+        data = [i for i, r in enumerate(records) if r[1] == 0 and len(r[3]) == 1248 and r[0] > when]
+        return data[:count]
+
+    return without(choose)
+
+
+def share_of_packets(share):
+    def choose(records, rng):
+        data = [i for i, r in enumerate(records) if r[1] == 0 and len(r[3]) == 1248]
+        return [i for i in data if rng.random() < share]
+
+    return without(choose)
+
+
+def silent_between(begin, end):
+    """No record of the drive in between."""
+    return without(
+        lambda records, rng: [i for i, r in enumerate(records) if r[1] == 1 and begin < r[0] < end]
+    )
+
+
+def doubled(share):
+    """Packets that the log holds twice, in bursts of up to 20."""
+
+    def mangle(records, setup, rng):
+        out, burst = [], 0
+        held = []
+        for r in records:
+            out.append(r)
+            if r[1] == 0 and len(r[3]) == 1248:
+                if burst == 0 and held:
+                    out.extend((r[0], x[1], r[2] + 1000 * k, x[3], x[4]) for k, x in enumerate(held))
+                    held = []
+                if burst == 0 and rng.random() < share:
+                    burst = int(rng.integers(1, 20))
+                if burst:
+                    held.append(r)
+                    burst -= 1
+        return out
+
+    return mangle
+
+
+def missing(name, mangle, share=0.95, **more):
+    condition("missing", name, lambda seed: Setup(seed=seed, mangle=mangle, **more), share=share)
+
+
+missing("one answer missing", answers_missing([0.5]))
+missing("one answer missing, 1000 Hz", answers_missing([0.5]), link=scan.usb_1000())
+missing("one answer missing, 5 deg/s", answers_missing([0.5]), moves=[Move(-6.0, 5.0)])
+missing("one answer missing, 40 Hz", answers_missing([0.5]), link=scan.usb_40())
+missing(
+    "one answer missing, latency timer of 16 ms", answers_missing([0.5]), link=scan.usb_latency_timer()
+)
+for _name, _link in (("400 Hz", scan.usb_400), ("40 Hz", scan.usb_40)):
+    missing(
+        f"one answer missing, {_name}, nothing but polls",
+        answers_missing([0.5]),
+        link=_link(),
+        status_s=float("inf"),
+    )
+missing(
+    "one answer missing, latency timer of 16 ms, nothing but polls",
+    answers_missing([0.5]),
+    link=scan.usb_latency_timer(),
+    status_s=float("inf"),
+)
+missing("all answers missing for 30 ms", part_missing(0.5, 0.53))
+missing("drive does not answer for 60 ms", without(lambda records, rng: []), stall=(0.5, 0.06))
+missing("drive answers 60 ms late", without(lambda records, rng: []), late=(0.5, 0.06))
+missing("three answers missing", answers_missing([0.3, 0.55, 0.8]))
+missing("one request missing", requests_missing([0.5]))
+missing("2 % of the drive's answers missing", share_of_answers(0.02))
+missing("acknowledgement of 607A missing", acknowledgement_missing("900211047a60"))
+missing("acknowledgement of the start missing", acknowledgement_missing("9002110440600001" + "1f"))
+missing("answer of a statusword missing", other_answer_missing("9002100241600001"))
+missing("answer of a statusword missing, 1000 Hz", other_answer_missing("9002100241600001"), link=scan.usb_1000())
+missing("3 packets missing", packets_missing(0.6, 3))
+missing("40 packets missing", packets_missing(0.6, 40), share=0.9)
+missing("2 % of the packets missing", share_of_packets(0.02))
+missing("no record of the drive for 100 ms", silent_between(0.5, 0.6))
+
+
+def _no_polls_in_second(records, setup, rng):
+    """No position of the second move, though everything else is there."""
+    starts = [
+        i
+        for i, r in enumerate(records)
+        if r[1] == 1 and r[4] == OUTBOUND and r[3].hex().startswith("90021104406000011f")
+    ]
+    begin = records[starts[1]][0] - 0.05
+    gone = set()
+    for i, r in enumerate(records):
+        if r[0] > begin and _is_poll(r):
+            gone |= {i, _after(records, i, INBOUND)}
+    return [r for i, r in enumerate(records) if i not in gone]
+
+
+condition(
+    "missing",
+    "no polls in the second of two sweeps",
+    lambda seed: Setup(
+        seed=seed,
+        moves=[Move(-30.0, 56.25), Move(0.0, 56.25)],
+        mangle=_no_polls_in_second,
+    ),
+    share=0.45,
+)
+
+# Files.
+condition("files", "packets doubled in bursts", lambda seed: Setup(seed=seed, mangle=doubled(0.02)))
+
+
+def every_record_twice(records, setup, rng):
+    return [r for r in records for _ in range(2)]
+
+
+condition("files", "every record twice", lambda seed: Setup(seed=seed, mangle=every_record_twice))
+condition(
+    "files",
+    "two logs by cat",
+    lambda seed: [Setup(seed=seed), Setup(seed=seed + 1000, epoch_s=7.0)],
+    join="cat",
+    share=0.0,
+)
+condition(
+    "files",
+    "two logs by cat, the later first",
+    lambda seed: [Setup(seed=seed, epoch_s=3104.9), Setup(seed=seed + 1000)],
+    join="cat",
+    share=0.0,
+)
+condition(
+    "files",
+    "one log twice by cat",
+    lambda seed: [Setup(seed=seed), Setup(seed=seed)],
+    join="cat",
+    share=0.0,
+)
+condition(
+    "files",
+    "two logs by mergecap",
+    lambda seed: [Setup(seed=seed), Setup(seed=seed + 1000, epoch_s=7.0)],
+    join="mergecap",
+    share=0.0,
+)
+condition(
+    "files",
+    "two logs of one time by mergecap",
+    lambda seed: [Setup(seed=seed), Setup(seed=seed + 1000, epoch_s=0.3)],
+    join="mergecap",
+    share=0.0,
+)

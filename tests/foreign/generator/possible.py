@@ -1,0 +1,48 @@
+"""What the samples allow: the best of several splines, chosen with the truth in hand."""
+
+import numpy as np
+
+
+def _basis(t, t0, step, n):
+    """Cubic B-splines with even knots: a row per time."""
+    x = (t - t0) / step
+    i = np.clip(np.floor(x).astype(int), 0, n - 4)
+    u = x - i
+    rows = np.zeros((len(t), n))
+    parts = ((1 - u) ** 3, 3 * u**3 - 6 * u**2 + 4, -3 * u**3 + 3 * u**2 + 3 * u + 1, u**3)
+    for k, part in enumerate(parts):
+        rows[np.arange(len(t)), i + k] = part / 6
+    return rows
+
+
+def best_spline(samples, truth, begin, end):
+    """The smallest worst error between begin and end: degrees, or None without samples.
+
+    `samples`: true times of request and answer, degrees. Times are known here; the midpoint is not
+    the instant of the sample, which is part of what the samples allow.
+    """
+    out = None
+    for move_begin, move_end in zip(begin, end):
+        sent, received, degrees = (np.array(a) for a in zip(*samples))
+        trip = received - sent
+        good = trip <= np.quantile(trip, 0.9)
+        middle = (sent + received) / 2
+        good &= (middle > move_begin - 0.05) & (middle < move_end + 0.15)
+        if good.sum() < 8:
+            return None
+        at, values = middle[good], degrees[good]
+        check = np.linspace(move_begin, move_end, 4000)
+        check = check[(check > at[0]) & (check < at[-1])]
+        best = np.inf
+        for step in (0.005, 0.0075, 0.01, 0.015, 0.02, 0.03, 0.05, 0.08, 0.15, 0.3):
+            n = int((at[-1] - at[0]) / step) + 5
+            rows = _basis(at, at[0], step, n)
+            weights, *_ = np.linalg.lstsq(
+                np.vstack([rows, 1e-6 * np.eye(n)]), np.concatenate([values, np.zeros(n)]), rcond=None
+            )
+            error = _basis(check, at[0], step, n) @ weights - truth(check)
+            rate = truth.rate(check)
+            delay = error @ rate / (rate @ rate)
+            best = min(best, float(np.max(np.abs(error - delay * rate))))
+        out = best if out is None else max(out, best)
+    return out

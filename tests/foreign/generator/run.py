@@ -1,0 +1,154 @@
+#!/usr/bin/env python3
+"""Generates scans, replays them with a program and measures its clouds against the truth.
+
+    run.py --program PATH [--only TEXT] [--seeds N] [--json FILE] [--keep FOLDER]
+"""
+
+import argparse
+import json
+import subprocess
+import sys
+import tempfile
+from collections import Counter
+from pathlib import Path
+
+import compare
+import drive
+import scan
+from conditions import ALL
+
+
+def number(value, digits=4, scale=1.0):
+    if value is None:
+        return "-"
+    return f"{value * scale:.{digits}f}"
+
+
+def largest(rows, name):
+    values = [r[name] for r in rows if r.get(name) is not None]
+    return max(values) if values else None
+
+
+GOOD_DEG = 0.0109
+QUIET_US = 100.0
+
+
+def verdict(row):
+    """What a user is told against what is true.
+
+    SILENT: exit 0, no warning, and an error beyond its bound. unsaid: the same within the bound, but
+    well above what the samples allow. wrong and poor: the same two with a message.
+    LOST, DOUBLED: fewer points than the recording allows, or points that are there twice.
+    """
+    beyond = any((row.get(name) or 0.0) > 1.0 for name in ("angle_ratio", "clock_ratio"))
+    beyond |= bool(row.get("unmatched"))
+    said = row["exit"] != 0 or bool(row["warnings"])
+    if row["exit"] not in (0, 3, 6):
+        return "FAILED"
+    if beyond:
+        return "wrong" if said else "SILENT"
+    possible = max(GOOD_DEG, 1.5 * (row.get("possible_deg") or 0.0))
+    poor = (row.get("worst_deg") or 0.0) > possible
+    poor |= row.get("quiet") and (row.get("clock_worst_us") or 0.0) > QUIET_US
+    if row["kept"] < row["share"] or row["kept"] > 1.0:
+        return "LOST" if row["kept"] < 1.0 else "DOUBLED"
+    if poor:
+        return "poor" if said else "unsaid"
+    return "ok"
+
+
+HEADER = (
+    "condition", "exit", "kept %", "worst deg", "RMS deg", "spline by hindsight", "angle bound",
+    "truth/bound", "clock us", "clock bound", "truth/bound", "point mm", "method", "verdict",
+)
+
+
+def line(name, rows):
+    exits = "/".join(str(e) for e in sorted({r["exit"] for r in rows}))
+    methods = Counter((r["sync"] or {}).get("angle_method", "-") for r in rows)
+    verdicts = Counter(verdict(r) for r in rows)
+    def counted(c):
+        return " ".join(k if v == len(rows) else f"{k} {v}" for k, v in c.most_common())
+
+    return [
+        name,
+        exits,
+        number(min(r["kept"] for r in rows), 1, 100),
+        number(largest(rows, "worst_deg")),
+        number(largest(rows, "rms_deg")),
+        number(largest(rows, "possible_deg")),
+        number(largest(rows, "angle_bound_deg")),
+        number(largest(rows, "angle_ratio"), 2),
+        number(largest(rows, "clock_worst_us"), 1),
+        number(largest(rows, "clock_bound_us"), 1),
+        number(largest(rows, "clock_ratio"), 2),
+        number(largest(rows, "point_worst_mm"), 1),
+        counted(methods),
+        counted(verdicts),
+    ]
+
+
+def log_of(condition, seed, folder):
+    """The log of a condition and the truths of its parts."""
+    parts, truths = [], []
+    for i, setup in enumerate(condition.setups(seed)):
+        path = folder / f"part-{i}.pcapng"
+        truths.append(scan.generate(setup, path))
+        parts.append(path)
+    whole = folder / "log.pcapng"
+    if condition.join == "mergecap":
+        whole.unlink(missing_ok=True)
+        subprocess.run(["mergecap", "-w", whole, *parts], check=True)
+    else:
+        whole.write_bytes(b"".join(p.read_bytes() for p in parts))
+    return whole, truths
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--program", required=True)
+    parser.add_argument("--only", action="append", help="conditions or groups with this text")
+    parser.add_argument("--seeds", type=int, default=1)
+    parser.add_argument("--first-seed", type=int, default=0)
+    parser.add_argument("--json", type=Path)
+    parser.add_argument("--keep", type=Path, help="keeps each log here")
+    arguments = parser.parse_args()
+    drive.check_frames()
+    chosen = [
+        c
+        for c in ALL
+        if not arguments.only or any(o in c.name or o == c.group for o in arguments.only)
+    ]
+    if not chosen:
+        parser.error("no such condition; they are: " + "; ".join(c.name for c in ALL))
+    print("| " + " | ".join(HEADER) + " |")
+    print("|" + "---|" * len(HEADER), flush=True)
+    results, failed = [], False
+    with tempfile.TemporaryDirectory() as folder:
+        folder = Path(folder)
+        for condition in chosen:
+            rows = []
+            for seed in range(arguments.first_seed, arguments.first_seed + arguments.seeds):
+                log, truths = log_of(condition, seed, folder)
+                if arguments.keep:
+                    arguments.keep.mkdir(parents=True, exist_ok=True)
+                    name = "".join(x if x.isalnum() or x in ".+-" else "-" for x in condition.name)
+                    (arguments.keep / f"{name}-{seed}.pcapng").write_bytes(log.read_bytes())
+                cloud = folder / "cloud.csv"
+                cloud.unlink(missing_ok=True)
+                row = compare.measure(arguments.program, log, cloud, truths)
+                row.update(condition=condition.name, group=condition.group, seed=seed)
+                row["share"] = condition.share
+                row["quiet"] = all(t.setup.network != "busy" for t in truths)
+                row["verdict"] = verdict(row)
+                failed |= row["verdict"] in ("SILENT", "unsaid", "LOST", "DOUBLED", "FAILED")
+                rows.append(row)
+            results.extend(rows)
+            print("| " + " | ".join(line(condition.name, rows)) + " |", flush=True)
+    if arguments.json:
+        arguments.json.write_text(json.dumps(results, indent=1))
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
