@@ -36,6 +36,18 @@ def plain(speed, way=None, accel=500.0, **more):
     return make
 
 
+def inbound_missing(when):
+    """The first record from the drive after a time."""
+
+    def mangle(records, setup, rng):
+        i = next(
+            i for i, r in enumerate(records) if r[1] == 1 and r[4] == INBOUND and r[0] > when
+        )
+        return records[:i] + records[i + 1 :]
+
+    return mangle
+
+
 # Plain scans.
 for _speed in (56.25, 20.0, 5.0, 98.0, 0.05):
     condition("plain", f"plain, {_speed:g} deg/s", plain(_speed, way=0.12 if _speed < 1 else None))
@@ -53,6 +65,57 @@ condition(
     "USB latency timer of 16 ms",
     lambda seed: Setup(seed=seed, link=scan.usb_latency_timer()),
 )
+
+# Other links.
+LINKS = {
+    "RS232": scan.rs232,
+    "RS232 behind USB": scan.rs232_adapter,
+    "RS232 at 38,400 baud": lambda: scan.rs232(38_400),
+    "CAN": scan.can,
+    "CAN at 400 Hz": lambda: scan.can(2.5e-3),
+    "SLCAN": scan.slcan,
+}
+for _name, _link in LINKS.items():
+    for _speed in (56.25, 5.0):
+        condition(
+            "link",
+            f"{_name}, {_speed:g} deg/s",
+            lambda seed, link=_link, speed=_speed: Setup(
+                seed=seed,
+                link=link(),
+                drive_ppm=31.0,
+                moves=[Move(-min(45.0, 1.2 * speed), speed)],
+            ),
+        )
+for _name, _link in (
+    ("CAN, 40 % lost", lambda: scan.can(loss=0.4)),
+    ("CAN, 10 % lost", lambda: scan.can(loss=0.1)),
+):
+    condition(
+        "link", _name, lambda seed, link=_link: Setup(seed=seed, link=link(), drive_ppm=31.0)
+    )
+for _name in ("RS232", "CAN", "SLCAN"):
+    condition(
+        "link",
+        f"latch 1 ms, {_name}",
+        lambda seed, link=LINKS[_name]: Setup(
+            seed=seed, link=link(), drive_ppm=31.0, latch_s=1e-3
+        ),
+    )
+    condition(
+        "link",
+        f"one answer missing, {_name}",
+        lambda seed, link=LINKS[_name]: Setup(
+            seed=seed, link=link(), drive_ppm=31.0, mangle=inbound_missing(0.5)
+        ),
+    )
+    condition(
+        "link",
+        f"host clock steps +1.2 ms, {_name}",
+        lambda seed, link=LINKS[_name]: Setup(
+            seed=seed, link=link(), drive_ppm=31.0, host_steps=((0.62, 1.2e-3),)
+        ),
+    )
 
 # Servos.
 SERVOS = {

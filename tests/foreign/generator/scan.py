@@ -33,7 +33,7 @@ class Setup:
     # Per move: arguments of mechanism.move, times relative to the begin of the move.
     disturb: dict = field(default_factory=dict)
     mount_m: float = 0.06
-    link: drive.Link = None
+    link: object = None
     latch_s: float = 0.0
     drive_ppm: float = 0.0
     network: str = "quiet"
@@ -60,12 +60,12 @@ class Setup:
 def usb_400():
     """400 Hz; a poll takes 0.8 to 2.5 ms, one in fifty up to 5 ms more each way."""
     delay = clocks.Delay(0.36e-3, "uniform", 0.425e-3, 0.02, 5e-3)
-    return drive.Link(delay, delay, 2.5e-3)
+    return drive.Usb(delay, delay, 2.5e-3)
 
 
 def usb_1000():
     delay = clocks.Delay(0.15e-3, "exponential", 0.06e-3, 0.02, 3e-3)
-    return drive.Link(delay, delay, 1e-3)
+    return drive.Usb(delay, delay, 1e-3)
 
 
 def usb_100():
@@ -85,6 +85,28 @@ def usb_latency_timer():
     link = usb_400()
     link.back_grid = 16e-3
     return link
+
+
+def rs232(baud=115_200):
+    """A port of the machine itself."""
+    return drive.Rs232(clocks.Delay(20e-6, "exponential", 40e-6, 0.01, 3e-3), 2.5e-3, baud)
+
+
+def rs232_adapter():
+    """Behind a USB adapter that delivers bytes within 1 ms."""
+    return drive.Rs232(clocks.Delay(50e-6, "uniform", 0.5e-3, 0.01, 3e-3), 2.5e-3)
+
+
+def can(period=1e-3, loss=0.0):
+    """A kernel interface: a frame takes 0.13 ms on the bus, and waits for others."""
+    delay = clocks.Delay(130e-6, "exponential", 40e-6, 0.01, 2e-3)
+    return drive.Can(delay, delay, period, loss=loss)
+
+
+def slcan(period=1e-3):
+    """Behind a serial adapter on USB."""
+    delay = clocks.Delay(0.25e-3, "uniform", 0.5e-3, 0.02, 4e-3)
+    return drive.Can(delay, delay, period)
 
 
 class Truth:
@@ -111,12 +133,12 @@ class Truth:
         return self.host_clock.true_time(host - self.setup.epoch_s)
 
 
-def comment(setup):
+def comment(setup, link):
     move = setup.moves[0]
     return f"""velomotion = "0.1.0"
 device = "generator"
 simulated = true
-
+{link.settings}
 [mount]
 d_m = {setup.mount_m}
 
@@ -161,20 +183,22 @@ def generate(setup, path):
     motion = mechanism.Motion(setup.start)
     tick = 1e-3 / (1.0 + setup.drive_ppm * 1e-6)
     phase = rng.uniform(0.0, tick)
+    began = rng.uniform(0.0, 4000.0)
+    link = setup.link or usb_400()
     talker = drive.Host(
-        setup.link or usb_400(),
+        link,
         motion,
         rng,
-        tick * setup.latch_s / 1e-3,
-        phase,
+        lambda t: np.floor((began + t * (1.0 + setup.drive_ppm * 1e-6)) * 1e6),
         rng.uniform(-0.5, 0.5),
     )
+    talker.latch_s, talker.latch_phase = tick * setup.latch_s / 1e-3, phase
     talker.stall, talker.late, talker.status_s = setup.stall, setup.late, setup.status_s
     begins, ends = _operate(talker, setup, motion, tick, phase)
     stop = talker.now + 0.02
     packets = lidar.fire(device, 0.0, stop, motion, setup.mount_m, rng, share=setup.share)
     received = clocks.arrivals(rng, packets.sent, clocks.NETWORKS[setup.network])
-    records = drive.records(talker.exchanges, host_ns)
+    records = [(when, 1, host_ns(when), data, way) for when, way, data in talker.records]
     for payload, when in zip(packets.payloads, received):
         data = log.udp(payload, lidar.DATA_PORT)
         records.append((when, 0, host_ns(when), data, log.INBOUND))
@@ -186,13 +210,8 @@ def generate(setup, path):
     records.sort(key=lambda r: r[0])
     if setup.mangle:
         records = setup.mangle(records, setup, rng)
-    log.write(path, comment(setup), log.USER0, "epos2-usb", records)
-    samples = [
-        (e.sent, e.received, e.value * mechanism.COUNT_DEG)
-        for e in talker.exchanges
-        if e.kind == "read 6064" and e.received is not None
-    ]
-    return Truth(setup, motion, packets, host, begins, ends, samples)
+    log.write(path, comment(setup, link), link.kind, link.name, records)
+    return Truth(setup, motion, packets, host, begins, ends, talker.samples)
 
 
 def _operate(talker, setup, motion, tick, phase):
@@ -200,13 +219,14 @@ def _operate(talker, setup, motion, tick, phase):
     talker.now = 0.03
     angle = setup.start
     begins, ends = [], []
-    talker.read(0x6041, value=0x8137, small=True)
+    talker.read(0x6041, value=0x8137)
+    talker.prepare()
     talker.read(0x6064)
     for index, move in enumerate(setup.moves):
         rpm = int(round(move.speed / RPM_DEG_S))
         rpm_s = int(round(move.accel / RPM_DEG_S))
         talker.write(0x6060, 1)
-        talker.read(0x6061, value=1, small=True)
+        talker.read(0x6061, value=1)
         for number, value in ((0x6081, rpm), (0x6083, rpm_s), (0x6084, rpm_s)):
             talker.write(number, value)
             talker.read(number, value=value)
@@ -235,10 +255,10 @@ def _operate(talker, setup, motion, tick, phase):
         motion.add(begin, curve)
         begins.append(begin)
         ends.append(end)
-        talker.read(0x6041, value=0x9137, small=True)
+        talker.read(0x6041, value=0x9137)
         talker.write(0x6040, 0x0F)
         talker.poll_until(end + setup.settle_s, lambda t: 0x8537 if t > end else 0x8137)
         angle = move.to
     talker.write(0x6040, 0x00)
-    talker.read(0x6041, value=0x8140, small=True)
+    talker.read(0x6041, value=0x8140)
     return begins, ends
