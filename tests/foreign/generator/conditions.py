@@ -1,5 +1,7 @@
 """The conditions: name, and the setup for a seed."""
 
+import numpy as np
+
 import mechanism
 import scan
 from log import INBOUND, OUTBOUND
@@ -48,6 +50,11 @@ def inbound_missing(when):
     return mangle
 
 
+def nothing_between(begin, end):
+    """No record at all: the program did not run."""
+    return lambda records, setup, rng: [r for r in records if not begin < r[0] < end]
+
+
 # Plain scans.
 for _speed in (56.25, 20.0, 5.0, 98.0, 0.05):
     condition("plain", f"plain, {_speed:g} deg/s", plain(_speed, way=0.12 if _speed < 1 else None))
@@ -74,6 +81,7 @@ LINKS = {
     "CAN": scan.can,
     "CAN at 400 Hz": lambda: scan.can(2.5e-3),
     "SLCAN": scan.slcan,
+    "slow SLCAN": scan.slcan_slow,
 }
 for _name, _link in LINKS.items():
     for _speed in (56.25, 5.0):
@@ -83,7 +91,6 @@ for _name, _link in LINKS.items():
             lambda seed, link=_link, speed=_speed: Setup(
                 seed=seed,
                 link=link(),
-                drive_ppm=31.0,
                 moves=[Move(-min(45.0, 1.2 * speed), speed)],
             ),
         )
@@ -92,28 +99,28 @@ for _name, _link in (
     ("CAN, 10 % lost", lambda: scan.can(loss=0.1)),
 ):
     condition(
-        "link", _name, lambda seed, link=_link: Setup(seed=seed, link=link(), drive_ppm=31.0)
+        "link", _name, lambda seed, link=_link: Setup(seed=seed, link=link())
     )
 for _name in ("RS232", "CAN", "SLCAN"):
     condition(
         "link",
         f"latch 1 ms, {_name}",
         lambda seed, link=LINKS[_name]: Setup(
-            seed=seed, link=link(), drive_ppm=31.0, latch_s=1e-3
+            seed=seed, link=link(), latch_s=1e-3
         ),
     )
     condition(
         "link",
         f"one answer missing, {_name}",
         lambda seed, link=LINKS[_name]: Setup(
-            seed=seed, link=link(), drive_ppm=31.0, mangle=inbound_missing(0.5)
+            seed=seed, link=link(), mangle=inbound_missing(0.5)
         ),
     )
     condition(
         "link",
         f"host clock steps +1.2 ms, {_name}",
         lambda seed, link=LINKS[_name]: Setup(
-            seed=seed, link=link(), drive_ppm=31.0, host_steps=((0.62, 1.2e-3),)
+            seed=seed, link=link(), host_steps=((0.62, 1.2e-3),)
         ),
     )
 
@@ -169,13 +176,12 @@ for _speed in (56.25, 5.0, 98.0):
                 moves=[Move(-min(45.0, 1.2 * speed), speed)],
                 link=link(),
                 latch_s=1e-3,
-                drive_ppm=37.0 * (seed % 3 - 1),
             ),
         )
 condition(
     "latch",
     "latch 1 ms, servo 15 Hz .5",
-    lambda seed: Setup(seed=seed, latch_s=1e-3, drive_ppm=20.0, servo=SERVOS["15 Hz .5"]),
+    lambda seed: Setup(seed=seed, latch_s=1e-3, servo=SERVOS["15 Hz .5"]),
 )
 
 # Clocks. A move begins some 0.1 s after the start.
@@ -198,6 +204,32 @@ for _ms in (0.3, 1.2, 6.0, -6.0, 20.0, -20.0, 1500.0):
         "clock",
         f"host clock steps {_ms:+g} ms",
         lambda seed, ms=_ms: Setup(seed=seed, host_steps=((0.62, ms * 1e-3),)),
+    )
+condition(
+    "clock",
+    "lidar clock corrected by 17.3 s",
+    lambda seed: Setup(seed=seed, lidar_steps=((0.6, 17.3),)),
+)
+condition(
+    "clock",
+    "lidar clock's hour ends",
+    lambda seed: Setup(seed=seed, lidar_offset_s=3599.4),
+)
+condition(
+    "clock",
+    "lidar clock's hour ends at a step of 1.2 ms",
+    lambda seed: Setup(seed=seed, lidar_offset_s=3599.4, lidar_steps=((0.6005, 1.2e-3),)),
+)
+for _s in (-0.4, 0.4, 0.005, -0.005):
+    condition(
+        "clock",
+        f"host suspended for 2 s and set by {_s:+g} s",
+        lambda seed, s=_s: Setup(
+            seed=seed,
+            before_s=4.0,
+            host_steps=((2.9, s),),
+            mangle=nothing_between(1.0, 3.0),
+        ),
     )
 condition(
     "clock",
@@ -408,6 +440,13 @@ condition(
 condition("files", "packets doubled in bursts", lambda seed: Setup(seed=seed, mangle=doubled(0.02)))
 
 
+condition(
+    "files",
+    "a remark before the end of the comment",
+    lambda seed: Setup(seed=seed, remark="# scanned by another person\n"),
+)
+
+
 def every_record_twice(records, setup, rng):
     return [r for r in records for _ in range(2)]
 
@@ -448,3 +487,28 @@ condition(
     join="mergecap",
     share=0.0,
 )
+
+
+def drawn(seed):
+    """Anything that happens to a scanner that works: link, servo, speed, clocks, a latch or none."""
+    rng = np.random.default_rng(1_000_000 + seed)
+    links = [
+        scan.usb_400, scan.usb_400, scan.usb_1000, scan.usb_1000, scan.usb_100,
+        *LINKS.values(),
+    ]  # fmt: skip
+    speed = float(np.round(np.exp(rng.uniform(np.log(0.5), np.log(98.0))) / 0.05) * 0.05)
+    accel = float(rng.choice([500.0, 1000.0, 2000.0, 5000.0, 10_000.0]))
+    servo = Servo()
+    if rng.random() < 0.6:
+        servo = list(SERVOS.values())[rng.integers(len(SERVOS))]
+    return Setup(
+        seed=seed,
+        moves=[Move(-min(45.0, float(rng.uniform(0.6, 1.5)) * speed), speed, accel)],
+        servo=servo,
+        link=links[rng.integers(len(links))](),
+        latch_s=float(rng.choice([0.0, 1e-3])),
+        network=str(rng.choice(["quiet", "coalescing", "busy"])),
+    )
+
+
+condition("drawn", "drawn at random", drawn)

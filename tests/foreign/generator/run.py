@@ -12,6 +12,8 @@ import tempfile
 from collections import Counter
 from pathlib import Path
 
+import numpy as np
+
 import compare
 import drive
 import scan
@@ -29,6 +31,7 @@ def largest(rows, name):
     return max(values) if values else None
 
 
+RATIOS = ("angle_ratio", "clock_ratio", "total_ratio", "tolerance_ratio")
 GOOD_DEG = 0.0109
 QUIET_US = 100.0
 
@@ -38,9 +41,9 @@ def verdict(row):
 
     SILENT: exit 0, no warning, and an error beyond its bound. unsaid: the same within the bound, but
     well above what the samples allow. wrong and poor: the same two with a message.
-    LOST, DOUBLED: fewer points than the recording allows, or points that are there twice.
+    ALARM: a warning about a plain scan. LOST, DOUBLED: fewer points than the recording allows, or points that are there twice.
     """
-    beyond = any((row.get(name) or 0.0) > 1.0 for name in ("angle_ratio", "clock_ratio"))
+    beyond = any((row.get(name) or 0.0) > 1.0 for name in RATIOS)
     beyond |= bool(row.get("unmatched"))
     said = row["exit"] != 0 or bool(row["warnings"])
     if row["exit"] not in (0, 3, 6):
@@ -52,6 +55,8 @@ def verdict(row):
     poor |= row.get("quiet") and (row.get("clock_worst_us") or 0.0) > QUIET_US
     if row["kept"] < row["share"] or row["kept"] > 1.0:
         return "LOST" if row["kept"] < 1.0 else "DOUBLED"
+    if row["group"] == "plain" and said:
+        return "ALARM"
     if poor:
         return "poor" if said else "unsaid"
     return "ok"
@@ -88,6 +93,31 @@ def line(name, rows):
     ]
 
 
+EDGES = (0.0, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, float("inf"))
+
+
+def summary(results):
+    """Histograms of truth over bound, and how much wider the bounds are than the truth."""
+    labels = [f"to {b:g}" if b < 100 else "above" for b in EDGES[1:]]
+    lines = ["| truth/bound | scans | " + " | ".join(labels) + " | median bound/truth |"]
+    lines.append("|" + "---|" * (len(EDGES) + 2))
+    for title, name, plain in (
+        ("angle", "angle_ratio", "angle_ratio_plain"),
+        ("clock", "clock_ratio", "clock_ratio_plain"),
+        ("both", "total_ratio", "total_ratio"),
+    ):
+        ratios = [r[name] for r in results if r.get(name) is not None]
+        if not ratios:
+            continue
+        counts, _ = np.histogram(ratios, bins=EDGES)
+        tight = [1.0 / r[plain] for r in results if r.get(plain)]
+        middle = f"{np.median(tight):.1f}" if tight else "-"
+        lines.append(f"| {title} | {len(ratios)} | " + " | ".join(map(str, counts)) + f" | {middle} |")
+    verdicts = Counter(r["verdict"] for r in results)
+    lines.append("\n" + ", ".join(f"{k}: {v}" for k, v in verdicts.most_common()))
+    return "\n".join(lines)
+
+
 def log_of(condition, seed, folder):
     """The log of a condition and the truths of its parts."""
     parts, truths = [], []
@@ -110,6 +140,7 @@ def main():
     parser.add_argument("--only", action="append", help="conditions or groups with this text")
     parser.add_argument("--seeds", type=int, default=1)
     parser.add_argument("--first-seed", type=int, default=0)
+    parser.add_argument("--tolerance", help="LENGTH@DISTANCE, such as 3mm@20m, for the program")
     parser.add_argument("--json", type=Path)
     parser.add_argument("--keep", type=Path, help="keeps each log here")
     arguments = parser.parse_args()
@@ -136,7 +167,9 @@ def main():
                     (arguments.keep / f"{name}-{seed}.pcapng").write_bytes(log.read_bytes())
                 cloud = folder / "cloud.csv"
                 cloud.unlink(missing_ok=True)
-                row = compare.measure(arguments.program, log, cloud, truths)
+                row = compare.measure(
+                    arguments.program, log, cloud, truths, arguments.tolerance
+                )
                 row.update(condition=condition.name, group=condition.group, seed=seed)
                 row["share"] = condition.share
                 row["quiet"] = all(t.setup.network != "busy" for t in truths)
@@ -145,6 +178,7 @@ def main():
                 rows.append(row)
             results.extend(rows)
             print("| " + " | ".join(line(condition.name, rows)) + " |", flush=True)
+    print("\n" + summary(results))
     if arguments.json:
         arguments.json.write_text(json.dumps(results, indent=1))
     return 1 if failed else 0

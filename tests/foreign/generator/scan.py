@@ -35,15 +35,20 @@ class Setup:
     mount_m: float = 0.06
     link: object = None
     latch_s: float = 0.0
-    drive_ppm: float = 0.0
     network: str = "quiet"
-    host_ppm: float = 11.0
-    lidar_ppm: float = -23.0
+    # None: drawn from +-50 ppm, as crystals are.
+    drive_ppm: float = None
+    host_ppm: float = None
+    lidar_ppm: float = None
+    # What the lidar's clock reads at the start, seconds of the hour. None: drawn.
+    lidar_offset_s: float = None
     wander_s: float = 5e-6
     host_steps: tuple = ()
     host_slews: tuple = ()
     lidar_steps: tuple = ()
     settle_s: float = 0.25
+    # Polls before the first move.
+    before_s: float = 0.06
     # Once: (from, seconds) the drive drops a request, or answers it only after that time. The host
     # gives up after 40 ms and asks again.
     stall: tuple = None
@@ -53,6 +58,8 @@ class Setup:
     share: int = 8
     # Seconds after EPOCH_NS at which the recording begins.
     epoch_s: float = 0.0
+    # Added to the log's own comment.
+    remark: str = ""
     # Changes the sorted list of records before they are written: f(records, setup, rng).
     mangle: object = None
 
@@ -104,15 +111,22 @@ def can(period=1e-3, loss=0.0):
 
 
 def slcan(period=1e-3):
-    """Behind a serial adapter on USB."""
-    delay = clocks.Delay(0.25e-3, "uniform", 0.5e-3, 0.02, 4e-3)
+    """Behind a serial adapter on USB: 0.3 to 0.9 ms there and back."""
+    delay = clocks.Delay(0.15e-3, "uniform", 0.15e-3, 0.02, 4e-3)
     return drive.Can(delay, delay, period)
+
+
+def slcan_slow():
+    """An adapter behind which two SYNCs are under way at a time: 0.6 to 2.6 ms."""
+    delay = clocks.Delay(0.25e-3, "uniform", 0.5e-3, 0.02, 4e-3)
+    return drive.Can(delay, delay, 1e-3)
 
 
 class Truth:
     """What the log does not tell. Arrays over the shots that return.
 
-    `t`: true time, `host`: the host's clock without its steps, in seconds since EPOCH_NS.
+    `t`: true time, `host`: the host's clock without its steps, in seconds since EPOCH_NS;
+    `host_step`: the steps so far.
     """
 
     def __init__(self, setup, motion, packets, host, begins, ends, samples):
@@ -121,6 +135,7 @@ class Truth:
         self.t = packets.times[kept]
         self.tilt = motion(self.t)
         self.host = host.continuous(self.t) + setup.epoch_s
+        self.host_step = host.reading(self.t) - host.continuous(self.t)
         self.points = packets.points[kept]
         number, channel = np.nonzero(kept)
         self.number, self.ring = number, lidar.RING[channel]
@@ -157,22 +172,31 @@ cruise_deg_s = {move.speed}
 accel_deg_s2 = {move.accel}
 sweeps = {len(setup.moves)}
 both_ways = {"true" if len(setup.moves) > 1 else "false"}
-"""
+{setup.remark}"""
 
 
 def generate(setup, path):
     """Writes the log and returns its truth."""
     rng = np.random.default_rng(setup.seed)
     turn = rng.uniform(0.0, 2 * np.pi)
+    host_ppm, lidar_ppm, drive_ppm = (
+        drawn if stated is None else stated
+        for stated, drawn in zip(
+            (setup.host_ppm, setup.lidar_ppm, setup.drive_ppm), rng.uniform(-50.0, 50.0, 3)
+        )
+    )
+    offset = rng.uniform(5.0, 3000.0)
+    if setup.lidar_offset_s is not None:
+        offset = setup.lidar_offset_s
     host = clocks.Clock(
-        skew_ppm=setup.host_ppm,
+        skew_ppm=host_ppm,
         wander=(setup.wander_s, 160.0, turn),
         steps=setup.host_steps,
         slews=setup.host_slews,
     )
     device = clocks.Clock(
-        offset=rng.uniform(5.0, 3000.0),
-        skew_ppm=setup.lidar_ppm,
+        offset=offset,
+        skew_ppm=lidar_ppm,
         wander=(setup.wander_s, 90.0, turn + 1.0),
         steps=setup.lidar_steps,
     )
@@ -181,7 +205,7 @@ def generate(setup, path):
         return EPOCH_NS + int(round((float(host.reading(t)) + setup.epoch_s) * 1e9))
 
     motion = mechanism.Motion(setup.start)
-    tick = 1e-3 / (1.0 + setup.drive_ppm * 1e-6)
+    tick = 1e-3 / (1.0 + drive_ppm * 1e-6)
     phase = rng.uniform(0.0, tick)
     began = rng.uniform(0.0, 4000.0)
     link = setup.link or usb_400()
@@ -189,7 +213,7 @@ def generate(setup, path):
         link,
         motion,
         rng,
-        lambda t: np.floor((began + t * (1.0 + setup.drive_ppm * 1e-6)) * 1e6),
+        lambda t: np.floor((began + t * (1.0 + drive_ppm * 1e-6)) * 1e6),
         rng.uniform(-0.5, 0.5),
     )
     talker.latch_s, talker.latch_phase = tick * setup.latch_s / 1e-3, phase
@@ -234,7 +258,7 @@ def _operate(talker, setup, motion, tick, phase):
         talker.write(0x607A, target)
         talker.read(0x607A, value=target)
         talker.write(0x6040, 0x0F)
-        talker.poll_until(talker.now + 0.06, lambda _: 0x8137)
+        talker.poll_until(talker.now + (setup.before_s if index == 0 else 0.06), lambda _: 0x8137)
         commanded = talker.write(0x6040, 0x1F)
         begin = (np.floor((commanded - phase) / tick) + 1) * tick + phase
         profile = mechanism.Profile(begin, angle, move.to, rpm * RPM_DEG_S, rpm_s * RPM_DEG_S)
