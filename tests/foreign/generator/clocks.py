@@ -40,7 +40,8 @@ class Clock:
         """The inverse of `continuous`."""
         wanted = np.asarray(continuous, dtype=float)
         t = wanted.copy()
-        for _ in range(8):
+        # Rates deviate by less than 0.1 %: each round gains three digits.
+        for _ in range(5):
             t = t + (wanted - self.continuous(t))
         return t
 

@@ -159,7 +159,9 @@ condition("head", "held 200 ms, goes on late", disturbed(pause=(0.40, 0.20)))
 condition("head", "slips 1.5 deg in 30 ms", disturbed(extra=(mechanism.slip, 0.4, -1.5, 0.03)))
 condition("head", "slips 0.2 deg in 20 ms", disturbed(extra=(mechanism.slip, 0.5, -0.2, 0.02)))
 condition(
-    "head", "jerked, swings 0.5 deg at 12 Hz", disturbed(extra=(mechanism.swing, 0.4, 0.5, 12, 0.06))
+    "head",
+    "jerked, swings 0.5 deg at 12 Hz",
+    disturbed(extra=(mechanism.swing, 0.4, 0.5, 12, 0.06)),
 )
 condition("head", "bumped 0.4 deg for 40 ms", disturbed(extra=(mechanism.bump, 0.45, 0.4, 0.04)))
 condition("head", "bumped 0.05 deg for 40 ms", disturbed(extra=(mechanism.bump, 0.45, 0.05, 0.04)))
@@ -358,7 +360,7 @@ def doubled(share):
             out.append(r)
             if r[1] == 0 and len(r[3]) == 1248:
                 if burst == 0 and held:
-                    out.extend((r[0], x[1], r[2] + 1000 * k, x[3], x[4]) for k, x in enumerate(held))
+                    out.extend((r[0], *x[1:2], r[2] + 1000 * k, *x[3:]) for k, x in enumerate(held))
                     held = []
                 if burst == 0 and rng.random() < share:
                     burst = int(rng.integers(1, 20))
@@ -379,7 +381,9 @@ missing("one answer missing, 1000 Hz", answers_missing([0.5]), link=scan.usb_100
 missing("one answer missing, 5 deg/s", answers_missing([0.5]), moves=[Move(-6.0, 5.0)])
 missing("one answer missing, 40 Hz", answers_missing([0.5]), link=scan.usb_40())
 missing(
-    "one answer missing, latency timer of 16 ms", answers_missing([0.5]), link=scan.usb_latency_timer()
+    "one answer missing, latency timer of 16 ms",
+    answers_missing([0.5]),
+    link=scan.usb_latency_timer(),
 )
 for _name, _link in (("400 Hz", scan.usb_400), ("40 Hz", scan.usb_40)):
     missing(
@@ -403,11 +407,19 @@ missing("2 % of the drive's answers missing", share_of_answers(0.02))
 missing("acknowledgement of 607A missing", acknowledgement_missing("900211047a60"))
 missing("acknowledgement of the start missing", acknowledgement_missing("9002110440600001" + "1f"))
 missing("answer of a statusword missing", other_answer_missing("9002100241600001"))
-missing("answer of a statusword missing, 1000 Hz", other_answer_missing("9002100241600001"), link=scan.usb_1000())
+missing(
+    "answer of a statusword missing, 1000 Hz",
+    other_answer_missing("9002100241600001"),
+    link=scan.usb_1000(),
+)
 missing("3 packets missing", packets_missing(0.6, 3))
 missing("40 packets missing", packets_missing(0.6, 40), share=0.9)
 missing("2 % of the packets missing", share_of_packets(0.02))
 missing("no record of the drive for 100 ms", silent_between(0.5, 0.6))
+
+
+missing("no record of the drive in the sweep", silent_between(0.2, 1.15), share=0.0)
+missing("no record of the drive for 0.5 s", silent_between(0.4, 0.9), share=0.0)
 
 
 def _no_polls_in_second(records, setup, rng):
@@ -445,6 +457,16 @@ condition(
     "a remark before the end of the comment",
     lambda seed: Setup(seed=seed, remark="# scanned by another person\n"),
 )
+condition(
+    "files",
+    "another comment after",
+    lambda seed: Setup(seed=seed, comments_after=("hall, second floor",)),
+)
+condition(
+    "files",
+    "another comment before",
+    lambda seed: Setup(seed=seed, comments_before=("hall, second floor",)),
+)
 
 
 def every_record_twice(records, setup, rng):
@@ -457,40 +479,37 @@ condition(
     "two logs by cat",
     lambda seed: [Setup(seed=seed), Setup(seed=seed + 1000, epoch_s=7.0)],
     join="cat",
-    share=0.0,
 )
 condition(
     "files",
     "two logs by cat, the later first",
     lambda seed: [Setup(seed=seed, epoch_s=3104.9), Setup(seed=seed + 1000)],
     join="cat",
-    share=0.0,
 )
 condition(
     "files",
     "one log twice by cat",
-    lambda seed: [Setup(seed=seed), Setup(seed=seed)],
-    join="cat",
+    lambda seed: Setup(seed=seed),
+    join="cat twice",
     share=0.0,
 )
+condition("files", "one log by mergecap", lambda seed: Setup(seed=seed), join="mergecap")
 condition(
     "files",
     "two logs by mergecap",
     lambda seed: [Setup(seed=seed), Setup(seed=seed + 1000, epoch_s=7.0)],
     join="mergecap",
-    share=0.0,
 )
 condition(
     "files",
     "two logs of one time by mergecap",
     lambda seed: [Setup(seed=seed), Setup(seed=seed + 1000, epoch_s=0.3)],
     join="mergecap",
-    share=0.0,
 )
 
 
 def drawn(seed):
-    """Anything that happens to a scanner that works: link, servo, speed, clocks, a latch or none."""
+    """A scanner that works: any link, servo, speed and clocks, a latch or none."""
     rng = np.random.default_rng(1_000_000 + seed)
     links = [
         scan.usb_400, scan.usb_400, scan.usb_1000, scan.usb_1000, scan.usb_100,

@@ -20,78 +20,68 @@ HOUR_US = 3_600_000_000
 
 
 class Packets:
-    """All packets of a scan with the truth of each shot.
+    """All packets of a scan with the truth of each shot that returns.
 
     `payloads`, `sent`: per packet, the bytes and the true time at which the last shot is over.
-    `times`, `points`, `ranges`: per shot, arrays of (packets * 24, 16).
-    `kept`: shots that return. The others meet a surface that absorbs them.
+    `number`, `channel`, `times`, `points`: per shot, in the order of firing. `number` counts the
+    sequences of 16 shots, `sequences` in all.
     """
 
 
 def fire(clock, start, stop, tilt, mount_m, rng, head_rpm=600.0, share=8):
     """Fires from `start` to `stop` (true seconds).
 
-    The oscillator of `clock` sets the cadence; its steps change stamps only. Reflectivity carries
-    the number of the sequence modulo 256, so that points are recognised.
+    The oscillator of `clock` sets the cadence; its steps change stamps only. One shot in `share`
+    returns (1, 2, 4 or 8); the others meet a surface that absorbs them. Reflectivity carries the
+    number of the sequence modulo 256, so that points are recognised.
     """
     first = clock.continuous(start)
     packets = int((clock.continuous(stop) - first) / PACKET_S)
-    sequence = np.arange(packets * 24)
-    device = first + (sequence[:, None] * SEQUENCE_S + np.arange(16)[None, :] * LASER_S)
-    times = clock.true_time(device.ravel()).reshape(device.shape)
+    out = Packets()
+    out.sequences = packets * 24
+    every = np.arange(out.sequences)[:, None]
+    lasers = np.arange(16)[None, :]
+    out.number, out.channel = np.nonzero((lasers + lasers // 8 + every) % 8 < 8 // share)
+    out.times = clock.true_time(first + out.number * SEQUENCE_S + out.channel * LASER_S)
+    blocks = clock.true_time(first + np.arange(packets * 12) * (2 * SEQUENCE_S))
 
     spin_phase = rng.uniform(0.0, 360.0)
-    rate = head_rpm * 6.0
-    wobble = 2.0
 
     def azimuth(t):
-        return spin_phase + rate * t + wobble / 60 * np.sin(2 * np.pi * 0.7 * t)
+        """An even rate with a wobble of 2 arc minutes."""
+        return spin_phase + head_rpm * 6.0 * t + 2.0 / 60 * np.sin(2 * np.pi * 0.7 * t)
 
-    angle = np.radians(azimuth(times))
-    elevation = np.radians(ELEVATION_DEG)[None, :]
-    gamma = np.radians(tilt(times))
-    direction = np.stack(
-        np.broadcast_arrays(
-            np.cos(elevation) * np.sin(angle), np.cos(elevation) * np.cos(angle), np.sin(elevation)
-        ),
-        axis=-1,
-    )
-    origin = np.zeros_like(direction)
-    origin[..., 2] = ORIGIN_M[None, :] + mount_m
+    angle = np.radians(azimuth(out.times))
+    elevation = np.radians(ELEVATION_DEG)[out.channel]
+    gamma = np.radians(tilt(out.times))
 
-    def rotate(v):
-        x = v[..., 0] * np.cos(gamma) + v[..., 2] * np.sin(gamma)
-        z = v[..., 2] * np.cos(gamma) - v[..., 0] * np.sin(gamma)
-        return np.stack([x, v[..., 1], z], axis=-1)
+    def rotate(x, y, z):
+        c, s = np.cos(gamma), np.sin(gamma)
+        return np.stack([x * c + z * s, np.broadcast_to(y, x.shape), z * c - x * s], axis=-1)
 
-    o, d = rotate(origin), rotate(direction)
-    channel = np.arange(16)[None, :]
-    number = sequence[:, None]
-    kept = (channel + channel // 8 + number) % 8 < 8 // share
-    ranges = np.zeros(times.shape)
-    ranges[kept] = scene.distances(o[kept], d[kept])
-    out = Packets()
-    out.times, out.kept, out.ranges = times, kept, ranges
-    out.points = o + ranges[..., None] * d
+    level = np.cos(elevation)
+    nowhere = np.zeros(len(angle))
+    origin = rotate(nowhere, 0.0, ORIGIN_M[out.channel] + mount_m)
+    direction = rotate(level * np.sin(angle), level * np.cos(angle), np.sin(elevation))
+    ranges = scene.distances(origin, direction)
+    out.points = origin + ranges[:, None] * direction
 
     wire = np.zeros((packets, 12, 100), dtype=np.uint8)
     wire[:, :, 0], wire[:, :, 1] = 0xFF, 0xEE
-    blocks = azimuth(times[::2, 0])
-    hundredths = np.round(blocks * 100).astype(np.int64) % 36000
+    hundredths = np.round(azimuth(blocks) * 100).astype(np.int64) % 36000
     hundredths = hundredths.reshape(packets, 12)
     wire[:, :, 2], wire[:, :, 3] = hundredths & 0xFF, hundredths >> 8
-    steps = np.round(ranges / 0.002).astype(np.int64).reshape(packets, 12, 32)
-    codes = np.broadcast_to(number % 256, times.shape).reshape(packets, 12, 32)
-    shots = wire[:, :, 4:].reshape(packets, 12, 32, 3)
-    shots[..., 0], shots[..., 1] = steps & 0xFF, steps >> 8
-    shots[..., 2] = np.where(steps > 0, codes, 0)
+    steps = np.round(ranges / 0.002).astype(np.int64)
+    shots = np.zeros((out.sequences, 16, 3), dtype=np.uint8)
+    shots[out.number, out.channel, 0] = steps & 0xFF
+    shots[out.number, out.channel, 1] = steps >> 8
+    shots[out.number, out.channel, 2] = out.number % 256
     wire[:, :, 4:] = shots.reshape(packets, 12, 96)
 
-    begins = times[::24, 0]
-    out.stamp_us = stamps(clock, begins)
+    begins = blocks[::12]
+    stamp_us = stamps(clock, begins)
     out.payloads = [
-        wire[i].tobytes() + struct.pack("<I", out.stamp_us[i]) + b"\x37\x22"
-        for i in range(packets)
+        wire[i].tobytes() + struct.pack("<I", stamp_us[i]) + b"\x37\x22" for i in range(packets)
     ]
     out.sent = clock.true_time(clock.continuous(begins) + PACKET_S)
     return out

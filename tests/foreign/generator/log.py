@@ -23,8 +23,9 @@ def _block(kind, body):
     return struct.pack("<II", kind, length) + body + struct.pack("<I", length)
 
 
-def section(comment):
-    options = _option(1, comment.encode()) + _option(4, b"generator") + _option(0, b"")
+def section(comments):
+    options = b"".join(_option(1, c.encode()) for c in comments)
+    options += _option(4, b"generator") + _option(0, b"")
     return _block(0x0A0D0D0A, struct.pack("<IHHq", 0x1A2B3C4D, 1, 0, -1) + options)
 
 
@@ -57,10 +58,10 @@ def udp(payload, port):
     return ethernet + bytes(ip) + struct.pack(">HHHH", port, port, total - 20, 0) + payload
 
 
-def write(path, comment, drive_link, drive_name, records):
+def write(path, comments, drive_link, drive_name, records):
     """`records`: (order, interface, host time in ns, bytes, direction), sorted by order."""
     with open(path, "wb") as file:
-        file.write(section(comment))
+        file.write(section(comments))
         file.write(interface(ETHERNET, "lidar"))
         file.write(interface(drive_link, drive_name))
         for _, index, time_ns, data, direction in sorted(records, key=lambda r: r[0]):

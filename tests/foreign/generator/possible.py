@@ -37,8 +37,10 @@ def best_spline(samples, truth, begin, end):
         for step in (0.005, 0.0075, 0.01, 0.015, 0.02, 0.03, 0.05, 0.08, 0.15, 0.3):
             n = int((at[-1] - at[0]) / step) + 5
             rows = _basis(at, at[0], step, n)
+            # The tiny rows decide splines that no sample touches.
+            matrix = np.vstack([rows, 1e-6 * np.eye(n)])
             weights, *_ = np.linalg.lstsq(
-                np.vstack([rows, 1e-6 * np.eye(n)]), np.concatenate([values, np.zeros(n)]), rcond=None
+                matrix, np.concatenate([values, np.zeros(n)]), rcond=None
             )
             error = _basis(check, at[0], step, n) @ weights - truth(check)
             rate = truth.rate(check)

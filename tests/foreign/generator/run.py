@@ -6,12 +6,14 @@
 
 import argparse
 import json
+import os
 import subprocess
 import sys
 import tempfile
 from collections import Counter
 from pathlib import Path
 
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import numpy as np
 
 import compare
@@ -39,17 +41,22 @@ QUIET_US = 100.0
 def verdict(row):
     """What a user is told against what is true.
 
-    SILENT: exit 0, no warning, and an error beyond its bound. unsaid: the same within the bound, but
-    well above what the samples allow. wrong and poor: the same two with a message.
-    ALARM: a warning about a plain scan. LOST, DOUBLED: fewer points than the recording allows, or points that are there twice.
+    SILENT: exit 0, no warning, and an error beyond its bound. unsaid: the same within the bound,
+    but well above what the samples allow. wrong, poor: the same two with a message. ALARM: a
+    warning about a plain scan. LOST: fewer points than the recording allows. DOUBLED: points twice.
+    ABSURD: a bound above 90 deg. refused: several logs in one file, and no cloud.
     """
     beyond = any((row.get(name) or 0.0) > 1.0 for name in RATIOS)
     beyond |= bool(row.get("unmatched"))
     said = row["exit"] != 0 or bool(row["warnings"])
     if row["exit"] not in (0, 3, 6):
         return "FAILED"
+    if (row.get("angle_bound_deg") or 0.0) > 90.0:
+        return "ABSURD"
     if beyond:
         return "wrong" if said else "SILENT"
+    if row["exit"] == 3 and row["joined"]:
+        return "refused"
     possible = max(GOOD_DEG, 1.5 * (row.get("possible_deg") or 0.0))
     poor = (row.get("worst_deg") or 0.0) > possible
     poor |= row.get("quiet") and (row.get("clock_worst_us") or 0.0) > QUIET_US
@@ -71,7 +78,8 @@ HEADER = (
 def line(name, rows):
     exits = "/".join(str(e) for e in sorted({r["exit"] for r in rows}))
     methods = Counter((r["sync"] or {}).get("angle_method", "-") for r in rows)
-    verdicts = Counter(verdict(r) for r in rows)
+    verdicts = Counter(r["verdict"] for r in rows)
+
     def counted(c):
         return " ".join(k if v == len(rows) else f"{k} {v}" for k, v in c.most_common())
 
@@ -112,7 +120,7 @@ def summary(results):
         counts, _ = np.histogram(ratios, bins=EDGES)
         tight = [1.0 / r[plain] for r in results if r.get(plain)]
         middle = f"{np.median(tight):.1f}" if tight else "-"
-        lines.append(f"| {title} | {len(ratios)} | " + " | ".join(map(str, counts)) + f" | {middle} |")
+        lines.append("| " + " | ".join(map(str, (title, len(ratios), *counts, middle))) + " |")
     verdicts = Counter(r["verdict"] for r in results)
     lines.append("\n" + ", ".join(f"{k}: {v}" for k, v in verdicts.most_common()))
     return "\n".join(lines)
@@ -130,7 +138,8 @@ def log_of(condition, seed, folder):
         whole.unlink(missing_ok=True)
         subprocess.run(["mergecap", "-w", whole, *parts], check=True)
     else:
-        whole.write_bytes(b"".join(p.read_bytes() for p in parts))
+        times = 2 if condition.join == "cat twice" else 1
+        whole.write_bytes(b"".join(p.read_bytes() for p in parts * times))
     return whole, truths
 
 
@@ -172,9 +181,10 @@ def main():
                 )
                 row.update(condition=condition.name, group=condition.group, seed=seed)
                 row["share"] = condition.share
+                row["joined"] = len(truths) > 1
                 row["quiet"] = all(t.setup.network != "busy" for t in truths)
                 row["verdict"] = verdict(row)
-                failed |= row["verdict"] in ("SILENT", "unsaid", "LOST", "DOUBLED", "FAILED")
+                failed |= row["verdict"].isupper() or row["verdict"] == "unsaid"
                 rows.append(row)
             results.extend(rows)
             print("| " + " | ".join(line(condition.name, rows)) + " |", flush=True)

@@ -58,8 +58,10 @@ class Setup:
     share: int = 8
     # Seconds after EPOCH_NS at which the recording begins.
     epoch_s: float = 0.0
-    # Added to the log's own comment.
+    # Added to the log's own comment; other comments of the section.
     remark: str = ""
+    comments_before: tuple = ()
+    comments_after: tuple = ()
     # Changes the sorted list of records before they are written: f(records, setup, rng).
     mangle: object = None
 
@@ -130,19 +132,16 @@ class Truth:
     """
 
     def __init__(self, setup, motion, packets, host, begins, ends, samples):
-        kept = packets.kept
         self.setup, self.motion, self.host_clock = setup, motion, host
-        self.t = packets.times[kept]
+        self.t = packets.times
         self.tilt = motion(self.t)
         self.host = host.continuous(self.t) + setup.epoch_s
         self.host_step = host.reading(self.t) - host.continuous(self.t)
-        self.points = packets.points[kept]
-        number, channel = np.nonzero(kept)
-        self.number, self.ring = number, lidar.RING[channel]
-        self.channel = channel
+        self.points = packets.points
+        self.number, self.channel = packets.number, packets.channel
+        self.sequences = packets.sequences
         self.begins, self.ends, self.samples = begins, ends, samples
         self.minimum_delay = clocks.NETWORKS[setup.network].minimum
-        self.sequences = kept.shape[0]
 
     def true_time(self, host):
         return self.host_clock.true_time(host - self.setup.epoch_s)
@@ -234,7 +233,8 @@ def generate(setup, path):
     records.sort(key=lambda r: r[0])
     if setup.mangle:
         records = setup.mangle(records, setup, rng)
-    log.write(path, comment(setup, link), link.kind, link.name, records)
+    comments = [*setup.comments_before, comment(setup, link), *setup.comments_after]
+    log.write(path, comments, link.kind, link.name, records)
     return Truth(setup, motion, packets, host, begins, ends, talker.samples)
 
 
