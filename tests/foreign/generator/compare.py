@@ -139,7 +139,7 @@ def measure(program, log, cloud_path, truths, tolerance=None):
     rest = total - delay * rate
     row["worst_deg"], row["rms_deg"] = worst(rest), rms(rest)
     row["raw_worst_deg"] = worst(total)
-    possible = [best_spline(t.samples, t.motion, t.begins, t.ends) for t in truths]
+    possible = [best_spline(t.samples, t.motion, t.begins, t.ends, t.breaks) for t in truths]
     row["possible_deg"] = max((p for p in possible if p is not None), default=None)
     row["point_worst_mm"] = worst(joined["point"] * 1e3)
     row["point_rms_mm"] = rms(joined["point"] * 1e3)

@@ -68,7 +68,7 @@ condition(
     lambda seed: Setup(seed=seed, moves=[Move(-30.0, 56.25), Move(0.0, 56.25)]),
 )
 condition(
-    "plain",
+    "link",
     "USB latency timer of 16 ms",
     lambda seed: Setup(seed=seed, link=scan.usb_latency_timer()),
 )

@@ -131,7 +131,7 @@ class Truth:
     `host_step`: the steps so far.
     """
 
-    def __init__(self, setup, motion, packets, host, begins, ends, samples):
+    def __init__(self, setup, motion, packets, host, begins, ends, breaks, samples):
         self.setup, self.motion, self.host_clock = setup, motion, host
         self.t = packets.times
         self.tilt = motion(self.t)
@@ -140,7 +140,8 @@ class Truth:
         self.points = packets.points
         self.number, self.channel = packets.number, packets.channel
         self.sequences = packets.sequences
-        self.begins, self.ends, self.samples = begins, ends, samples
+        self.begins, self.ends, self.breaks = begins, ends, breaks
+        self.samples = samples
         self.minimum_delay = clocks.NETWORKS[setup.network].minimum
 
     def true_time(self, host):
@@ -217,7 +218,7 @@ def generate(setup, path):
     )
     talker.latch_s, talker.latch_phase = tick * setup.latch_s / 1e-3, phase
     talker.stall, talker.late, talker.status_s = setup.stall, setup.late, setup.status_s
-    begins, ends = _operate(talker, setup, motion, tick, phase)
+    begins, ends, breaks = _operate(talker, setup, motion, tick, phase)
     stop = talker.now + 0.02
     packets = lidar.fire(device, 0.0, stop, motion, setup.mount_m, rng, share=setup.share)
     received = clocks.arrivals(rng, packets.sent, clocks.NETWORKS[setup.network])
@@ -235,14 +236,14 @@ def generate(setup, path):
         records = setup.mangle(records, setup, rng)
     comments = [*setup.comments_before, comment(setup, link), *setup.comments_after]
     log.write(path, comments, link.kind, link.name, records)
-    return Truth(setup, motion, packets, host, begins, ends, talker.samples)
+    return Truth(setup, motion, packets, host, begins, ends, breaks, talker.samples)
 
 
 def _operate(talker, setup, motion, tick, phase):
     """The accesses of a capture: settings, target, start, polls, stop."""
     talker.now = 0.03
     angle = setup.start
-    begins, ends = [], []
+    begins, ends, breaks = [], [], []
     talker.read(0x6041, value=0x8137)
     talker.prepare()
     talker.read(0x6064)
@@ -263,6 +264,7 @@ def _operate(talker, setup, motion, tick, phase):
         begin = (np.floor((commanded - phase) / tick) + 1) * tick + phase
         profile = mechanism.Profile(begin, angle, move.to, rpm * RPM_DEG_S, rpm_s * RPM_DEG_S)
         arguments = dict(setup.disturb.get(index, {}))
+        breaks.append(_breaks(profile, arguments))
         for key in ("hold", "pause"):
             if key in arguments:
                 when, seconds = arguments[key]
@@ -285,4 +287,24 @@ def _operate(talker, setup, motion, tick, phase):
         angle = move.to
     talker.write(0x6040, 0x00)
     talker.read(0x6041, value=0x8140)
-    return begins, ends
+    return begins, ends, breaks
+
+
+def _breaks(profile, disturbance):
+    """The instants at which the motion bends: ends of ramps, and of what happens to the head."""
+    down = profile.up + profile.cruise
+    when, seconds = disturbance.get("pause", (np.inf, 0.0))
+    out = [
+        profile.begin + t + (seconds if t > when else 0.0)
+        for t in (0.0, profile.up, down, profile.duration)
+    ]
+    for key in ("hold", "pause"):
+        if key in disturbance:
+            when, seconds = disturbance[key]
+            out += [profile.begin + when, profile.begin + when + seconds]
+    if "extra" in disturbance:
+        kind, when, _, seconds, *_ = disturbance["extra"]
+        out.append(profile.begin + when)
+        if kind is not mechanism.swing:
+            out.append(profile.begin + when + seconds)
+    return out
