@@ -2,6 +2,8 @@
 
 import numpy as np
 
+import clocks
+import drive
 import mechanism
 import scan
 from log import INBOUND, OUTBOUND
@@ -506,6 +508,58 @@ condition(
     lambda seed: [Setup(seed=seed), Setup(seed=seed + 1000, epoch_s=0.3)],
     join="mergecap",
 )
+
+# Other things that happen.
+
+
+def asymmetric():
+    fast = clocks.Delay(0.15e-3, "exponential", 0.05e-3)
+    slow = clocks.Delay(1.4e-3, "exponential", 0.1e-3)
+    return drive.Usb(fast, slow, 2.5e-3)
+
+
+def swapped(share):
+    """Packets that arrive just after their successor."""
+
+    def mangle(records, setup, rng):
+        out = list(records)
+        data = [i for i, r in enumerate(out) if r[1] == 0 and len(r[3]) == 1248]
+        for a, b in zip(data[:-1:2], data[1::2]):
+            if rng.random() < share:
+                first, second = out[a], out[b]
+                out[a] = second
+                out[b] = (second[0] + 5e-6, 0, second[2] + 5000, *first[3:])
+        return out
+
+    return mangle
+
+
+def first_polls_missing(until):
+    def choose(records, rng):
+        gone = []
+        for i in _polls(records, 0.0, until):
+            gone += [i, _after(records, i, INBOUND)]
+        return gone
+
+    return without(choose)
+
+
+for _name, _setup in {
+    "answers take ten times as long as requests": {"link": asymmetric()},
+    "asymmetric, latch 1 ms": {"link": asymmetric(), "latch_s": 1e-3},
+    "dither of 2 counts": {"dither_counts": 2},
+    "3 % faster than commanded": {"speed_factor": 1.03},
+    "decelerates at 2000 deg/s2": {"decel": 2000.0},
+    "triangle of 4 deg": {"moves": [Move(-4.0, 56.25)]},
+    "head at 1200 rpm": {"head_rpm": 1200.0},
+    "head at 300 rpm": {"head_rpm": 300.0},
+    "packets overtake each other": {"mangle": swapped(0.05)},
+    "network becomes 0.5 ms slower": {"detour": (0.6, 0.5e-3)},
+    "no polls in the first ramp": {"mangle": first_polls_missing(0.25)},
+    "three sweeps": {"moves": [Move(-20.0, 56.25), Move(0.0, 56.25), Move(-20.0, 56.25)]},
+    "crystals 100 ppm off": {"host_ppm": 100.0, "lidar_ppm": -100.0},
+}.items():
+    condition("more", _name, lambda seed, setup=_setup: Setup(seed=seed, **setup))
 
 
 def drawn(seed):

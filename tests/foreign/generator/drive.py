@@ -199,6 +199,7 @@ class Host:
         self.link, self.tilt, self.rng, self.drive_us = link, tilt, rng, drive_us
         self.encoder_phase = encoder_phase
         self.latch_s, self.latch_phase = 0.0, 0.0
+        self.dither = 0
         self.stall = self.late = None
         self.status_s = 20e-3
         self.records, self.samples = [], []
@@ -210,7 +211,9 @@ class Host:
         if self.latch_s:
             ticks = np.floor((t - self.latch_phase) / self.latch_s)
             t = ticks * self.latch_s + self.latch_phase
-        return int(mechanism.counts(self.tilt(t), self.encoder_phase))
+        shake = self.rng.integers(-self.dither, self.dither + 1) if self.dither else 0
+        self.last = int(mechanism.counts(self.tilt(t), self.encoder_phase) + shake)
+        return self.last
 
     def _do(self, access, answer):
         begin = self.now
@@ -227,7 +230,7 @@ class Host:
             ]
             end = begin + HOST_TIMEOUT_S
         elif access.index == 0x6064 and access.value is None:
-            self.samples.append((begin, end, self.position(taken) * mechanism.COUNT_DEG))
+            self.samples.append((begin, end, self.last * mechanism.COUNT_DEG))
         self.records += records
         self.now = end + 3e-6 + self.rng.exponential(8e-6)
         return taken

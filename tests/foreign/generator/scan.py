@@ -46,6 +46,13 @@ class Setup:
     host_steps: tuple = ()
     host_slews: tuple = ()
     lidar_steps: tuple = ()
+    # The axis is faster than commanded by this factor; it decelerates by another rate.
+    speed_factor: float = 1.0
+    decel: float = None
+    dither_counts: int = 0
+    head_rpm: float = 600.0
+    # From this time on packets take so much longer: (true time, seconds).
+    detour: tuple = (0.0, 0.0)
     settle_s: float = 0.25
     # Polls before the first move.
     before_s: float = 0.06
@@ -216,12 +223,15 @@ def generate(setup, path):
         lambda t: np.floor((began + t * (1.0 + drive_ppm * 1e-6)) * 1e6),
         rng.uniform(-0.5, 0.5),
     )
+    talker.dither = setup.dither_counts
     talker.latch_s, talker.latch_phase = tick * setup.latch_s / 1e-3, phase
     talker.stall, talker.late, talker.status_s = setup.stall, setup.late, setup.status_s
     begins, ends, breaks = _operate(talker, setup, motion, tick, phase)
     stop = talker.now + 0.02
-    packets = lidar.fire(device, 0.0, stop, motion, setup.mount_m, rng, share=setup.share)
+    packets = lidar.fire(device, 0.0, stop, motion, setup.mount_m, rng, setup.head_rpm, setup.share)
     received = clocks.arrivals(rng, packets.sent, clocks.NETWORKS[setup.network])
+    when, longer = setup.detour
+    received = received + np.where(received >= when, longer, 0.0)
     records = [(when, 1, host_ns(when), data, way) for when, way, data in talker.records]
     for payload, when in zip(packets.payloads, received):
         data = log.udp(payload, lidar.DATA_PORT)
@@ -250,9 +260,10 @@ def _operate(talker, setup, motion, tick, phase):
     for index, move in enumerate(setup.moves):
         rpm = int(round(move.speed / RPM_DEG_S))
         rpm_s = int(round(move.accel / RPM_DEG_S))
+        slowing = int(round((setup.decel or move.accel) / RPM_DEG_S))
         talker.write(0x6060, 1)
         talker.read(0x6061, value=1)
-        for number, value in ((0x6081, rpm), (0x6083, rpm_s), (0x6084, rpm_s)):
+        for number, value in ((0x6081, rpm), (0x6083, rpm_s), (0x6084, slowing)):
             talker.write(number, value)
             talker.read(number, value=value)
         target = int(round(move.to / mechanism.COUNT_DEG))
@@ -262,7 +273,14 @@ def _operate(talker, setup, motion, tick, phase):
         talker.poll_until(talker.now + (setup.before_s if index == 0 else 0.06), lambda _: 0x8137)
         commanded = talker.write(0x6040, 0x1F)
         begin = (np.floor((commanded - phase) / tick) + 1) * tick + phase
-        profile = mechanism.Profile(begin, angle, move.to, rpm * RPM_DEG_S, rpm_s * RPM_DEG_S)
+        profile = mechanism.Profile(
+            begin,
+            angle,
+            move.to,
+            rpm * RPM_DEG_S * setup.speed_factor,
+            rpm_s * RPM_DEG_S,
+            setup.decel,
+        )
         arguments = dict(setup.disturb.get(index, {}))
         breaks.append(_breaks(profile, arguments))
         for key in ("hold", "pause"):
