@@ -14,10 +14,10 @@ from scan import Move, Setup
 class Condition:
     """`setups(seed)`: one setup, or several whose logs are joined by `join`."""
 
-    def __init__(self, group, name, make, join=None, share=0.95):
+    def __init__(self, group, name, make, join=None, share=0.95, most=1.0):
         self.group, self.name, self.make, self.join = group, name, make, join
-        # At least this share of the points can be placed.
-        self.share = share
+        # At least and at most these shares of the points can be placed.
+        self.share, self.most = share, most
 
     def setups(self, seed):
         made = self.make(seed)
@@ -27,8 +27,8 @@ class Condition:
 ALL = []
 
 
-def condition(group, name, make, join=None, share=0.95):
-    ALL.append(Condition(group, name, make, join, share))
+def condition(*arguments, **more):
+    ALL.append(Condition(*arguments, **more))
 
 
 def plain(speed, way=None, accel=500.0, **more):
@@ -374,8 +374,11 @@ def doubled(share):
     return mangle
 
 
-def missing(name, mangle, share=0.95, **more):
-    condition("missing", name, lambda seed: Setup(seed=seed, mangle=mangle, **more), share=share)
+def missing(name, mangle, share=0.95, most=1.0, **more):
+    def make(seed):
+        return Setup(seed=seed, mangle=mangle, **more)
+
+    condition("missing", name, make, share=share, most=most)
 
 
 missing("one answer missing", answers_missing([0.5]))
@@ -420,7 +423,7 @@ missing("2 % of the packets missing", share_of_packets(0.02))
 missing("no record of the drive for 100 ms", silent_between(0.5, 0.6))
 
 
-missing("no record of the drive in the sweep", silent_between(0.2, 1.15), share=0.0)
+missing("no record of the drive in the sweep", silent_between(0.2, 1.15), share=0.0, most=0.2)
 missing("no record of the drive for 0.5 s", silent_between(0.4, 0.9), share=0.0)
 
 

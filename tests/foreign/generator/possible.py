@@ -39,16 +39,17 @@ def best_spline(samples, truth, begin, end, breaks):
         check = np.linspace(move_begin, move_end, 4000)
         check = check[(check > at[0]) & (check < at[-1])]
         best = np.inf
-        for step in (0.005, 0.01, 0.02, 0.03, 0.05, 0.08, 0.15, 0.4, 2.0):
+        steps = (0.005, 0.01, 0.02, 0.03, 0.05, 0.08, 0.15, 0.4, 2.0)
+        for step, known in [(s, b) for s in steps for b in ([], bends)]:
             knots = int((at[-1] - at[0]) / step) + 5
-            rows = _basis(at, at[0], step, knots, bends)
+            rows = _basis(at, at[0], step, knots, known)
             n = rows.shape[1]
             # The tiny rows decide splines that no sample touches.
             matrix = np.vstack([rows, 1e-6 * np.eye(n)])
             weights, *_ = np.linalg.lstsq(
                 matrix, np.concatenate([values, np.zeros(n)]), rcond=None
             )
-            error = _basis(check, at[0], step, knots, bends) @ weights - truth(check)
+            error = _basis(check, at[0], step, knots, known) @ weights - truth(check)
             rate = truth.rate(check)
             delay = error @ rate / (rate @ rate)
             best = min(best, float(np.max(np.abs(error - delay * rate))))

@@ -44,6 +44,7 @@ def verdict(row):
     SILENT: exit 0, no warning, and an error beyond its bound. unsaid: the same within the bound,
     but well above what the samples allow. wrong, poor: the same two with a message. ALARM: a
     warning about a plain scan. LOST: fewer points than the recording allows. DOUBLED: points twice.
+    UNFOUNDED: points of a sweep without polls.
     ABSURD: a bound above 90 deg. refused: several logs in one file, and no cloud.
     """
     beyond = any((row.get(name) or 0.0) > 1.0 for name in RATIOS)
@@ -60,8 +61,10 @@ def verdict(row):
     possible = max(GOOD_DEG, 1.5 * (row.get("possible_deg") or 0.0))
     poor = (row.get("worst_deg") or 0.0) > possible
     poor |= row.get("quiet") and (row.get("clock_worst_us") or 0.0) > QUIET_US
-    if row["kept"] < row["share"] or row["kept"] > 1.0:
-        return "LOST" if row["kept"] < 1.0 else "DOUBLED"
+    if row["kept"] < row["share"]:
+        return "LOST"
+    if row["kept"] > row["most"]:
+        return "DOUBLED" if row["kept"] > 1.0 else "UNFOUNDED"
     if row["group"] == "plain" and said:
         return "ALARM"
     if poor:
@@ -180,7 +183,7 @@ def main():
                     arguments.program, log, cloud, truths, arguments.tolerance
                 )
                 row.update(condition=condition.name, group=condition.group, seed=seed)
-                row["share"] = condition.share
+                row["share"], row["most"] = condition.share, condition.most
                 row["joined"] = len(truths) > 1
                 row["quiet"] = all(t.setup.network != "busy" for t in truths)
                 row["verdict"] = verdict(row)
