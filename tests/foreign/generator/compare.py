@@ -152,11 +152,9 @@ def measure(program, log, cloud_path, truths, tolerance=None):
     if angle and row["curve_worst_deg"] is not None:
         # Homing leaves up to half a count that no sample shows, an axis at rest another half.
         row["angle_ratio"] = max(0.0, row["curve_worst_deg"] - COUNT_DEG) / angle
-        row["angle_ratio_plain"] = row["curve_worst_deg"] / angle
     if clock and row["clock_worst_us"] is not None:
         # The lidar's stamps are whole microseconds.
         row["clock_ratio"] = max(0.0, row["clock_worst_us"] - 1.0) / clock
-        row["clock_ratio_plain"] = row["clock_worst_us"] / clock
     if angle and clock and len(total):
         allowed = angle + np.abs(rate) * clock * 1e-6
         known = known - COUNT_DEG - np.abs(rate) * 1e-6

@@ -110,18 +110,18 @@ EDGES = (0.0, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, float("inf"))
 def summary(results):
     """Histograms of truth over bound, and how much wider the bounds are than the truth."""
     labels = [f"to {b:g}" if b < 100 else "above" for b in EDGES[1:]]
-    lines = ["| truth/bound | scans | " + " | ".join(labels) + " | median bound/truth |"]
+    lines = ["| truth/bound | scans | " + " | ".join(labels) + " | median bound/truth, truths of 0 left out |"]
     lines.append("|" + "---|" * (len(EDGES) + 2))
-    for title, name, plain in (
-        ("angle", "angle_ratio", "angle_ratio_plain"),
-        ("clock", "clock_ratio", "clock_ratio_plain"),
-        ("both", "total_ratio", "total_ratio"),
+    for title, name in (
+        ("angle", "angle_ratio"),
+        ("clock", "clock_ratio"),
+        ("both", "total_ratio"),
     ):
         ratios = [r[name] for r in results if r.get(name) is not None]
         if not ratios:
             continue
         counts, _ = np.histogram(ratios, bins=EDGES)
-        tight = [1.0 / r[plain] for r in results if r.get(plain)]
+        tight = [1.0 / r for r in ratios if r]
         middle = f"{np.median(tight):.1f}" if tight else "-"
         lines.append("| " + " | ".join(map(str, (title, len(ratios), *counts, middle))) + " |")
     verdicts = Counter(r["verdict"] for r in results)
