@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Generates scans, replays them with a program and measures its clouds against the truth.
 
-    run.py --program PATH [--only TEXT] [--seeds N] [--json FILE] [--keep FOLDER]
+    run.py --program PATH [--only TEXT] [--seeds N] [--json FILE] [--against FILE] [--keep FOLDER]
 """
 
 import argparse
@@ -78,13 +78,14 @@ HEADER = (
 )
 
 
+def counted(names, all_of_them):
+    return " ".join(k if v == all_of_them else f"{k} {v}" for k, v in names.most_common())
+
+
 def line(name, rows):
     exits = "/".join(str(e) for e in sorted({r["exit"] for r in rows}))
     methods = Counter((r["sync"] or {}).get("angle_method", "-") for r in rows)
     verdicts = Counter(r["verdict"] for r in rows)
-
-    def counted(c):
-        return " ".join(k if v == len(rows) else f"{k} {v}" for k, v in c.most_common())
 
     return [
         name,
@@ -99,9 +100,28 @@ def line(name, rows):
         number(largest(rows, "clock_bound_us"), 1),
         number(largest(rows, "clock_ratio"), 2),
         number(largest(rows, "point_worst_mm"), 1),
-        counted(methods),
-        counted(verdicts),
+        counted(methods, len(rows)),
+        counted(verdicts, len(rows)),
     ]
+
+
+def changes(before, after):
+    """The same conditions and seeds by two programs: verdicts, worst errors, bounds."""
+    old = {(r["condition"], r["seed"]): r for r in before}
+    pairs = [(old[key], r) for r in after if (key := (r["condition"], r["seed"])) in old]
+    lines = [
+        "| condition | verdict before | after | worst deg before | after "
+        "| angle's truth/bound before | after | clock us before | after | kept % before | after |",
+        "|" + "---|" * 11,
+    ]
+    for name in dict.fromkeys(r["condition"] for _, r in pairs):
+        sides = [[p[i] for p in pairs if p[1]["condition"] == name] for i in (0, 1)]
+        cells = [name, *(counted(Counter(r["verdict"] for r in s), len(s)) for s in sides)]
+        for column, digits in (("worst_deg", 4), ("angle_ratio", 2), ("clock_worst_us", 1)):
+            cells += [number(largest(s, column), digits) for s in sides]
+        cells += [number(min(r["kept"] for r in s), 1, 100) for s in sides]
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines)
 
 
 EDGES = (0.0, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, float("inf"))
@@ -110,8 +130,8 @@ EDGES = (0.0, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, float("inf"))
 def summary(results):
     """Histograms of truth over bound, and how much wider the bounds are than the truth."""
     labels = [f"to {b:g}" if b < 100 else "above" for b in EDGES[1:]]
-    lines = ["| truth/bound | scans | " + " | ".join(labels) + " | median bound/truth, truths of 0 left out |"]
-    lines.append("|" + "---|" * (len(EDGES) + 2))
+    titles = ("truth/bound", "scans", *labels, "median bound/truth, truths of 0 left out")
+    lines = ["| " + " | ".join(titles) + " |", "|" + "---|" * len(titles)]
     for title, name in (
         ("angle", "angle_ratio"),
         ("clock", "clock_ratio"),
@@ -154,6 +174,7 @@ def main():
     parser.add_argument("--first-seed", type=int, default=0)
     parser.add_argument("--tolerance", help="LENGTH@DISTANCE, such as 3mm@20m, for the program")
     parser.add_argument("--json", type=Path)
+    parser.add_argument("--against", type=Path, help="earlier result of --json to compare with")
     parser.add_argument("--keep", type=Path, help="keeps each log here")
     arguments = parser.parse_args()
     drive.check_frames()
@@ -192,6 +213,8 @@ def main():
             results.extend(rows)
             print("| " + " | ".join(line(condition.name, rows)) + " |", flush=True)
     print("\n" + summary(results))
+    if arguments.against:
+        print("\n" + changes(json.loads(arguments.against.read_text()), results))
     if arguments.json:
         arguments.json.write_text(json.dumps(results, indent=1))
     return 1 if failed else 0
