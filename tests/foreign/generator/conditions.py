@@ -188,6 +188,23 @@ condition(
     lambda seed: Setup(seed=seed, latch_s=1e-3, servo=SERVOS["15 Hz .5"]),
 )
 
+
+
+def regular(period):
+    """Polls in step with the drive's cycle: each position has the same age."""
+    delay = clocks.Delay(0.15e-3, "exponential", 10e-6)
+    return drive.Usb(delay, delay, period, host_jitter=2e-6)
+
+
+for _name, _period in (("500 Hz", 2e-3), ("1000 Hz", 1e-3)):
+    condition(
+        "latch",
+        f"latch 1 ms, {_name} in step with it",
+        lambda seed, period=_period: Setup(
+            seed=seed, link=regular(period), latch_s=1e-3, drive_ppm=0.0, host_ppm=0.0
+        ),
+    )
+
 # Clocks. A move begins some 0.1 s after the start.
 for _ms in (0.1, -0.1, 0.3, -0.3, 1.2, -1.2, 5.0, -5.0):
     condition(
