@@ -28,6 +28,10 @@ scan *ARGS:
 misbehaviours *ARGS:
     cargo test -p velomotion --test misbehaviours --locked -- {{ARGS}}
 
+# Scans of an independent generator, replayed and measured against their truth; --only GROUP --seeds N (tests/foreign/generator/README.md).
+generator *ARGS:
+    python3 tests/foreign/generator/run.py --program target/release/velomotion {{ARGS}}
+
 # 200 seeded failure scenarios; --first SEED --captures N for others, --bless for the table of docs/src/chaos.md.
 chaos *ARGS:
     cargo test -p velomotion-tests --test chaos --locked -- --captures 200 {{ARGS}}

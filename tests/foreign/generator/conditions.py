@@ -1,0 +1,607 @@
+"""The conditions: name, and the setup for a seed."""
+
+import numpy as np
+
+import clocks
+import drive
+import mechanism
+import scan
+from log import INBOUND, OUTBOUND
+from mechanism import Servo
+from scan import Move, Setup
+
+
+class Condition:
+    """`setups(seed)`: one setup, or several whose logs are joined by `join`."""
+
+    def __init__(self, group, name, make, join=None, share=0.95, most=1.0):
+        self.group, self.name, self.make, self.join = group, name, make, join
+        # At least and at most these shares of the points can be placed.
+        self.share, self.most = share, most
+
+    def setups(self, seed):
+        made = self.make(seed)
+        return made if isinstance(made, list) else [made]
+
+
+ALL = []
+
+
+def condition(*arguments, **more):
+    ALL.append(Condition(*arguments, **more))
+
+
+def plain(speed, way=None, accel=500.0, **more):
+    way = way or min(45.0, 1.2 * speed)
+
+    def make(seed):
+        return Setup(seed=seed, moves=[Move(-way, speed, accel)], **more)
+
+    return make
+
+
+def inbound_missing(when):
+    """The first record from the drive after a time."""
+
+    def mangle(records, setup, rng):
+        i = next(
+            i for i, r in enumerate(records) if r[1] == 1 and r[4] == INBOUND and r[0] > when
+        )
+        return records[:i] + records[i + 1 :]
+
+    return mangle
+
+
+def nothing_between(begin, end):
+    """No record at all: the program did not run."""
+    return lambda records, setup, rng: [r for r in records if not begin < r[0] < end]
+
+
+# Plain scans.
+for _speed in (56.25, 20.0, 5.0, 98.0, 0.05):
+    condition("plain", f"plain, {_speed:g} deg/s", plain(_speed, way=0.12 if _speed < 1 else None))
+for _name in ("coalescing", "busy"):
+    condition("plain", f"plain, {_name} network", plain(56.25, network=_name))
+condition("plain", "plain, 100 Hz", lambda seed: Setup(seed=seed, link=scan.usb_100()))
+condition("plain", "plain, 1000 Hz", lambda seed: Setup(seed=seed, link=scan.usb_1000()))
+condition(
+    "plain",
+    "plain, both ways",
+    lambda seed: Setup(seed=seed, moves=[Move(-30.0, 56.25), Move(0.0, 56.25)]),
+)
+condition(
+    "link",
+    "USB latency timer of 16 ms",
+    lambda seed: Setup(seed=seed, link=scan.usb_latency_timer()),
+)
+
+# Other links.
+LINKS = {
+    "RS232": scan.rs232,
+    "RS232 behind USB": scan.rs232_adapter,
+    "RS232 at 38,400 baud": lambda: scan.rs232(38_400),
+    "CAN": scan.can,
+    "CAN at 400 Hz": lambda: scan.can(2.5e-3),
+    "SLCAN": scan.slcan,
+    "slow SLCAN": scan.slcan_slow,
+}
+for _name, _link in LINKS.items():
+    for _speed in (56.25, 5.0):
+        condition(
+            "link",
+            f"{_name}, {_speed:g} deg/s",
+            lambda seed, link=_link, speed=_speed: Setup(
+                seed=seed,
+                link=link(),
+                moves=[Move(-min(45.0, 1.2 * speed), speed)],
+            ),
+        )
+for _name, _link in (
+    ("CAN, 40 % lost", lambda: scan.can(loss=0.4)),
+    ("CAN, 10 % lost", lambda: scan.can(loss=0.1)),
+):
+    condition(
+        "link", _name, lambda seed, link=_link: Setup(seed=seed, link=link())
+    )
+for _name in ("RS232", "CAN", "SLCAN"):
+    condition(
+        "link",
+        f"latch 1 ms, {_name}",
+        lambda seed, link=LINKS[_name]: Setup(
+            seed=seed, link=link(), latch_s=1e-3
+        ),
+    )
+    condition(
+        "link",
+        f"one answer missing, {_name}",
+        lambda seed, link=LINKS[_name]: Setup(
+            seed=seed, link=link(), mangle=inbound_missing(0.5)
+        ),
+    )
+    condition(
+        "link",
+        f"host clock steps +1.2 ms, {_name}",
+        lambda seed, link=LINKS[_name]: Setup(
+            seed=seed, link=link(), host_steps=((0.62, 1.2e-3),)
+        ),
+    )
+
+# Servos.
+SERVOS = {
+    "lag 4 ms": Servo(lag_s=4e-3),
+    "30 Hz .5": Servo(hz=30.0, damping=0.5),
+    "15 Hz .5": Servo(hz=15.0, damping=0.5),
+    "15 Hz 1": Servo(hz=15.0, damping=1.0),
+    "8 Hz .7": Servo(hz=8.0, damping=0.7),
+}
+for _name, _servo in SERVOS.items():
+    for _accel in (500.0, 2000.0, 5000.0, 10_000.0):
+        condition(
+            "servo", f"servo {_name}, {_accel:g} deg/s2", plain(56.25, accel=_accel, servo=_servo)
+        )
+for _accel in (500.0, 5000.0):
+    condition(
+        "servo",
+        f"jerk 5 ms, {_accel:g} deg/s2",
+        plain(56.25, accel=_accel, jerk_s=5e-3, servo=SERVOS["30 Hz .5"]),
+    )
+
+# What happens to the head.
+CATCHES_UP = Servo(hz=20.0, damping=0.8)
+
+
+def disturbed(servo=CATCHES_UP, **what):
+    return plain(56.25, servo=servo, disturb={0: what})
+
+
+condition("head", "held 150 ms, catches up", disturbed(hold=(0.35, 0.15)))
+condition("head", "held 200 ms, catches up", disturbed(hold=(0.40, 0.20)))
+condition("head", "held 150 ms, goes on late", disturbed(pause=(0.35, 0.15)))
+condition("head", "held 200 ms, goes on late", disturbed(pause=(0.40, 0.20)))
+condition("head", "slips 1.5 deg in 30 ms", disturbed(extra=(mechanism.slip, 0.4, -1.5, 0.03)))
+condition("head", "slips 0.2 deg in 20 ms", disturbed(extra=(mechanism.slip, 0.5, -0.2, 0.02)))
+condition(
+    "head",
+    "jerked, swings 0.5 deg at 12 Hz",
+    disturbed(extra=(mechanism.swing, 0.4, 0.5, 12, 0.06)),
+)
+condition("head", "bumped 0.4 deg for 40 ms", disturbed(extra=(mechanism.bump, 0.45, 0.4, 0.04)))
+condition("head", "bumped 0.05 deg for 40 ms", disturbed(extra=(mechanism.bump, 0.45, 0.05, 0.04)))
+condition("head", "bumped 2 deg for 80 ms", disturbed(extra=(mechanism.bump, 0.45, 2.0, 0.08)))
+
+# A drive that renews 6064 once per millisecond.
+for _speed in (56.25, 5.0, 98.0):
+    for _name, _link in (("400 Hz", scan.usb_400), ("1000 Hz", scan.usb_1000)):
+        condition(
+            "latch",
+            f"latch 1 ms, {_speed:g} deg/s, {_name}",
+            lambda seed, speed=_speed, link=_link: Setup(
+                seed=seed,
+                moves=[Move(-min(45.0, 1.2 * speed), speed)],
+                link=link(),
+                latch_s=1e-3,
+            ),
+        )
+condition(
+    "latch",
+    "latch 1 ms, servo 15 Hz .5",
+    lambda seed: Setup(seed=seed, latch_s=1e-3, servo=SERVOS["15 Hz .5"]),
+)
+
+
+
+def regular(period):
+    """Polls in step with the drive's cycle: each position has the same age."""
+    delay = clocks.Delay(0.15e-3, "exponential", 10e-6)
+    return drive.Usb(delay, delay, period, host_jitter=2e-6)
+
+
+for _name, _period in (("500 Hz", 2e-3), ("1000 Hz", 1e-3)):
+    condition(
+        "latch",
+        f"latch 1 ms, {_name} in step with it",
+        lambda seed, period=_period: Setup(
+            seed=seed, link=regular(period), latch_s=1e-3, drive_ppm=0.0, host_ppm=0.0
+        ),
+    )
+
+# Clocks. A move begins some 0.1 s after the start.
+for _ms in (0.1, -0.1, 0.3, -0.3, 1.2, -1.2, 5.0, -5.0):
+    condition(
+        "clock",
+        f"lidar clock steps {_ms:+g} ms",
+        lambda seed, ms=_ms: Setup(seed=seed, lidar_steps=((0.6, ms * 1e-3),)),
+    )
+for _network, _ms in (("coalescing", 1.2), ("busy", 1.2), ("busy", 5.0)):
+    condition(
+        "clock",
+        f"lidar clock steps {_ms:+g} ms, {_network} network",
+        lambda seed, ms=_ms, network=_network: Setup(
+            seed=seed, network=network, lidar_steps=((0.6, ms * 1e-3),)
+        ),
+    )
+for _ms in (0.3, 1.2, 6.0, -6.0, 20.0, -20.0, 1500.0):
+    condition(
+        "clock",
+        f"host clock steps {_ms:+g} ms",
+        lambda seed, ms=_ms: Setup(seed=seed, host_steps=((0.62, ms * 1e-3),)),
+    )
+condition(
+    "clock",
+    "lidar clock corrected by 17.3 s",
+    lambda seed: Setup(seed=seed, lidar_steps=((0.6, 17.3),)),
+)
+condition(
+    "clock",
+    "lidar clock's hour ends",
+    lambda seed: Setup(seed=seed, lidar_offset_s=3599.4),
+)
+condition(
+    "clock",
+    "lidar clock's hour ends at a step of 1.2 ms",
+    lambda seed: Setup(seed=seed, lidar_offset_s=3599.4, lidar_steps=((0.6005, 1.2e-3),)),
+)
+for _s in (-0.4, 0.4, 0.005, -0.005):
+    condition(
+        "clock",
+        f"host suspended for 2 s and set by {_s:+g} s",
+        lambda seed, s=_s: Setup(
+            seed=seed,
+            before_s=4.0,
+            host_steps=((2.9, s),),
+            mangle=nothing_between(1.0, 3.0),
+        ),
+    )
+condition(
+    "clock",
+    "host clock slewed by 500 ppm",
+    lambda seed: Setup(
+        seed=seed, moves=[Move(-40.0, 10.0)], host_slews=((1.0, 3.0, 500.0),), share=4
+    ),
+)
+condition(
+    "clock",
+    "host and lidar step in one scan",
+    lambda seed: Setup(seed=seed, host_steps=((0.5, 0.02),), lidar_steps=((0.75, 1.2e-3),)),
+)
+
+
+# What is missing in the log.
+POLL = "900210026460000152a2"
+
+
+def _is_poll(r):
+    return r[1] == 1 and r[4] == OUTBOUND and r[3].hex() == POLL
+
+
+def _after(records, i, direction):
+    for j in range(i + 1, len(records)):
+        if records[j][1] == 1 and records[j][4] == direction:
+            return j
+    return None
+
+
+def _polls(records, begin, end):
+    return [i for i, r in enumerate(records) if _is_poll(r) and begin <= r[0] < end]
+
+
+def without(choose):
+    """Drops the records whose indices `choose` returns."""
+
+    def mangle(records, setup, rng):
+        gone = set(choose(records, rng))
+        return [r for i, r in enumerate(records) if i not in gone]
+
+    return mangle
+
+
+def answers_missing(times):
+    def choose(records, rng):
+        return [_after(records, _polls(records, t, t + 1)[0], INBOUND) for t in times]
+
+    return without(choose)
+
+
+def part_missing(begin, end):
+    """Answers only, as where a recorder falls behind."""
+    return without(
+        lambda records, rng: [
+            i
+            for i, r in enumerate(records)
+            if r[1] == 1 and r[4] == INBOUND and begin < r[0] < end
+        ]
+    )
+
+
+def requests_missing(times):
+    return without(lambda records, rng: [_polls(records, t, t + 1)[0] for t in times])
+
+
+def share_of_answers(share):
+    def choose(records, rng):
+        answers = [i for i, r in enumerate(records) if r[1] == 1 and r[4] == INBOUND and r[0] > 0.3]
+        return [i for i in answers if rng.random() < share]
+
+    return without(choose)
+
+
+def acknowledgement_missing(start):
+    def choose(records, rng):
+        for i, r in enumerate(records):
+            if r[1] == 1 and r[4] == OUTBOUND and r[3].hex().startswith(start):
+                return [_after(records, i, INBOUND)]
+        raise ValueError(start)
+
+    return without(choose)
+
+
+def other_answer_missing(start, when=0.5):
+    def choose(records, rng):
+        for i, r in enumerate(records):
+            asked = r[1] == 1 and r[4] == OUTBOUND and r[0] > when
+            if asked and r[3].hex().startswith(start):
+                return [_after(records, i, INBOUND)]
+        raise ValueError(start)
+
+    return without(choose)
+
+
+def packets_missing(when, count):
+    def choose(records, rng):
+        data = [i for i, r in enumerate(records) if r[1] == 0 and len(r[3]) == 1248 and r[0] > when]
+        return data[:count]
+
+    return without(choose)
+
+
+def share_of_packets(share):
+    def choose(records, rng):
+        data = [i for i, r in enumerate(records) if r[1] == 0 and len(r[3]) == 1248]
+        return [i for i in data if rng.random() < share]
+
+    return without(choose)
+
+
+def silent_between(begin, end):
+    """No record of the drive in between."""
+    return without(
+        lambda records, rng: [i for i, r in enumerate(records) if r[1] == 1 and begin < r[0] < end]
+    )
+
+
+def doubled(share):
+    """Packets that the log holds twice, in bursts of up to 20."""
+
+    def mangle(records, setup, rng):
+        out, burst = [], 0
+        held = []
+        for r in records:
+            out.append(r)
+            if r[1] == 0 and len(r[3]) == 1248:
+                if burst == 0 and held:
+                    out.extend((r[0], *x[1:2], r[2] + 1000 * k, *x[3:]) for k, x in enumerate(held))
+                    held = []
+                if burst == 0 and rng.random() < share:
+                    burst = int(rng.integers(1, 20))
+                if burst:
+                    held.append(r)
+                    burst -= 1
+        return out
+
+    return mangle
+
+
+def missing(name, mangle, share=0.95, most=1.0, **more):
+    def make(seed):
+        return Setup(seed=seed, mangle=mangle, **more)
+
+    condition("missing", name, make, share=share, most=most)
+
+
+missing("one answer missing", answers_missing([0.5]))
+missing("one answer missing, 1000 Hz", answers_missing([0.5]), link=scan.usb_1000())
+missing("one answer missing, 5 deg/s", answers_missing([0.5]), moves=[Move(-6.0, 5.0)])
+missing("one answer missing, 40 Hz", answers_missing([0.5]), link=scan.usb_40())
+missing(
+    "one answer missing, latency timer of 16 ms",
+    answers_missing([0.5]),
+    link=scan.usb_latency_timer(),
+)
+for _name, _link in (("400 Hz", scan.usb_400), ("40 Hz", scan.usb_40)):
+    missing(
+        f"one answer missing, {_name}, nothing but polls",
+        answers_missing([0.5]),
+        link=_link(),
+        status_s=float("inf"),
+    )
+missing(
+    "one answer missing, latency timer of 16 ms, nothing but polls",
+    answers_missing([0.5]),
+    link=scan.usb_latency_timer(),
+    status_s=float("inf"),
+)
+missing("all answers missing for 30 ms", part_missing(0.5, 0.53))
+missing("drive does not answer for 60 ms", without(lambda records, rng: []), stall=(0.5, 0.06))
+missing("drive answers 60 ms late", without(lambda records, rng: []), late=(0.5, 0.06))
+missing("three answers missing", answers_missing([0.3, 0.55, 0.8]))
+missing("one request missing", requests_missing([0.5]))
+missing("2 % of the drive's answers missing", share_of_answers(0.02))
+missing("acknowledgement of 607A missing", acknowledgement_missing("900211047a60"))
+missing("acknowledgement of the start missing", acknowledgement_missing("9002110440600001" + "1f"))
+missing("answer of a statusword missing", other_answer_missing("9002100241600001"))
+missing(
+    "answer of a statusword missing, 1000 Hz",
+    other_answer_missing("9002100241600001"),
+    link=scan.usb_1000(),
+)
+missing("3 packets missing", packets_missing(0.6, 3))
+missing("40 packets missing", packets_missing(0.6, 40), share=0.9)
+missing("2 % of the packets missing", share_of_packets(0.02))
+missing("no record of the drive for 100 ms", silent_between(0.5, 0.6))
+
+
+missing("no record of the drive in the sweep", silent_between(0.2, 1.15), share=0.0, most=0.2)
+missing("no record of the drive for 0.5 s", silent_between(0.4, 0.9), share=0.0)
+
+
+def _no_polls_in_second(records, setup, rng):
+    """No position of the second move, though everything else is there."""
+    starts = [
+        i
+        for i, r in enumerate(records)
+        if r[1] == 1 and r[4] == OUTBOUND and r[3].hex().startswith("90021104406000011f")
+    ]
+    begin = records[starts[1]][0] - 0.05
+    gone = set()
+    for i, r in enumerate(records):
+        if r[0] > begin and _is_poll(r):
+            gone |= {i, _after(records, i, INBOUND)}
+    return [r for i, r in enumerate(records) if i not in gone]
+
+
+condition(
+    "missing",
+    "no polls in the second of two sweeps",
+    lambda seed: Setup(
+        seed=seed,
+        moves=[Move(-30.0, 56.25), Move(0.0, 56.25)],
+        mangle=_no_polls_in_second,
+    ),
+    share=0.45,
+)
+
+# Files.
+condition("files", "packets doubled in bursts", lambda seed: Setup(seed=seed, mangle=doubled(0.02)))
+
+
+condition(
+    "files",
+    "a remark before the end of the comment",
+    lambda seed: Setup(seed=seed, remark="# scanned by another person\n"),
+)
+condition(
+    "files",
+    "another comment after",
+    lambda seed: Setup(seed=seed, comments_after=("hall, second floor",)),
+)
+condition(
+    "files",
+    "another comment before",
+    lambda seed: Setup(seed=seed, comments_before=("hall, second floor",)),
+)
+
+
+def every_record_twice(records, setup, rng):
+    return [r for r in records for _ in range(2)]
+
+
+condition("files", "every record twice", lambda seed: Setup(seed=seed, mangle=every_record_twice))
+condition(
+    "files",
+    "two logs by cat",
+    lambda seed: [Setup(seed=seed), Setup(seed=seed + 1000, epoch_s=7.0)],
+    join="cat",
+)
+condition(
+    "files",
+    "two logs by cat, the later first",
+    lambda seed: [Setup(seed=seed, epoch_s=3104.9), Setup(seed=seed + 1000)],
+    join="cat",
+)
+condition(
+    "files",
+    "one log twice by cat",
+    lambda seed: Setup(seed=seed),
+    join="cat twice",
+    share=0.0,
+)
+condition("files", "one log by mergecap", lambda seed: Setup(seed=seed), join="mergecap")
+condition(
+    "files",
+    "two logs by mergecap",
+    lambda seed: [Setup(seed=seed), Setup(seed=seed + 1000, epoch_s=7.0)],
+    join="mergecap",
+)
+condition(
+    "files",
+    "two logs of one time by mergecap",
+    lambda seed: [Setup(seed=seed), Setup(seed=seed + 1000, epoch_s=0.3)],
+    join="mergecap",
+)
+
+# Other things that happen.
+
+
+def asymmetric():
+    fast = clocks.Delay(0.15e-3, "exponential", 0.05e-3)
+    slow = clocks.Delay(1.4e-3, "exponential", 0.1e-3)
+    return drive.Usb(fast, slow, 2.5e-3)
+
+
+def swapped(share):
+    """Packets that arrive just after their successor."""
+
+    def mangle(records, setup, rng):
+        out = list(records)
+        data = [i for i, r in enumerate(out) if r[1] == 0 and len(r[3]) == 1248]
+        for a, b in zip(data[:-1:2], data[1::2]):
+            if rng.random() < share:
+                first, second = out[a], out[b]
+                out[a] = second
+                out[b] = (second[0] + 5e-6, 0, second[2] + 5000, *first[3:])
+        return out
+
+    return mangle
+
+
+def first_polls_missing(until):
+    def choose(records, rng):
+        gone = []
+        for i in _polls(records, 0.0, until):
+            gone += [i, _after(records, i, INBOUND)]
+        return gone
+
+    return without(choose)
+
+
+for _name, _setup in {
+    "answers take ten times as long as requests": {"link": asymmetric()},
+    "asymmetric, latch 1 ms": {"link": asymmetric(), "latch_s": 1e-3},
+    "dither of 2 counts": {"dither_counts": 2},
+    "3 % faster than commanded": {"speed_factor": 1.03},
+    "decelerates at 2000 deg/s2": {"decel": 2000.0},
+    "triangle of 4 deg": {"moves": [Move(-4.0, 56.25)]},
+    "head at 1200 rpm": {"head_rpm": 1200.0},
+    "head at 300 rpm": {"head_rpm": 300.0},
+    "packets overtake each other": {"mangle": swapped(0.05)},
+    "network becomes 0.5 ms slower": {"detour": (0.6, 0.5e-3)},
+    "no polls in the first ramp": {"mangle": first_polls_missing(0.25)},
+    "three sweeps": {"moves": [Move(-20.0, 56.25), Move(0.0, 56.25), Move(-20.0, 56.25)]},
+    "crystals 100 ppm off": {"host_ppm": 100.0, "lidar_ppm": -100.0},
+}.items():
+    condition("more", _name, lambda seed, setup=_setup: Setup(seed=seed, **setup))
+
+
+def drawn(seed):
+    """A scanner that works: any link, servo, speed and clocks, a latch or none."""
+    rng = np.random.default_rng(1_000_000 + seed)
+    links = [
+        scan.usb_400, scan.usb_400, scan.usb_1000, scan.usb_1000, scan.usb_100,
+        *LINKS.values(),
+    ]  # fmt: skip
+    speed = float(np.round(np.exp(rng.uniform(np.log(0.5), np.log(98.0))) / 0.05) * 0.05)
+    accel = float(rng.choice([500.0, 1000.0, 2000.0, 5000.0, 10_000.0]))
+    servo = Servo()
+    if rng.random() < 0.6:
+        servo = list(SERVOS.values())[rng.integers(len(SERVOS))]
+    return Setup(
+        seed=seed,
+        moves=[Move(-min(45.0, float(rng.uniform(0.6, 1.5)) * speed), speed, accel)],
+        servo=servo,
+        link=links[rng.integers(len(links))](),
+        latch_s=float(rng.choice([0.0, 1e-3])),
+        network=str(rng.choice(["quiet", "coalescing", "busy"])),
+    )
+
+
+condition("drawn", "drawn at random", drawn)
