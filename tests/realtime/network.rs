@@ -131,16 +131,11 @@ fn group_sender_and_ports_follow_the_configuration_and_the_log_replays() {
     }
 
     configure(LIDAR);
-    let line = "capture --speed 80 --to -8 -o scan.ply --json --force";
-    let mut output = velomotion(place, line);
-    // The drive's process goes silent while a busy machine does not schedule it, and the capture
-    // stops.
-    for _ in 0..3 {
-        if output.status.code() != Some(5) || !printed(&output).contains("silence") {
-            break;
-        }
-        output = velomotion(place, line);
-    }
+    let output = velomotion(
+        place,
+        "capture --speed 80 --to -8 -o scan.ply --json --force",
+    );
+    assert!(output.status.success(), "{}", printed(&output));
     let scan = json(&output);
     let received = |name: &str| scan["reception"][name].as_u64().unwrap();
     assert!(received("packets") > 100, "{scan}");

@@ -49,16 +49,7 @@ impl Bench {
     }
 
     pub fn json(&self, line: &str) -> serde_json::Value {
-        let mut output = self.run(&format!("{line} --json"));
-        // The drive's process goes silent while a busy machine does not schedule it, and the client
-        // stops.
-        for _ in 0..3 {
-            let printed = String::from_utf8_lossy(&output.stderr);
-            if output.status.code() != Some(5) || !printed.contains("silence") {
-                break;
-            }
-            output = self.run(&format!("{line} --json"));
-        }
+        let output = self.run(&format!("{line} --json"));
         let printed = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(output.status.success(), "{line}: {printed}");
         serde_json::from_slice(&output.stdout).unwrap()
@@ -223,4 +214,38 @@ fn the_software_drive_exits_and_removes_its_link_when_stdin_closes() {
     let mut bench = bench;
     bench.unplug();
     assert!(!link.is_symlink());
+}
+
+/// A service or a script in the background has /dev/null for stdin.
+#[test]
+fn the_software_drive_runs_on_without_a_stdin() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut drive = velomotion()
+        .args(["firmware-sim", "--usb"])
+        .current_dir(folder.path())
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut port = String::new();
+    let mut printed = BufReader::new(drive.stdout.take().unwrap());
+    printed.read_line(&mut port).unwrap();
+    let config = format!(
+        "[device]\ndefault = 'soft'\n[device.soft]\nkind = 'usb'\nport = '{}'\n",
+        port.trim()
+    );
+    std::fs::write(folder.path().join("velomotion.toml"), config).unwrap();
+    let status = velomotion()
+        .args(["tilt", "status"])
+        .current_dir(folder.path())
+        .env("XDG_RUNTIME_DIR", folder.path())
+        .output()
+        .unwrap();
+    drive.kill().unwrap();
+    drive.wait().unwrap();
+    assert!(
+        status.status.success(),
+        "{}",
+        String::from_utf8_lossy(&status.stderr)
+    );
 }

@@ -1,6 +1,9 @@
 //! `velomotion firmware-sim`: the simulated EPOS2 alone, to develop a client against it.
 
-use std::io::{IsTerminal, Read, Write};
+use std::fs::File;
+use std::io::{Read, Write};
+use std::os::fd::AsFd;
+use std::os::unix::fs::FileTypeExt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -22,7 +25,7 @@ use engine::devices::simulated_drive::{self as software_drive, SoftwarePort};
 use engine::failure::{Failure, Kind};
 
 /// Runs the command. The first line on stdout is the port. It ends at SIGTERM, Ctrl-C, or when
-/// stdin closes unless that is a terminal.
+/// stdin closes if that is a pipe.
 ///
 /// # Errors
 /// No pseudo-terminal, no such CAN interface, or the link cannot be created.
@@ -107,10 +110,15 @@ fn announce(port: &Path) -> Result<(), Failure> {
         })
 }
 
-/// Sets `stop` when stdin ends. A terminal is not read: a shell would stop the process in the
-/// background.
+/// Sets `stop` when stdin ends, if another program holds its other end. A terminal is not read, as
+/// a shell would stop the process in the background, and /dev/null has no other end.
 fn until_stdin_closes(stop: &Arc<AtomicBool>) -> Result<(), Failure> {
-    if std::io::stdin().is_terminal() {
+    let stdin = std::io::stdin()
+        .as_fd()
+        .try_clone_to_owned()
+        .map(File::from);
+    let kind = stdin.and_then(|file| file.metadata());
+    if !kind.is_ok_and(|kind| kind.file_type().is_fifo() || kind.file_type().is_socket()) {
         return Ok(());
     }
     let stop = Arc::clone(stop);
