@@ -8,7 +8,7 @@ use super::pieces::PiecewiseCubic;
 use super::{AngleSample, Method, noise};
 
 /// Standard deviations within a bound.
-const BOUND_SDS: f64 = 3.0;
+pub(super) const BOUND_SDS: f64 = 3.0;
 
 /// Bound of a fit within a span, degrees: its scatter, and the delay that all samples may share at
 /// the speed there.

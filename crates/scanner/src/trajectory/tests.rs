@@ -2,6 +2,7 @@
 
 use super::*;
 
+mod choice;
 mod realistic;
 
 fn at(ns: i64, angle: f64) -> AngleSample {

@@ -33,6 +33,21 @@ pub struct Drive {
     pub round_trip_s: (f64, f64),
     pub spikes: f64,
     pub seed: u64,
+    pub disturbance: Disturbance,
+}
+
+/// What a hand or an obstacle does to the head; the servo goes on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Disturbance {
+    None,
+    /// Held for so many seconds.
+    Held(f64),
+    /// Moved by so many degrees at once.
+    Slipped(f64),
+    /// Set to another speed by so many degrees per second at once.
+    Jerked(f64),
+    /// Pushed with so many degrees per second squared for a fiftieth of a second.
+    Bumped(f64),
 }
 
 pub const REFERENCE: Drive = Drive {
@@ -45,6 +60,7 @@ pub const REFERENCE: Drive = Drive {
     round_trip_s: (0.8e-3, 2.5e-3),
     spikes: 0.02,
     seed: 1,
+    disturbance: Disturbance::None,
 };
 
 pub struct Run {
@@ -79,8 +95,25 @@ impl Drive {
         let duration = self.way.abs() / (up * self.acceleration) + up;
         let end = 0.2 + duration + 0.4;
         let (mut at, mut rate, mut shaft) = (0.0, 0.0, Vec::new());
+        // A third of the way.
+        let struck = 0.2 + duration / 3.0;
         for k in 0..(end / STEP_S) as usize {
-            let demand = self.demand(k as f64 * STEP_S);
+            let t = k as f64 * STEP_S;
+            let demand = self.demand(t);
+            let is_instant = (t - struck).abs() < STEP_S / 2.0;
+            match self.disturbance {
+                Disturbance::Held(s) if t >= struck && t < struck + s => {
+                    rate = 0.0;
+                    shaft.push(at);
+                    continue;
+                }
+                Disturbance::Slipped(deg) if is_instant => at += deg,
+                Disturbance::Jerked(deg_s) if is_instant => rate += deg_s,
+                Disturbance::Bumped(deg_s2) if t >= struck && t < struck + 0.02 => {
+                    rate += deg_s2 * STEP_S;
+                }
+                _ => {}
+            }
             match self.servo {
                 Some((hertz, damping)) => {
                     let w = hertz * std::f64::consts::TAU;
