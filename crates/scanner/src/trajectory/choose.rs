@@ -12,6 +12,7 @@
 use units::{Degrees, Host, Span, Stamp};
 
 use super::bound::BOUND_SDS;
+use super::latch::{self, LatchEvidence, Residual};
 use super::noise::{Noise, rates, seconds};
 use super::pieces::{CubicPiece, PiecewiseCubic};
 use super::profile::Profile;
@@ -92,6 +93,7 @@ struct Candidate {
     prediction_error: f64,
     /// Number of free parameters.
     parameters: usize,
+    latch: LatchEvidence,
 }
 
 impl<'a> Candidates<'a> {
@@ -134,8 +136,12 @@ impl<'a> Candidates<'a> {
                     .into_iter()
                     .filter_map(|method| self.profile(servo(method)?, method))
                     .collect();
-                let corrected = least(&all).and_then(|best| self.corrected(all.get(best)?));
-                all.extend(corrected.into_iter().chain(self.spline()));
+                let best = least(&all).and_then(|best| all.get(best));
+                // Ages of a latch are errors that neighbours share: a spline would follow them.
+                if best.is_none_or(|best| best.latch != LatchEvidence::Present) {
+                    let corrected = best.and_then(|best| self.corrected(best));
+                    all.extend(corrected.into_iter().chain(self.spline()));
+                }
                 all
             }
         };
@@ -296,7 +302,7 @@ impl<'a> Candidates<'a> {
     ) -> Option<Candidate> {
         let prediction_error = self.prediction_error(&pieces, parameters);
         let inside = |host: Stamp<Host>| self.sweep.start <= host && host <= self.sweep.end;
-        let off: Vec<(f64, f64, f64)> = self
+        let off: Vec<Residual> = self
             .samples
             .iter()
             .filter(|s| inside(s.host))
@@ -307,18 +313,19 @@ impl<'a> Candidates<'a> {
                 };
                 let piece = pieces.piece(at)?;
                 let ns = piece.since(at);
-                Some((
-                    s.angle.0 - piece.at(ns),
-                    piece.rate(ns) * 1e9,
-                    s.bound.as_secs_f64(),
-                ))
+                Some(Residual {
+                    at_s: s.host.saturating_since(self.origin).as_secs_f64(),
+                    off_deg: s.angle.0 - piece.at(ns),
+                    rate_deg_s: piece.rate(ns) * 1e9,
+                    bound_s: s.bound.as_secs_f64(),
+                })
             })
             .collect();
         let mean_square = |xs: &mut dyn Iterator<Item = f64>| {
             let (sum, n) = xs.fold((0.0, 0.0), |(sum, n), x| (sum + x * x, n + 1.0));
             if n > 0.0 { sum / n } else { 0.0 }
         };
-        let rms_deg = mean_square(&mut off.iter().map(|o| o.0)).sqrt();
+        let rms_deg = mean_square(&mut off.iter().map(|o| o.off_deg)).sqrt();
         let systematic_residual_deg = residual_autocorrelation(&off);
         let scatter = mean_square(
             &mut pieces
@@ -327,11 +334,18 @@ impl<'a> Candidates<'a> {
                 .filter(|p| inside(p.from))
                 .map(|p| p.sd_deg),
         );
+        // A spline may follow the saw of a latch.
+        let latch = if method == Method::Spline {
+            LatchEvidence::Unknown
+        } else {
+            latch::evidence(&off, self.noise.angle_sd_deg)
+        };
+        let (shift, delay) = latch::delay(&off, latch);
         let fit = SweepFit {
             method,
             rms_deg,
             sd_deg: (scatter + systematic_residual_deg * systematic_residual_deg).sqrt(),
-            delay: delay(&off),
+            delay,
             profile: None,
             condition: None,
             remarks: Vec::new(),
@@ -345,9 +359,11 @@ impl<'a> Candidates<'a> {
                 pieces.raise_sd(span, off / BOUND_SDS);
             }
         }
+        pieces.shift(shift);
         Some(Candidate {
             fit,
             pieces,
+            latch,
             systematic_residual_deg,
             prediction_error,
             parameters,
@@ -424,17 +440,17 @@ fn is_alike(a: &Observed, b: &Observed) -> bool {
 
 /// Residual autocorrelation by batch means, root mean square, degrees: the mean square of the means
 /// over batches of residuals, less its expectation for independent residuals.
-fn residual_autocorrelation(off: &[(f64, f64, f64)]) -> f64 {
+fn residual_autocorrelation(off: &[Residual]) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for row in off.chunks(BATCH).filter(|row| row.len() > BATCH / 2) {
         let n = row.len() as f64;
-        let mean = row.iter().map(|o| o.0).sum::<f64>() / n;
+        let mean = row.iter().map(|o| o.off_deg).sum::<f64>() / n;
         // Scatter by differences of neighbours (von Neumann 1941), which a slope within the batch
         // does not affect.
         let differences: f64 = row
             .windows(2)
             .map(|pair| match pair {
-                [a, b] => (b.0 - a.0).powi(2) / 2.0,
+                [a, b] => (b.off_deg - a.off_deg).powi(2) / 2.0,
                 _ => 0.0,
             })
             .sum();
@@ -446,31 +462,6 @@ fn residual_autocorrelation(off: &[(f64, f64, f64)]) -> f64 {
     } else {
         0.0
     }
-}
-
-/// Limits of a delay common to all samples: each was taken within its bound, and the residual of
-/// samples in the sweep's faster half shows when the axis was at their angle.
-fn delay(off: &[(f64, f64, f64)]) -> (Span, Span) {
-    let fastest = off.iter().map(|o| o.1.abs()).fold(0.0, f64::max);
-    let quick = off.iter().filter(|o| o.1.abs() > fastest / 2.0);
-    let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
-    for (off, rate, bound) in quick {
-        let late = off / rate;
-        low = low.max(-bound - late);
-        high = high.min(bound - late);
-    }
-    if !low.is_finite() || !high.is_finite() {
-        return (Span::ZERO, Span::ZERO);
-    }
-    // Residuals have errors of their own: if the limits cross, their middle is taken.
-    if high < low {
-        let middle = (low + high) / 2.0;
-        (low, high) = (middle, middle);
-    }
-    (
-        Span::from_secs_f64(low.min(0.0)),
-        Span::from_secs_f64(high.max(0.0)),
-    )
 }
 
 /// A profile as cubics from the origin until `end_s`: its corners, and steps behind them that grow

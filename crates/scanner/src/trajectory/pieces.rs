@@ -1,6 +1,6 @@
 //! A piecewise cubic over host time, the form of every method's result.
 
-use units::{Degrees, Host, Real, Stamp};
+use units::{Degrees, Host, Real, Span, Stamp};
 
 use crate::clock::Moment;
 
@@ -191,6 +191,14 @@ impl PiecewiseCubic {
         self.pieces.splice(low..high.max(low), new);
         self.end = end.max(to);
         debug_assert!(first.min(from) == self.span().0);
+    }
+
+    /// Moves the curve in time.
+    pub(super) fn shift(&mut self, by: Span) {
+        for piece in &mut self.pieces {
+            piece.from = piece.from.saturating_add(by);
+        }
+        self.end = self.end.saturating_add(by);
     }
 
     /// Raises the deviations of the pieces within a span to at least `sd_deg`.

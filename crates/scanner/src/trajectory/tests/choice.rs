@@ -1,6 +1,6 @@
 //! The chosen curve against the best by hindsight, over servos, accelerations and disturbances.
 
-use super::realistic::{Disturbance, Drive, REFERENCE};
+use super::realistic::{Disturbance, Drive, QUANTUM, REFERENCE};
 use super::*;
 
 /// Natural frequency and damping, underdamped to overdamped.
@@ -114,4 +114,42 @@ fn a_disturbed_head_is_followed() {
             }
         }
     }
+}
+
+/// A drive that renews its position once per millisecond exceeded the bound in four of five runs.
+#[test]
+fn the_bound_contains_the_age_of_positions() {
+    let mut estimated = 0;
+    for hertz in [200.0, 400.0, 1_000.0] {
+        for speed in [5.0, 56.25, 98.0] {
+            for latch in [true, false] {
+                for seed in 1..=4 {
+                    let run = Drive {
+                        hertz,
+                        speed,
+                        latch,
+                        seed,
+                        ripple_deg: 0.0,
+                        ..REFERENCE
+                    }
+                    .run();
+                    for method in [None, Some(Method::Linear), Some(Method::Profile)] {
+                        let curve = run.trajectory(method);
+                        let bound = curve.bound_deg(&[(run.sweep.start, run.sweep.end)]);
+                        let worst = run.worst_with_delay(&curve);
+                        let what = format!(
+                            "latch {latch}, {hertz} Hz, {speed} deg/s, seed {seed}, {:?}: {worst} of {bound}",
+                            curve.method()
+                        );
+                        assert!(worst <= bound + QUANTUM, "{what}");
+                        // Without the estimate it is at least half of a cycle.
+                        if method.is_none() && latch && worst < 0.25e-3 * speed {
+                            estimated += 1;
+                        }
+                    }
+                }
+            }
+        }
+    }
+    assert!(estimated > 18, "{estimated} of 36");
 }
