@@ -249,9 +249,10 @@ impl<C: Copy> DeviceClock<C> {
         }
         let x = self.since_origin(device);
         let outside_ns = |piece: &ClockPiece| {
-            (piece.from_ns - x)
+            // The last packet has firings after its stamp, the first has none before.
+            (piece.from_ns - x + PIECE_MARGIN_NS * f64::from(x < piece.from_ns))
                 .max(x - piece.to_ns)
-                .max(PIECE_MARGIN_NS)
+                .max(0.0)
         };
         let distance = |piece: &ClockPiece| {
             near.map_or(0, |near| {
@@ -274,8 +275,19 @@ impl<C: Copy> DeviceClock<C> {
         };
         let mut segment = piece.segment(self.since_origin(device));
         if self.is_cut() {
-            segment.from_ns = segment.from_ns.max(piece.from_ns - PIECE_MARGIN_NS);
-            segment.to_ns = segment.to_ns.min(piece.to_ns + PIECE_MARGIN_NS);
+            let (mut from, mut to) = (
+                piece.from_ns - PIECE_MARGIN_NS,
+                piece.to_ns + PIECE_MARGIN_NS,
+            );
+            for other in &self.pieces {
+                if other.from_ns > piece.to_ns {
+                    to = to.min(other.from_ns);
+                } else if other.to_ns < piece.from_ns && other.to_ns > from {
+                    from = piece.from_ns;
+                }
+            }
+            segment.from_ns = segment.from_ns.max(from);
+            segment.to_ns = segment.to_ns.min(to);
         }
         segment
     }

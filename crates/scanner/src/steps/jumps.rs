@@ -15,6 +15,12 @@ use crate::clock::Arrival;
 /// The smallest jump to look for.
 pub(crate) const LEAST: Span = Span::from_millis(10);
 const LEAST_NS: i64 = LEAST.as_nanos();
+/// The smallest jump of the lidar's clock to look for, which the spacing of packets shows.
+const SMALLEST_NS: i64 = 90_000;
+/// Least deviation of a spacing from whole packets that is irregular.
+const MIN_IRREGULAR_NS: i64 = 20_000;
+/// Packets on either side that confirm a small jump.
+const SMALL_WINDOW: usize = 256;
 /// Time for which a jump must last.
 const WINDOW_NS: i64 = 6_000_000_000;
 /// Least number of packets that form a level, and greatest number within which a jump happens.
@@ -38,6 +44,8 @@ pub(crate) struct Jump {
     pub at: usize,
     /// Change of the delay.
     pub by: Span,
+    /// Whether the spacing of packets shows that the lidar's clock jumped.
+    pub is_in_spacing: bool,
 }
 
 /// Jumps and outliers of a recording.
@@ -75,13 +83,20 @@ pub(crate) fn find(arrivals: &[Arrival]) -> JumpReport {
             PacketKind::Regular => search.behind.push(at, *offset, window),
             PacketKind::Stray => found.strays.push(at),
             PacketKind::Jumped(by) => {
-                found.jumps.push(Jump { at, by });
+                found.jumps.push(Jump {
+                    at,
+                    by,
+                    is_in_spacing: false,
+                });
                 search.behind = SlidingMinimum::default();
                 search.behind.push(at, *offset, window);
                 search.since = at;
             }
         }
     }
+    let small = found.small_device_jumps(arrivals, &offsets);
+    found.jumps.extend(small);
+    found.jumps.sort_by_key(|jump| jump.at);
     found
 }
 
@@ -168,7 +183,55 @@ impl JumpReport {
         let near = at.saturating_sub(NEAR).max(1)..at + NEAR;
         near.filter_map(|i| steps(arrivals, i))
             .map(|(device, _)| device.as_nanos())
-            .any(|device| !self.is_usual(device) && !is_frequent(arrivals, at, device))
+            .any(|device| {
+                !self.is_usual(device) && !is_frequent(arrivals, at, device, SAME_SPACING_NS)
+            })
+    }
+
+    /// Steps of the lidar's clock that its own spacing shows and the delays confirm.
+    fn small_device_jumps(&self, arrivals: &[Arrival], offsets: &[i64]) -> Vec<Jump> {
+        let is_apart = |at: usize| {
+            let jumps = self.jumps.iter().map(|jump| jump.at);
+            jumps
+                .chain(self.strays.iter().copied())
+                .all(|other| other.abs_diff(at) > SMALL_WINDOW)
+        };
+        let mut small: Vec<Jump> = Vec::new();
+        for at in MIN_LEVEL_PACKETS..arrivals.len().saturating_sub(MIN_LEVEL_PACKETS) {
+            let Some((device, _)) = steps(arrivals, at) else {
+                continue;
+            };
+            let spacing = self.spacing_ns.max(1);
+            let off = (device.as_nanos() + spacing / 2).rem_euclid(spacing) - spacing / 2;
+            let count = device.as_nanos().abs() / spacing;
+            if off.abs() < MIN_IRREGULAR_NS + count * 10 || !is_apart(at) {
+                continue;
+            }
+            let level = |from: usize, to: usize| offsets.get(from..to)?.iter().min().copied();
+            let begin = at.saturating_sub(SMALL_WINDOW);
+            let end = (at + SMALL_WINDOW).min(offsets.len());
+            let Some((before, after)) = level(begin, at).zip(level(at, end)) else {
+                continue;
+            };
+            let rise = after.saturating_sub(before);
+            // The step that the spacing shows, up to whole packets, is the one nearest to the rise.
+            let whole = (-rise - off + spacing / 2).div_euclid(spacing);
+            let by = -(off + whole * spacing);
+            let is_confirmed = (rise - by).abs() < (by.abs() / 3).min(spacing / 4);
+            let is_apart = small.last().is_none_or(|last| at - last.at > SMALL_WINDOW);
+            if by.abs() >= SMALLEST_NS
+                && is_confirmed
+                && is_apart
+                && !is_frequent(arrivals, at, device.as_nanos(), MIN_IRREGULAR_NS / 2)
+            {
+                small.push(Jump {
+                    at,
+                    by: Span::from_nanos(by),
+                    is_in_spacing: true,
+                });
+            }
+        }
+        small
     }
 
     /// Whether a spacing is a whole number of packets, some lost, or that of reordered ones.
@@ -182,12 +245,12 @@ impl JumpReport {
     }
 }
 
-/// Whether a spacing occurs in other places too.
-fn is_frequent(arrivals: &[Arrival], at: usize, device_ns: i64) -> bool {
+/// Whether a spacing occurs in other places too, within the tolerance.
+fn is_frequent(arrivals: &[Arrival], at: usize, device_ns: i64, tolerance_ns: i64) -> bool {
     let elsewhere = (1..arrivals.len()).filter(|i| i.abs_diff(at) > 2 * NEAR);
     let alike = elsewhere
         .filter_map(|i| steps(arrivals, i))
-        .filter(|(d, _)| d.as_nanos().saturating_sub(device_ns).saturating_abs() < SAME_SPACING_NS);
+        .filter(|(d, _)| d.as_nanos().saturating_sub(device_ns).saturating_abs() < tolerance_ns);
     alike.take(3).count() == 3
 }
 

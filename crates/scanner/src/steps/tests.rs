@@ -268,6 +268,32 @@ fn a_step_of_the_lidar_clock_is_found() {
     }
 }
 
+/// The first pulse per second after an outage of GPS sets the lidar's clock by a little.
+#[test]
+fn a_small_step_of_the_lidar_clock_is_found() {
+    for by in [
+        100_000, -150_000, 700_000, -1_200_000, 1_200_000, 5_000_000, -5_000_000, 9_000_000,
+    ] {
+        let mut recorded = Recorded::new(30, Some(2_500));
+        let truth = Recorded::new(30, Some(2_500));
+        for packet in &mut recorded.packets {
+            if packet.device.as_nanos() >= EPOCH + 18 * S {
+                packet.device += Span::from_nanos(by);
+            }
+        }
+        let seen = recorded.stepped(&[]);
+        let timeline = seen.timeline();
+        let step = only(&timeline);
+        assert_eq!(step.clock, SetClock::Lidar, "{by}");
+        assert!((step.by.as_nanos() - by).abs() < 10_000, "{by}: {step:?}");
+        let (worst_us, polls_off) = seen.errors(&timeline, &truth);
+        assert!(
+            worst_us < 5.0 && polls_off == 0,
+            "{by}: {worst_us} us, {polls_off}"
+        );
+    }
+}
+
 /// A stalled network delivers its packets all at once, also at the end of a recording or from its
 /// start. Neither that nor lost packets nor a paused host are steps.
 #[test]

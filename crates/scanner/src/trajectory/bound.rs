@@ -1,14 +1,14 @@
 //! Greatest error of an angle, for fits and for connected samples. The caller adds the error of the
 //! lidar's clock.
 
-use units::{Host, Stamp};
+use units::{Host, Span, Stamp};
 
 use super::choose::SweepFit;
 use super::pieces::PiecewiseCubic;
-use super::{AngleSample, Method, noise};
+use super::{AngleSample, Method, latch, noise};
 
 /// Standard deviations within a bound.
-const BOUND_SDS: f64 = 3.0;
+pub(super) const BOUND_SDS: f64 = 3.0;
 
 /// Bound of a fit within a span, degrees: its scatter, and the delay that all samples may share at
 /// the speed there.
@@ -46,6 +46,17 @@ pub(super) fn of_joined(
     of_lines(around) + jump
 }
 
+/// Greatest difference between a sample's instant and that of its angle, seconds: its bound and its
+/// age.
+fn reach_s(sample: &AngleSample) -> f64 {
+    let age_s = if sample.bound > Span::ZERO {
+        latch::CYCLE_S
+    } else {
+        0.0
+    };
+    sample.bound.as_secs_f64() + age_s
+}
+
 /// Greatest step between neighbouring samples, degrees.
 fn widest_step(samples: &[AngleSample]) -> f64 {
     let steps = samples.windows(2).map(|pair| match pair {
@@ -55,7 +66,7 @@ fn widest_step(samples: &[AngleSample]) -> f64 {
     steps.fold(0.0, f64::max)
 }
 
-/// Half of a round trip at the speed there, and the error of a line where the speed changes. That
+/// Half of a round trip and a sample's age at the speed there, and the error of a line where the speed changes. That
 /// error is a quarter of the change times the time between two samples if the change is sudden, an
 /// eighth if it is even. With fewer than four samples the bound is the greatest step.
 fn of_lines(samples: &[AngleSample]) -> f64 {
@@ -69,7 +80,7 @@ fn of_lines(samples: &[AngleSample]) -> f64 {
             [a, b, c, d] => {
                 let (before, across, after) = (rate(a, b), rate(b, c), rate(c, d));
                 let bent = (after - before).abs() * noise::seconds(b, c) / 4.0;
-                bent + across.abs() * b.bound.as_secs_f64().max(c.bound.as_secs_f64())
+                bent + across.abs() * reach_s(b).max(reach_s(c))
             }
             _ => 0.0,
         })

@@ -2,12 +2,18 @@
 //!
 //! The commanded motion has few parameters and averages over hundreds of samples, but it is right
 //! only if the axis followed the command. The autocorrelation of its residuals shows how far it did
-//! not. A spline follows any motion and averages over fewer samples. The error of each is the
-//! scatter of the samples and the residual autocorrelation; the curve with the least is taken.
+//! not. A spline follows any motion and averages over fewer samples; a spline through the
+//! residuals of the best profile follows a short disturbance. All compete on one scale, the
+//! predicted error of a sample that is left out (generalised cross-validation), which does not
+//! depend on a candidate's own scatter. The samples limit the rest: with independent errors of
+//! standard deviation s, a parameter that n samples determine has at least s / sqrt(n)
+//! (Cramer-Rao), and a motion between two samples leaves no trace in them.
 
 use units::{Degrees, Host, Span, Stamp};
 
-use super::noise::{Noise, rates};
+use super::bound::BOUND_SDS;
+use super::latch::{self, LatchEvidence, Residual};
+use super::noise::{Noise, rates, seconds};
 use super::pieces::{CubicPiece, PiecewiseCubic};
 use super::profile::Profile;
 use super::profile_fit::{self, Observed, ProfileFit, ServoModel};
@@ -63,12 +69,16 @@ const MAX_PIECES: usize = 4_000;
 /// equal, sqrt(2).
 const SPLINE_BIAS: f64 = 1.4;
 
+/// Standard deviations of the samples beyond which a motion between two of them is not their error.
+const UNSEEN_SDS: f64 = 4.0;
+
 /// Candidate curves for one sweep.
 pub(super) struct Candidates<'a> {
     sweep: &'a Sweep,
     /// Samples of the sweep and of the rest around it, in strictly increasing time.
     samples: &'a [AngleSample],
     origin: Stamp<Host>,
+    noise: Noise,
     observed: Vec<Observed>,
 }
 
@@ -78,15 +88,12 @@ struct Candidate {
     pieces: PiecewiseCubic,
     /// Part of the residual that neighbouring samples share, degrees.
     systematic_residual_deg: f64,
-    /// Whether it is a preliminary fit to few observations.
-    is_preliminary: bool,
-}
-
-impl Candidate {
-    /// Whether the systematic residual is less than a part of the error.
-    fn has_systematic_residual_below(&self, part: f64) -> bool {
-        self.systematic_residual_deg < part * self.fit.sd_deg
-    }
+    /// Predicted mean square of the residual of a sample that is left out of the fit, in variances
+    /// of the sample (generalised cross-validation).
+    prediction_error: f64,
+    /// Number of free parameters.
+    parameters: usize,
+    latch: LatchEvidence,
 }
 
 impl<'a> Candidates<'a> {
@@ -107,6 +114,7 @@ impl<'a> Candidates<'a> {
             sweep,
             samples,
             origin,
+            noise: *noise,
             observed: observed(samples, noise, origin),
         })
     }
@@ -121,39 +129,18 @@ impl<'a> Candidates<'a> {
         };
         let mut candidates: Vec<Candidate> = match method {
             Some(Method::Spline) => self.spline().into_iter().collect(),
-            Some(method) => {
-                let fit = self.profile(servo(method)?, method, None);
-                fit.into_iter().collect()
-            }
+            Some(method) => self.profile(servo(method)?, method).into_iter().collect(),
             None => {
-                let mut all: Vec<Candidate> = Vec::new();
-                for method in [Method::Profile, Method::ProfileServo, Method::ProfileServo2] {
-                    let Some(mut one) =
-                        servo(method).and_then(|servo| self.preliminary_fit(servo, method))
-                    else {
-                        continue;
-                    };
-                    // The plain motion is quick to fit and mostly right. A preliminary fit with as
-                    // much autocorrelation as error shows that it is not.
-                    let threshold = if method == Method::Profile { 1.0 } else { 0.25 };
-                    if one.has_systematic_residual_below(threshold) {
-                        self.refit(&mut one, servo(method));
-                    }
-                    // Without residual autocorrelation more parameters would fit noise.
-                    let is_sufficient = one.has_systematic_residual_below(0.25);
-                    all.push(one);
-                    if is_sufficient {
-                        break;
-                    }
-                }
-                // Preliminary fits choose the method and the start of its full fit.
-                if let Some(best) = least(&all).and_then(|best| all.get_mut(best)) {
-                    let method = best.fit.method;
-                    self.refit(best, servo(method));
-                }
-                let settled = all.iter().any(|c| c.has_systematic_residual_below(0.5));
-                if !settled {
-                    all.extend(self.spline());
+                let methods = [Method::Profile, Method::ProfileServo, Method::ProfileServo2];
+                let mut all: Vec<Candidate> = methods
+                    .into_iter()
+                    .filter_map(|method| self.profile(servo(method)?, method))
+                    .collect();
+                let best = least(&all).and_then(|best| all.get(best));
+                // Ages of a latch are errors that neighbours share: a spline would follow them.
+                if best.is_none_or(|best| best.latch != LatchEvidence::Present) {
+                    let corrected = best.and_then(|best| self.corrected(best));
+                    all.extend(corrected.into_iter().chain(self.spline()));
                 }
                 all
             }
@@ -175,40 +162,10 @@ impl<'a> Candidates<'a> {
         Some((best.fit, best.pieces))
     }
 
-    /// A preliminary fit to few observations; a full one if there are few.
-    fn preliminary_fit(&self, servo: ServoModel, method: Method) -> Option<Candidate> {
+    fn profile(&self, servo: ServoModel, method: Method) -> Option<Candidate> {
         let guess = self.guess()?;
         let observed = condensed(&self.observed, &guess);
-        let Some(fit) = profile_fit::preliminary(&observed, guess, servo) else {
-            return self.profile(servo, method, None);
-        };
-        let mut preliminary = self.candidate(fit, method)?;
-        preliminary.is_preliminary = true;
-        Some(preliminary)
-    }
-
-    /// Replaces a preliminary fit by a full one, if that exists.
-    fn refit(&self, preliminary: &mut Candidate, servo: Option<ServoModel>) {
-        if let (true, Some(servo)) = (preliminary.is_preliminary, servo)
-            && let Some(fit) = self.profile(
-                servo,
-                preliminary.fit.method,
-                preliminary.fit.profile.as_ref(),
-            )
-        {
-            *preliminary = fit;
-        }
-    }
-
-    fn profile(
-        &self,
-        servo: ServoModel,
-        method: Method,
-        begin: Option<&Profile>,
-    ) -> Option<Candidate> {
-        let guess = self.guess()?;
-        let observed = condensed(&self.observed, &guess);
-        let fit = profile_fit::fit(&observed, guess, servo, begin)?;
+        let fit = profile_fit::fit(&observed, guess, servo)?;
         self.candidate(fit, method)
     }
 
@@ -219,7 +176,7 @@ impl<'a> Candidates<'a> {
             .regularised
             .any()
             .then_some(Remark::Regularised(fit.regularised));
-        let mut candidate = self.evaluated(method, pieces)?;
+        let mut candidate = self.evaluated(method, pieces, fit.parameters())?;
         candidate.fit.profile = Some(fit.profile);
         candidate.fit.condition = Some(fit.condition);
         candidate.fit.remarks.extend(remarks);
@@ -229,9 +186,30 @@ impl<'a> Candidates<'a> {
     fn spline(&self) -> Option<Candidate> {
         let end_s = self.observed.last()?.at_s;
         let fit = spline::fit(&self.observed, self.origin, 0.0, end_s)?;
-        let mut candidate = self.evaluated(Method::Spline, fit.pieces)?;
+        let mut candidate = self.evaluated(Method::Spline, fit.pieces, fit.parameters)?;
         candidate.fit.sd_deg *= SPLINE_BIAS;
         Some(candidate)
+    }
+
+    /// A profile and a spline through its residuals: the commanded motion with a disturbance in
+    /// part of it.
+    fn corrected(&self, profile: &Candidate) -> Option<Candidate> {
+        let residuals = self.samples.iter().zip(&self.observed).map(|(sample, o)| {
+            let at = Moment {
+                host: sample.host,
+                rest_ns: 0.0,
+            };
+            Some(Observed {
+                angle_deg: o.angle_deg - profile.pieces.angle(at)?.0,
+                ..*o
+            })
+        });
+        let residuals: Vec<Observed> = residuals.collect::<Option<_>>()?;
+        let end_s = residuals.last()?.at_s;
+        let fit = spline::fit(&residuals, self.origin, 0.0, end_s)?;
+        let pieces = profile.pieces.corrected(&fit.pieces)?;
+        let parameters = profile.parameters + fit.parameters;
+        self.evaluated(Method::Spline, pieces, parameters)
     }
 
     /// The commanded motion, completed by the sweep's ends.
@@ -280,10 +258,51 @@ impl<'a> Candidates<'a> {
         })
     }
 
+    /// Generalised cross-validation (Craven and Wahba 1979) of a curve with so many parameters.
+    fn prediction_error(&self, pieces: &PiecewiseCubic, parameters: usize) -> f64 {
+        let squares: f64 = self
+            .samples
+            .iter()
+            .zip(&self.observed)
+            .filter_map(|(sample, observed)| {
+                let at = Moment {
+                    host: sample.host,
+                    rest_ns: 0.0,
+                };
+                let off = observed.angle_deg - pieces.angle(at)?.0;
+                Some((off / observed.sd_deg).powi(2))
+            })
+            .sum();
+        let n = self.observed.len() as f64;
+        let left = (1.0 - parameters as f64 / n).max(1.0 / n);
+        squares / n / (left * left)
+    }
+
+    /// Motion between two samples that their neighbours do not predict, beyond what errors of the
+    /// samples explain, and the greatest error of a curve between them.
+    fn unseen_motion(&self) -> impl Iterator<Item = ((Stamp<Host>, Stamp<Host>), f64)> {
+        self.samples.windows(4).filter_map(|window| {
+            let [a, b, c, d] = window else { return None };
+            let rate = |a: &AngleSample, b: &AngleSample| (b.angle.0 - a.angle.0) / seconds(a, b);
+            let (before, after) = (rate(a, b), rate(c, d));
+            let jump = c.angle.0 - b.angle.0 - 0.5 * (before + after) * seconds(b, c);
+            let off = jump.abs().max((after - before).abs() * seconds(b, c) / 4.0);
+            let fastest = f64::max(before.abs(), after.abs());
+            let sd = [b, c].map(|sample| self.noise.sd_deg(sample, fastest));
+            (off > UNSEEN_SDS * sd[0].hypot(sd[1])).then_some(((b.host, c.host), off))
+        })
+    }
+
     /// Error of a curve by its residuals.
-    fn evaluated(&self, method: Method, pieces: PiecewiseCubic) -> Option<Candidate> {
+    fn evaluated(
+        &self,
+        method: Method,
+        pieces: PiecewiseCubic,
+        parameters: usize,
+    ) -> Option<Candidate> {
+        let prediction_error = self.prediction_error(&pieces, parameters);
         let inside = |host: Stamp<Host>| self.sweep.start <= host && host <= self.sweep.end;
-        let off: Vec<(f64, f64, f64)> = self
+        let off: Vec<Residual> = self
             .samples
             .iter()
             .filter(|s| inside(s.host))
@@ -294,18 +313,19 @@ impl<'a> Candidates<'a> {
                 };
                 let piece = pieces.piece(at)?;
                 let ns = piece.since(at);
-                Some((
-                    s.angle.0 - piece.at(ns),
-                    piece.rate(ns) * 1e9,
-                    s.bound.as_secs_f64(),
-                ))
+                Some(Residual {
+                    at_s: s.host.saturating_since(self.origin).as_secs_f64(),
+                    off_deg: s.angle.0 - piece.at(ns),
+                    rate_deg_s: piece.rate(ns) * 1e9,
+                    bound_s: s.bound.as_secs_f64(),
+                })
             })
             .collect();
         let mean_square = |xs: &mut dyn Iterator<Item = f64>| {
             let (sum, n) = xs.fold((0.0, 0.0), |(sum, n), x| (sum + x * x, n + 1.0));
             if n > 0.0 { sum / n } else { 0.0 }
         };
-        let rms_deg = mean_square(&mut off.iter().map(|o| o.0)).sqrt();
+        let rms_deg = mean_square(&mut off.iter().map(|o| o.off_deg)).sqrt();
         let systematic_residual_deg = residual_autocorrelation(&off);
         let scatter = mean_square(
             &mut pieces
@@ -314,11 +334,18 @@ impl<'a> Candidates<'a> {
                 .filter(|p| inside(p.from))
                 .map(|p| p.sd_deg),
         );
+        // A spline may follow the saw of a latch.
+        let latch = if method == Method::Spline {
+            LatchEvidence::Unknown
+        } else {
+            latch::evidence(&off, self.noise.angle_sd_deg)
+        };
+        let (shift, delay) = latch::delay(&off, latch);
         let fit = SweepFit {
             method,
             rms_deg,
             sd_deg: (scatter + systematic_residual_deg * systematic_residual_deg).sqrt(),
-            delay: delay(&off),
+            delay,
             profile: None,
             condition: None,
             remarks: Vec::new(),
@@ -326,19 +353,28 @@ impl<'a> Candidates<'a> {
         // Residual autocorrelation is an error of every point of the sweep.
         let sd = |piece: &CubicPiece| f64::hypot(piece.sd_deg, systematic_residual_deg);
         let with_sd = pieces.as_slice().iter().map(|p| p.with_sd(sd(p))).collect();
+        let mut pieces = PiecewiseCubic::new(with_sd, pieces.span().1)?;
+        if method == Method::Spline {
+            for (span, off) in self.unseen_motion() {
+                pieces.raise_sd(span, off / BOUND_SDS);
+            }
+        }
+        pieces.shift(shift);
         Some(Candidate {
             fit,
-            pieces: PiecewiseCubic::new(with_sd, pieces.span().1)?,
+            pieces,
+            latch,
             systematic_residual_deg,
-            is_preliminary: false,
+            prediction_error,
+            parameters,
         })
     }
 }
 
-/// The candidate with the smallest error.
+/// The candidate that predicts samples best.
 fn least(candidates: &[Candidate]) -> Option<usize> {
-    let sd = |i: &usize| candidates.get(*i).map_or(f64::INFINITY, |c| c.fit.sd_deg);
-    (0..candidates.len()).min_by(|a, b| sd(a).total_cmp(&sd(b)))
+    let errors = candidates.iter().map(|c| c.prediction_error).enumerate();
+    errors.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(i, _)| i)
 }
 
 /// Observations for a fit. A run of equal samples at rest weighs as one.
@@ -404,17 +440,17 @@ fn is_alike(a: &Observed, b: &Observed) -> bool {
 
 /// Residual autocorrelation by batch means, root mean square, degrees: the mean square of the means
 /// over batches of residuals, less its expectation for independent residuals.
-fn residual_autocorrelation(off: &[(f64, f64, f64)]) -> f64 {
+fn residual_autocorrelation(off: &[Residual]) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for row in off.chunks(BATCH).filter(|row| row.len() > BATCH / 2) {
         let n = row.len() as f64;
-        let mean = row.iter().map(|o| o.0).sum::<f64>() / n;
+        let mean = row.iter().map(|o| o.off_deg).sum::<f64>() / n;
         // Scatter by differences of neighbours (von Neumann 1941), which a slope within the batch
         // does not affect.
         let differences: f64 = row
             .windows(2)
             .map(|pair| match pair {
-                [a, b] => (b.0 - a.0).powi(2) / 2.0,
+                [a, b] => (b.off_deg - a.off_deg).powi(2) / 2.0,
                 _ => 0.0,
             })
             .sum();
@@ -426,31 +462,6 @@ fn residual_autocorrelation(off: &[(f64, f64, f64)]) -> f64 {
     } else {
         0.0
     }
-}
-
-/// Limits of a delay common to all samples: each was taken within its bound, and the residual of
-/// samples in the sweep's faster half shows when the axis was at their angle.
-fn delay(off: &[(f64, f64, f64)]) -> (Span, Span) {
-    let fastest = off.iter().map(|o| o.1.abs()).fold(0.0, f64::max);
-    let quick = off.iter().filter(|o| o.1.abs() > fastest / 2.0);
-    let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
-    for (off, rate, bound) in quick {
-        let late = off / rate;
-        low = low.max(-bound - late);
-        high = high.min(bound - late);
-    }
-    if !low.is_finite() || !high.is_finite() {
-        return (Span::ZERO, Span::ZERO);
-    }
-    // Residuals have errors of their own: if the limits cross, their middle is taken.
-    if high < low {
-        let middle = (low + high) / 2.0;
-        (low, high) = (middle, middle);
-    }
-    (
-        Span::from_secs_f64(low.min(0.0)),
-        Span::from_secs_f64(high.max(0.0)),
-    )
 }
 
 /// A profile as cubics from the origin until `end_s`: its corners, and steps behind them that grow

@@ -1,6 +1,6 @@
 //! A piecewise cubic over host time, the form of every method's result.
 
-use units::{Degrees, Host, Real, Stamp};
+use units::{Degrees, Host, Real, Span, Stamp};
 
 use crate::clock::Moment;
 
@@ -146,13 +146,32 @@ impl PiecewiseCubic {
         Some(Degrees(piece.at(piece.since(at))))
     }
 
+    /// The angle with a correction fitted to its residuals, whose error is that of the sum.
+    pub(super) fn corrected(&self, other: &Self) -> Option<Self> {
+        let starts = self.pieces.iter().chain(&other.pieces);
+        let sums = starts.filter_map(|piece| {
+            let at = Moment {
+                host: piece.from,
+                rest_ns: 0.0,
+            };
+            let (a, b) = (self.piece(at)?, other.piece(at)?);
+            let [about_a, about_b] = [a, b].map(|p| p.about(p.since(at)));
+            Some(CubicPiece {
+                from: piece.from,
+                deg: std::array::from_fn(|k| about_a[k] + about_b[k]),
+                sd_deg: b.sd_deg,
+            })
+        });
+        Self::new(sums.collect(), self.end)
+    }
+
     /// Replaces the pieces within the time of `other`.
     pub(super) fn replace(&mut self, other: &Self) {
         let (from, to) = other.span();
         let (first, end) = self.span();
         let after = (to < end)
             .then(|| {
-                self.piece(crate::clock::Moment {
+                self.piece(Moment {
                     host: to,
                     rest_ns: 0.0,
                 })
@@ -172,6 +191,27 @@ impl PiecewiseCubic {
         self.pieces.splice(low..high.max(low), new);
         self.end = end.max(to);
         debug_assert!(first.min(from) == self.span().0);
+    }
+
+    /// Moves the curve in time.
+    pub(super) fn shift(&mut self, by: Span) {
+        for piece in &mut self.pieces {
+            piece.from = piece.from.saturating_add(by);
+        }
+        self.end = self.end.saturating_add(by);
+    }
+
+    /// Raises the deviations of the pieces within a span to at least `sd_deg`.
+    pub(super) fn raise_sd(&mut self, (from, to): (Stamp<Host>, Stamp<Host>), sd_deg: f64) {
+        let low = self.pieces.partition_point(|piece| piece.from <= from);
+        let high = self.pieces.partition_point(|piece| piece.from <= to);
+        for piece in self
+            .pieces
+            .get_mut(low.saturating_sub(1)..high)
+            .unwrap_or_default()
+        {
+            piece.sd_deg = piece.sd_deg.max(sd_deg);
+        }
     }
 
     /// Adds an error of time `sd_ns` to each piece's deviation, at the speed in its middle.

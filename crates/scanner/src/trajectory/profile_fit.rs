@@ -55,6 +55,20 @@ impl ServoModel {
     const fn parameters(self) -> usize {
         self as usize
     }
+
+    /// Lags and square roots of the inertia to start fits from, seconds. A servo that swings has
+    /// local minima: it starts at 15 Hz and 30 Hz, damped well and little.
+    const fn starts(self) -> &'static [[f64; 2]] {
+        match self {
+            Self::None => &[[0.0; 2]],
+            Self::Lag => &[[INITIAL_LAG_S, 0.0]],
+            Self::Swing => &[
+                [2.0 * INITIAL_LAG_S, INITIAL_LAG_S],
+                [0.6 * INITIAL_LAG_S, INITIAL_LAG_S],
+                [0.5 * INITIAL_LAG_S, 0.5 * INITIAL_LAG_S],
+            ],
+        }
+    }
 }
 
 /// Samples needed within a ramp to determine its length.
@@ -64,8 +78,6 @@ const MAX_CONDITION: f64 = 1e6;
 /// Relative change of the sum of squares at convergence: with a thousand samples, parameters are
 /// then within a thirtieth of their standard deviation.
 const SQUARES_TOLERANCE: f64 = 1e-6;
-/// Observations of a preliminary fit.
-const PRELIMINARY_OBSERVATIONS: usize = 100;
 /// Relative change of the parameters at convergence.
 const PARAMETER_TOLERANCE: f64 = 1e-9;
 /// Initial lag: that of a servo of 15 Hz.
@@ -78,6 +90,11 @@ const INVALID_RESIDUAL: f64 = 1e9;
 const MAX_LAG_S: f64 = 1.0;
 
 impl ProfileFit {
+    /// Number of free parameters.
+    pub(super) const fn parameters(&self) -> usize {
+        ProfileShape::of(self).len()
+    }
+
     /// Standard deviation of the angle at an instant, degrees, from the scatter of the samples.
     #[must_use]
     pub fn sd_deg(&self, at_s: f64) -> f64 {
@@ -91,47 +108,30 @@ impl ProfileFit {
     }
 }
 
-/// Fits from `guess`, or from the preliminary fit `begin`. `None` with fewer observations than
-/// parameters, or if no minimum is a motion.
-pub(super) fn fit(
-    observed: &[Observed],
-    guess: Profile,
-    servo: ServoModel,
-    begin: Option<&Profile>,
-) -> Option<ProfileFit> {
-    let [lag_s, inertia_s2] = match servo {
-        ServoModel::None => [0.0; 2],
-        ServoModel::Lag => [INITIAL_LAG_S, 0.0],
-        ServoModel::Swing => [2.0 * INITIAL_LAG_S, INITIAL_LAG_S * INITIAL_LAG_S],
-    };
-    let guess = Profile {
-        lag_s,
-        inertia_s2,
-        ..guess
-    };
+/// Fits from `guess`. `None` with fewer observations than parameters, or if no minimum is a motion.
+pub(super) fn fit(observed: &[Observed], guess: Profile, servo: ServoModel) -> Option<ProfileFit> {
     let is_triangle = guess.braking_s() <= guess.ramp_up_s;
-    let first = solve(observed, guess, ProfileShape { is_triangle, servo }, begin)?;
+    let best = |guess: Profile, is_triangle| {
+        let shape = ProfileShape { is_triangle, servo };
+        let fits = servo.starts().iter().filter_map(|&[lag_s, inertia_s]| {
+            let guess = Profile {
+                lag_s,
+                inertia_s2: inertia_s * inertia_s,
+                ..guess
+            };
+            solve(observed, guess, shape)
+        });
+        fits.min_by(|a, b| a.reduced_chi2.total_cmp(&b.reduced_chi2))
+    };
+    let first = best(guess, is_triangle)?;
     let cruises = first.profile.braking_s() - first.profile.ramp_up_s;
-    match (is_triangle, cruises > 0.0) {
-        (false, false) => solve(
-            observed,
-            first.profile,
-            ProfileShape {
-                is_triangle: true,
-                servo,
-            },
-            None,
-        ),
-        _ => Some(first),
+    if !is_triangle && cruises <= 0.0 {
+        return best(first.profile, true);
     }
+    Some(first)
 }
 
-fn solve(
-    observed: &[Observed],
-    guess: Profile,
-    shape: ProfileShape,
-    begin: Option<&Profile>,
-) -> Option<ProfileFit> {
+fn solve(observed: &[Observed], guess: Profile, shape: ProfileShape) -> Option<ProfileFit> {
     if observed.len() < shape.len() {
         return None;
     }
@@ -145,9 +145,7 @@ fn solve(
         ramp_down: within(brake, rest) < MIN_RAMP_SAMPLES,
         ..RegularisedParameters::default()
     };
-    let free = Problem::new(observed, guess, shape, regularised)
-        .starting_at(begin.unwrap_or(&guess))
-        .minimise();
+    let free = Problem::new(observed, guess, shape, regularised).minimise();
     match free {
         Some(free) if free.condition < MAX_CONDITION => Some(free),
         _ => Problem::new(observed, guess, shape, RegularisedParameters::ALL)
@@ -159,21 +157,6 @@ fn solve(
                 ProfileFit { regularised, ..fit }
             }),
     }
-}
-
-/// A fit to every n-th observation; `None` with too few, or if they do not determine every
-/// parameter.
-pub(super) fn preliminary(
-    observed: &[Observed],
-    guess: Profile,
-    servo: ServoModel,
-) -> Option<ProfileFit> {
-    let part = observed.len() / PRELIMINARY_OBSERVATIONS;
-    if part < 2 {
-        return None;
-    }
-    let some: Vec<Observed> = observed.iter().copied().step_by(part).collect();
-    fit(&some, guess, servo, None).filter(|fit| !fit.regularised.any())
 }
 
 /// Free parameters of a profile: a triangle's speed follows from its way and its ramps, and the
@@ -309,11 +292,6 @@ impl<'a> Problem<'a> {
             profile: guess,
             parameters: DVector::from_vec(shape.parameters(&guess)),
         }
-    }
-
-    fn starting_at(mut self, start: &Profile) -> Self {
-        self.set_params(&DVector::from_vec(self.shape.parameters(start)));
-        self
     }
 
     /// Priors of the regularised parameters.

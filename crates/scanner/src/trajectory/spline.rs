@@ -1,9 +1,11 @@
 //! A cubic spline through samples by least squares, for motion without a command.
 //!
-//! Knots are evenly spaced. Their spacing has the least predicted error by generalised
-//! cross-validation (Craven and Wahba 1979). A slight stiffness keeps the spline straight in
-//! intervals without samples, so that every system has a solution. The normal equations of
-//! B-splines have bandwidth four and are solved as such.
+//! Its pieces are cubics with a common angle and speed where they meet, so that the acceleration
+//! may change at once, as it does at corners of the commanded motion and where an obstacle stops
+//! the head. An interval is halved while residuals in it have a common sign over more samples than
+//! chance explains (a scan statistic over windows of all sizes): knots are far apart on straight
+//! lines and close where the motion changes. The normal equations have bandwidth four and are
+//! solved as such.
 
 use units::{Host, Span, Stamp};
 
@@ -14,24 +16,27 @@ use super::profile_fit::Observed;
 #[derive(Clone, Debug)]
 pub(super) struct SplineFit {
     pub pieces: PiecewiseCubic,
-    /// Knot spacing.
-    #[cfg(test)]
-    pub spacing: Span,
+    /// Free parameters.
+    pub parameters: usize,
 }
 
-/// A cubic overlaps four B-splines.
+/// A cubic depends on angle and speed at both ends.
 const BAND: usize = 4;
-/// Ratio of successive spacings.
-const STEP: f64 = std::f64::consts::SQRT_2;
-/// Closest knots in mean distances of samples, and farthest as a part of the whole.
-const CLOSEST: f64 = 2.0;
-const FARTHEST: f64 = 0.25;
-/// A score worse than the best by this factor ends the search: wider spacings are worse still.
-const MAX_SCORE_RATIO: f64 = 10.0;
-/// Stiffness against bending, relative to the mean weight of the samples per interval.
+/// Least number of samples in an interval.
+const MIN_SAMPLES: usize = 3;
+/// Rounds of halving at most: intervals of a millisecond in a quarter of an hour.
+const MAX_ROUNDS: usize = 24;
+/// Excess of the square of a window's mean over its expectation, in its variances, at which an
+/// interval is halved, beyond the greatest of as many windows by chance (2 ln n).
+const MIN_EXCESS: f64 = 6.0;
+/// Stiffness against bending, relative to the least weight of a sample.
 const STIFFNESS: f64 = 1e-9;
-/// Limit of knots, for the time of a fit.
-const MAX_KNOTS: usize = 100_000;
+/// Median magnitude of the difference of two standard normal variables.
+const MEDIAN_DIFFERENCE: f64 = 0.953_873;
+/// Its ninth decile.
+const TAIL_DIFFERENCE: f64 = 2.326_174;
+/// Least share of the assumed errors that samples have.
+const MIN_SCALE: f64 = 0.25;
 
 /// Fits `observed`, in order of time and in seconds after `origin`, from `from_s` to `to_s`. `None`
 /// with fewer than four of them or without time.
@@ -45,165 +50,225 @@ pub(super) fn fit(
     if observed.len() < BAND || length <= 0.0 || !length.is_finite() {
         return None;
     }
-    let mean = length / observed.len() as f64;
-    let closest = (CLOSEST * mean).max(length / MAX_KNOTS as f64);
-    let farthest = (FARTHEST * length).max(closest);
-    let mut best: Option<(f64, Spline)> = None;
-    let mut spacing = closest;
-    while spacing <= farthest * STEP {
-        let knots = (length / spacing).ceil().max(1.0) as usize;
-        if let Some(spline) = Spline::fit(observed, from_s, length / knots as f64, knots) {
-            let score = spline.score();
-            match &best {
-                Some((least, _)) if score > MAX_SCORE_RATIO * least => break,
-                Some((least, _)) if score >= *least => {}
-                _ => best = Some((score, spline)),
-            }
+    let mut knots = vec![from_s, to_s];
+    let mut spline = Spline::fit(observed, knots)?;
+    for _ in 0..MAX_ROUNDS {
+        knots = spline.finer_knots(observed);
+        if knots.len() == spline.knots.len() {
+            break;
         }
-        spacing *= STEP;
+        spline = Spline::fit(observed, knots)?;
     }
-    let (_, spline) = best?;
     Some(SplineFit {
         pieces: spline.pieces(origin)?,
-        #[cfg(test)]
-        spacing: Span::from_secs_f64(spline.spacing_s),
+        parameters: spline.coefficients.len(),
     })
 }
 
 struct Spline {
-    from_s: f64,
-    spacing_s: f64,
+    knots: Vec<f64>,
+    /// Angle and speed at each knot.
     coefficients: Vec<f64>,
     /// The factor of the normal equations, for standard deviations.
     factor: Banded,
-    squares: f64,
-    samples: usize,
-    /// Degrees of freedom of the spline.
-    degrees_of_freedom: f64,
+    /// Residuals of the samples, in their standard deviations.
+    residuals: Vec<f64>,
+    /// Index of the first sample of each interval, and the number of samples.
+    firsts: Vec<usize>,
 }
 
-/// Values of the four B-splines over an interval, at `x` (0 to 1) in it.
-fn basis(x: f64) -> [f64; BAND] {
-    let (y, x2, x3) = (1.0 - x, x * x, x * x * x);
+/// Weights of angle and speed at both ends of an interval of `length` at `x` (0 to 1) in it.
+fn basis(x: f64, length: f64) -> [f64; BAND] {
+    let y = 1.0 - x;
     [
-        y * y * y / 6.0,
-        (3.0 * x3 - 6.0 * x2 + 4.0) / 6.0,
-        (3.0 * (x + x2 - x3) + 1.0) / 6.0,
-        x3 / 6.0,
+        (1.0 + 2.0 * x) * y * y,
+        length * x * y * y,
+        x * x * (3.0 - 2.0 * x),
+        -length * x * x * y,
     ]
 }
 
 impl Spline {
-    fn fit(observed: &[Observed], from_s: f64, spacing_s: f64, intervals: usize) -> Option<Self> {
-        let count = intervals + BAND - 1;
+    fn fit(observed: &[Observed], knots: Vec<f64>) -> Option<Self> {
+        let count = 2 * knots.len();
         let mut normal = Banded::zeros(count);
         let mut right = vec![0.0; count];
-        let place = |at_s: f64| {
-            let x = ((at_s - from_s) / spacing_s).clamp(0.0, intervals as f64);
-            let interval = (x as usize).min(intervals - 1);
-            (interval, basis(x - interval as f64))
-        };
-        let mut weights = 0.0;
-        for o in observed {
-            let (first, values) = place(o.at_s);
-            let weight = 1.0 / (o.sd_deg * o.sd_deg);
-            weights += weight;
-            for (i, a) in values.iter().enumerate() {
-                *right.get_mut(first + i)? += weight * a * o.angle_deg;
-                for (j, b) in values.iter().enumerate().take(i + 1) {
-                    normal.add(first + i, first + j, weight * a * b)?;
+        let weight = |o: &Observed| 1.0 / (o.sd_deg * o.sd_deg);
+        let stiffness = STIFFNESS * observed.iter().map(weight).fold(f64::INFINITY, f64::min);
+        let mut firsts = vec![0];
+        for (k, pair) in knots.windows(2).enumerate() {
+            let &[from, to] = pair else { continue };
+            let length = to - from;
+            let first = *firsts.last()?;
+            let rest = observed.get(first..)?;
+            let inside = if k + 2 == knots.len() {
+                rest.len()
+            } else {
+                rest.partition_point(|o| o.at_s < to)
+            };
+            firsts.push(first + inside);
+            for o in rest.get(..inside)? {
+                let values = basis((o.at_s - from) / length, length);
+                let weight = weight(o);
+                for (i, a) in values.iter().enumerate() {
+                    *right.get_mut(2 * k + i)? += weight * a * o.angle_deg;
+                    for (j, b) in values.iter().enumerate().take(i + 1) {
+                        normal.add(2 * k + i, 2 * k + j, weight * a * b)?;
+                    }
                 }
             }
-        }
-        let stiffness = STIFFNESS * weights / intervals as f64;
-        for k in 2..count {
-            let bend = [(k - 2, 1.0), (k - 1, -2.0), (k, 1.0)];
-            for (i, a) in bend {
-                for (j, b) in bend.iter().filter(|(j, _)| *j <= i) {
-                    normal.add(i, *j, stiffness * a * b)?;
+            // Bending energy of the cubic.
+            for bend in [
+                [0.0, -1.0, 0.0, 1.0].map(|b| b * length),
+                [2.0, length, -2.0, length],
+            ] {
+                for (i, a) in bend.iter().enumerate() {
+                    for (j, b) in bend.iter().enumerate().take(i + 1) {
+                        normal.add(2 * k + i, 2 * k + j, stiffness * a * b)?;
+                    }
                 }
             }
         }
         let factor = normal.factor()?;
         let coefficients = factor.solve(right)?;
         let mut spline = Self {
-            from_s,
-            spacing_s,
+            knots,
             coefficients,
             factor,
-            squares: 0.0,
-            samples: observed.len(),
-            degrees_of_freedom: 0.0,
+            residuals: Vec::with_capacity(observed.len()),
+            firsts,
         };
-        for o in observed {
-            let (first, values) = place(o.at_s);
-            let around = spline.coefficients.get(first..first + BAND)?;
-            let angle: f64 = around.iter().zip(values).map(|(c, b)| c * b).sum();
-            spline.squares += ((angle - o.angle_deg) / o.sd_deg).powi(2);
+        for k in 0..spline.knots.len() - 1 {
+            let (from, length) = spline.interval(k)?;
+            let around = spline.coefficients.get(2 * k..2 * k + BAND)?;
+            let inside = observed.get(*spline.firsts.get(k)?..*spline.firsts.get(k + 1)?)?;
+            for o in inside {
+                let values = basis((o.at_s - from) / length, length);
+                let angle: f64 = around.iter().zip(values).map(|(c, b)| c * b).sum();
+                spline.residuals.push((o.angle_deg - angle) / o.sd_deg);
+            }
         }
-        // An interval without samples takes no degree of freedom.
-        spline.degrees_of_freedom = (count as f64).min(observed.len() as f64 - 1.0);
         Some(spline)
     }
 
-    fn reduced_chi2(&self) -> f64 {
-        self.squares / (self.samples as f64 - self.degrees_of_freedom).max(1.0)
+    fn interval(&self, k: usize) -> Option<(f64, f64)> {
+        let (from, to) = (self.knots.get(k)?, self.knots.get(k + 1)?);
+        Some((*from, to - from))
     }
 
-    /// Generalised cross-validation.
-    fn score(&self) -> f64 {
-        let n = self.samples as f64;
-        let left = (1.0 - self.degrees_of_freedom / n).max(1.0 / n);
-        self.squares / n / (left * left)
+    /// The knots, and the middles of intervals whose residuals are not random.
+    fn finer_knots(&self, observed: &[Observed]) -> Vec<f64> {
+        let scale = scale(&self.residuals);
+        let chance = 2.0 * (self.residuals.len() as f64).ln() + MIN_EXCESS;
+        let limit = chance * scale * scale;
+        let mut finer = Vec::with_capacity(self.knots.len());
+        for (k, pair) in self.knots.windows(2).enumerate() {
+            let &[from, to] = pair else { continue };
+            finer.push(from);
+            let samples = self.firsts.get(k).zip(self.firsts.get(k + 1));
+            let Some((&first, &last)) = samples else {
+                continue;
+            };
+            let (Some(times), Some(residuals)) =
+                (observed.get(first..last), self.residuals.get(first..last))
+            else {
+                continue;
+            };
+            let middle = 0.5 * (from + to);
+            let half = times.partition_point(|o| o.at_s < middle);
+            let is_divisible = half >= MIN_SAMPLES && times.len() - half >= MIN_SAMPLES;
+            if is_divisible && greatest_window(residuals) > limit {
+                finer.push(middle);
+            }
+        }
+        finer.extend(self.knots.last());
+        finer
     }
 
     fn pieces(&self, origin: Stamp<Host>) -> Option<PiecewiseCubic> {
-        let at = |k: usize| {
-            origin.saturating_add(Span::from_secs_f64(self.from_s + k as f64 * self.spacing_s))
-        };
-        let intervals = self.coefficients.len() + 1 - BAND;
-        let reduced_chi2 = self.reduced_chi2();
-        // Away from the ends the inverse of the band matrix is about constant where there are
-        // samples; exact variances at each knot would cost more than the fit.
+        let at = |s: f64| origin.saturating_add(Span::from_secs_f64(s));
+        let intervals = self.knots.len() - 1;
         let pieces = (0..intervals).map(|k| {
-            let (from, to) = (at(k), at(k + 1));
-            let around = self.coefficients.get(k..k + BAND)?;
-            let value = |weights: [f64; BAND]| -> f64 {
-                around.iter().zip(weights).map(|(c, w)| c * w).sum()
+            let (from_s, length) = self.interval(k)?;
+            let (from, to) = (at(from_s), at(from_s + length));
+            let &[a, va, b, vb] = self.coefficients.get(2 * k..2 * k + BAND)? else {
+                return None;
             };
             let ns = to.saturating_since(from).as_nanos().max(1) as f64;
-            let slopes = [[-0.5, 0.0, 0.5, 0.0], [0.0, -0.5, 0.0, 0.5]].map(|w| value(w) / ns);
-            let [begin, end] = [0.0, 1.0].map(|x| value(basis(x)));
-            let sd = (self.variance(k)? * reduced_chi2).sqrt();
-            Some(CubicPiece::hermite(from, ns, [begin, slopes[0]], [end, slopes[1]]).with_sd(sd))
+            let inside = self
+                .residuals
+                .get(*self.firsts.get(k)?..*self.firsts.get(k + 1)?)?;
+            let square: f64 = inside.iter().map(|r| r * r).sum();
+            let freedom = (inside.len() as f64 - 2.0).max(1.0);
+            let sd = (self.variance(k, length)? * (square / freedom).max(1.0)).sqrt();
+            Some(CubicPiece::hermite(from, ns, [a, va * 1e-9], [b, vb * 1e-9]).with_sd(sd))
         });
-        PiecewiseCubic::new(pieces.collect::<Option<Vec<_>>>()?, at(intervals))
+        PiecewiseCubic::new(pieces.collect::<Option<Vec<_>>>()?, at(*self.knots.last()?))
     }
 
     /// Variance in the middle of interval `k` if the samples' errors are as assumed.
-    fn variance(&self, k: usize) -> Option<f64> {
-        // The inverse of such a band matrix decays by three quarters per knot.
-        const REACH: usize = 12;
+    fn variance(&self, k: usize, length: f64) -> Option<f64> {
+        // The inverse of such a band matrix decays by about a half per interval.
+        const REACH: usize = 24;
         let (low, high) = (
-            k.saturating_sub(REACH),
-            (k + BAND + REACH).min(self.coefficients.len()),
+            (2 * k).saturating_sub(REACH),
+            (2 * k + BAND + REACH).min(self.coefficients.len()),
         );
         let mut right = vec![0.0; high - low];
-        for (i, b) in basis(0.5).into_iter().enumerate() {
-            *right.get_mut(k - low + i)? = b;
+        let middle = basis(0.5, length);
+        for (i, b) in middle.into_iter().enumerate() {
+            *right.get_mut(2 * k - low + i)? = b;
         }
         let solved = self.factor.solve_within(low, right)?;
-        let middle = basis(0.5);
-        Some(
-            solved
-                .get(k - low..)?
-                .iter()
-                .zip(middle)
-                .map(|(s, b)| s * b)
-                .sum::<f64>()
-                .max(0.0),
-        )
+        let around = solved.get(2 * k - low..)?.iter();
+        Some(around.zip(middle).map(|(s, b)| s * b).sum::<f64>().max(0.0))
     }
+}
+
+/// Standard deviation of `residuals` by the differences of neighbours, which a slow change does
+/// not affect.
+fn scale(residuals: &[f64]) -> f64 {
+    let mut differences: Vec<f64> = residuals
+        .windows(2)
+        .map(|pair| match pair {
+            [a, b] => (b - a).abs(),
+            _ => 0.0,
+        })
+        .collect();
+    let count = differences.len();
+    if count == 0 {
+        return 1.0;
+    }
+    let mut by_quantile = |part: usize, normal: f64| {
+        let rank = count * part / 10;
+        *differences.select_nth_unstable_by(rank, f64::total_cmp).1 / normal
+    };
+    // Errors with long tails have a small median.
+    let (median, tail) = (
+        by_quantile(5, MEDIAN_DIFFERENCE),
+        by_quantile(9, TAIL_DIFFERENCE),
+    );
+    median.max(tail).max(MIN_SCALE)
+}
+
+/// Greatest square of a sum over a window of residuals, per residual. Windows have 2, 4, 8 ...
+/// residuals and overlap by half.
+fn greatest_window(residuals: &[f64]) -> f64 {
+    let mut sums = vec![0.0];
+    let mut sum = 0.0;
+    for residual in residuals {
+        sum += residual;
+        sums.push(sum);
+    }
+    let mut greatest = 0.0;
+    let mut size = 2;
+    while size <= residuals.len() {
+        let ends = sums.iter().zip(sums.iter().skip(size)).step_by(size / 2);
+        let squares = ends.map(|(a, b)| (b - a) * (b - a) / size as f64);
+        greatest = squares.fold(greatest, f64::max);
+        size *= 2;
+    }
+    greatest
 }
 
 /// Lower triangle of a symmetric matrix of bandwidth four, or of its Cholesky factor.
@@ -331,11 +396,11 @@ mod tests {
             }
             let fit = fit(&samples, Stamp::from_nanos(0), 0.0, 2.0).unwrap();
             let off = worst(&fit, 2.0, motion);
-            assert!(off < 0.01, "{hertz} Hz: {off}");
-            fit.spacing.as_secs_f64()
+            assert!(off < 0.016, "{hertz} Hz: {off}");
+            fit.parameters as f64
         };
         let (slow, quick) = (spacing(1.0), spacing(20.0));
-        assert!(slow > 4.0 * quick, "{slow} {quick}");
+        assert!(quick > 4.0 * slow, "{slow} {quick}");
     }
 
     #[test]
@@ -348,8 +413,8 @@ mod tests {
 
     #[test]
     fn too_few_samples_give_no_spline() {
-        assert!(fit(&observed(3, 1.0, |t| t), Stamp::from_nanos(0), 0.0, 1.0).is_none());
-        assert!(fit(&observed(9, 1.0, |t| t), Stamp::from_nanos(0), 1.0, 1.0).is_none());
+        assert!(fit(&observed(3, 1.0, |t| t), Stamp::from_nanos(0), 0.0, 1.0,).is_none());
+        assert!(fit(&observed(9, 1.0, |t| t), Stamp::from_nanos(0), 1.0, 1.0,).is_none());
     }
 
     #[test]

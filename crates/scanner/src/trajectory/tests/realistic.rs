@@ -6,7 +6,7 @@ use crate::sweeps::Commanded;
 use units::{DegPerS, DegPerS2};
 
 const EPOCH: i64 = 1_795_000_000_000_000_000;
-const QUANTUM: f64 = 0.0015;
+pub const QUANTUM: f64 = 0.0015;
 const STEP_S: f64 = 10e-6;
 
 /// A reproducible stream of numbers in 0..1 (xorshift64*).
@@ -33,6 +33,23 @@ pub struct Drive {
     pub round_trip_s: (f64, f64),
     pub spikes: f64,
     pub seed: u64,
+    pub disturbance: Disturbance,
+    /// Whether the position is renewed once per millisecond of a drive that is 30 ppm fast.
+    pub latch: bool,
+}
+
+/// What a hand or an obstacle does to the head; the servo goes on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Disturbance {
+    None,
+    /// Held for so many seconds.
+    Held(f64),
+    /// Moved by so many degrees at once.
+    Slipped(f64),
+    /// Set to another speed by so many degrees per second at once.
+    Jerked(f64),
+    /// Pushed with so many degrees per second squared for a fiftieth of a second.
+    Bumped(f64),
 }
 
 pub const REFERENCE: Drive = Drive {
@@ -45,6 +62,8 @@ pub const REFERENCE: Drive = Drive {
     round_trip_s: (0.8e-3, 2.5e-3),
     spikes: 0.02,
     seed: 1,
+    disturbance: Disturbance::None,
+    latch: false,
 };
 
 pub struct Run {
@@ -79,8 +98,25 @@ impl Drive {
         let duration = self.way.abs() / (up * self.acceleration) + up;
         let end = 0.2 + duration + 0.4;
         let (mut at, mut rate, mut shaft) = (0.0, 0.0, Vec::new());
+        // A third of the way.
+        let struck = 0.2 + duration / 3.0;
         for k in 0..(end / STEP_S) as usize {
-            let demand = self.demand(k as f64 * STEP_S);
+            let t = k as f64 * STEP_S;
+            let demand = self.demand(t);
+            let is_instant = (t - struck).abs() < STEP_S / 2.0;
+            match self.disturbance {
+                Disturbance::Held(s) if t >= struck && t < struck + s => {
+                    rate = 0.0;
+                    shaft.push(at);
+                    continue;
+                }
+                Disturbance::Slipped(deg) if is_instant => at += deg,
+                Disturbance::Jerked(deg_s) if is_instant => rate += deg_s,
+                Disturbance::Bumped(deg_s2) if t >= struck && t < struck + 0.02 => {
+                    rate += deg_s2 * STEP_S;
+                }
+                _ => {}
+            }
             match self.servo {
                 Some((hertz, damping)) => {
                     let w = hertz * std::f64::consts::TAU;
@@ -108,7 +144,13 @@ impl Drive {
             } else {
                 (legs[0], legs[1] + spike)
             };
-            let counts = (angle(t + there) / QUANTUM).floor();
+            let cycle = 1e-3 * (1.0 - 30e-6);
+            let taken = if self.latch {
+                ((t + there) / cycle).floor() * cycle
+            } else {
+                t + there
+            };
+            let counts = (angle(taken) / QUANTUM).floor();
             let half = (there + back) / 2.0;
             samples.push(AngleSample {
                 host: Stamp::from_nanos(EPOCH) + Span::from_secs_f64(t + half),
@@ -139,6 +181,22 @@ impl Drive {
 }
 
 impl Run {
+    /// Greatest difference to the shaft during the sweep, delay included, degrees.
+    pub fn worst_with_delay(&self, trajectory: &Trajectory) -> f64 {
+        let from = (self.sweep.start - Stamp::from_nanos(EPOCH)).as_secs_f64();
+        let to = (self.sweep.end - Stamp::from_nanos(EPOCH)).as_secs_f64();
+        let times = (0..).map(|k| from + f64::from(k) * 100e-6);
+        let off = times.take_while(|t| *t < to).map(|t| {
+            let at = Moment {
+                host: Stamp::from_nanos(EPOCH) + Span::from_secs_f64(t),
+                rest_ns: 0.0,
+            };
+            let angle = trajectory.angle(at).unwrap().0;
+            (angle - self.shaft[(t / STEP_S) as usize]).abs()
+        });
+        off.fold(0.0, f64::max)
+    }
+
     /// Greatest and root mean square difference to the platform during the sweep, degrees, after
     /// the best constant delay; and that delay, seconds.
     pub fn error(&self, trajectory: &Trajectory) -> (f64, f64, f64) {
