@@ -27,7 +27,7 @@ pub fn run(arguments: &cli::DaemonArguments, common: &Common) -> Result<CommandO
     let interrupt = signals::motion_interrupt_flag()?;
     let daemon = Daemon::start(Options {
         config: config::load(common.config.as_deref())?,
-        device: common.device.clone(),
+        device: arguments.device.name.clone(),
         listen: arguments.listen,
         environment: environment(),
         ..Options::default()
