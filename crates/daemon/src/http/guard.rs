@@ -16,7 +16,7 @@ use axum::response::{IntoResponse, Response};
 use super::Api;
 use super::connection_limits::{Connection, Trust};
 use super::page;
-use super::refusal::{Reason, Refusal};
+use super::refusal::{Reason, Refusal, in_one_form};
 use crate::limits::{BODY_BYTES, SIGNED_IN, TARGET_BYTES, Waits};
 use engine::config::daemon::equal;
 use engine::config::origin::Origin;
@@ -87,7 +87,7 @@ pub async fn limits(State(waits): State<Waits>, request: Request, next: Next) ->
     }
     let (head, body) = request.into_parts();
     if body.is_end_stream() {
-        return next.run(Request::from_parts(head, body)).await;
+        return in_one_form(next.run(Request::from_parts(head, body)).await).await;
     }
     let too_large = || {
         Refusal::new(
@@ -102,7 +102,9 @@ pub async fn limits(State(waits): State<Waits>, request: Request, next: Next) ->
         return too_large();
     }
     match tokio::time::timeout(waits.body, to_bytes(body, BODY_BYTES)).await {
-        Ok(Ok(bytes)) => next.run(Request::from_parts(head, bytes.into())).await,
+        Ok(Ok(bytes)) => {
+            in_one_form(next.run(Request::from_parts(head, bytes.into())).await).await
+        }
         Ok(Err(_)) => too_large(),
         Err(_elapsed) => Refusal::new(
             StatusCode::REQUEST_TIMEOUT,
