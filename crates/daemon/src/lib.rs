@@ -93,7 +93,9 @@ impl Daemon {
     /// [`Kind::BadInput`] for a wrong configuration or a folder that cannot be written,
     /// [`Kind::NoDevice`] where another daemon has the device.
     pub fn start(options: Options) -> Result<Self, Failure> {
-        let config = options.config;
+        let mut config = options.config;
+        let credentials = std::env::var_os("CREDENTIALS_DIRECTORY").map(PathBuf::from);
+        config.daemon.load_token(credentials.as_deref())?;
         let listen = options.listen.unwrap_or(config.daemon.listen);
         config.daemon.check(listen)?;
         ros2_bridge::check(config.daemon.ros2.as_ref())?;

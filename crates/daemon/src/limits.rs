@@ -28,6 +28,10 @@ pub const MAKING: usize = 2;
 pub const DOWNLOADS: usize = 8;
 /// Browsers signed in.
 pub const SIGNED_IN: usize = 64;
+/// Wrong tokens of a host in [`WRONG_TOKENS_WITHIN`]; then its tokens are refused unread.
+pub const WRONG_TOKENS: usize = 10;
+/// Time over which wrong tokens are counted.
+pub const WRONG_TOKENS_WITHIN: Duration = Duration::from_secs(60);
 /// Messages kept of a scan.
 pub const MESSAGES: usize = 100;
 

@@ -310,7 +310,10 @@ impl Scans {
 
     fn view_of(&self, record: &ScanRecord) -> ScanView {
         let place = self.place(&record.id);
-        let size = |name: &str| fs::metadata(place.join(name)).ok().map(|there| there.len());
+        let size = |name: &str| {
+            let there = fs::symlink_metadata(place.join(name)).ok()?;
+            there.is_file().then(|| there.len())
+        };
         ScanView {
             head: record.head.clone(),
             bytes: bytes_in(&place),

@@ -146,17 +146,30 @@ pub fn check_free(path: &Path, force: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Refuses `-` for a log, which must be a file. `with` names the option.
+/// Refuses `-` for a log, which must be a file, and other extensions. `with` names the option.
 ///
 /// # Errors
 /// [`Kind::Usage`].
-pub fn log_is_file(log: &Path, with: &str) -> Result<(), Failure> {
+pub fn log_is_file(log: &Path, with: &str, extensions: &[&str]) -> Result<(), Failure> {
     if log == Path::new("-") {
         return Err(Failure::new(
             Kind::Usage,
             format!("a log must be a file: expected a file name with {with}, got -"),
         )
         .help(format!("name a file with {with}")));
+    }
+    let extension = log.extension().unwrap_or_default();
+    if !extensions
+        .iter()
+        .any(|known| extension.eq_ignore_ascii_case(known))
+    {
+        let known = extensions.join(" or .");
+        let log = log.display();
+        return Err(Failure::new(
+            Kind::Usage,
+            format!("the log {log}: expected the extension .{known}"),
+        )
+        .help(format!("name a file with that extension with {with}")));
     }
     Ok(())
 }

@@ -4,21 +4,21 @@ use std::error::Error;
 use std::fs;
 use std::path::PathBuf;
 
-use clap::{CommandFactory, ValueEnum};
+use clap::ValueEnum;
 use clap_complete::Shell;
-use velomotion::cli::Cli;
+use velomotion::commands::help;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = std::env::args_os().nth(1).map(PathBuf::from);
     let folder = folder.ok_or("expected a folder to write to")?;
     let manual = folder.join("man");
     fs::create_dir_all(&manual)?;
-    clap_mangen::generate_to(Cli::command(), &manual)?;
+    clap_mangen::generate_to(help::command(), &manual)?;
     let completions = folder.join("completions");
     fs::create_dir_all(&completions)?;
     for shell in Shell::value_variants() {
         let file =
-            clap_complete::generate_to(*shell, &mut Cli::command(), "velomotion", &completions)?;
+            clap_complete::generate_to(*shell, &mut help::command(), "velomotion", &completions)?;
         println!("{}", file.display());
     }
     Ok(())

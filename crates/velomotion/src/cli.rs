@@ -23,7 +23,7 @@ pub const VERSION: &str = env!("VELOMOTION_VERSION");
 
 /// Dense point clouds from a multi-beam lidar on a tilting platform.
 #[derive(Debug, Parser)]
-#[command(version = VERSION, about, max_term_width = 100)]
+#[command(version = VERSION, about, max_term_width = 100, disable_help_subcommand = true)]
 pub struct Cli {
     /// Command to run.
     #[command(subcommand)]
@@ -36,9 +36,6 @@ pub struct Cli {
 /// Options of every command.
 #[derive(Clone, Debug, Args)]
 pub struct Common {
-    /// Device to use: sim, auto, or a [device.NAME] of the configuration
-    #[arg(long, global = true, value_name = "sim|auto|NAME")]
-    pub device: Option<String>,
     /// Configuration file
     #[arg(long, global = true, value_name = "FILE")]
     pub config: Option<PathBuf>,
@@ -51,6 +48,19 @@ pub struct Common {
     /// Print more (-vv: everything)
     #[arg(short, long, global = true, action = clap::ArgAction::Count)]
     pub verbose: u8,
+}
+
+/// Choice of the device, of the commands that use one.
+#[derive(Clone, Debug, Args)]
+pub struct DeviceArgument {
+    /// Device to use: sim, auto, or a [device.NAME] of the configuration
+    #[arg(
+        id = "device",
+        long = "device",
+        global = true,
+        value_name = "sim|auto|NAME"
+    )]
+    pub name: Option<String>,
 }
 
 /// The commands.
@@ -76,14 +86,27 @@ pub enum Command {
     Doctor(Doctor),
     /// Run the simulated EPOS2 alone, to develop a client against it
     FirmwareSim(FirmwareSim),
+    /// Explain a command, or print a page of the book
+    Help(Help),
     /// Stop the axis if the program that drives it dies; started by that program only
     #[command(hide = true)]
     GuardAxis,
 }
 
+/// `help`.
+#[derive(Clone, Debug, Args)]
+pub struct Help {
+    /// Command, or page of the book; without one all pages are listed
+    #[arg(value_name = "COMMAND|TOPIC")]
+    pub words: Vec<String>,
+}
+
 /// `doctor`.
 #[derive(Clone, Debug, Args)]
 pub struct Doctor {
+    /// Device.
+    #[command(flatten)]
+    pub device: DeviceArgument,
     /// Lead through the first hour with a real drive: every step says what it does, and measures
     #[arg(long)]
     pub bring_up: bool,
@@ -98,20 +121,23 @@ pub struct Doctor {
 /// `capture`.
 #[derive(Clone, Debug, Args)]
 pub struct Capture {
+    /// Device.
+    #[command(flatten)]
+    pub device: DeviceArgument,
     /// Cruise speed of the tilt axis; becomes whole rpm of the motor
-    #[arg(long, value_name = "DEG_PER_S", allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG_PER_S", allow_negative_numbers = true, value_parser = number)]
     pub speed: f64,
     /// Angle where the sweep starts [default: the axis's upper limit]
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true, value_parser = number)]
     pub from: Option<f64>,
     /// Angle where the sweep ends [default: the axis's lower limit]
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true, value_parser = number)]
     pub to: Option<f64>,
     /// Acceleration of the tilt axis [default: the device's]
-    #[arg(long, value_name = "DEG_PER_S2", allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG_PER_S2", allow_negative_numbers = true, value_parser = number)]
     pub accel: Option<f64>,
     /// Number of sweeps [default: 1, with --both-ways 2]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub sweeps: Option<u32>,
     /// Scan on the return move too; each direction counts as a sweep
     #[arg(long)]
@@ -142,7 +168,7 @@ pub struct Replay {
     #[arg(long, value_name = "FILE")]
     pub mount: Option<PathBuf>,
     /// Emit points at the recorded times, or FACTOR times as fast
-    #[arg(long, value_name = "FACTOR", num_args = 0..=1, default_missing_value = "1")]
+    #[arg(long, value_name = "FACTOR", num_args = 0..=1, default_missing_value = "1", value_parser = number)]
     pub realtime: Option<f64>,
     /// Clock of the point times: the recording host's, or UTC from the lidar's satellite receiver
     #[arg(long, value_enum, default_value_t = TimeArgument::Host)]
@@ -178,13 +204,13 @@ pub struct Simulate {
     #[arg(long, value_name = "CLOUD")]
     pub truth: Option<PathBuf>,
     /// Random seed [default: the scene's]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = seed)]
     pub seed: Option<u64>,
     /// Effects of the scene to omit, by name, or all of them: docs, Effects
     #[arg(long, value_name = "EFFECT,..|all", value_delimiter = ',', value_parser = effect_or_all(), hide_possible_values = true)]
     pub without: Vec<String>,
     /// Threads that make packets; the log does not depend on it [default: one per core]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = threads)]
     pub threads: Option<NonZeroUsize>,
     /// Report what each effect changed and cost, the line that requested it, and effects without
     /// influence
@@ -394,14 +420,14 @@ pub struct Analyze {
     #[arg(value_name = "PATTERN|CLOUD|LOG", required = true)]
     pub inputs: Vec<String>,
     /// Subdivisions of the icosahedron whose faces are the bins: 20 x 4^N bins
-    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(0..=8))]
+    #[arg(long, value_name = "N", default_value_t = 4, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=8))]
     pub level: u32,
     /// Tolerated error of the K function as a share of all pairs: selects the cheapest sufficient
     /// method; 0 counts every pair
-    #[arg(long, value_name = "X", default_value_t = 1e-4, value_parser = tolerance)]
-    pub tolerance: f64,
+    #[arg(long, value_name = "X", default_value_t = 1e-4, allow_negative_numbers = true, value_parser = share)]
+    pub k_error: f64,
     /// Bins of the K function, from 0 to 180 degrees
-    #[arg(long, value_name = "N", default_value_t = 151, value_parser = clap::value_parser!(u16).range(1..=3_600))]
+    #[arg(long, value_name = "N", default_value_t = 151, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=3_600))]
     pub bins: u16,
     /// Position of the scanner in cloud coordinates, metres: the origin of all directions [default:
     /// 0,0,0]
@@ -444,8 +470,11 @@ pub struct Tradeoff {
 }
 
 /// `daemon`.
-#[derive(Clone, Copy, Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct DaemonArguments {
+    /// Device.
+    #[command(flatten)]
+    pub device: DeviceArgument,
     /// Address and port to listen on; port 0 selects a free one [default: the configuration's,
     /// 127.0.0.1:8016]
     #[arg(long, value_name = "ADDRESS:PORT")]
@@ -455,6 +484,9 @@ pub struct DaemonArguments {
 /// `tilt`.
 #[derive(Clone, Debug, Args)]
 pub struct TiltArguments {
+    /// Device.
+    #[command(flatten)]
+    pub device: DeviceArgument,
     /// Request to the axis.
     #[command(subcommand)]
     pub verb: TiltVerb,
@@ -470,18 +502,19 @@ pub enum TiltVerb {
     /// Move it to an angle
     Goto {
         /// Target angle
-        #[arg(value_name = "DEG", allow_negative_numbers = true)]
+        #[arg(value_name = "DEG", allow_negative_numbers = true, value_parser = number)]
         to: f64,
         /// Speed
         #[arg(
             long,
             value_name = "DEG_PER_S",
             default_value_t = 10.0,
-            allow_negative_numbers = true
+            allow_negative_numbers = true,
+            value_parser = number
         )]
         speed: f64,
         /// Acceleration [default: the device's]
-        #[arg(long, value_name = "DEG_PER_S2", allow_negative_numbers = true)]
+        #[arg(long, value_name = "DEG_PER_S2", allow_negative_numbers = true, value_parser = number)]
         accel: Option<f64>,
     },
     /// Stop it now and set the brake, also during a capture
@@ -571,8 +604,30 @@ fn deceleration(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "expected a deceleration from 0 to 1000000 deg/s2".to_owned())
 }
 
+/// Parses a number of any use as an angle, speed, acceleration or factor.
+fn number(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        // Later checks print the number: 1e300 would have 301 digits.
+        Ok(number) if number.is_nan() || number.abs() <= 1e6 => Ok(number),
+        _ => Err("expected a number from -1e6 to 1e6".to_owned()),
+    }
+}
+
+/// Parses a seed.
+fn seed(text: &str) -> Result<u64, String> {
+    let expected = || format!("expected a whole number from 0 to {}", u64::MAX);
+    text.parse().map_err(|_| expected())
+}
+
+/// Parses a number of threads.
+fn threads(text: &str) -> Result<NonZeroUsize, String> {
+    let number = text.parse::<u16>().ok().map(usize::from);
+    let number = number.and_then(NonZeroUsize::new);
+    number.ok_or_else(|| format!("expected a whole number from 1 to {}", u16::MAX))
+}
+
 /// Parses a share below 1.
-fn tolerance(text: &str) -> Result<f64, String> {
+fn share(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(share) if (0.0..1.0).contains(&share) => Ok(share),
         _ => Err("expected a share from 0 (every pair is counted) to below 1".to_owned()),

@@ -31,6 +31,7 @@ pub fn run(cli: &Cli) -> Result<CommandOutput, Failure> {
         Command::Tilt(arguments) => commands::tilt::run(arguments, &cli.common),
         Command::Daemon(arguments) => commands::daemon::run(arguments, &cli.common),
         Command::Doctor(arguments) => commands::doctor::run(arguments, &cli.common),
+        Command::Help(arguments) => commands::help::run(arguments),
         Command::GuardAxis => commands::guard_axis::run(),
         Command::FirmwareSim(arguments) => commands::firmware_sim::run(arguments, &cli.common),
     }

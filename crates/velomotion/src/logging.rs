@@ -49,33 +49,37 @@ pub fn start(level: &str) {
 }
 
 /// Prints a failure. In the journal, message and help are separate lines.
-pub fn failed(failure: Failure) {
+pub fn failed(failure: &Failure) {
     if has_stderr() {
         let help = failure.help.as_deref().unwrap_or_default();
         let text = with_priority(ERROR, &format!("{}\n{help}", failure.message));
         to_stderr(text.trim_end());
     } else {
-        to_stderr(&format!("{:?}", miette::Report::new(Printed(failure))));
+        let width = terminal_size::terminal_size_of(io::stderr()).map(|(width, _)| width.0);
+        to_stderr(&text(failure, width.map(usize::from)));
     }
 }
 
-/// A failure as a miette diagnostic.
-#[derive(Debug)]
-struct Printed(Failure);
-
-impl std::fmt::Display for Printed {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        self.0.fmt(f)
-    }
-}
-
-impl std::error::Error for Printed {}
-
-impl miette::Diagnostic for Printed {
-    fn help<'a>(&'a self) -> Option<Box<dyn std::fmt::Display + 'a>> {
-        let help = self.0.help.as_ref()?;
-        Some(Box::new(help))
-    }
+/// A failure's message and help, wrapped at the width of a terminal if there is one.
+fn text(failure: &Failure, width: Option<usize>) -> String {
+    let help = failure.help.as_deref().unwrap_or_default();
+    let first = [("error: ", failure.message.as_str())].into_iter();
+    let helps = help.lines().enumerate();
+    let helps = helps.map(|(n, line)| (if n == 0 { " help: " } else { "       " }, line));
+    let lines = first.chain(helps).map(|(label, line)| match width {
+        None => format!("{label}{line}"),
+        // Breaks at spaces only, since messages contain paths and units.
+        Some(width) => textwrap::fill(
+            line,
+            textwrap::Options::new(width)
+                .word_separator(textwrap::WordSeparator::AsciiSpace)
+                .word_splitter(textwrap::WordSplitter::NoHyphenation)
+                .break_words(false)
+                .initial_indent(label)
+                .subsequent_indent("       "),
+        ),
+    });
+    lines.collect::<Vec<_>>().join("\n")
 }
 
 /// Every non-empty line with its priority prefix.
@@ -141,6 +145,18 @@ impl Write for LogLine {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn errors_wrap_at_the_width_of_the_terminal_and_not_in_pipes() {
+        let message = "the log hall.pcapng cannot be written: there is no room on the disk";
+        let failure = Failure::new(engine::failure::Kind::Usage, message).help("free some\nspace");
+        let plain = format!("error: {message}\n help: free some\n       space");
+        assert_eq!(text(&failure, None), plain);
+        assert_eq!(
+            text(&failure, Some(30)),
+            "error: the log hall.pcapng\n       cannot be written:\n       there is no room on the\n       disk\n help: free some\n       space"
+        );
+    }
 
     #[test]
     fn every_line_has_its_priority() {

@@ -4,10 +4,9 @@ use std::io::Write;
 use std::process::ExitCode;
 use std::time::Duration;
 
-use clap::Parser;
 use engine::failure::{Failure, Kind};
-use velomotion::cli::{Cli, Common};
-use velomotion::commands::{CommandOutput, guard_axis};
+use velomotion::cli::Common;
+use velomotion::commands::{CommandOutput, guard_axis, help};
 use velomotion::logging;
 use velomotion::signals;
 use velomotion::terminal::{flush, to_stderr};
@@ -16,9 +15,11 @@ use velomotion::terminal::{flush, to_stderr};
 const LAST_WORDS: Duration = Duration::from_secs(1);
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let cli = match help::parse() {
+        Ok(cli) => cli,
+        Err(failure) => return refuse(&failure),
+    };
     guard_axis::offer();
-    keep_words_whole();
     // The default hook would block the device thread on a stderr that no program reads.
     std::panic::set_hook(Box::new(|panic| {
         let backtrace = std::backtrace::Backtrace::capture();
@@ -51,7 +52,7 @@ fn main() -> ExitCode {
         None => ExitCode::SUCCESS,
         Some(failure) => {
             let code = failure.kind.exit_code();
-            logging::failed(failure);
+            logging::failed(&failure);
             ExitCode::from(code)
         }
     };
@@ -59,18 +60,17 @@ fn main() -> ExitCode {
     code
 }
 
-/// Breaks lines at spaces only, since messages contain paths and units.
-fn keep_words_whole() {
-    // Fails only if a hook is already set.
-    let _ = miette::set_hook(Box::new(|_| {
-        Box::new(
-            miette::MietteHandlerOpts::new()
-                .word_separator(textwrap::WordSeparator::AsciiSpace)
-                .word_splitter(textwrap::WordSplitter::NoHyphenation)
-                .break_words(false)
-                .build(),
-        )
-    }));
+/// Reports an invalid command line, as one JSON object too if it requests that.
+fn refuse(failure: &Failure) -> ExitCode {
+    let mut words = std::env::args_os().take_while(|word| word != "--");
+    if words.any(|word| word == "--json") {
+        // A closed pipe is not a failure.
+        let object = serde_json::json!({ "error": error_object(failure) });
+        let _ = writeln!(std::io::stdout(), "{object}");
+    }
+    logging::failed(failure);
+    flush();
+    ExitCode::from(failure.kind.exit_code())
 }
 
 /// Prints one object with `--json`, also for a failure; else the text. `--quiet` keeps results

@@ -88,6 +88,59 @@ const WATCH: &str = "
       if (document.querySelector('#view-title').textContent.startsWith('Live')) window.live.push(document.querySelector('#view-points').textContent);
     }).observe(document.querySelector('#view-points'), { childList: true, characterData: true, subtree: true });";
 
+/// Requests to the daemon get no answer until `window.answer` is called.
+const SILENT: &str = "
+    const answered = window.fetch;
+    window.stops = 0;
+    window.fetch = (url, init) => new Promise((_, fail) => {
+      window.stops += String(url).endsWith('tilt/stop') ? 1 : 0;
+      init.signal?.addEventListener('abort', () => fail(new Error('no answer')));
+    });
+    window.answer = () => { window.fetch = answered; };";
+
+#[test]
+#[ignore = "needs chromium and chromedriver"]
+fn an_unconfirmed_stop_is_repeated_under_an_alarm_of_full_width() {
+    let driver = Driver::start();
+    let folder = tempfile::tempdir().unwrap();
+    let daemon = simulator(folder.path());
+    let url = url(&daemon);
+    for screen in [DESKTOP, PHONE] {
+        driver.test(screen, async |page| {
+            ready(&page, &url).await;
+            page.run(SILENT).await;
+            page.click("#stop").await;
+            page.until_has("#not-stopped", "NOT STOPPED: cut the supply").await;
+            page.until_true("window.stops >= 3").await;
+            page.until_true("(({ x, y, width }) => x === 0 && y === 0 && width === innerWidth)(document.querySelector('#not-stopped').getBoundingClientRect())")
+                .await;
+            page.picture("not-stopped").await;
+            page.run("window.answer()").await;
+            page.until_true("document.querySelector('#not-stopped').hidden").await;
+        });
+    }
+}
+
+#[test]
+#[ignore = "needs chromium and chromedriver"]
+fn refusals_are_visible_at_their_control() {
+    let driver = Driver::start();
+    let folder = tempfile::tempdir().unwrap();
+    let daemon = simulator(folder.path());
+    let url = url(&daemon);
+    for screen in [DESKTOP, PHONE] {
+        driver.test(screen, async |page| {
+            ready(&page, &url).await;
+            page.run("window.fetch = async () => new Response(JSON.stringify({ error: 'too many downloads at once', help: 'try again' }), { status: 429 })")
+                .await;
+            page.click("#home").await;
+            page.until_has("#control-error", "Home: too many downloads at once").await;
+            page.until_true("(({ top, bottom }) => top >= 0 && bottom <= innerHeight && top < bottom)(document.querySelector('#control-error').getBoundingClientRect())")
+                .await;
+        });
+    }
+}
+
 #[test]
 #[ignore = "needs chromium and chromedriver"]
 fn a_scan_is_started_displayed_and_counted() {

@@ -162,7 +162,7 @@ fn a_pattern_its_clouds_and_its_log_give_the_same_analysis() {
 #[test]
 fn field_of_view_figures_follow_the_position_of_the_sensor() {
     let place = Place::new();
-    let line = "analyze vlp16 vlp16,d=0.5 vlp16,d=5 velomotion16:50 velomotion16:50,d=0.06 velomotion16:50,d=-0.06 --level 4 --tolerance 0.1 --json";
+    let line = "analyze vlp16 vlp16,d=0.5 vlp16,d=5 velomotion16:50 velomotion16:50,d=0.06 velomotion16:50,d=-0.06 --level 4 --k-error 0.1 --json";
     let report = json(&place.run(line));
     let patterns = report["patterns"].as_array().unwrap();
     let found: Vec<[f64; 2]> = patterns
@@ -203,7 +203,7 @@ fn logs_have_a_field_of_view_and_clouds_have_none() {
         "{}",
         String::from_utf8_lossy(&made.stderr)
     );
-    let line = "analyze velomotion16:50,rpm=600,d=0.06 swept.pcapng swept.ply --tolerance 0.1";
+    let line = "analyze velomotion16:50,rpm=600,d=0.06 swept.pcapng swept.ply --k-error 0.1";
     let report = json(&place.run(&format!("{line} --json")));
     let [pattern, log, cloud] = report["patterns"].as_array().unwrap().as_slice() else {
         panic!("{report}");
@@ -265,7 +265,7 @@ fn logs_have_a_field_of_view_and_clouds_have_none() {
 fn sweep_and_report_agree_on_a_pattern() {
     let place = Place::new();
     let sweep = json(&place.run("analyze velomotion16:400 --sweep speed=400..400 --json"));
-    let alone = json(&place.run("analyze velomotion16:400 --tolerance 0.1 --json"));
+    let alone = json(&place.run("analyze velomotion16:400 --k-error 0.1 --json"));
     let [setting, pattern] = [&sweep["settings"][0], &alone["patterns"][0]];
     let pairs = [
         (
@@ -298,7 +298,7 @@ fn a_cloud_far_from_its_origin_gives_a_warning_and_can_be_moved() {
     };
     std::fs::write(place.path("here.csv"), text(0.0, 0.0)).unwrap();
     std::fs::write(place.path("far.xyz"), text(450_000.0, 5_400_000.0)).unwrap();
-    let far = place.run("analyze far.xyz --tolerance 0.1 --json");
+    let far = place.run("analyze far.xyz --k-error 0.1 --json");
     let printed = String::from_utf8_lossy(&far.stderr).into_owned();
     let far = json(&far)["patterns"][0].clone();
     let warned = far["warnings"][0].as_str().unwrap();
@@ -307,15 +307,14 @@ fn a_cloud_far_from_its_origin_gives_a_warning_and_can_be_moved() {
         "{warned}"
     );
     assert!(printed.contains(warned), "{printed}");
-    let moved =
-        json(&place.run("analyze far.xyz --origin 450000,5400000,0 --tolerance 0.1 --json"));
-    let here = json(&place.run("analyze here.csv --tolerance 0.1 --json"));
+    let moved = json(&place.run("analyze far.xyz --origin 450000,5400000,0 --k-error 0.1 --json"));
+    let here = json(&place.run("analyze here.csv --k-error 0.1 --json"));
     let [moved, here] = [&moved["patterns"][0], &here["patterns"][0]];
     assert_eq!(moved["warnings"].as_array().unwrap().len(), 0, "{moved}");
     let radius = |of: &serde_json::Value| of["hole"]["radius_deg"].as_f64().unwrap();
     assert!((radius(moved) - radius(here)).abs() < 1e-4 && radius(&far) > 179.0);
     // `--origin`, too, takes negative numbers.
-    let back = place.run("analyze here.csv --origin -1,0.5,-0.25 --level 2 --tolerance 0.1");
+    let back = place.run("analyze here.csv --origin -1,0.5,-0.25 --level 2 --k-error 0.1");
     assert!(
         back.status.success(),
         "{}",
@@ -328,7 +327,7 @@ fn a_cloud_far_from_its_origin_gives_a_warning_and_can_be_moved() {
 fn results_are_printed_even_when_quiet() {
     let place = Place::new();
     for line in [
-        "analyze vlp16 --level 2 --tolerance 0.1",
+        "analyze vlp16 --level 2 --k-error 0.1",
         "analyze velomotion16,step=2 --level 2 --sweep speed=200..400/2",
     ] {
         let (loud, quiet) = (place.run(line), place.run(&format!("{line} -q")));
@@ -506,7 +505,7 @@ fn inputs_that_cannot_be_analysed_are_errors() {
             "ply: byte 4: expected a line of a PLY header",
         ),
         ("analyze velomotion.toml", 3, "velomotion.toml"),
-        ("analyze vlp16 --tolerance 1", 2, "expected a share from 0"),
+        ("analyze vlp16 --k-error 1", 2, "expected a share from 0"),
         ("analyze vlp16 --bins 0", 2, "0 is not in 1..="),
         ("analyze vlp16 --level 9", 2, "9 is not in 0..=8"),
         (
@@ -600,7 +599,7 @@ fn ctrl_c_ends_an_analysis_with_130_and_no_partial_report() {
         let place = Place::new();
         let mut analysis = Command::new(env!("CARGO_BIN_EXE_velomotion"))
             .args(
-                "analyze rmbl:1200,step=2 velomotion16:5,step=0.1 --tolerance 0 --report page"
+                "analyze rmbl:1200,step=2 velomotion16:5,step=0.1 --k-error 0 --report page"
                     .split(' '),
             )
             .current_dir(place.0.path())

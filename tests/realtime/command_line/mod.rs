@@ -580,3 +580,54 @@ fn simulate_writes_a_log_that_replay_reads_and_locates_errors() {
     assert_eq!(json(&output)["points"].as_u64(), Some(rows as u64));
     assert_eq!(json(&output)["simulated"], true);
 }
+
+#[test]
+fn invalid_options_and_files_are_one_line_that_names_them() {
+    let place = Place::new();
+    place.fails(
+        "simulate hall --threads 0",
+        2,
+        &["error:", "'0'", "--threads"],
+    );
+    place.fails("simulate hall --seed -1", 2, &["error:", "'-1'", "--seed"]);
+    place.fails(
+        "analyze vlp16 --level -1",
+        2,
+        &["error:", "'-1'", "--level"],
+    );
+    place.fails(
+        "capture --speed 1e300",
+        2,
+        &["error:", "'1e300'", "--speed"],
+    );
+    place.fails("info log.pcapng --device sim", 2, &["error:", "--device"]);
+    place.fails(
+        "simulate hall -o hall.ply",
+        2,
+        &["hall.ply", ".pcapng or .pcap"],
+    );
+    place.fails("simulate hall --truth hall.xyzzy", 2, &[".xyzzy", ".laz"]);
+    place.fails("capture --speed 10 --log x.pcap", 2, &["x.pcap", ".pcapng"]);
+    let input = recording("vlp16-strongest-gps.pcap");
+    std::fs::write(place.path("long.yaml"), "x".repeat(100_000)).unwrap();
+    std::fs::write(
+        place.path("long.toml"),
+        format!("{} = 1", "x".repeat(100_000)),
+    )
+    .unwrap();
+    std::fs::write(place.path("huge.yaml"), "x: 1\n".repeat(300_000)).unwrap();
+    for name in ["long.yaml", "long.toml", "huge.yaml"] {
+        let line = format!(
+            "replay {} --tilt none --calibration {name}",
+            input.display()
+        );
+        place.fails(&line, 3, &["error:", name]);
+        let printed = String::from_utf8(place.run(&line).stderr).unwrap();
+        assert_eq!(printed.lines().count(), 2, "{printed}");
+        assert!(printed.len() < 600, "{name}: {} bytes", printed.len());
+    }
+    let refused = place.run("simulate hall --threads 0 --json");
+    assert_eq!(json(&refused)["error"]["exit_code"], 2);
+    let page = place.run("help formats");
+    assert!(page.status.success() && page.stdout.starts_with(b"# Formats"));
+}

@@ -157,3 +157,42 @@ fn requests_without_a_token_are_refused() {
     }
     assert!(!folder.path().join("velomotion").exists());
 }
+
+#[test]
+fn a_browser_signs_out_and_its_cookie_is_for_tls_behind_tls() {
+    let more = format!("token = '{TOKEN}'\norigins = ['https://scanner.example']");
+    let rig = Rig::with(&more, |_| {});
+    let cookie = |origin: &str| {
+        let headers = format!("content-type: application/json\r\n{origin}");
+        let body = format!("{{\"token\": \"{TOKEN}\"}}");
+        let answer = request(rig.address, "POST", "/login", &headers, &body);
+        let mut lines = answer.head.lines();
+        lines
+            .find_map(|line| line.strip_prefix("set-cookie: "))
+            .unwrap()
+            .to_owned()
+    };
+    assert!(!cookie("").contains("Secure"));
+    let secure = cookie("host: scanner.example\r\norigin: https://scanner.example\r\n");
+    assert!(secure.ends_with("; Secure"), "{secure}");
+    let own = format!("cookie: {}\r\n", secure.split(';').next().unwrap());
+    let signed_in = || request(rig.address, "GET", "/login", &own, "").json()["signed_in"].clone();
+    assert_eq!(signed_in(), true);
+    assert_eq!(status(rig.address, &own).status, 200);
+    assert_eq!(
+        request(rig.address, "POST", "/logout", &own, "").status,
+        204
+    );
+    status(rig.address, &own).refused(401, "signed out");
+    assert_eq!(signed_in(), false);
+}
+
+#[test]
+fn a_host_with_many_wrong_tokens_has_to_wait() {
+    let rig = Rig::with(&format!("token = '{TOKEN}'"), |_| {});
+    let with = |given: &str| status(rig.address, &format!("authorization: Bearer {given}\r\n"));
+    for _ in 0..10 {
+        with("0123456789abcdef-guessed").refused(401, "wrong");
+    }
+    with(TOKEN).refused(429, "right, too late");
+}

@@ -469,3 +469,73 @@ fn a_download_leaves_the_space_reserved_for_a_scan() {
     rig.post("/api/v1/captures/stop", &json!({}));
     rig.finished(&running);
 }
+
+/// Folders that a user, another program or a later version left there.
+#[test]
+fn odd_records_hide_no_others_and_serve_no_other_files() {
+    let odd = ["a \"quoted\" name", "line\nbreak", "gr\u{fc}n", "plain"];
+    let rig = Rig::with("", |options| {
+        let scans = options.config.daemon.scans.clone().unwrap();
+        let make = |name: &str| {
+            let folder = scans.join(name);
+            std::fs::create_dir_all(&folder).unwrap();
+            folder
+        };
+        for name in odd {
+            std::fs::write(make(name).join("cloud.ply"), name).unwrap();
+            std::fs::write(scans.join(name).join("log.pcapng"), "no log").unwrap();
+        }
+        let secret = scans.parent().unwrap().join("secret");
+        std::fs::write(&secret, "secret").unwrap();
+        let links = make("links");
+        for name in ["log.pcapng", "cloud.ply", "thumbnail.png"] {
+            std::os::unix::fs::symlink(&secret, links.join(name)).unwrap();
+        }
+        std::fs::write(links.join("scan.json"), "{}").unwrap();
+        let pipes = make("pipes");
+        for name in ["scan.json", "log.pcapng", "cloud.ply", "thumbnail.png"] {
+            let made = std::process::Command::new("mkfifo")
+                .arg(pipes.join(name))
+                .status();
+            assert!(made.unwrap().success());
+        }
+        std::fs::write(make("later").join("scan.json"), "{\"state\": 7}").unwrap();
+    });
+    let listed = rig.get("/api/v1/scans").json();
+    let listed: Vec<&str> = listed["scans"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|scan| scan["id"].as_str().unwrap())
+        .collect();
+    for name in odd.into_iter().chain(["pipes", "later"]) {
+        assert!(listed.contains(&name), "{name:?} is not in {listed:?}");
+    }
+    let escaped = |name: &str| {
+        name.bytes()
+            .map(|byte| format!("%{byte:02X}"))
+            .collect::<String>()
+    };
+    for name in odd {
+        let cloud = rig.get(&format!("/api/v1/scans/{}/cloud", escaped(name)));
+        assert_eq!((cloud.status, cloud.text().as_str()), (200, name));
+        assert_eq!(
+            cloud.head.contains("filename*="),
+            name != "plain",
+            "{}",
+            cloud.head
+        );
+    }
+    for name in ["links", "pipes"] {
+        for file in ["cloud", "cloud?format=las", "log", "thumbnail"] {
+            let answer = rig.get(&format!("/api/v1/scans/{name}/{file}"));
+            assert!(
+                matches!(answer.status, 404 | 409),
+                "{name}/{file}: {answer:?}"
+            );
+            answer.refused(answer.status, file);
+        }
+    }
+    rig.get("/api/v1/scans/%FF").refused(400, "not UTF-8");
+    rig.get("/api/v1/scans/%FF/cloud").refused(400, "not UTF-8");
+}

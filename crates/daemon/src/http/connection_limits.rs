@@ -43,6 +43,12 @@ impl Connection {
         })
     }
 
+    /// The remote host; absent for this machine.
+    #[must_use]
+    pub fn host(&self) -> Option<IpAddr> {
+        self.host
+    }
+
     /// Raises the trust; it never falls.
     pub fn raise(&self, trust: Trust) {
         self.trust.fetch_max(trust as u8, Ordering::Relaxed);

@@ -129,6 +129,7 @@ fn make(
         )
         .help("free some space on that disk")
     };
+    io::files::open_regular(log).map_err(|_| Refusal::no_file(LOG))?;
     let source = Source::open(log, None)?;
     let request = Reconstruction::of_log(&source, accuracy, interrupt);
     let mut file = io::files::scratch_in(folder).map_err(cannot)?;
@@ -186,20 +187,34 @@ fn downloading(api: &Api) -> Result<OwnedSemaphorePermit, Refusal> {
 /// A file and its length.
 type Opened = (File, u64);
 
-/// Opens a regular file; anything else may have no end.
+/// Opens a regular file.
 ///
 /// # Errors
 /// As [`super::with_disk`]; within, the disk's own.
 async fn open(path: PathBuf) -> Result<std::io::Result<Opened>, Refusal> {
     super::with_disk(move || {
-        if !std::fs::metadata(&path)?.is_file() {
-            return Err(std::io::ErrorKind::InvalidInput.into());
-        }
-        let file = File::open(&path)?;
+        let file = io::files::open_regular(&path)?;
         let length = file.metadata()?.len();
         Ok((file, length))
     })
     .await
+}
+
+/// The header for a file of this name (RFC 6266): folders renamed by hand may have any.
+fn attachment(name: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
+    let plain = name.replace(|c| !is_plain(c), "_");
+    if plain == name {
+        return format!("attachment; filename=\"{plain}\"");
+    }
+    let mut escaped = String::new();
+    for byte in name.bytes() {
+        match is_plain(byte.into()) {
+            true => escaped.push(byte.into()),
+            false => escaped.push_str(&format!("%{byte:02X}")),
+        }
+    }
+    format!("attachment; filename=\"{plain}\"; filename*=UTF-8''{escaped}")
 }
 
 /// Sends the rest of a file as it is now, a piece at a time: as fast as the client takes it.
@@ -230,7 +245,7 @@ fn stream(
         (header::CONTENT_LENGTH, length.to_string()),
         (
             header::CONTENT_DISPOSITION,
-            format!("attachment; filename=\"velomotion-{id}.{extension}\""),
+            attachment(&format!("velomotion-{id}.{extension}")),
         ),
         (header::CACHE_CONTROL, "no-store".to_owned()),
     ];

@@ -6,18 +6,22 @@ use std::collections::VecDeque;
 use std::io::Read;
 use std::net::IpAddr;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
 
 use axum::body::{HttpBody, to_bytes};
 use axum::extract::{Request, State};
-use axum::http::{HeaderMap, Method, StatusCode, header};
+use axum::http::{Extensions, HeaderMap, Method, StatusCode, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 
 use super::Api;
 use super::connection_limits::{Connection, Trust};
 use super::page;
-use super::refusal::{Reason, Refusal};
-use crate::limits::{BODY_BYTES, SIGNED_IN, TARGET_BYTES, Waits};
+use super::refusal::{Reason, Refusal, in_one_form};
+use crate::limits::{
+    BODY_BYTES, SIGNED_IN, TARGET_BYTES, WRONG_TOKENS, WRONG_TOKENS_WITHIN, Waits,
+};
+use engine::config::daemon::Token;
 use engine::config::daemon::equal;
 use engine::config::origin::Origin;
 
@@ -35,19 +39,75 @@ const COOKIE: &str = "velomotion";
 /// Lifetime of the cookie: 30 days.
 const COOKIE_S: u32 = 30 * 24 * 3600;
 const SECRET_BYTES: usize = 16;
+/// Wrong tokens that are remembered of all hosts.
+const MOST_WRONG: usize = 10_000;
+/// The cookie of a browser that is signed out.
+pub const NO_COOKIE: &str = "velomotion=; Path=/; Max-Age=0; HttpOnly; SameSite=Strict";
 
 /// Secrets of the browsers that are signed in, until the daemon ends.
 #[derive(Debug, Default)]
 pub struct Sessions {
     secrets: Mutex<VecDeque<String>>,
+    /// The hosts of wrong tokens and their times, oldest first.
+    wrong: Mutex<VecDeque<(Option<IpAddr>, Instant)>>,
 }
 
 impl Sessions {
-    /// Signs a browser in: the cookie to set.
+    /// Compares a token from a host.
+    ///
+    /// # Errors
+    /// [`Refusal`] for a wrong one, and for any after too many wrong ones.
+    pub fn check_token(
+        &self,
+        token: &Token,
+        given: &[u8],
+        host: Option<IpAddr>,
+        now: Instant,
+    ) -> Result<(), Refusal> {
+        let mut wrong = self.wrong.lock().unwrap_or_else(PoisonError::into_inner);
+        while let Some(&(_, at)) = wrong.front()
+            && now.saturating_duration_since(at) >= WRONG_TOKENS_WITHIN
+        {
+            wrong.pop_front();
+        }
+        let tries = wrong.iter().filter(|(other, _)| *other == host).count();
+        if tries >= WRONG_TOKENS {
+            return Err(Refusal::new(
+                StatusCode::TOO_MANY_REQUESTS,
+                Reason::Limit,
+                format!("{tries} wrong tokens in the last minute"),
+                "try again in a minute",
+            ));
+        }
+        if token.is(given) {
+            return Ok(());
+        }
+        if wrong.len() < MOST_WRONG {
+            wrong.push_back((host, now));
+        }
+        let from = host.map_or("this machine".to_owned(), |host| host.to_string());
+        tracing::warn!("wrong token from {from}, {} in the last minute", tries + 1);
+        Err(Refusal::new(
+            StatusCode::UNAUTHORIZED,
+            Reason::Denied,
+            "the token is missing or wrong",
+            "send Authorization: Bearer TOKEN with the token of the daemon's configuration",
+        ))
+    }
+
+    /// Signs a browser out.
+    pub fn end(&self, headers: &HeaderMap) {
+        let mut secrets = self.secrets.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(given) = cookie(headers) {
+            secrets.retain(|secret| !equal(secret.as_bytes(), given.as_bytes()));
+        }
+    }
+
+    /// Signs a browser in: the cookie to set, for TLS only if the browser came over TLS.
     ///
     /// # Errors
     /// Where the system provides no random bytes.
-    pub fn begin(&self) -> std::io::Result<String> {
+    pub fn begin(&self, headers: &HeaderMap) -> std::io::Result<String> {
         let mut random = [0; SECRET_BYTES];
         std::fs::File::open("/dev/urandom")?.read_exact(&mut random)?;
         let secret: String = random.iter().map(|byte| format!("{byte:02x}")).collect();
@@ -56,9 +116,21 @@ impl Sessions {
             secrets.pop_front();
         }
         secrets.push_back(secret.clone());
+        // Browsers name the origin, and only that of a configured proxy may have TLS.
+        let origin = text(headers, header::ORIGIN).unwrap_or_default();
+        let secure = if origin.starts_with("https://") {
+            "; Secure"
+        } else {
+            ""
+        };
         Ok(format!(
-            "{COOKIE}={secret}; Path=/; Max-Age={COOKIE_S}; HttpOnly; SameSite=Strict"
+            "{COOKIE}={secret}; Path=/; Max-Age={COOKIE_S}; HttpOnly; SameSite=Strict{secure}"
         ))
+    }
+
+    /// Whether a request has the cookie of a session.
+    pub fn includes(&self, headers: &HeaderMap) -> bool {
+        cookie(headers).is_some_and(|secret| self.has(secret))
     }
 
     fn has(&self, given: &str) -> bool {
@@ -87,7 +159,7 @@ pub async fn limits(State(waits): State<Waits>, request: Request, next: Next) ->
     }
     let (head, body) = request.into_parts();
     if body.is_end_stream() {
-        return next.run(Request::from_parts(head, body)).await;
+        return in_one_form(next.run(Request::from_parts(head, body)).await).await;
     }
     let too_large = || {
         Refusal::new(
@@ -102,7 +174,7 @@ pub async fn limits(State(waits): State<Waits>, request: Request, next: Next) ->
         return too_large();
     }
     match tokio::time::timeout(waits.body, to_bytes(body, BODY_BYTES)).await {
-        Ok(Ok(bytes)) => next.run(Request::from_parts(head, bytes.into())).await,
+        Ok(Ok(bytes)) => in_one_form(next.run(Request::from_parts(head, bytes.into())).await).await,
         Ok(Err(_)) => too_large(),
         Err(_elapsed) => Refusal::new(
             StatusCode::REQUEST_TIMEOUT,
@@ -183,12 +255,20 @@ fn check(api: &Api, peer: Peer, request: &Request) -> Result<Trust, (Refusal, bo
     let Some(token) = token else {
         return Ok(Trust::Local);
     };
+    if api.sessions.includes(headers) {
+        return Ok(Trust::Token);
+    }
     let bearer = text(headers, header::AUTHORIZATION)
         .and_then(|value| value.split_once(' '))
-        .filter(|(scheme, _)| scheme.eq_ignore_ascii_case("bearer"))
-        .is_some_and(|(_, given)| token.is(given.trim().as_bytes()));
-    if bearer || cookie(headers).is_some_and(|secret| api.sessions.has(secret)) {
-        return Ok(Trust::Token);
+        .filter(|(scheme, _)| scheme.eq_ignore_ascii_case("bearer"));
+    if let Some((_, given)) = bearer {
+        let given = given.trim().as_bytes();
+        let checked =
+            api.sessions
+                .check_token(token, given, host_of(request.extensions()), Instant::now());
+        return checked
+            .map(|()| Trust::Token)
+            .map_err(|refusal| (refusal, true));
     }
     Err((
         Refusal::new(
@@ -199,6 +279,11 @@ fn check(api: &Api, peer: Peer, request: &Request) -> Result<Trust, (Refusal, bo
         ),
         true,
     ))
+}
+
+/// The remote host of a request; absent for this machine.
+pub fn host_of(extensions: &Extensions) -> Option<IpAddr> {
+    extensions.get::<Arc<Connection>>()?.host()
 }
 
 /// Whether a page of this origin may request changes: the daemon's own at `host`, or a `listed`
@@ -262,13 +347,32 @@ mod tests {
     }
 
     #[test]
+    fn tokens_are_refused_for_a_minute_after_too_many_wrong_ones() {
+        let (sessions, begin) = (Sessions::default(), Instant::now());
+        let token = Token::try_from("0123456789abcdef".to_owned()).unwrap();
+        let guess = |given: &str, host: [u8; 4], s: u64| {
+            let at = begin + std::time::Duration::from_secs(s);
+            let checked = sessions.check_token(&token, given.as_bytes(), Some(host.into()), at);
+            checked.map_err(|refusal| refusal.into_response().status().as_u16())
+        };
+        let (one, other) = ([10, 0, 0, 1], [10, 0, 0, 2]);
+        for s in 0..WRONG_TOKENS as u64 {
+            assert_eq!(guess("0123456789abcdee", one, s), Err(401));
+        }
+        assert_eq!(guess("0123456789abcdef", one, 11), Err(429));
+        assert_eq!(guess("0123456789abcdef", other, 11), Ok(()));
+        assert_eq!(guess("0123456789abcdef", one, 60), Ok(()));
+    }
+
+    #[test]
     fn the_oldest_session_is_dropped() {
         let sessions = Sessions::default();
         let secret = |cookie: &str| cookie.split(['=', ';']).nth(1).unwrap().to_owned();
-        let first = secret(&sessions.begin().unwrap());
+        let headers = HeaderMap::new();
+        let first = secret(&sessions.begin(&headers).unwrap());
         assert!(sessions.has(&first) && !sessions.has("") && !sessions.has(&first[1..]));
         for _ in 0..SIGNED_IN {
-            sessions.begin().unwrap();
+            sessions.begin(&headers).unwrap();
         }
         assert!(!sessions.has(&first));
     }

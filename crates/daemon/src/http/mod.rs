@@ -93,7 +93,8 @@ fn router<S: Clone + Send + Sync + 'static>(routes: Routes<S>) -> Router<S> {
 fn daemon_router(api: &Arc<Api>, peer: Peer) -> Router {
     let devices = router(device_routes()).with_state(Arc::clone(&api.state.service));
     router(daemon_routes())
-        .route("/login", post(page::login))
+        .route("/login", get(page::signed_in).post(page::login))
+        .route("/logout", post(page::logout))
         .merge(devices)
         .fallback(page::asset)
         .method_not_allowed_fallback(no_method)
@@ -228,7 +229,7 @@ mod tests {
         let ours: std::collections::BTreeMap<&str, _> = devices.chain(daemon).collect();
         let theirs: BTreeSet<&str> = paths.keys().map(String::as_str).collect();
         let mut all: BTreeSet<&str> = ours.keys().copied().collect();
-        all.extend(["/", "/login"]);
+        all.extend(["/", "/login", "/logout"]);
         assert_eq!(all, theirs);
         for (path, methods) in ours {
             let described = paths[path].as_object().unwrap().keys();

@@ -1,10 +1,11 @@
 //! The page with its files from the binary, the sign-in form, and the API description.
 
 use std::sync::Arc;
+use std::time::Instant;
 
 use axum::body::Bytes;
 use axum::extract::{Request, State};
-use axum::http::{HeaderMap, Method, StatusCode, header};
+use axum::http::{Extensions, HeaderMap, Method, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
 
@@ -12,6 +13,7 @@ use engine::failure::Kind;
 
 use super::Api;
 use super::captures;
+use super::guard::{NO_COOKIE, host_of};
 use super::refusal::{Reason, Refusal};
 
 /// The API in OpenAPI 3.1.
@@ -57,7 +59,7 @@ const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; i
 /// Whether a path needs no token: the sign-in page and its style.
 #[must_use]
 pub fn is_open(path: &str) -> bool {
-    matches!(path, "/login" | "/page.css" | "/icon.svg")
+    matches!(path, "/login" | "/logout" | "/page.css" | "/icon.svg")
 }
 
 /// `GET /api/v1/openapi.json`.
@@ -115,6 +117,7 @@ struct Login {
 /// `POST /login`: takes the token as a form or JSON and sets a cookie.
 pub async fn login(
     State(api): State<Arc<Api>>,
+    extensions: Extensions,
     headers: HeaderMap,
     bytes: Bytes,
 ) -> Result<Response, Refusal> {
@@ -133,20 +136,20 @@ pub async fn login(
         }
         false => captures::body::<Login>(&headers, &bytes)?.token,
     };
-    let right = api.state.settings().token.as_ref();
-    if !right.is_none_or(|token| token.is(given.as_bytes())) {
-        return Ok(match form {
-            true => sign_in(StatusCode::UNAUTHORIZED),
-            false => Refusal::new(
-                StatusCode::UNAUTHORIZED,
-                Reason::Denied,
-                "the token is wrong",
-                "it is in the daemon's configuration, under [daemon]",
-            )
-            .into_response(),
-        });
+    if let Some(token) = api.state.settings().token.as_ref() {
+        let host = host_of(&extensions);
+        let checked = api
+            .sessions
+            .check_token(token, given.as_bytes(), host, Instant::now());
+        if let Err(refusal) = checked {
+            let refusal = refusal.into_response();
+            return Ok(match form && refusal.status() == StatusCode::UNAUTHORIZED {
+                true => sign_in(StatusCode::UNAUTHORIZED),
+                false => refusal,
+            });
+        }
     }
-    let cookie = api.sessions.begin().map_err(|error| {
+    let cookie = api.sessions.begin(&headers).map_err(|error| {
         Refusal::new(
             StatusCode::CONFLICT,
             Kind::Incomplete,
@@ -165,4 +168,19 @@ pub async fn login(
             .into_response(),
         false => (StatusCode::NO_CONTENT, [(header::SET_COOKIE, cookie)]).into_response(),
     })
+}
+
+/// `POST /logout`: ends the session of the cookie.
+pub async fn logout(State(api): State<Arc<Api>>, headers: HeaderMap) -> Response {
+    api.sessions.end(&headers);
+    (StatusCode::NO_CONTENT, [(header::SET_COOKIE, NO_COOKIE)]).into_response()
+}
+
+/// `GET /login`: whether the browser is signed in.
+pub async fn signed_in(State(api): State<Arc<Api>>, headers: HeaderMap) -> Response {
+    let signed_in = api.sessions.includes(&headers);
+    super::json(
+        StatusCode::OK,
+        &serde_json::json!({ "signed_in": signed_in }),
+    )
 }

@@ -2,12 +2,15 @@
 
 use std::fmt;
 
+use axum::body::to_bytes;
 use axum::extract::rejection::QueryRejection;
-use axum::http::StatusCode;
+use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use engine::failure::{Failure, Kind};
 use engine::service::LeaseError;
 use serde::Serialize;
+
+use crate::limits::BODY_BYTES;
 
 /// A refused request.
 #[derive(Clone, Debug, Serialize)]
@@ -122,6 +125,23 @@ impl Refusal {
             "try again when others have ended",
         )
     }
+}
+
+/// The response, with an error of the framework in the form of all others.
+pub async fn in_one_form(response: Response) -> Response {
+    let status = response.status();
+    let content = response.headers().get(header::CONTENT_TYPE);
+    let is_text = content.is_some_and(|content| content.as_bytes().starts_with(b"text/plain"));
+    if !(is_text && (status.is_client_error() || status.is_server_error())) {
+        return response;
+    }
+    let text = to_bytes(response.into_body(), BODY_BYTES).await;
+    let text = String::from_utf8_lossy(&text.unwrap_or_default()).into_owned();
+    Refusal {
+        status,
+        ..Refusal::usage(text)
+    }
+    .into_response()
 }
 
 impl fmt::Display for Refusal {

@@ -1,12 +1,15 @@
 //! Scans that a daemon finds at its start, interrupted ones included.
 
 use std::fs;
-use std::io::ErrorKind;
+use std::io::{ErrorKind, Read};
 use std::path::Path;
 
 use super::{CLOUD, LOG, RECORD};
 use engine::failure::{Failure, Kind};
 use engine::service::scan_record::{ScanHead, ScanRecord, ScanState};
+
+/// Bytes of the largest record; those of captures have some kB.
+const MAX_RECORD: u64 = 16 << 20;
 
 /// The record of a scan's folder. A folder with a log and no record is a scan, too.
 pub(super) fn found(place: &Path, name: &str) -> Option<ScanRecord> {
@@ -17,8 +20,8 @@ pub(super) fn found(place: &Path, name: &str) -> Option<ScanRecord> {
         }
         return None;
     }
-    let has_log = place.join(LOG).is_file();
-    let mut record = match fs::read(place.join(RECORD)) {
+    let has_log = is_file(&place.join(LOG));
+    let mut record = match read(&place.join(RECORD)) {
         Ok(text) => match serde_json::from_slice::<ScanRecord>(&text) {
             Ok(record) => record,
             Err(error) => return Some(unreadable(place, name, &error)),
@@ -44,10 +47,22 @@ pub(super) fn found(place: &Path, name: &str) -> Option<ScanRecord> {
     Some(record)
 }
 
+/// Whether this is a regular file, not a link to one.
+fn is_file(path: &Path) -> bool {
+    fs::symlink_metadata(path).is_ok_and(|there| there.is_file())
+}
+
+fn read(path: &Path) -> std::io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let file = io::files::open_regular(path)?;
+    file.take(MAX_RECORD).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
 /// Record of a log that a user put there. A cloud next to it is kept as well.
 fn without_record(place: &Path, name: &str) -> ScanRecord {
     let mut record = of_folder(place, name);
-    match place.join(CLOUD).exists() {
+    match is_file(&place.join(CLOUD)) {
         false => {
             record.state = ScanState::Making;
             record.recording = Some(interrupted());
@@ -68,7 +83,7 @@ fn without_record(place: &Path, name: &str) -> ScanRecord {
 fn unreadable(place: &Path, name: &str, error: &dyn std::fmt::Display) -> ScanRecord {
     let mut record = of_folder(place, name);
     record.unreadable = true;
-    record.state = match place.join(CLOUD).is_file() {
+    record.state = match is_file(&place.join(CLOUD)) {
         true => ScanState::Partial,
         false => ScanState::Failed,
     };

@@ -1,6 +1,7 @@
 #!/usr/bin/env node
 // Serves the page and an API with artificial data, for work on the page without a daemon.
-// node dev/server.mjs PORT [CLOUD.ply] ; /dev/MODE selects a mode: idle, live, fault, absent, gone, token.
+// node dev/server.mjs PORT [CLOUD.ply] ; /dev/MODE selects a mode: idle, live, fault, absent, gone, token, stuck (no stop is
+// answered, and everything else is refused).
 import { createHash } from "node:crypto";
 import { readFileSync, statSync } from "node:fs";
 import { createServer } from "node:http";
@@ -106,6 +107,7 @@ function answer(request, response) {
     return reply(200, mode);
   }
   if (mode === "gone") return request.socket.destroy();
+  if (pathname === "/login" && request.method === "GET") return reply(200, { signed_in: false });
   if (pathname === "/login") {
     mode = "idle";
     return reply(200, {});
@@ -122,10 +124,13 @@ function answer(request, response) {
   if (one !== null) {
     const found = scans.find((each) => each.id === one[1]);
     if (found === undefined) return reply(404, { error: "no such scan", help: "GET /api/v1/scans lists them", kind: "not-found" });
+    if (mode === "stuck" && one[2] !== undefined) return reply(429, { error: "too many downloads at once", help: "try again when others have ended", kind: "limit" });
     if (one[2] === "cloud" && ply !== null) return response.writeHead(200, { "content-type": "application/octet-stream" }).end(ply);
     if (request.method === "DELETE") scans = scans.filter((each) => each !== found);
     return reply(200, { ...found, report: { lost_packets: 0, sync, truth: { rms_m: 0.00071, worst_m: 0.0018 } }, messages: [] });
   }
+  if (mode === "stuck" && pathname === "/api/v1/tilt/stop") return;
+  if (request.method === "POST" && mode === "stuck") return reply(507, { error: "this scan may need 900 MB: the disk has 12 MB free", help: "delete scans", kind: "incomplete" });
   if (request.method === "POST") return reply(200, {});
   const name = pathname === "/" ? "index.html" : pathname.slice(1);
   try {

@@ -164,23 +164,36 @@ export class RequestError extends Error {
 const ROOT = "/api/v1/";
 
 /** Sends a request; throws `RequestError` with the remedy. */
-export async function sendRequest<T>(method: string, path: string, body?: unknown): Promise<T> {
-  const init: RequestInit = { method, credentials: "same-origin", cache: "no-store" };
+export async function sendRequest<T>(method: string, path: string, body?: unknown, signal?: AbortSignal): Promise<T> {
+  const init: RequestInit = { method, ...(signal ? { signal } : {}) };
   if (body !== undefined) {
     init.headers = { "content-type": "application/json" };
     init.body = JSON.stringify(body);
   }
+  const answer = await answered(path.startsWith("/") ? path : ROOT + path, init);
+  return parse(await answer.text()) as T;
+}
+
+/** The answer to a request; throws `RequestError` for a refusal and for none. */
+async function answered(url: string, init: RequestInit): Promise<Response> {
   let answer: Response;
   try {
-    answer = await fetch(path.startsWith("/") ? path : ROOT + path, init);
+    answer = await fetch(url, { credentials: "same-origin", cache: "no-store", ...init });
   } catch {
     const help = "check that it runs and that this device can reach it";
     throw new RequestError({ error: "the daemon does not answer", help }, 0);
   }
+  if (answer.ok) return answer;
   const text = await answer.text();
-  const body_json = parse(text);
-  if (!answer.ok) throw new RequestError(problem(body_json, text, answer.status), answer.status);
-  return body_json as T;
+  throw new RequestError(problem(parse(text), text, answer.status), answer.status);
+}
+
+/** URL to save a file from. Files that exist may be large and are not held here; others are made now. */
+export async function fileUrl(url: string, exists: boolean): Promise<string> {
+  if (!exists) return URL.createObjectURL(await (await answered(url, {})).blob());
+  // A refusal of HEAD has no text: GET has it.
+  await answered(url, { method: "HEAD" }).catch(() => answered(url, {}).then((answer) => answer.body?.cancel()));
+  return url;
 }
 
 function parse(text: string): unknown {
@@ -206,8 +219,8 @@ export const api = {
   remove: (id: string) => sendRequest<unknown>("DELETE", `scans/${encodeURIComponent(id)}`),
   plan: (request: CaptureRequest) => sendRequest<Plan>("GET", `plan?${query(request)}`),
   capture: (request: CaptureRequest) => sendRequest<Scan>("POST", "captures", request),
-  stopCapture: () => sendRequest<unknown>("POST", "captures/stop"),
-  stop: () => sendRequest<unknown>("POST", "tilt/stop"),
+  /** Stops any motion; of a capture the swept part is kept. */
+  stop: (signal: AbortSignal) => sendRequest<unknown>("POST", "tilt/stop", undefined, signal),
   home: () => sendRequest<unknown>("POST", "tilt/home"),
   clear: () => sendRequest<unknown>("POST", "tilt/clear"),
   goto: (to_deg: number, speed_deg_s: number) => sendRequest<unknown>("POST", "tilt/goto", { to_deg, speed_deg_s }),

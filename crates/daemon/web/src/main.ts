@@ -33,6 +33,7 @@ const listener: Listener = {
     devices.setLink("Connected", "good");
     show(id("lost"), false);
     control.setConnected(true);
+    void signin.offer();
     void list();
   },
   lost(retry_s) {
@@ -114,7 +115,7 @@ async function list(): Promise<void> {
     if (viewer !== null && viewer.shown === null && newest !== undefined && (newest.points ?? 0) <= SMALL_POINTS) viewer.open(newest);
     await last();
   } catch (error) {
-    control.refused("List of scans", error);
+    control.refused("List of scans", error, id("scans-error"));
   }
 }
 

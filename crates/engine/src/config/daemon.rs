@@ -3,7 +3,8 @@
 use std::fmt;
 use std::hint::black_box;
 use std::net::{Ipv4Addr, SocketAddr};
-use std::path::PathBuf;
+use std::os::unix::fs::MetadataExt;
+use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
@@ -26,6 +27,8 @@ pub struct DaemonConfig {
     pub listen: SocketAddr,
     /// Token required in every request over TCP.
     pub token: Option<Token>,
+    /// File with the token.
+    pub token_file: Option<PathBuf>,
     /// Further origins whose pages may send changes, such as a TLS proxy in front of the daemon.
     pub origins: Vec<Origin>,
     /// Folder of the scans.
@@ -45,6 +48,7 @@ impl Default for DaemonConfig {
         Self {
             listen: SocketAddr::from((Ipv4Addr::LOCALHOST, PORT)),
             token: None,
+            token_file: None,
             origins: Vec::new(),
             scans: None,
             keep_scans: 100,
@@ -101,7 +105,52 @@ pub fn equal(secret: &[u8], given: &[u8]) -> bool {
     black_box(different) == 0
 }
 
+/// Warns if other users can read a file that holds the token. Returns whether they can.
+pub fn warn_if_readable(path: &Path) -> bool {
+    // Bits of group and others.
+    let readable = std::fs::metadata(path).is_ok_and(|there| there.mode() & 0o044 != 0);
+    if readable {
+        tracing::warn!(
+            "other users can read the token in {}: chmod 600 {0}, or token_file = \"...\" under [daemon]",
+            path.display()
+        );
+    }
+    readable
+}
+
 impl DaemonConfig {
+    /// Reads the token of `token_file`, or of the file `token` in systemd's folder of credentials
+    /// (systemd.exec(5), LoadCredential).
+    ///
+    /// # Errors
+    /// [`Kind::BadInput`] for an unusable file, [`Kind::Usage`] for two tokens.
+    pub fn load_token(&mut self, credentials: Option<&Path>) -> Result<(), Failure> {
+        let credential = credentials.map(|folder| folder.join("token"));
+        let credential = credential.filter(|path| path.exists());
+        let Some(path) = self.token_file.clone().or(credential) else {
+            return Ok(());
+        };
+        if self.token.is_some() {
+            let message = format!(
+                "two tokens: [daemon] token, and the file {}",
+                path.display()
+            );
+            return Err(Failure::new(Kind::Usage, message).help("remove one of them"));
+        }
+        let wrong = |what: String| {
+            let message = format!("the token in {}: {what}", path.display());
+            Failure::new(Kind::BadInput, message)
+                .help("write the token alone into the file; see man velomotion-daemon")
+        };
+        let text = std::fs::read_to_string(&path).map_err(|error| wrong(error.to_string()))?;
+        self.token = Some(Token::try_from(text.trim().to_owned()).map_err(wrong)?);
+        // Credentials are in a folder of their own that others cannot enter.
+        if self.token_file.is_some() {
+            warn_if_readable(&path);
+        }
+        Ok(())
+    }
+
     /// Refuses to listen beyond this machine without a token.
     ///
     /// # Errors
@@ -115,7 +164,7 @@ impl DaemonConfig {
             format!("{listen} accepts other machines without a token: anyone could move the axis"),
         )
         .help(
-            "set token = \"...\" under [daemon] of the configuration (head -c 24 /dev/urandom | base64 | tr +/ -_ makes one),\n\
+            "set token_file = \"...\" under [daemon] of the configuration (umask 77; head -c 24 /dev/urandom | base64 | tr +/ -_ > FILE makes one),\n\
              or listen on 127.0.0.1",
         ))
     }
@@ -184,6 +233,34 @@ mod tests {
         ] {
             assert!(!token.is(wrong.as_bytes()), "{wrong}");
         }
+    }
+
+    #[test]
+    fn tokens_come_from_a_file_or_a_credential() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("token");
+        std::fs::write(&file, "0123456789abcdef\n").unwrap();
+        let mode = |bits| std::fs::set_permissions(&file, PermissionsExt::from_mode(bits)).unwrap();
+        mode(0o600);
+        assert!(!warn_if_readable(&file));
+        mode(0o640);
+        assert!(warn_if_readable(&file));
+        let from_file = format!("token_file = {file:?}");
+        for (text, credentials) in [(from_file.as_str(), None), ("", Some(folder.path()))] {
+            let mut config = settings(text).unwrap();
+            config.load_token(credentials).unwrap();
+            assert!(config.token.unwrap().is(b"0123456789abcdef"), "{text}");
+        }
+        let mut both = settings(&format!("{from_file}\ntoken = '0123456789abcdef'")).unwrap();
+        assert_eq!(both.load_token(None).unwrap_err().kind, Kind::Usage);
+        std::fs::write(&file, "short").unwrap();
+        let failure = settings(&from_file).unwrap().load_token(None).unwrap_err();
+        assert!(failure.message.contains("16"), "{failure:?}");
+        assert!(!failure.message.contains("short"), "{failure:?}");
+        let mut none = settings("").unwrap();
+        none.load_token(Some(Path::new("/nonexistent"))).unwrap();
+        assert_eq!(none.token, None);
     }
 
     #[test]

@@ -14,6 +14,10 @@ use crate::reconstruct::source::Source;
 
 /// Data packets within which the decoder settles on a model.
 const ENOUGH: u64 = 200;
+/// Bytes of the largest calibration file; those of 64 lasers have some 30 kB.
+const MAX_CALIBRATION: u64 = 1 << 20;
+/// Characters of the longest message on a calibration.
+const MAX_MESSAGE: usize = 200;
 
 /// How a user wants packets decoded.
 #[derive(Clone, Debug, Default)]
@@ -72,13 +76,25 @@ fn model(options: &Options, source: &Source) -> Result<&'static Model, Failure> 
     })
 }
 
+/// One line of a message that may quote a whole file.
+fn brief(message: &str) -> String {
+    let line = message.split_whitespace().collect::<Vec<_>>().join(" ");
+    match line.char_indices().nth(MAX_MESSAGE) {
+        None => line,
+        Some((end, _)) => format!("{}...", &line[..end]),
+    }
+}
+
 /// Reads a calibration: ROS YAML or our TOML.
 fn calibration(path: &Path, model: &'static Model) -> Result<Corrections, Failure> {
     let wrong = |what: String| {
-        Failure::new(Kind::BadInput, format!("{}: {what}", path.display())).help(
+        Failure::new(Kind::BadInput, format!("{}: {}", path.display(), brief(&what))).help(
             "use a velodyne_pointcloud calibration (.yaml), or a file with one [[laser]] table per laser (.toml; docs, Replay)",
         )
     };
+    if std::fs::metadata(path).is_ok_and(|there| there.len() > MAX_CALIBRATION) {
+        return Err(wrong("larger than any calibration file".to_owned()));
+    }
     let text =
         std::fs::read_to_string(path).map_err(|error| wrong(format!("cannot read: {error}")))?;
     let extension = path.extension().unwrap_or_default().to_ascii_lowercase();

@@ -30,9 +30,9 @@ use crate::terminal::Progress;
 /// [`Failure`] where nothing was recorded, or no cloud was made.
 pub fn run(arguments: &cli::Capture, common: &Common) -> Result<CommandOutput, Failure> {
     let config = config::load(common.config.as_deref())?;
-    let plan = plan(arguments, common, &config)?;
+    let plan = plan(arguments, &config)?;
     output::one_for_stdout(Some(&plan.cloud), common.json)?;
-    output::log_is_file(&plan.log, "--log")?;
+    output::log_is_file(&plan.log, "--log", &["pcapng"])?;
     let target = Target::open(&plan.cloud, arguments.output.fields(), plan.force)?;
     output::check_free(&plan.log, plan.force)?;
     let interrupt = signals::motion_interrupt_flag()?;
@@ -96,13 +96,9 @@ fn record_locally(
 }
 
 /// Checks the arguments against the axis and plans the moves.
-fn plan(
-    arguments: &cli::Capture,
-    common: &Common,
-    config: &Config,
-) -> Result<CapturePlan, Failure> {
+fn plan(arguments: &cli::Capture, config: &Config) -> Result<CapturePlan, Failure> {
     let start = SystemTime::now();
-    let (name, device) = profile::choose(config, common.device.as_deref())?;
+    let (name, device) = profile::choose(config, arguments.device.name.as_deref())?;
     let simulated = profile::simulated(&device);
     let cloud = arguments
         .output

@@ -26,8 +26,8 @@ const SIGNAL_POLL: Duration = Duration::from_millis(100);
 pub fn run(arguments: &cli::DaemonArguments, common: &Common) -> Result<CommandOutput, Failure> {
     let interrupt = signals::motion_interrupt_flag()?;
     let daemon = Daemon::start(Options {
-        config: config::load(common.config.as_deref())?,
-        device: common.device.clone(),
+        config: load(common)?,
+        device: arguments.device.name.clone(),
         listen: arguments.listen,
         environment: environment(),
         ..Options::default()
@@ -87,4 +87,14 @@ fn greet(daemon: &Daemon, common: &Common) {
         (false, _) => "with the token",
     };
     to_stderr(&format!("http://{address}/ ({who}); scans in {folder}"));
+}
+
+/// The configuration; warns if others can read a token in it.
+fn load(common: &Common) -> Result<config::Config, Failure> {
+    let config = config::load(common.config.as_deref())?;
+    let path = common.config.clone().or_else(config::usual_place);
+    if let Some(path) = path.filter(|_| config.daemon.token.is_some()) {
+        config::daemon::warn_if_readable(&path);
+    }
+    Ok(config)
 }

@@ -7,6 +7,7 @@ pub mod device_backend;
 pub mod doctor;
 pub mod firmware_sim;
 pub mod guard_axis;
+pub mod help;
 pub mod info;
 pub mod replay;
 pub mod simulate;

@@ -23,7 +23,7 @@ use crate::tables::table;
 pub fn run(arguments: &cli::TiltArguments, common: &Common) -> Result<CommandOutput, Failure> {
     let verb = arguments.verb;
     let config = config::load(common.config.as_deref())?;
-    let (name, device) = profile::choose(&config, common.device.as_deref())?;
+    let (name, device) = profile::choose(&config, arguments.device.name.as_deref())?;
     // Refused before a device is opened.
     let request = verb.into();
     jog::commands(request, &config, &device)?;

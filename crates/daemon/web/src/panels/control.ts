@@ -1,9 +1,10 @@
-// Start, home and stop. Stop is never disabled, also has the Escape key, and is repeated until it is answered.
+// Start, home and stop. Stop is never disabled, also has the Escape key, and is repeated until it is acknowledged.
 
 import { type Status, RequestError, api } from "../api.ts";
 import { attribute, id, show, text } from "../dom.ts";
 import { duration, fixed } from "../format.ts";
 import type { Motion } from "../events.ts";
+import { repeatStop } from "../stop.ts";
 import { announce, note } from "./messages.ts";
 
 const start = id<HTMLButtonElement>("start");
@@ -13,7 +14,6 @@ const why = id("start-why");
 const doing = id("doing");
 const progress = id<HTMLProgressElement>("doing-progress");
 
-const STOP_TRIES = 5;
 const WORDS: Record<string, string> = {
   idle: "Ready", connecting: "Connecting", homing: "Homing", moving: "Moving", capturing: "Sweeping", stopping: "Stopping",
 };
@@ -21,7 +21,8 @@ const WORDS: Record<string, string> = {
 let status: Status | null = null;
 let connected = false;
 let asking = false;
-let stopping = false;
+/** Ends the repetition of a stop. */
+let stopping: AbortController | null = null;
 /** Duration of the move, seconds. */
 let whole_s = 0;
 let stepped = 0;
@@ -29,6 +30,7 @@ let stepped = 0;
 export function wire(start_capture: () => void): void {
   stop.addEventListener("click", () => void halt());
   home.addEventListener("click", () => void command("Home", () => api.home()));
+  id("not-stopped-end").addEventListener("click", () => stopping?.abort());
   id("sweep").addEventListener("submit", (event) => {
     event.preventDefault();
     start_capture();
@@ -40,54 +42,54 @@ export function wire(start_capture: () => void): void {
   }, { capture: true });
 }
 
-/** Sends a command and reports its error. */
-export async function command(what: string, go: () => Promise<unknown>): Promise<void> {
+/** Sends a command and reports its error, at its control too. */
+export async function command(what: string, go: () => Promise<unknown>, at: HTMLElement = id("control-error")): Promise<void> {
   asking = true;
+  show(at, false);
   draw();
   try {
     await go();
   } catch (error) {
     // A stop by the user ends the motion with an error, which the user need not see.
-    if (!stopping) refused(what, error);
+    if (stopping === null) refused(what, error, at);
   } finally {
     asking = false;
     draw();
   }
 }
 
-export function refused(what: string, error: unknown): void {
-  if (error instanceof RequestError) note("error", `${what}: ${error.message}`, error.help);
-  else note("error", `${what}: ${String(error)}`);
+/** Adds an error to the messages, and shows it at the control that caused it. */
+export function refused(what: string, error: unknown, at: HTMLElement): void {
+  const help = error instanceof RequestError ? error.help : null;
+  const words = `${what}: ${reason(error)}`;
+  note("error", words, help);
+  text(at, help ? `${words}\n${help}` : words);
+  show(at, true);
+  at.scrollIntoView({ block: "nearest" });
+}
+
+function reason(error: unknown): string {
+  return error instanceof RequestError ? error.message : String(error);
 }
 
 async function halt(): Promise<void> {
-  if (stopping) return;
-  stopping = true;
+  if (stopping !== null) return;
+  stopping = new AbortController();
+  show(id("control-error"), false);
   draw();
+  const banner = id("not-stopped");
+  const unacknowledged = (why: unknown) => {
+    text(id("not-stopped-why"), why === null ? "the daemon does not answer" : reason(why));
+    show(banner, true);
+  };
   try {
-    for (let attempt = 1; ; attempt += 1) {
-      try {
-        // Stopping a capture saves the swept part; other motions are just stopped.
-        if (status?.activity.scan) await api.stopCapture().catch(stopOtherMotion);
-        else await api.stop();
-        announce("Stopped");
-        return;
-      } catch (error) {
-        const lost = error instanceof RequestError && error.status === 0;
-        if (!lost || attempt === STOP_TRIES) return refused("Stop", error);
-        await new Promise((again) => setTimeout(again, 200));
-      }
-    }
+    await repeatStop(api.stop, unacknowledged, stopping.signal);
+    announce("Stopped");
   } finally {
-    stopping = false;
+    show(banner, false);
+    stopping = null;
     draw();
   }
-}
-
-/** The scan had ended before the request arrived; any other motion is stopped nevertheless. */
-async function stopOtherMotion(error: unknown): Promise<unknown> {
-  if (error instanceof RequestError && error.status === 409) return api.stop();
-  throw error;
 }
 
 export function setConnected(now: boolean): void {
@@ -143,9 +145,10 @@ function draw(): void {
   home.disabled = asking || moving || !homes;
   text(why, moving ? "" : (obstacle_now ?? ""));
   show(why, why.textContent !== "");
+  if (moving) show(id("control-error"), false);
   attribute(stop, "data-moving", String(moving));
   attribute(doing, "data-moving", String(moving));
-  if (stopping) text(doing, "Stopping");
+  if (stopping !== null) text(doing, "Stopping");
   else if (!connected) text(doing, "No connection");
   else if (status !== null) text(doing, obstacle_now !== null && !moving ? "Not ready" : activityText(status, status.activity.left_s ?? null));
   show(progress, moving);

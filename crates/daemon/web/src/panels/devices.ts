@@ -98,7 +98,8 @@ function problems(status: Status): void {
     h("h2", {}, `${device} ${STATES[state] ?? state}`),
     h("p", {}, sentence(problem.error)),
     problem.help ? h("p", { class: "todo" }, `What to do: ${problem.help}`) : null,
-    device === "Drive" && state === "fault" ? h("div", { class: "row" }, h("button", { type: "button", id: "clear", click: () => void command("Clear", () => api.clear()) }, "Clear the fault")) : null,
+    device === "Drive" && state === "fault" ? h("div", { class: "row" }, h("button", { type: "button", id: "clear", click: () => void command("Clear", () => api.clear(), id("clear-error")) }, "Clear the fault")) : null,
+    h("p", { class: "wrong", id: device === "Drive" ? "clear-error" : "", hidden: true }),
   )));
   if (found.length > 0) alarm(found.map(({ device, state, problem }) => `${device} ${STATES[state] ?? state}: ${sentence(problem.error)} ${problem.help ?? ""}`).join(" "));
 }

@@ -1,9 +1,9 @@
 // The list of scans: pictures, opening, downloads, deleting.
 
-import { type Scan, api, cloudUrl, logUrl, thumbnailUrl } from "../api.ts";
+import { type Scan, api, cloudUrl, fileUrl, logUrl, thumbnailUrl } from "../api.ts";
 import { h, id, show, text } from "../dom.ts";
 import { bytes, compact, moment } from "../format.ts";
-import { command } from "./control.ts";
+import { command, refused } from "./control.ts";
 import { announce } from "./messages.ts";
 
 /** Cloud formats: extension and displayed name. */
@@ -81,7 +81,7 @@ function draw(): void {
     }
     if (entry.drawn !== drawn) {
       const focused = entry.card.contains(document.activeElement) ? (document.activeElement as HTMLElement).dataset["role"] : undefined;
-      entry.card.replaceChildren(...content(scan));
+      entry.card.replaceChildren(...content_or_id(scan));
       entry.drawn = drawn;
       if (focused !== undefined) entry.card.querySelector<HTMLElement>(`[data-role="${focused}"]`)?.focus();
     }
@@ -91,6 +91,16 @@ function draw(): void {
   show(id("no-scans"), now.length === 0);
   const sum = now.reduce((total, scan) => total + (scan.bytes ?? 0), 0);
   text(id("scans-sum"), now.length === 0 ? "" : `${now.length === 1 ? "1 scan" : `${now.length} scans`} \u00b7 ${bytes(sum)}`);
+}
+
+/** One record that cannot be displayed does not hide the others. */
+function content_or_id(scan: Scan): Node[] {
+  try {
+    return content(scan);
+  } catch (error) {
+    console.error(error);
+    return [h("h3", {}, String(scan.id)), h("p", { class: "why" }, "This record cannot be displayed.")];
+  }
 }
 
 function content(scan: Scan): Node[] {
@@ -121,6 +131,7 @@ function content(scan: Scan): Node[] {
     ),
     ...(scan.summary ? [h("p", { class: "why", title: scan.summary }, scan.summary)] : []),
     row,
+    h("p", { class: "wrong", hidden: true }),
   ];
 }
 
@@ -133,14 +144,30 @@ function downloads(scan: Scan, title: string, has_cloud: boolean): HTMLElement {
     const format = choose.value;
     choose.value = "";
     if (format === "") return;
-    const link = h("a", {
-      href: format === "log" ? logUrl(scan.id) : cloudUrl(scan.id, format),
-      download: `${scan.id}.${format === "log" ? "pcapng" : format}`,
-    });
-    link.click();
-    announce(`Downloading ${title} as ${format}`);
+    void download(scan, title, format);
   });
   return choose;
+}
+
+/** Downloads a file; a refusal is shown at its scan. */
+async function download(scan: Scan, title: string, format: string): Promise<void> {
+  const at = error_of(scan);
+  show(at, false);
+  announce(`Downloading ${title} as ${format}`);
+  try {
+    const [url, exists] = format === "log" ? [logUrl(scan.id), true] : [cloudUrl(scan.id, format), format === "ply"];
+    const href = await fileUrl(url, exists);
+    h("a", { href, download: `${scan.id}.${format === "log" ? "pcapng" : format}` }).click();
+    // The browser has begun to read it by then.
+    if (!exists) setTimeout(() => URL.revokeObjectURL(href), 60_000);
+  } catch (error) {
+    refused(`Download as ${format}`, error, at);
+  }
+}
+
+/** Where errors of a scan are shown. */
+function error_of(scan: Scan): HTMLElement {
+  return cards.get(scan.id)?.card.querySelector<HTMLElement>(".wrong") ?? id("scans-error");
 }
 
 async function confirm_delete(scan: Scan): Promise<void> {
@@ -163,5 +190,5 @@ async function confirm_delete(scan: Scan): Promise<void> {
     remove(scan.id);
     announce("Deleted");
     id("scans-title").scrollIntoView({ block: "nearest" });
-  });
+  }, error_of(scan));
 }

@@ -1,7 +1,7 @@
 // Sign-in with the daemon's token. It is sent once; the browser stores the cookie, the page stores nothing.
 
 import { RequestError, sendRequest } from "../api.ts";
-import { id, text } from "../dom.ts";
+import { id, show, text } from "../dom.ts";
 
 const dialog = id<HTMLDialogElement>("signin");
 const field = id<HTMLInputElement>("token");
@@ -14,6 +14,17 @@ export function wire(signed: () => void): void {
     event.preventDefault();
     void send(signed);
   });
+  id("sign-out").addEventListener("click", () => void sendRequest("POST", "/logout").then(() => location.reload()));
+}
+
+/** Offers to sign out where a token is needed. */
+export async function offer(): Promise<void> {
+  try {
+    const { signed_in } = await sendRequest<{ signed_in: boolean }>("GET", "/login");
+    show(id("sign-out"), signed_in);
+  } catch {
+    // The next connection asks again.
+  }
 }
 
 export function open(): void {

@@ -119,7 +119,7 @@ fn command(arguments: &cli::Analyze) -> String {
     );
     let cli::Analyze {
         level,
-        tolerance,
+        k_error,
         bins,
         origin,
         ..
@@ -127,8 +127,6 @@ fn command(arguments: &cli::Analyze) -> String {
     if let Some([x, y, z]) = origin {
         words.push(format!("--origin={x},{y},{z}"));
     }
-    words.push(format!(
-        "--level {level} --bins {bins} --tolerance {tolerance}"
-    ));
+    words.push(format!("--level {level} --bins {bins} --k-error {k_error}"));
     words.join(" ")
 }

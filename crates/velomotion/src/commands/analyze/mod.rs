@@ -158,7 +158,7 @@ impl Measure {
             level,
             locator: Locator::new(&icosahedron),
             edges,
-            tolerance: arguments.tolerance,
+            tolerance: arguments.k_error,
             places: icosahedron.bins().iter().map(|bin| bin.centre).collect(),
         })
     }
@@ -260,7 +260,7 @@ impl Measure {
         let estimate = k::estimate(directions, rotation.as_ref(), &self.edges, &wish, threads);
         let estimate = estimate.map_err(|error| {
             Failure::new(Kind::BadInput, format!("{}: {error}", input.name))
-                .help("--tolerance 0 counts every pair, whatever the points")
+                .help("--k-error 0 counts every pair, whatever the points")
         })?;
         let curve = KCurve::new(&estimate, SPHERE_M);
         let area = 4.0 * PI * RADIUS_M * RADIUS_M;

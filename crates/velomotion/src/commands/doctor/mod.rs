@@ -52,7 +52,7 @@ type Sysfs<'a> = &'a dyn Fn(&Path) -> Option<String>;
 /// An unreadable configuration. A problem found is a failure with a result.
 pub fn run(arguments: &Doctor, common: &Common) -> Result<CommandOutput, Failure> {
     let config = config::load(common.config.as_deref())?;
-    let chosen = profile::choose(&config, common.device.as_deref())?;
+    let chosen = profile::choose(&config, arguments.device.name.as_deref())?;
     if arguments.bring_up {
         return bring_up::run(arguments, common, &config, chosen);
     }

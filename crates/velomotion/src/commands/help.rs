@@ -1,0 +1,310 @@
+//! `velomotion help`: commands with examples, and the pages of the book, which are in the program
+//! because a laptop in the field may have no network.
+
+use std::ffi::OsString;
+
+use clap::FromArgMatches;
+use clap::error::ErrorKind;
+use engine::failure::{Failure, Kind};
+
+use super::CommandOutput;
+use crate::cli::{self, Cli};
+
+/// Two examples of each command, and the page of the book about it.
+const EXAMPLES: [(&str, [&str; 2], &str); 12] = [
+    (
+        "velomotion",
+        ["capture --speed 56.25", "replay scan.pcapng -o scan.laz"],
+        "quick-start",
+    ),
+    (
+        "capture",
+        [
+            "capture --speed 56.25",
+            "capture --speed 20 --both-ways -o hall.e57 --device sim",
+        ],
+        "capture",
+    ),
+    (
+        "replay",
+        [
+            "replay hall.pcapng -o hall.laz --uncertainty",
+            "replay street.pcap --tilt none --frames 0 -o street.mcap",
+        ],
+        "replay",
+    ),
+    (
+        "simulate",
+        [
+            "simulate hall",
+            "simulate scene.toml -o scene.pcapng --truth truth.ply --seed 7",
+        ],
+        "scenes",
+    ),
+    (
+        "info",
+        ["info hall.pcapng", "info street.pcap --json"],
+        "replay",
+    ),
+    (
+        "analyze",
+        [
+            "analyze vlp16 velomotion16:50",
+            "analyze hall.ply --report hall-report",
+        ],
+        "patterns",
+    ),
+    (
+        "tradeoff",
+        [
+            "tradeoff --quick",
+            "tradeoff --only k-function --report tradeoff-report",
+        ],
+        "tradeoff",
+    ),
+    ("tilt", ["tilt status", "tilt goto -20 --speed 5"], "tilt"),
+    (
+        "daemon",
+        ["daemon --device sim", "daemon --listen 127.0.0.1:8016"],
+        "daemon",
+    ),
+    (
+        "doctor",
+        ["doctor", "doctor --bring-up --device bench"],
+        "bring-up",
+    ),
+    (
+        "firmware-sim",
+        [
+            "firmware-sim --usb --link epos2",
+            "firmware-sim --rs232 --gravity 200 --brake 20,30",
+        ],
+        "simulator",
+    ),
+    ("help", ["help capture", "help formats"], "quick-start"),
+];
+
+/// Builds the table of pages from their names.
+macro_rules! pages {
+    ($($name:literal),* $(,)?) => {
+        [$(($name, include_str!(concat!("../../../../docs/src/", $name, ".md")))),*]
+    };
+}
+
+/// The pages of the book for users, in its order.
+const PAGES: [(&str, &str); 21] = pages!(
+    "quick-start",
+    "install",
+    "capture",
+    "replay",
+    "tilt",
+    "daemon",
+    "page",
+    "ros2",
+    "wiring",
+    "bring-up",
+    "glossary",
+    "formats",
+    "links",
+    "simulator",
+    "scenes",
+    "effects",
+    "patterns",
+    "accuracy",
+    "k",
+    "tradeoff",
+    "faults",
+);
+
+/// The command line with examples at the end of every help text.
+#[must_use]
+pub fn command() -> clap::Command {
+    let mut command = <Cli as clap::CommandFactory>::command();
+    for (name, examples, page) in EXAMPLES {
+        let end = format!(
+            "Examples:\n  velomotion {}\n  velomotion {}\n\nBook: velomotion help {page}",
+            examples[0], examples[1]
+        );
+        command = match command.get_name() == name {
+            true => command.after_help(end),
+            false => command.mut_subcommand(name, |own| {
+                own.after_help(&end)
+                    .mut_subcommands(|verb| verb.after_help(&end))
+            }),
+        };
+    }
+    command
+}
+
+/// Parses the command line of this process; prints help or version and exits if it requests that.
+///
+/// # Errors
+/// [`Kind::Usage`].
+pub fn parse() -> Result<Cli, Failure> {
+    parse_from(std::env::args_os())
+}
+
+fn parse_from(words: impl IntoIterator<Item = OsString>) -> Result<Cli, Failure> {
+    let parsed = command().try_get_matches_from(words);
+    let parsed = parsed.and_then(|matches| Cli::from_arg_matches(&matches));
+    parsed.map_err(|error| match error.kind() {
+        ErrorKind::DisplayHelp
+        | ErrorKind::DisplayVersion
+        | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => error.exit(),
+        _ => usage(&error),
+    })
+}
+
+/// The failure of an invalid command line. Its help is the parser's tip, or the usage.
+fn usage(error: &clap::Error) -> Failure {
+    let text = error.render().to_string();
+    let flat = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let mut paragraphs = text.split("\n\n").map(flat);
+    let message = paragraphs.next().unwrap_or_default();
+    let message = message.strip_prefix("error: ").unwrap_or(&message);
+    let help = paragraphs
+        .filter(|paragraph| !paragraph.starts_with("For more information"))
+        .map(|paragraph| match paragraph.strip_prefix("tip: ") {
+            Some(tip) => tip.to_owned(),
+            None => paragraph,
+        })
+        .chain(["--help lists all options".to_owned()]);
+    Failure::new(Kind::Usage, message).help(help.collect::<Vec<_>>().join("\n"))
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// [`Kind::Usage`] for neither a command nor a page.
+pub fn run(arguments: &cli::Help) -> Result<CommandOutput, Failure> {
+    let topic = arguments.words.join(" ");
+    let text = text(&arguments.words).ok_or_else(|| {
+        let message = format!("{topic} is neither a command nor a page of the book");
+        Failure::new(Kind::Usage, message).help("velomotion help lists both")
+    })?;
+    let object = serde_json::json!({ "topic": topic, "text": text });
+    Ok(CommandOutput::result(&object, text))
+}
+
+/// Explains a command, with the page of its name if there is one, or a page; without words lists
+/// both.
+fn text(words: &[String]) -> Option<String> {
+    let mut command = command();
+    command.build();
+    let [first, ..] = words else {
+        let pages = PAGES.map(|(name, text)| {
+            let title = text.lines().find_map(|line| line.strip_prefix("# "));
+            format!("  {name:12} {}", title.unwrap_or_default())
+        });
+        let help = command.render_long_help();
+        return Some(format!(
+            "{help}\n\nPages of the book:\n{}",
+            pages.join("\n")
+        ));
+    };
+    let page = match words {
+        [name] => PAGES.iter().find(|(known, _)| known == name),
+        _ => None,
+    };
+    let page = page.map(|(_, text)| text.trim_end().to_owned());
+    if command.find_subcommand(first).is_none() {
+        return page;
+    }
+    let mut found = &mut command;
+    for word in words {
+        found = found.find_subcommand_mut(word)?;
+    }
+    let help = found.render_long_help().to_string();
+    let both = [Some(help.trim_end().to_owned()), page].into_iter();
+    Some(both.flatten().collect::<Vec<_>>().join("\n\n"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_help_ends_with_two_valid_examples_and_a_page_of_the_book() {
+        let root = command();
+        let visible = root.get_subcommands().filter(|own| !own.is_hide_set());
+        let visible: Vec<&clap::Command> = visible.collect();
+        let verbs = visible.iter().flat_map(|own| own.get_subcommands());
+        for own in [&root]
+            .into_iter()
+            .chain(visible.iter().copied())
+            .chain(verbs)
+        {
+            let name = own.get_name();
+            let help = own.clone().render_long_help().to_string();
+            let (_, end) = help.split_once("Examples:\n").expect(name);
+            let (examples, page) = end.split_once("\n\nBook: velomotion help ").expect(name);
+            assert_eq!(examples.lines().count(), 2, "{name}: {examples}");
+            for example in examples.lines() {
+                let words = example.split_whitespace().map(OsString::from);
+                assert_eq!(parse_from(words).err(), None, "{example}");
+            }
+            let known = PAGES.iter().any(|(known, _)| *known == page.trim());
+            assert!(known, "{name}: {page}");
+        }
+    }
+
+    #[test]
+    fn commands_verbs_and_pages_are_explained() {
+        let of = |words: &[&str]| {
+            text(
+                &words
+                    .iter()
+                    .map(|&word| word.to_owned())
+                    .collect::<Vec<_>>(),
+            )
+        };
+        assert!(of(&["capture"]).unwrap().contains("--both-ways"));
+        assert!(of(&["tilt", "goto"]).unwrap().contains("Target angle"));
+        assert!(of(&["formats"]).unwrap().starts_with("# Formats"));
+        let all = of(&[]).unwrap();
+        assert!(
+            all.contains("firmware-sim") && all.contains("  formats      Formats"),
+            "{all}"
+        );
+        assert_eq!(of(&["nothing"]), None);
+        assert_eq!(of(&["tilt", "nothing"]), None);
+    }
+
+    #[test]
+    fn invalid_values_are_named_in_one_short_line() {
+        for (line, message) in [
+            (
+                "simulate hall --threads 0",
+                "invalid value '0' for '--threads <N>': expected a whole number from 1 to 65535",
+            ),
+            (
+                "simulate hall --seed -1",
+                "invalid value '-1' for '--seed <N>': expected a whole number from 0 to 18446744073709551615",
+            ),
+            (
+                "analyze vlp16 --level -1",
+                "invalid value '-1' for '--level <N>': -1 is not in 0..=8",
+            ),
+            (
+                "capture --speed 1e300",
+                "invalid value '1e300' for '--speed <DEG_PER_S>': expected a number from -1e6 to 1e6",
+            ),
+            (
+                "tilt goto 1e300",
+                "invalid value '1e300' for '<DEG>': expected a number from -1e6 to 1e6",
+            ),
+            (
+                "capture",
+                "the following required arguments were not provided: --speed <DEG_PER_S>",
+            ),
+            (
+                "info log.pcapng --device sim",
+                "unexpected argument '--device' found",
+            ),
+        ] {
+            let words = ["velomotion"].into_iter().chain(line.split(' '));
+            let failure = parse_from(words.map(OsString::from)).unwrap_err();
+            assert_eq!(failure.message, message, "{line}");
+        }
+    }
+}
