@@ -49,7 +49,6 @@ fn software_drive(interface: &[String]) {
         dither: 0,
     };
     let common = Common {
-        device: None,
         config: None,
         json: false,
         quiet: true,

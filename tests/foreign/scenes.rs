@@ -41,7 +41,6 @@ fn velodyne_decoder_places_simulated_points_on_the_scenes_surfaces() {
             "scene = \"hall\"\n[sensor]\nmodel = \"{model}\"\n[motion]\nkind = \"fixed\"\nduration_s = 0.11\n"
         );
         let common = Common {
-            device: None,
             config: None,
             json: false,
             quiet: true,

@@ -25,10 +25,10 @@ pub struct Process {
 pub fn be(path: &str) -> i32 {
     let cli = Cli {
         command: cli::Command::Daemon(cli::DaemonArguments {
+            device: cli::DeviceArgument { name: None },
             listen: Some(([127, 0, 0, 1], 0).into()),
         }),
         common: Common {
-            device: None,
             config: Some(path.into()),
             json: true,
             quiet: false,

@@ -60,7 +60,6 @@ impl Simulated {
         };
         let folder = tempfile::tempdir().unwrap();
         let common = Common {
-            device: None,
             config: None,
             json: false,
             quiet: true,
