@@ -323,7 +323,7 @@ impl Scans {
         let place = self.place(&record.id);
         let size = |name: &str| {
             let there = fs::symlink_metadata(place.join(name)).ok()?;
-            there.is_file().then(|| there.len())
+            there.is_file().then_some(there.len())
         };
         ScanView {
             head: record.head.clone(),
