@@ -276,9 +276,20 @@ impl Scans {
     /// Every scan, the newest first.
     #[must_use]
     pub fn list(&self) -> Vec<ScanView> {
+        self.part(None, usize::MAX)
+    }
+
+    /// At most `limit` scans older than `before`, the newest first.
+    #[must_use]
+    pub fn part(&self, before: Option<&str>, limit: usize) -> Vec<ScanView> {
         let mut records: Vec<ScanRecord> = self.scans().values().cloned().collect();
         records.sort_by(|a, b| order(b, a));
-        records.iter().map(|record| self.view_of(record)).collect()
+        let newer = before.and_then(|id| records.iter().position(|record| record.id == id));
+        let older = records.iter().skip(newer.map_or(0, |at| at + 1));
+        older
+            .take(limit)
+            .map(|record| self.view_of(record))
+            .collect()
     }
 
     /// Scans being recorded or made.

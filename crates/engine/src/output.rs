@@ -151,27 +151,20 @@ pub fn check_free(path: &Path, force: bool) -> Result<(), Failure> {
 /// # Errors
 /// [`Kind::Usage`].
 pub fn log_is_file(log: &Path, with: &str, extensions: &[&str]) -> Result<(), Failure> {
-    if log == Path::new("-") {
-        return Err(Failure::new(
-            Kind::Usage,
-            format!("a log must be a file: expected a file name with {with}, got -"),
-        )
-        .help(format!("name a file with {with}")));
-    }
+    let known = format!(".{}", extensions.join(" or ."));
     let extension = log.extension().unwrap_or_default();
-    if !extensions
-        .iter()
-        .any(|known| extension.eq_ignore_ascii_case(known))
-    {
-        let known = extensions.join(" or .");
-        let log = log.display();
-        return Err(Failure::new(
-            Kind::Usage,
-            format!("the log {log}: expected the extension .{known}"),
-        )
-        .help(format!("name a file with that extension with {with}")));
-    }
-    Ok(())
+    let wrong = match log == Path::new("-") {
+        true => format!("a log must be a file: expected a file name with {with}, got -"),
+        false
+            if extensions
+                .iter()
+                .any(|own| extension.eq_ignore_ascii_case(own)) =>
+        {
+            return Ok(());
+        }
+        false => format!("the log {}: expected the extension {known}", log.display()),
+    };
+    Err(Failure::new(Kind::Usage, wrong).help(format!("name a file {known} with {with}")))
 }
 
 /// Refuses a cloud that would overwrite its own recording.

@@ -253,3 +253,71 @@ fn prometheus_metrics_and_the_page_are_served() {
         );
     }
 }
+
+#[test]
+fn monitors_read_health_and_metrics_in_the_format_they_accept() {
+    let rig = Rig::new();
+    rig.ready();
+    let health = rig.get("/health");
+    let expected = json!({"live": true, "ready": true, "drive": "connected", "lidar": "connected"});
+    assert_eq!((health.status, health.json()), (200, expected));
+    let open = rig.get("/metrics").text();
+    for line in [
+        "velomotion_build_info{version=",
+        "process_cpu_seconds_total ",
+        "process_resident_memory_bytes ",
+        "process_open_fds ",
+        "# EOF",
+    ] {
+        assert!(open.contains(line), "no {line} in {open}");
+    }
+    let plain = request(rig.address, "GET", "/metrics", "accept: text/plain\r\n", "");
+    assert!(plain.head.contains("version=0.0.4"), "{}", plain.head);
+    let text = plain.text();
+    assert!(
+        text.contains("# TYPE velomotion_requests_total counter\n"),
+        "{text}"
+    );
+    assert!(
+        !text.contains("# EOF") && !text.contains(" info\n"),
+        "{text}"
+    );
+    let absent = Rig::with("", |options| {
+        options.config = toml::from_str(&format!(
+            "[device]\ndefault = 'bench'\n[device.bench]\nkind = 'usb'\nport = '/dev/nothing-here'\n[daemon]\nscans = '{}'",
+            options.config.daemon.scans.as_ref().unwrap().display()
+        ))
+        .unwrap();
+    });
+    let health = absent.get("/health");
+    assert_eq!(
+        (health.status, &health.json()["ready"]),
+        (503, &json!(false))
+    );
+}
+
+#[test]
+fn scans_are_listed_in_parts() {
+    let rig = Rig::with("", |options| {
+        let scans = options.config.daemon.scans.clone().unwrap();
+        for name in ["a", "b", "c"] {
+            std::fs::create_dir_all(scans.join(name)).unwrap();
+            std::fs::write(scans.join(name).join("scan.json"), "no record").unwrap();
+        }
+    });
+    let ids = |query: &str| -> Vec<String> {
+        let list = rig.get(&format!("/api/v1/scans{query}")).json();
+        let scans = list["scans"].as_array().unwrap().iter();
+        scans
+            .map(|scan| scan["id"].as_str().unwrap().to_owned())
+            .collect()
+    };
+    let all = ids("");
+    assert_eq!(all.len(), 3);
+    assert_eq!(ids("?limit=2"), all[..2]);
+    assert_eq!(ids(&format!("?before={}", all[0])), all[1..]);
+    assert_eq!(ids(&format!("?limit=1&before={}", all[1])), all[2..]);
+    rig.get("/api/v1/scans?before=nothing")
+        .refused(404, "unknown");
+    rig.get("/api/v1/scans?limit=-1").refused(400, "negative");
+}

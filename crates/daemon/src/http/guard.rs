@@ -77,7 +77,8 @@ impl Sessions {
                 Reason::Limit,
                 format!("{tries} wrong tokens in the last minute"),
                 "try again in a minute",
-            ));
+            )
+            .retry_after(60));
         }
         if token.is(given) {
             return Ok(());

@@ -5,12 +5,13 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use axum::extract::State;
-use axum::http::header;
+use axum::http::{HeaderMap, header};
 use axum::response::{IntoResponse, Response};
 use prometheus_client::collector::Collector;
 use prometheus_client::encoding::{DescriptorEncoder, EncodeMetric, text};
 use prometheus_client::metrics::counter::ConstCounter;
 use prometheus_client::metrics::gauge::ConstGauge;
+use prometheus_client::metrics::info::Info;
 use prometheus_client::registry::Registry;
 
 use super::Api;
@@ -18,15 +19,109 @@ use super::refusal::Refusal;
 use crate::state::DaemonState;
 use engine::service::status::{AxisTask, DeviceHealth};
 
-/// `GET /metrics`.
-pub async fn metrics(State(api): State<Arc<Api>>) -> Result<Response, Refusal> {
-    let mut registry = Registry::with_prefix("velomotion");
-    registry.register_collector(Box::new(Figures(Arc::clone(&api.state))));
+/// Unit of CPU times in proc(5), the same on all Linux architectures of today.
+const TICKS_PER_S: f64 = 100.0;
+
+/// `GET /metrics`: OpenMetrics, or the older text format for clients that accept only that.
+pub async fn metrics(State(api): State<Arc<Api>>, headers: HeaderMap) -> Result<Response, Refusal> {
+    let mut registry = Registry::default();
+    registry.register_collector(Box::new(ProcessFigures));
+    let own = registry.sub_registry_with_prefix("velomotion");
+    own.register_collector(Box::new(Figures(Arc::clone(&api.state))));
     let mut metrics = String::new();
     text::encode(&mut metrics, &registry)
         .map_err(|error| Refusal::defect(error.to_string(), "this is a defect of the program"))?;
-    let content = "application/openmetrics-text; version=1.0.0; charset=utf-8";
+    let accept = headers
+        .get(header::ACCEPT)
+        .and_then(|accept| accept.to_str().ok());
+    let plain_only = |accept: &str| {
+        accept.contains("text/plain") && !accept.contains("application/openmetrics-text")
+    };
+    let content = match accept.is_some_and(plain_only) {
+        true => {
+            metrics = as_plain_text(&metrics);
+            "text/plain; version=0.0.4; charset=utf-8"
+        }
+        false => "application/openmetrics-text; version=1.0.0; charset=utf-8",
+    };
     Ok(([(header::CONTENT_TYPE, content)], metrics).into_response())
+}
+
+/// The text format 0.0.4, in which counters and information have their suffix in the metadata too.
+fn as_plain_text(metrics: &str) -> String {
+    let mut plain = String::new();
+    let mut suffixes = std::collections::HashMap::new();
+    for line in metrics.lines() {
+        if let Some((name, kind)) = line
+            .strip_prefix("# TYPE ")
+            .and_then(|rest| rest.split_once(' '))
+        {
+            match kind {
+                "counter" => suffixes.insert(name, ("_total", kind)),
+                "info" => suffixes.insert(name, ("_info", "gauge")),
+                _ => None,
+            };
+        }
+    }
+    for line in metrics.lines().filter(|line| *line != "# EOF") {
+        let words: Vec<&str> = line.splitn(4, ' ').collect();
+        match words[..] {
+            ["#", what, name, rest] => {
+                let (suffix, kind) = suffixes.get(name).copied().unwrap_or(("", rest));
+                let rest = if what == "TYPE" { kind } else { rest };
+                plain.push_str(&format!("# {what} {name}{suffix} {rest}\n"));
+            }
+            _ => {
+                plain.push_str(line);
+                plain.push('\n');
+            }
+        }
+    }
+    plain
+}
+
+/// Figures of the process under their customary names.
+#[derive(Debug)]
+struct ProcessFigures;
+
+impl Collector for ProcessFigures {
+    fn encode(&self, mut encoder: DescriptorEncoder<'_>) -> fmt::Result {
+        // Fields of proc(5), counted after the name of the program, which may contain spaces.
+        let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+        let fields: Vec<&str> = stat
+            .rsplit(')')
+            .next()
+            .unwrap_or_default()
+            .split_whitespace()
+            .collect();
+        let ticks = |field: usize| fields.get(field).and_then(|text| text.parse::<f64>().ok());
+        if let (Some(user), Some(system)) = (ticks(11), ticks(12)) {
+            let cpu_s = ConstCounter::new((user + system) / TICKS_PER_S);
+            put(&mut encoder, "process_cpu_seconds", "CPU time", &cpu_s)?;
+        }
+        let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+        let resident = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
+        let kib = resident.and_then(|rest| rest.split_whitespace().next()?.parse::<f64>().ok());
+        if let Some(kib) = kib {
+            let bytes = ConstGauge::new(1024.0 * kib);
+            put(
+                &mut encoder,
+                "process_resident_memory_bytes",
+                "Resident memory",
+                &bytes,
+            )?;
+        }
+        if let Ok(open) = std::fs::read_dir("/proc/self/fd") {
+            let open = ConstGauge::new(open.count() as f64);
+            put(
+                &mut encoder,
+                "process_open_fds",
+                "Open file descriptors",
+                &open,
+            )?;
+        }
+        Ok(())
+    }
 }
 
 struct Figures(Arc<DaemonState>);
@@ -91,6 +186,15 @@ impl Collector for Figures {
                 status.clients.events as f64,
             ),
         ];
+        let build = Info::new([("version", env!("CARGO_PKG_VERSION"))]);
+        put(&mut encoder, "build", "Build of the daemon", &build)?;
+        let started = ConstGauge::new(status.started_s);
+        put(
+            &mut encoder,
+            "start_time_seconds",
+            "Start of the daemon, Unix time",
+            &started,
+        )?;
         for (name, help, value) in gauges {
             put(&mut encoder, name, help, &ConstGauge::new(value))?;
         }

@@ -24,6 +24,7 @@ use axum::response::{IntoResponse, Response};
 use axum::routing::{MethodRouter, delete, get, post};
 use engine::failure::{Failure, Kind};
 use engine::service::DeviceService;
+use engine::service::status::DeviceHealth;
 use tokio::sync::{Semaphore, watch};
 
 use crate::limits::{CONNECTIONS, DOWNLOADS, LOCAL_CONNECTIONS, MAKING, Waits};
@@ -78,6 +79,7 @@ fn daemon_routes() -> Routes<Arc<Api>> {
         ("/api/v1/scans/{id}/log", get(download::log)),
         ("/api/v1/scans/{id}/thumbnail", get(download::thumbnail)),
         ("/api/v1/events", get(events::events)),
+        ("/health", get(health)),
         ("/metrics", get(metrics::metrics)),
     ]
 }
@@ -168,6 +170,19 @@ async fn count(State(api): State<Arc<Api>>, request: Request, next: Next) -> Res
 
 async fn status(State(service): State<Arc<DeviceService>>) -> Response {
     json(StatusCode::OK, &service.status())
+}
+
+/// `GET /health`, for monitors: an answer means live, 200 ready for a capture, 503 not ready.
+async fn health(State(api): State<Arc<Api>>) -> Response {
+    let status = api.state.service.status();
+    let (drive, lidar) = (status.drive.state, status.lidar.state);
+    let ready = [drive, lidar] == [DeviceHealth::Connected; 2];
+    let code = match ready {
+        true => StatusCode::OK,
+        false => StatusCode::SERVICE_UNAVAILABLE,
+    };
+    let body = serde_json::json!({ "live": true, "ready": ready, "drive": drive, "lidar": lidar });
+    json(code, &body)
 }
 
 /// Runs what may wait for a disk on a thread that answers no requests: a stop is answered whatever

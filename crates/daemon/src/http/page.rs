@@ -59,7 +59,10 @@ const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; i
 /// Whether a path needs no token: the sign-in page and its style.
 #[must_use]
 pub fn is_open(path: &str) -> bool {
-    matches!(path, "/login" | "/logout" | "/page.css" | "/icon.svg")
+    matches!(
+        path,
+        "/login" | "/logout" | "/health" | "/page.css" | "/icon.svg"
+    )
 }
 
 /// `GET /api/v1/openapi.json`.

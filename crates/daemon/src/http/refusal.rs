@@ -12,6 +12,9 @@ use serde::Serialize;
 
 use crate::limits::BODY_BYTES;
 
+/// Seconds until another download or client may have ended.
+const RETRY_S: u32 = 5;
+
 /// A refused request.
 #[derive(Clone, Debug, Serialize)]
 pub struct Refusal {
@@ -20,6 +23,9 @@ pub struct Refusal {
     error: String,
     help: Option<String>,
     kind: Reason,
+    /// After how many seconds the client may try again.
+    #[serde(skip)]
+    retry_after_s: Option<u32>,
 }
 
 /// Reason of a refusal.
@@ -59,6 +65,16 @@ impl Refusal {
             error: error.into(),
             help: Some(help.into()),
             kind: kind.into(),
+            retry_after_s: None,
+        }
+    }
+
+    /// Adds when to try again.
+    #[must_use]
+    pub fn retry_after(self, s: u32) -> Self {
+        Self {
+            retry_after_s: Some(s),
+            ..self
         }
     }
 
@@ -124,6 +140,7 @@ impl Refusal {
             format!("too many {what} at once"),
             "try again when others have ended",
         )
+        .retry_after(RETRY_S)
     }
 }
 
@@ -156,7 +173,11 @@ impl fmt::Display for Refusal {
 
 impl IntoResponse for Refusal {
     fn into_response(self) -> Response {
-        super::json(self.status, &self)
+        let mut response = super::json(self.status, &self);
+        if let Some(s) = self.retry_after_s {
+            response.headers_mut().insert(header::RETRY_AFTER, s.into());
+        }
+        response
     }
 }
 
@@ -171,6 +192,7 @@ impl From<Failure> for Refusal {
             error: failure.message,
             help: failure.help,
             kind: failure.kind.into(),
+            retry_after_s: None,
         }
     }
 }

@@ -2,24 +2,46 @@
 
 use std::sync::Arc;
 
-use axum::extract::{Path, State};
+use axum::extract::rejection::QueryRejection;
+use axum::extract::{Path, Query, State};
 use axum::http::StatusCode;
 use axum::response::Response;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::Api;
 use super::refusal::Refusal;
 use engine::failure::{Failure, Kind};
 use engine::service::scan_record::ScanView;
 
+/// Query of `GET /scans`.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ScansQuery {
+    /// Most scans of the answer; all by default.
+    limit: Option<usize>,
+    /// Id of a scan: only older ones.
+    before: Option<String>,
+}
+
 /// `GET /scans`.
-pub async fn list(State(api): State<Arc<Api>>) -> Result<Response, Refusal> {
+pub async fn list(
+    State(api): State<Arc<Api>>,
+    query: Result<Query<ScansQuery>, QueryRejection>,
+) -> Result<Response, Refusal> {
+    let Query(ScansQuery { limit, before }) = query?;
     #[derive(Serialize)]
     struct List {
         scans: Vec<ScanView>,
     }
     let state = Arc::clone(&api.state);
-    let scans = super::with_disk(move || state.scans.list()).await?;
+    let limit = limit.unwrap_or(usize::MAX);
+    if let Some(id) = before
+        .as_ref()
+        .filter(|id| state.scans.record(id).is_none())
+    {
+        return Err(Refusal::no_scan(id));
+    }
+    let scans = super::with_disk(move || state.scans.part(before.as_deref(), limit)).await?;
     Ok(super::json(StatusCode::OK, &List { scans }))
 }
 

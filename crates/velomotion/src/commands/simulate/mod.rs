@@ -108,8 +108,8 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, 
         .output
         .clone()
         .unwrap_or_else(|| PathBuf::from(stem(&name)).with_extension("pcapng"));
-    output::log_is_file(&log, "-o", &["pcapng", "pcap"])?;
     output::refuse_overwrite(&arguments.scene, &log)?;
+    output::log_is_file(&log, "-o", &["pcapng", "pcap"])?;
     if let Some(truth) = &arguments.truth {
         output::refuse_overwrite(&arguments.scene, truth)?;
         output::two_files(&log, truth)?;
