@@ -10,8 +10,8 @@
 //! All host stamps after a step of the host's clock, including the drive's (`monotonic`), are
 //! converted to the clock before it. After a step of the lidar's clock, that clock has another
 //! piece. The spacing of packets shows steps of the lidar's clock down to 0.1 ms if the delays
-//! confirm them. Steps of the host's clock below 10 ms, and steps undone within six seconds, are not
-//! searched for; the clock's bound contains them. `lidar` unwraps hours.
+//! confirm them. Steps of the host's clock below 10 ms, and steps undone within six seconds, are
+//! not searched for; the clock's bound contains them. `lidar` unwraps hours.
 
 mod jumps;
 mod monotonic;

@@ -74,8 +74,8 @@ fn the_bound_contains_slow_polls_and_gaps() {
             .unwrap()
             .bound_deg(&all)
     };
-    // At 50 deg/s, 1 ms of uncertainty and 1 ms of age are 0.1 deg; the change from rest to 50 deg/s within a
-    // millisecond, or within 11 ms, is 50 x 0.011 / 4.
+    // At 50 deg/s, 1 ms of uncertainty and 1 ms of age are 0.1 deg; the change from rest to 50
+    // deg/s within a millisecond, or within 11 ms, is 50 x 0.011 / 4.
     assert!((moving(&[], 1_000) - (0.1 + 0.0125)).abs() < 1e-3);
     let hole: Vec<i64> = (45..55).collect();
     assert!((moving(&hole, 0) - 50.0 * 0.011 / 4.0).abs() < 1e-3);
