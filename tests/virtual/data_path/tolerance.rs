@@ -28,7 +28,7 @@ const RANGES_M: f64 = 2e-3;
 fn the_cheapest_method_within_the_tolerance_is_chosen() {
     let captured = Captured::new(Setting::over(Attachment::Can));
     let (mut methods, at_m) = (Vec::new(), 10.0);
-    for tolerance in ["200mm@10m", "20mm@10m", "3mm@10m"] {
+    for tolerance in ["200mm@10m", "20mm@10m", "12mm@10m"] {
         let alignment = solve(&captured, tolerance).unwrap();
         let choice = alignment.choice.clone().unwrap();
         let (method, bound) = *choice.bounds.last().unwrap();
@@ -68,8 +68,8 @@ fn the_cheapest_method_within_the_tolerance_is_chosen() {
             );
         }
     }
-    // Half a millisecond at 56 deg/s is 5 mm at 10 m.
-    assert_eq!(methods[..2], [Method::Nearest; 2]);
+    // Half a millisecond at 56 deg/s is 5 mm at 10 m, and a position may be a millisecond old.
+    assert_eq!(methods[..2], [Method::Nearest, Method::Linear]);
     assert_ne!(methods[2], Method::Nearest);
 }
 

@@ -68,8 +68,8 @@ fn widest_step(samples: &[AngleSample]) -> f64 {
 
 /// Half of a round trip and a sample's age at the speed there, and the error of a line where the
 /// speed changes. That error is a quarter of the change times the time between two samples if the
-/// change is sudden, an eighth if it is even. With fewer than four samples the bound is the greatest
-/// step.
+/// change is sudden, an eighth if it is even. With fewer than four samples the bound is the
+/// greatest step.
 fn of_lines(samples: &[AngleSample]) -> f64 {
     if samples.len() < 4 {
         return widest_step(samples);

@@ -69,7 +69,7 @@ const MAX_PIECES: usize = 4_000;
 /// equal, sqrt(2).
 const SPLINE_BIAS: f64 = 1.4;
 
-/// Standard deviations of the samples beyond which a motion between two of them is not their error.
+/// Standard deviations of the samples beyond which a motion between two is not their error.
 const UNSEEN_SDS: f64 = 4.0;
 
 /// Candidate curves for one sweep.
@@ -327,11 +327,16 @@ impl<'a> Candidates<'a> {
         };
         let rms_deg = mean_square(&mut off.iter().map(|o| o.off_deg)).sqrt();
         let systematic_residual_deg = residual_autocorrelation(&off);
+        let all = pieces.as_slice();
         let scatter = mean_square(
-            &mut pieces
-                .as_slice()
+            // The piece that contains the beginning counts too.
+            &mut all
                 .iter()
-                .filter(|p| inside(p.from))
+                .skip(
+                    all.partition_point(|p| p.from <= self.sweep.start)
+                        .saturating_sub(1),
+                )
+                .take_while(|p| p.from <= self.sweep.end)
                 .map(|p| p.sd_deg),
         );
         // A spline may follow the saw of a latch.

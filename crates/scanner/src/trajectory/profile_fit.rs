@@ -108,7 +108,8 @@ impl ProfileFit {
     }
 }
 
-/// Fits from `guess`. `None` with fewer observations than parameters, or if no minimum is a motion.
+/// Fits from `guess`. `None` with fewer observations than parameters, or if no minimum is a
+/// motion.
 pub(super) fn fit(observed: &[Observed], guess: Profile, servo: ServoModel) -> Option<ProfileFit> {
     let is_triangle = guess.braking_s() <= guess.ramp_up_s;
     let best = |guess: Profile, is_triangle| {
