@@ -52,6 +52,15 @@ def inbound_missing(when):
     return mangle
 
 
+def written_late(seconds):
+    """Packets are in the log behind younger records of the drive; times are those of receipt."""
+
+    def mangle(records, setup, rng):
+        return [((r[0] // seconds + 1) * seconds if r[1] == 0 else r[0], *r[1:]) for r in records]
+
+    return mangle
+
+
 def nothing_between(begin, end):
     """No record at all: the program did not run."""
     return lambda records, setup, rng: [r for r in records if not begin < r[0] < end]
@@ -488,6 +497,13 @@ condition(
     "files",
     "another comment before",
     lambda seed: Setup(seed=seed, comments_before=("hall, second floor",)),
+)
+
+condition("files", "cut off within a record", lambda seed: Setup(seed=seed), join="cut", share=0.5)
+condition(
+    "files",
+    "packets written in batches of 7 ms",
+    lambda seed: Setup(seed=seed, mangle=written_late(7e-3)),
 )
 
 
