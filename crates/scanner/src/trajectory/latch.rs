@@ -60,7 +60,11 @@ pub(super) fn evidence(residuals: &[Residual], angle_sd_deg: f64) -> LatchEviden
     if quick.len() < WINDOW || count_s > MAX_COUNT_S {
         return LatchEvidence::Unknown;
     }
-    let polls = resultant(&quick, |r| r.at_s);
+    // Requests at a multiple of the cycle, or answers, put the instants on a grid without a latch.
+    let polls = [-1.0, 0.0, 1.0]
+        .map(|end| resultant(&quick, |r| r.at_s + end * r.bound_s))
+        .into_iter()
+        .fold(0.0, f64::max);
     let instants = resultant(&quick, |r| r.at_s + r.late_s());
     if polls > OFF_GRID {
         LatchEvidence::Unknown

@@ -65,6 +65,8 @@ const MOST_SD: f64 = 4.0;
 
 /// Smallest distance of the stamps of two polls, as a share of the poll period.
 const NEAREST: f64 = 0.1;
+/// A poll is at most this late: the host runs other programs.
+const LATEST_POLL_S: f64 = 1e-3;
 
 /// Properties of drive and polls.
 #[derive(Clone, Copy, Debug)]
@@ -189,7 +191,12 @@ fn polls(shaft: &[f64], hz: f64, circumstance: PollingCase, seed: u64) -> Vec<An
     (0..)
         .map(|i| begin_s + f64::from(i) / hz)
         .take_while(|t_s| *t_s < end_s)
-        .map(|t_s| {
+        .map(|due_s| {
+            // A host that stamps late polls late, too, and not in step with a drive's cycle.
+            let t_s = match jitter_s {
+                0.0 => due_s,
+                _ => due_s + LATEST_POLL_S * noise.uniform(),
+            };
             let truth = truth_deg(shaft, t_s);
             let angle = match quantum_deg {
                 0.0 => truth,
