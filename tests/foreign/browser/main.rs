@@ -20,10 +20,21 @@ use velomotion_tests::bench::Bench;
 
 /// A daemon with its own folder; port 0 takes a free one.
 fn daemon(config: Config, device: Option<&str>, folder: &Path, port: u16) -> Daemon {
+    // Most tests do not depend on free disk space.
+    reserving(0, config, device, folder, port)
+}
+
+/// A daemon that keeps this much of the disk free.
+fn reserving(
+    reserve_bytes: u64,
+    config: Config,
+    device: Option<&str>,
+    folder: &Path,
+    port: u16,
+) -> Daemon {
     let settings = DaemonConfig {
         scans: Some(folder.join("scans")),
-        // Free disk space is not tested here.
-        reserve_bytes: 0,
+        reserve_bytes,
         ..config.daemon.clone()
     };
     Daemon::start(Options {
@@ -119,7 +130,27 @@ fn an_unconfirmed_stop_is_repeated_under_an_alarm_of_full_width() {
             page.until_true("document.querySelector('#not-stopped').hidden").await;
         });
     }
+    daemon.stop(|| true).unwrap();
 }
+
+/// Waits until an element is in the window, and nothing covers it.
+async fn until_in_sight(page: &Page, css: &str) {
+    page.until_true(&format!(
+        "((shown) => {{
+          const {{ left, top, right, bottom }} = shown.getBoundingClientRect();
+          const within = left >= 0 && top >= 0 && right <= innerWidth && bottom <= innerHeight && top < bottom;
+          return within && document.elementFromPoint((left + right) / 2, (top + bottom) / 2) === shown;
+        }})(document.querySelector({css:?}))"
+    ))
+    .await;
+}
+
+/// Refuses every request as the daemon does when too many run, until `window.answer` is called.
+const TOO_MANY: &str = "
+    const answered = window.fetch;
+    const refusal = JSON.stringify({ error: 'too many downloads at once', help: 'try again when others have ended' });
+    window.fetch = async () => new Response(refusal, { status: 429, headers: { 'content-type': 'application/json' } });
+    window.answer = () => { window.fetch = answered; };";
 
 #[test]
 #[ignore = "needs chromium and chromedriver"]
@@ -131,14 +162,115 @@ fn refusals_are_visible_at_their_control() {
     for screen in [DESKTOP, PHONE] {
         driver.test(screen, async |page| {
             ready(&page, &url).await;
-            page.run("window.fetch = async () => new Response(JSON.stringify({ error: 'too many downloads at once', help: 'try again' }), { status: 429 })")
-                .await;
+            page.run(TOO_MANY).await;
             page.click("#home").await;
-            page.until_has("#control-error", "Home: too many downloads at once").await;
-            page.until_true("(({ top, bottom }) => top >= 0 && bottom <= innerHeight && top < bottom)(document.querySelector('#control-error').getBoundingClientRect())")
+            page.until_has("#control-error", "Home: too many downloads at once")
                 .await;
+            until_in_sight(&page, "#control-error").await;
         });
     }
+    daemon.stop(|| true).unwrap();
+}
+
+/// The request to capture is accepted, and an error is answered when the page shows the sweep.
+const ERROR_IN_MOTION: &str = "
+    const answered = window.fetch;
+    window.fetch = async (url, init) => {
+      const answer = await answered(url, init);
+      if (!String(url).endsWith('captures')) return answer;
+      await new Promise((seen) => {
+        const look = setInterval(() => {
+          if (!document.querySelector('#doing').textContent.startsWith('Sweeping')) return;
+          clearInterval(look);
+          seen();
+        }, 20);
+      });
+      return new Response(JSON.stringify({ error: 'the drive reports an error' }), { status: 500 });
+    };";
+
+/// Records whether the error is ever hidden again, and counts changes of the state's text.
+const WATCH_ERROR: &str = "
+    window.changes = 0;
+    window.hidden_again = document.querySelector('#control-error').hidden;
+    new MutationObserver(() => { window.hidden_again ||= document.querySelector('#control-error').hidden; })
+      .observe(document.querySelector('#control-error'), { attributes: true });
+    new MutationObserver(() => { window.changes += 1; })
+      .observe(document.querySelector('#doing'), { childList: true, characterData: true, subtree: true });";
+
+#[test]
+#[ignore = "needs chromium and chromedriver"]
+fn an_error_during_a_motion_stays_visible() {
+    let driver = Driver::start();
+    let folder = tempfile::tempdir().unwrap();
+    let daemon = simulator(folder.path());
+    let url = url(&daemon);
+    driver.test(PHONE, async |page| {
+        ready(&page, &url).await;
+        page.run(ERROR_IN_MOTION).await;
+        start(&page, "slow", "1", "-45").await;
+        page.until_has("#control-error", "Start: the drive reports an error")
+            .await;
+        page.run(WATCH_ERROR).await;
+        // More than a second of the remaining time, with a status.
+        page.until_true("window.changes > 30").await;
+        assert_eq!(page.run("return window.hidden_again").await, false);
+        until_in_sight(&page, "#control-error").await;
+        page.click("#stop").await;
+        page.until_has(".scan .badge[data-state]", "partial").await;
+    });
+    daemon.stop(|| true).unwrap();
+}
+
+#[test]
+#[ignore = "needs chromium and chromedriver"]
+fn a_refused_download_is_reported_at_its_scan() {
+    let driver = Driver::start();
+    let folder = tempfile::tempdir().unwrap();
+    let first = simulator(folder.path());
+    let first_url = url(&first);
+    driver.test(DESKTOP, async |page| {
+        ready(&page, &first_url).await;
+        start(&page, "short", "56.25", "-5").await;
+        page.until_has(".scan .badge[data-state]", "complete").await;
+    });
+    first.stop(|| true).unwrap();
+    // No disk has as much: clouds in other formats than PLY cannot be made.
+    let reserve_bytes = 1 << 60;
+    let full = reserving(
+        reserve_bytes,
+        Config::default(),
+        Some("sim"),
+        folder.path(),
+        0,
+    );
+    let url = url(&full);
+    for screen in [DESKTOP, PHONE] {
+        driver.test(screen, async |page| {
+            ready(&page, &url).await;
+            page.until_has(".scan", "short").await;
+            page.choose(".scan [data-role=download]", "las").await;
+            let no_room = page.until_has(".scan .wrong", "Download as las: ").await;
+            assert!(no_room.contains("disk"), "{no_room}");
+            until_in_sight(&page, ".scan .wrong").await;
+            page.picture("no-room").await;
+            for format in ["ply", "log"] {
+                page.run(TOO_MANY).await;
+                page.choose(".scan [data-role=download]", format).await;
+                page.until_has(
+                    ".scan .wrong",
+                    &format!("Download as {format}: too many downloads at once"),
+                )
+                .await;
+                until_in_sight(&page, ".scan .wrong").await;
+                page.run("window.answer()").await;
+            }
+            assert_eq!(page.run("return location.href").await, url);
+            // The next download clears it.
+            page.choose(".scan [data-role=download]", "ply").await;
+            page.until_gone(".scan .wrong").await;
+        });
+    }
+    full.stop(|| true).unwrap();
 }
 
 #[test]
@@ -385,6 +517,18 @@ fn the_page_asks_for_a_token_once() {
             .await;
         page.forget_cookies().await;
         page.goto(&url).await;
+        page.until_has("button", "Sign in").await;
+        page.fill("[name=token]", "a-token-of-this-test").await;
+        page.click("button").await;
+        page.until_has("#sign-out", "Sign out").await;
+        // A sign-out without an answer is reported beside its button.
+        page.run(TOO_MANY).await;
+        page.click("#sign-out").await;
+        page.until_has("#sign-out-error", "Sign out: too many")
+            .await;
+        until_in_sight(&page, "#sign-out-error").await;
+        page.run("window.answer()").await;
+        page.click("#sign-out").await;
         page.until_has("button", "Sign in").await;
     });
     daemon.stop(|| true).unwrap();

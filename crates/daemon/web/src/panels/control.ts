@@ -102,6 +102,8 @@ export function setStatus(now: Status): void {
   status = now;
   const { doing: what, step } = now.activity;
   if (before !== undefined && before !== what) announce(WORDS[what] ?? what);
+  // A motion that begins replaces an earlier error; its own error stays.
+  if (before === "idle" && what !== before) show(id("control-error"), false);
   if (what !== before || step !== stepped) whole_s = 0;
   stepped = step ?? 0;
   draw();
@@ -145,7 +147,6 @@ function draw(): void {
   home.disabled = asking || moving || !homes;
   text(why, moving ? "" : (obstacle_now ?? ""));
   show(why, why.textContent !== "");
-  if (moving) show(id("control-error"), false);
   attribute(stop, "data-moving", String(moving));
   attribute(doing, "data-moving", String(moving));
   if (stopping !== null) text(doing, "Stopping");

@@ -15,7 +15,8 @@ const STATES: Record<string, string> = { recording: "recording", making: "making
 const list = id<HTMLUListElement>("scans");
 const scans = new Map<string, Scan>();
 const updated = new Set<string>();
-const cards = new Map<string, { card: HTMLLIElement; drawn: string }>();
+/** `wrong` shows errors of the scan; redrawing its card keeps them. */
+const cards = new Map<string, { card: HTMLLIElement; wrong: HTMLElement; drawn: string }>();
 let formats = FORMATS;
 let current: string | null = null;
 let opened: (scan: Scan) => void = () => {};
@@ -76,12 +77,12 @@ function draw(): void {
     const drawn = JSON.stringify(shown);
     let entry = cards.get(scan.id);
     if (entry === undefined) {
-      entry = { card: h("li", { class: "scan", "data-id": scan.id }), drawn: "" };
+      entry = { card: h("li", { class: "scan", "data-id": scan.id }), wrong: h("p", { class: "wrong", hidden: true }), drawn: "" };
       cards.set(scan.id, entry);
     }
     if (entry.drawn !== drawn) {
       const focused = entry.card.contains(document.activeElement) ? (document.activeElement as HTMLElement).dataset["role"] : undefined;
-      entry.card.replaceChildren(...content_or_id(scan));
+      entry.card.replaceChildren(...content_or_id(scan), entry.wrong);
       entry.drawn = drawn;
       if (focused !== undefined) entry.card.querySelector<HTMLElement>(`[data-role="${focused}"]`)?.focus();
     }
@@ -131,7 +132,6 @@ function content(scan: Scan): Node[] {
     ),
     ...(scan.summary ? [h("p", { class: "why", title: scan.summary }, scan.summary)] : []),
     row,
-    h("p", { class: "wrong", hidden: true }),
   ];
 }
 
@@ -167,7 +167,7 @@ async function download(scan: Scan, title: string, format: string): Promise<void
 
 /** Where errors of a scan are shown. */
 function error_of(scan: Scan): HTMLElement {
-  return cards.get(scan.id)?.card.querySelector<HTMLElement>(".wrong") ?? id("scans-error");
+  return cards.get(scan.id)?.wrong ?? id("scans-error");
 }
 
 async function confirm_delete(scan: Scan): Promise<void> {

@@ -2,6 +2,7 @@
 
 import { RequestError, sendRequest } from "../api.ts";
 import { id, show, text } from "../dom.ts";
+import { refused } from "./control.ts";
 
 const dialog = id<HTMLDialogElement>("signin");
 const field = id<HTMLInputElement>("token");
@@ -14,7 +15,7 @@ export function wire(signed: () => void): void {
     event.preventDefault();
     void send(signed);
   });
-  id("sign-out").addEventListener("click", () => void sendRequest("POST", "/logout").then(() => location.reload()));
+  id("sign-out").addEventListener("click", () => void sign_out());
 }
 
 /** Offers to sign out where a token is needed. */
@@ -29,6 +30,17 @@ export async function offer(): Promise<void> {
 
 export function open(): void {
   if (!dialog.open) dialog.showModal();
+}
+
+async function sign_out(): Promise<void> {
+  const at = id("sign-out-error");
+  show(at, false);
+  try {
+    await sendRequest("POST", "/logout");
+    location.reload();
+  } catch (error) {
+    refused("Sign out", error, at);
+  }
 }
 
 async function send(signed: () => void): Promise<void> {
