@@ -206,6 +206,41 @@ fn a_program_without_the_port_cannot_confirm_a_stop() {
     assert_eq!(stopped["stopped"], serde_json::Value::Null, "{stopped}");
 }
 
+/// A person who wants the axis stopped is told what to do, and which process hangs.
+#[test]
+fn a_stop_by_a_suspended_program_is_reported_as_not_confirmed() {
+    let bench = Bench::new("--usb");
+    bench.json("tilt home");
+    let mut moving = bench.command("tilt goto -40 --speed 1").spawn().unwrap();
+    let begin = std::time::Instant::now();
+    // Until the program with the axis answers, the port is busy.
+    let moves = |status: &Output| {
+        serde_json::from_slice::<serde_json::Value>(&status.stdout)
+            .is_ok_and(|status| status["activity"] == "moving")
+    };
+    while !moves(&bench.run("tilt status --json")) {
+        assert!(begin.elapsed().as_secs() < 20, "no motion");
+    }
+    let id = moving.id().to_string();
+    let signal = |name: &str| {
+        let sent = Command::new("kill").args([name, &id]).status().unwrap();
+        assert!(sent.success());
+    };
+    signal("-STOP");
+    let stop = bench.run("tilt stop");
+    signal("-KILL");
+    moving.wait().unwrap();
+    let printed = String::from_utf8_lossy(&stop.stderr).into_owned();
+    assert_eq!(stop.status.code(), Some(5), "{printed}");
+    for part in [
+        "the stop is not confirmed yet: switch the motor's supply off",
+        &format!("process {id} at"),
+        "has not answered for 10 s",
+    ] {
+        assert!(printed.contains(part), "{part}: {printed}");
+    }
+}
+
 #[test]
 fn the_software_drive_exits_and_removes_its_link_when_stdin_closes() {
     let bench = Bench::new("--rs232");

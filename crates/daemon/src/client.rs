@@ -17,6 +17,11 @@ use engine::failure::{Failure, Kind};
 
 /// Longest wait for an answer: homing, or a stop of a capture.
 const ANSWER: Duration = Duration::from_secs(180);
+/// Longest wait for an answer that a person needs at once: the axis's state, and its stop, which
+/// takes a few seconds with a drive that does not answer.
+const URGENT_ANSWER: Duration = Duration::from_secs(10);
+/// Paths of these requests.
+const URGENT: [&str; 3] = ["/api/v1/status", "/api/v1/tilt", "/api/v1/tilt/stop"];
 /// Longest header line, bytes.
 const LINE: u64 = 8 << 10;
 const LINES: usize = 64;
@@ -243,7 +248,27 @@ impl Client {
 
     fn request(&self, method: &str, path: &str, body: Option<&[u8]>) -> Result<Answer, Failure> {
         self.try_request(method, path, body)
-            .map_err(|error| self.gone(&error.to_string()))
+            .map_err(|error| match error.kind() {
+                ErrorKind::WouldBlock | ErrorKind::TimedOut => self.silent(path),
+                _ => self.gone(&error.to_string()),
+            })
+    }
+
+    /// The failure of a program that has the device and does not answer.
+    fn silent(&self, path: &str) -> Failure {
+        let owner = UnixStream::connect(&self.socket).ok();
+        let program = match owner.as_ref().and_then(SocketOwner::of) {
+            Some(owner) => format!("process {}", owner.pid),
+            None => "the program".to_owned(),
+        };
+        let limit = limit(path).as_secs();
+        let socket = self.socket.display();
+        let message =
+            format!("{program} at {socket} has the device and has not answered for {limit} s");
+        Failure::new(Kind::DeviceFault, message).help(
+            "switch the motor's supply off if the axis moves and must not\n\
+             the process may hang or be suspended (kill -CONT); if it is killed, its guardian stops the axis",
+        )
     }
 
     fn try_request(
@@ -253,7 +278,7 @@ impl Client {
         body: Option<&[u8]>,
     ) -> std::io::Result<Answer> {
         let mut stream = UnixStream::connect(&self.socket)?;
-        stream.set_read_timeout(Some(ANSWER))?;
+        stream.set_read_timeout(Some(limit(path)))?;
         let mut request =
             format!("{method} {path} HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\n");
         if let Some(body) = body {
@@ -288,6 +313,14 @@ impl Client {
             }
         }
         Err(std::io::Error::other("it says too much"))
+    }
+}
+
+/// Longest wait for the answer to a request.
+fn limit(path: &str) -> Duration {
+    match URGENT.contains(&path) {
+        true => URGENT_ANSWER,
+        false => ANSWER,
     }
 }
 

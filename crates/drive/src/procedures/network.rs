@@ -40,11 +40,11 @@ pub(super) async fn configure(ops: &Ops) -> Result<(AngleSource, bool), DriveErr
         ops.write_verified(objects::PRODUCER_HEARTBEAT, period)
             .await,
     )?;
-    let monitors_host = is_supported(
+    let monitors_host = is_known(
         ops.write_verified(objects::CONSUMER_HEARTBEAT, NO_CONSUMER)
             .await,
     )?;
-    let obeys_option = is_supported(
+    let obeys_option = is_known(
         ops.write_verified(objects::ABORT_CONNECTION_OPTION, abort_option(ops))
             .await,
     )?;
@@ -89,6 +89,15 @@ fn is_supported(result: Result<(), DriveError>) -> Result<bool, DriveError> {
         Ok(()) => Ok(true),
         Err(DriveError::Refused { .. } | DriveError::NotTaken { .. }) => Ok(false),
         Err(error) => Err(error),
+    }
+}
+
+/// Whether the firmware has an object on which the stop of the axis depends if the host dies. A
+/// value that it confirms and does not take is an error: the axis might run on.
+fn is_known(result: Result<(), DriveError>) -> Result<bool, DriveError> {
+    match result {
+        Err(error @ DriveError::NotTaken { .. }) => Err(error),
+        result => is_supported(result),
     }
 }
 

@@ -106,6 +106,18 @@ fn a_drive_without_host_monitoring_is_reported() {
     assert!(rig.run(DriveCommand::Goto(to(0.0))).is_ok());
 }
 
+/// It would go on if the host died.
+#[test]
+fn a_drive_that_keeps_its_reaction_to_a_lost_host_is_not_moved() {
+    let mut rig = can();
+    rig.unit.on_write(0x6007, 0, Fate::Ignored);
+    let error = rig.run(DriveCommand::Connect).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "object 6007:00 read back: expected 0x1, got 0x3"
+    );
+}
+
 #[test]
 fn a_stalled_stream_is_replaced_by_polls() {
     let mut rig = homed();

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use drive::{CommandOutcome, DriveCommand, SampleTrigger};
+use drive::{AngleSource, CommandOutcome, DriveCommand, SampleTrigger};
 use protocol::epos2::objects::{self, input};
 use units::Stamp;
 
@@ -107,13 +107,20 @@ fn connect(bring_up: &mut BringUp<'_>, _: &mut dyn Operator) -> Result<(), Sessi
         "source of the angle",
         format!("{:?}", report.angle).to_lowercase(),
     );
-    bring_up.note(
-        "the drive itself notices a dead host",
-        match report.monitors_host {
-            true => "yes (heartbeat, 1016)",
-            false => "no: a guardian process stops the axis",
-        },
-    );
+    let notices = "the drive itself notices a dead host";
+    match (report.monitors_host, report.angle) {
+        (true, _) => bring_up.note(notices, "yes (heartbeat, 1016)"),
+        // There is no guardian on a CAN bus.
+        (false, AngleSource::Stream) => bring_up.judge(
+            notices,
+            "no (1016 is refused)",
+            false,
+            "nothing stops the axis if the program dies: use USB or RS232, or a firmware with 1016",
+        ),
+        (false, AngleSource::Polls) => {
+            bring_up.note(notices, "no: a guardian process stops the axis");
+        }
+    }
     Ok(())
 }
 

@@ -295,6 +295,9 @@ pub(super) fn thread_gone() -> Failure {
         .help("check that the axis is at rest; run with -vv and report the messages")
 }
 
+/// A healthy axis is confirmed to be stopped sooner.
+const STOP_CONFIRMED: Duration = Duration::from_secs(2);
+
 /// Runs a jog by a daemon. Ctrl-C stops the axis; during a request that moves nothing it ends the
 /// wait.
 ///
@@ -308,8 +311,17 @@ pub fn jog_by_daemon(
     let own = client.clone();
     let request = std::thread::spawn(move || send(&own, jog));
     let moves = matches!(jog, JogRequest::Home | JogRequest::Goto(_));
+    let mut unconfirmed = match jog {
+        JogRequest::Stop => Some(Instant::now() + STOP_CONFIRMED),
+        _ => None,
+    };
     let mut stop: Option<JoinHandle<Result<StopAnswer, Failure>>> = None;
     while !request.is_finished() {
+        if unconfirmed.take_if(|due| Instant::now() >= *due).is_some() {
+            tracing::warn!(
+                "the stop is not confirmed yet: switch the motor's supply off if the axis moves"
+            );
+        }
         if interrupt.swap(false, Ordering::Relaxed) {
             if !moves || stop.is_some() {
                 return Err(Failure::new(

@@ -83,8 +83,7 @@ async function halt(): Promise<void> {
     show(banner, true);
   };
   try {
-    await repeatStop(api.stop, unacknowledged, stopping.signal);
-    announce("Stopped");
+    if (await repeatStop(api.stop, unacknowledged, stopping.signal)) announce("Stopped");
   } finally {
     show(banner, false);
     stopping = null;
