@@ -178,13 +178,16 @@ fn pieces(arrivals: &[Arrival], cuts: &[(Jump, SetClock)], strays: &[usize]) -> 
             sure.clone_from(&whole);
         }
         let devices = || whole.iter().map(|arrival| arrival.device);
-        if let (Some(first), Some(last)) = (devices().min(), devices().max()) {
+        let begins = whole.first();
+        if let (Some(first), Some(last), Some(begins)) = (devices().min(), devices().max(), begins)
+        {
             sure.sort_unstable_by_key(|a| (a.device, a.host));
             pieces.push(Stretch {
                 arrivals: sure,
                 first,
                 last,
-                join: whole.first().map_or(first, |arrival| arrival.device),
+                join: begins.device,
+                received: begins.host,
             });
         }
         from = to;

@@ -29,6 +29,8 @@ pub(crate) struct Stretch<C = Lidar> {
     pub last: Stamp<C>,
     /// Device time where the stretch begins in the recording.
     pub join: Stamp<C>,
+    /// Receive time there, by the host's clock of that time.
+    pub received: Stamp<Host>,
 }
 
 /// A stretch over which a device's clock runs without steps.
@@ -39,6 +41,8 @@ pub(crate) struct ClockPiece {
     pub to_ns: f64,
     /// The last arrival by the device's clock.
     pub end_ns: i64,
+    /// Receive time of the first arrival, by the host's clock of that time.
+    pub received: Stamp<Host>,
     /// Whole nanoseconds from device time to host time, without the offsets of the lines.
     pub whole: i64,
     /// Sum of the host clock's steps before this piece.
@@ -61,6 +65,10 @@ pub(crate) struct ErrorCell {
 /// Device times this far outside a piece's arrivals may belong to it: lost packets at its end,
 /// later firings of its last packet.
 const PIECE_MARGIN_NS: f64 = 5e6;
+/// Steps of less are as small as the delays of packets.
+const SMALL_STEP_NS: i64 = 10_000_000;
+/// Longest time from the stamp of a packet to its last firing.
+const PACKET_NS: f64 = 1.4e6;
 
 impl<C: Copy> DeviceClock<C> {
     /// Fits the envelope, in one piece. `None` without arrivals.
@@ -74,6 +82,7 @@ impl<C: Copy> DeviceClock<C> {
             first: sorted.first()?.device,
             last: sorted.last()?.device,
             join: sorted.first()?.device,
+            received: sorted.iter().map(|arrival| arrival.host).min()?,
             arrivals: sorted,
         };
         Self::fit_pieces(&[stretch], &[]).map(|(clock, _)| clock)
@@ -94,6 +103,7 @@ impl<C: Copy> DeviceClock<C> {
                 from_ns: 0.0,
                 to_ns: 0.0,
                 end_ns: device.as_nanos(),
+                received: moment.host,
                 whole: host.wrapping_sub(device.as_nanos()),
                 set_by: 0,
                 lines: vec![line],
@@ -167,8 +177,9 @@ impl<C: Copy> DeviceClock<C> {
         self.moment_near(device, None)
     }
 
-    /// Like [`DeviceClock::moment`]. If the device's clock read `device` twice, the result is the
-    /// time nearer to `near`, the approximate receive time by the host's clock of that time.
+    /// Like [`DeviceClock::moment`]. If the device's clock read `device` twice, the result is
+    /// the time nearer to `near`, the receive time by the host's clock of that time. After a small
+    /// step it follows from the first packet that was received after the step.
     #[must_use]
     pub fn moment_near(&self, device: Stamp<C>, near: Option<Stamp<Host>>) -> Moment {
         self.segment(device, near)
@@ -251,19 +262,30 @@ impl<C: Copy> DeviceClock<C> {
         let outside_ns = |piece: &ClockPiece| {
             // The last packet has firings after its stamp, the first has none before.
             (piece.from_ns - x + PIECE_MARGIN_NS * f64::from(x < piece.from_ns))
-                .max(x - piece.to_ns)
+                .max(x - piece.to_ns - PACKET_NS)
                 .max(0.0)
         };
+        let host = |piece: &ClockPiece| piece.segment(x).moment(device, x).host;
         let distance = |piece: &ClockPiece| {
             near.map_or(0, |near| {
-                let host = piece.segment(x).moment(device, x).host;
-                let recorded = host.saturating_add(Span::from_nanos(piece.set_by));
+                let recorded = host(piece).saturating_add(Span::from_nanos(piece.set_by));
                 near.saturating_since(recorded).as_nanos().saturating_abs()
             })
         };
-        self.pieces.iter().min_by(|a, b| {
-            let nearer = || distance(a).cmp(&distance(b));
-            outside_ns(a).total_cmp(&outside_ns(b)).then_with(nearer)
+        let is_later = |a: &ClockPiece, b: &ClockPiece| {
+            let apart = host(a).saturating_since(host(b)).as_nanos();
+            match near {
+                // Packets are late by as much as the clock was set.
+                Some(near) if apart.abs() < SMALL_STEP_NS => near >= b.received,
+                _ => distance(b) < distance(a),
+            }
+        };
+        self.pieces.iter().reduce(|a, b| {
+            let outside = outside_ns(b).total_cmp(&outside_ns(a));
+            match outside.is_lt() || (outside.is_eq() && is_later(a, b)) {
+                true => b,
+                false => a,
+            }
         })
     }
 
@@ -311,6 +333,7 @@ impl ClockPiece {
             from_ns: since_origin(stretch.first),
             to_ns: since_origin(stretch.last),
             end_ns: stretch.last.as_nanos(),
+            received: stretch.received,
             whole,
             set_by: 0,
             lines,
