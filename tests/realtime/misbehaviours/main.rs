@@ -2,8 +2,9 @@
 //! with the client or the simulator, and logs how its axis truly moves.
 //!
 //! `cargo test -p velomotion --test misbehaviours -- [ROW...] [--include-ignored] [--bless]`.
-//! Without arguments each misbehaviour runs on one link; `--include-ignored` runs it on every link,
-//! and `--bless` writes the table of docs/src/misbehaviours.md.
+//! Without arguments each misbehaviour runs on one link, and times and distances allow for a busy
+//! machine; with arguments they are judged as the table states them. `--include-ignored` runs each on
+//! every link, and `--bless` writes the table of docs/src/misbehaviours.md.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // a test program
 
 mod drive;
@@ -35,6 +36,9 @@ use run::Transport;
 const THREADS: usize = 3;
 /// Runs of a row whose drive was not scheduled in time.
 const TRIES: usize = 6;
+/// Seconds that a busy machine may hold up the client before its stop, where the test runs among
+/// others: it still finds a stop that waits for a timeout.
+const BUSY: f64 = 0.3;
 
 fn main() {
     check_frames();
@@ -44,6 +48,7 @@ fn main() {
     let only: Vec<&String> = named(&words);
     let all = is_bless || has("--include-ignored") || !only.is_empty();
     let plan = plan(all, &only);
+    let allowed = if all { 0.0 } else { BUSY };
     let begin = Instant::now();
     let next = AtomicUsize::new(0);
     let verdicts: Mutex<Vec<(usize, Transport, Verdict)>> = Mutex::new(Vec::new());
@@ -51,7 +56,7 @@ fn main() {
         for _ in 0..THREADS {
             scope.spawn(|| {
                 while let Some(&(row, transport)) = plan.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let verdict = one(&ROWS[row], transport);
+                    let verdict = one(&ROWS[row], transport, allowed);
                     println!("{:5} {:52} {verdict}", transport.kind(), ROWS[row].name);
                     let mut verdicts = verdicts.lock().unwrap();
                     verdicts.push((row, transport, verdict));
@@ -125,18 +130,21 @@ fn plan(all: bool, only: &[&String]) -> Vec<(usize, Transport)> {
     plan
 }
 
-/// Runs a row until its drive was not disturbed by the machine.
-fn one(row: &'static Misbehaviour, transport: Transport) -> Verdict {
+/// Runs a row until its drive was not disturbed by the machine, or the row is fulfilled in spite of
+/// it where a delay is allowed.
+fn one(row: &'static Misbehaviour, transport: Transport, allowed: f64) -> Verdict {
     let mut verdict = Verdict::default();
     for _ in 0..TRIES {
         verdict = match run::run(row, transport) {
-            Ok(outcome) => Verdict::of(row, &outcome),
+            Ok(outcome) => Verdict::of(row, &outcome, allowed),
             Err(why) => Verdict::failed(why),
         };
-        if !verdict.is_disturbed {
-            break;
+        if !verdict.is_disturbed || allowed > 0.0 && verdict.wrong.is_empty() {
+            return verdict;
         }
     }
+    let why = format!("the machine was too busy in {TRIES} runs");
+    verdict.wrong.push(why);
     verdict
 }
 
