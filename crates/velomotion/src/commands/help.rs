@@ -87,7 +87,7 @@ const EXAMPLES: [(&str, [&str; 2], &str); 12] = [
 /// Builds the table of pages from their names.
 macro_rules! pages {
     ($($name:literal),* $(,)?) => {
-        [$(($name, include_str!(concat!("../../../../docs/src/", $name, ".md")))),*]
+        [$(($name, include_str!(concat!("../../book/", $name, ".md")))),*]
     };
 }
 
