@@ -275,8 +275,8 @@ pub enum DriveError {
         /// The range between the limits, the home offset and the margin.
         bound: Degrees,
     },
-    /// A limit switch was pressed during a move, and the drive did not react.
-    #[error("the {} limit switch is pressed (2071:1 is {inputs:#06X}) and the drive moves on", if *positive { "positive" } else { "negative" })]
+    /// A limit switch is pressed that a move must not reach, and the drive does not react.
+    #[error("the {} limit switch is pressed (2071:1 is {inputs:#06X}), which the move must not reach", if *positive { "positive" } else { "negative" })]
     LimitSwitch {
         /// The positive switch, else the negative one.
         positive: bool,

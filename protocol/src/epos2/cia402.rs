@@ -65,6 +65,13 @@ impl DeviceState {
         states.find(|state| state.pattern() == statusword & MASK)
     }
 
+    /// Its name in the Firmware Specification.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        let found = STATES.iter().find(|(state, _)| *state == self);
+        found.map_or("", |(_, name)| name)
+    }
+
     /// The bits that this state sets in the statusword.
     #[must_use]
     pub const fn pattern(self) -> u16 {
@@ -74,8 +81,7 @@ impl DeviceState {
 
 impl fmt::Display for DeviceState {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let name = STATES.iter().find(|(state, _)| state == self);
-        f.write_str(name.map_or("", |(_, name)| name))
+        f.write_str(self.name())
     }
 }
 

@@ -86,6 +86,10 @@ impl Verdict {
         if !outcome.has_begun(row) {
             verdict.wrong.push("it never began".to_owned());
         }
+        let hears = !drive.faults.is_deaf && !drive.faults.is_unplugged && !drive.record.can;
+        if row.expect == Expect::Unstoppable && hears && !outcome.is_guarded() {
+            verdict.wrong.push("no stop by the guardian".to_owned());
+        }
         verdict.check(row.expect);
         verdict
     }
@@ -135,14 +139,20 @@ impl Verdict {
                 );
             }
             Expect::Stopped | Expect::Unseen | Expect::Braked => {
-                must(stop <= STOP_MS + delay_ms, format!("stop after {stop:.0} ms"));
+                must(
+                    stop <= STOP_MS + delay_ms,
+                    format!("stop after {stop:.0} ms"),
+                );
                 must(
                     !matches!(self.exit, Some(0) | None),
                     format!("exit {:?}", self.exit),
                 );
             }
             Expect::Silent => {
-                must(stop <= SILENT_MS + delay_ms, format!("stop after {stop:.0} ms"));
+                must(
+                    stop <= SILENT_MS + delay_ms,
+                    format!("stop after {stop:.0} ms"),
+                );
                 must(
                     !matches!(self.exit, Some(0) | None),
                     format!("exit {:?}", self.exit),
@@ -211,9 +221,7 @@ pub fn bless(verdicts: &[(usize, Transport, Verdict)]) {
     for (number, row) in ROWS.iter().enumerate() {
         for transport in Transport::ALL {
             let key = format!("| {} | {} | ", row.name, transport.kind());
-            let found = verdicts
-                .iter()
-                .find(|v| v.0 == number && v.1 == transport);
+            let found = verdicts.iter().find(|v| v.0 == number && v.1 == transport);
             let line = match found {
                 Some((.., verdict)) => Some(format!("{key}{verdict:#} |")),
                 None => old

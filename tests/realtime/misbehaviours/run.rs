@@ -22,6 +22,8 @@ use crate::wire::Link;
 const LIMIT: Duration = Duration::from_secs(60);
 /// The drive runs on for this time after the client's end.
 const AFTERWARDS: Duration = Duration::from_millis(400);
+/// The same where the guardian tries once more to stop it: longer than such a try.
+const TRIED: Duration = Duration::from_secs(3);
 /// A drive whose thread did not run for so many seconds misbehaves in a way of its own.
 pub const MAX_GAP: f64 = 0.012;
 
@@ -69,6 +71,8 @@ pub struct Outcome {
     pub drive: Drive,
     /// Exit code.
     pub exit: Option<i32>,
+    /// When the client had ended.
+    pub ended: f64,
     /// What the client printed.
     pub printed: String,
     /// What it kept.
@@ -114,7 +118,11 @@ pub fn run(row: &'static Misbehaviour, transport: Transport) -> Result<Outcome, 
         let device = scope.spawn(|| be_drive(pty, row, transport, &shared));
         scope.spawn(|| lidar::run(port, &shared.end));
         let exit = capture(folder.path(), row, &shared);
-        std::thread::sleep(AFTERWARDS);
+        let ended = shared.begin.elapsed().as_secs_f64();
+        std::thread::sleep(match row.expect {
+            Expect::Unstoppable => TRIED,
+            _ => AFTERWARDS,
+        });
         shared.end.store(true, Ordering::Release);
         let (drive, gap, silence) = device.join().map_err(|_| "the fake drive panicked")?;
         let read = |name| {
@@ -124,6 +132,7 @@ pub fn run(row: &'static Misbehaviour, transport: Transport) -> Result<Outcome, 
         Ok(Outcome {
             drive,
             exit: exit?,
+            ended,
             printed: read("stderr"),
             kept: kept(folder.path()),
             gap,
@@ -294,6 +303,11 @@ impl Outcome {
         let shown = self.shown()?;
         let stop = self.drive.record.first_stop(shown)?;
         Some((stop - shown) * 1e3)
+    }
+
+    /// Whether a stop still came after the client's end: from its guardian.
+    pub fn is_guarded(&self) -> bool {
+        self.drive.record.first_stop(self.ended).is_some()
     }
 
     /// Whether the row's misbehaviour was seen at all.

@@ -10,9 +10,11 @@ use crate::event::{CommandOutcome, CommandProgress};
 use crate::ops::Ops;
 
 use super::configure::verify_safety;
+use super::motion::{PeriodicCheck, SWITCH_CHECKS};
 use super::network;
 use super::power::{check_enabled, enable, is_held, is_referenced, set_mode};
 use super::stop::make_safe;
+use super::switches::SwitchWatch;
 
 /// Runs [`crate::DriveCommand::Home`].
 pub(crate) async fn home(mut ops: Ops) -> Result<CommandOutcome, DriveError> {
@@ -84,6 +86,8 @@ async fn wait_until_attained(ops: &mut Ops) -> Result<(), DriveError> {
     let homing = ops.config.homing;
     let limit = ops.now().saturating_add(homing.time_limit);
     let mut travel = HomingTravel::default();
+    let mut switches = SwitchWatch::of_homing(&ops.config);
+    let mut switch_check = PeriodicCheck::new(ops, SWITCH_CHECKS);
     loop {
         ops.sleep(ops.config.timing.status_period).await;
         let requested = ops.now();
@@ -100,14 +104,19 @@ async fn wait_until_attained(ops: &mut Ops) -> Result<(), DriveError> {
         // An error here does not end homing. A lost link fails the next check.
         if let Ok((demand, reply)) = ops.read_timed(objects::POSITION_DEMAND).await {
             travel.demand.add(&ops.config, demand, reply.answer);
-            if let Ok((position, reply)) = ops.read_timed(objects::POSITION_ACTUAL).await {
-                travel.position.add(&ops.config, position, reply.answer);
+            let mut apart = Span::ZERO;
+            if let Ok((position, later)) = ops.read_timed(objects::POSITION_ACTUAL).await {
+                travel.position.add(&ops.config, position, later.answer);
+                apart = later.answer.saturating_since(reply.request);
             }
-            travel.check(&ops.config)?;
+            travel.check(&ops.config, apart)?;
             ops.report(CommandProgress::Searching {
                 at: reply.answer,
                 demand: Quadcounts(demand),
             });
+        }
+        if switch_check.is_due(ops.now()) {
+            switches.check(ops).await?;
         }
         if requested > limit {
             return Err(DriveError::HomingTime {
@@ -158,11 +167,18 @@ impl Way {
 
 impl HomingTravel {
     /// Compares the distance from the start with the range of the axis, and the way of the position
-    /// with that of the demand.
-    fn check(&mut self, config: &AxisConfig) -> Result<(), DriveError> {
+    /// with that of the demand, which were read up to `apart` after one another.
+    fn check(&mut self, config: &AxisConfig, apart: Span) -> Result<(), DriveError> {
         let (demand, position) = (self.demand.angle(config), self.position.angle(config));
-        // The drive's own limit: a healthy one is in fault before.
-        let tolerance = config.max_following_error.0 + config.standstill_spread.0;
+        let guard = &config.guard;
+        let speed = config.gearing.rate(config.homing.switch_speed).0;
+        let late = guard.servo_lag.as_secs_f64() + apart.as_secs_f64();
+        let tolerance = config.standstill_spread.0
+            + match config.homing.detects_current() {
+                // The axis is at its mechanical stop, and the demand moves on.
+                true => config.max_following_error.0,
+                false => (guard.behind.0 + speed * late).min(config.max_following_error.0),
+            };
         let is_off = demand != 0.0 && (position - demand).abs() > tolerance;
         // The zero may be set between the two reads.
         if std::mem::replace(&mut self.is_suspicious, is_off) && is_off {

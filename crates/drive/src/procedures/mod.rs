@@ -15,6 +15,7 @@ mod power;
 mod ramp;
 mod report;
 mod stop;
+mod switches;
 
 pub(crate) use connect::connect;
 pub(crate) use home::home;

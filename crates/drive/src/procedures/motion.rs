@@ -3,8 +3,8 @@
 //! Targets are validated before the procedure starts. The drive generates the profile; the client
 //! polls the position and periodically checks the statusword.
 
-use protocol::epos2::cia402::{control, mode, status};
-use protocol::epos2::objects::{self, input};
+use protocol::epos2::cia402::{DeviceState, control, mode, status};
+use protocol::epos2::objects;
 use units::{Host, Quadcounts, Span, Stamp};
 
 use crate::error::DriveError;
@@ -15,8 +15,11 @@ use crate::plan::{MovePlan, ValidatedMove};
 use super::configure::verify_safety;
 use super::guard::MotionGuard;
 use super::network;
-use super::power::{check_enabled, enable, is_fault, is_referenced, set_mode, wait_for};
+use super::power::{
+    check_enabled, check_state, enable, is_fault, is_referenced, set_mode, wait_for,
+};
 use super::stop::make_safe;
+use super::switches::SwitchWatch;
 
 /// Runs [`crate::DriveCommand::Goto`].
 pub(crate) async fn goto(ops: Ops, target: ValidatedMove) -> Result<CommandOutcome, DriveError> {
@@ -32,14 +35,18 @@ pub(crate) async fn sweep(ops: Ops, target: ValidatedMove) -> Result<CommandOutc
 /// Runs [`crate::DriveCommand::Hold`].
 pub(crate) async fn hold(mut ops: Ops, until: Stamp<Host>) -> Result<CommandOutcome, DriveError> {
     ops.aborts_on_alarm = true;
-    match sample_until_fault(&mut ops, until).await {
+    match sample_until(&mut ops, until).await {
         Ok(()) => Ok(CommandOutcome::Held),
         Err(cause) => Err(make_safe(&mut ops, cause).await),
     }
 }
 
-/// Samples an axis that may be disabled.
-async fn sample_until_fault(ops: &mut Ops, until: Stamp<Host>) -> Result<(), DriveError> {
+/// Samples an axis: one that is powered must not move, one without power may be turned by hand.
+async fn sample_until(ops: &mut Ops, until: Stamp<Host>) -> Result<(), DriveError> {
+    let state = DeviceState::from_statusword(ops.read(objects::STATUSWORD).await?);
+    if let Some(held @ (DeviceState::OperationEnabled | DeviceState::QuickStopActive)) = state {
+        return sample_at_rest(ops, until, held).await;
+    }
     let mut check = PeriodicCheck::new(ops, STATUS_CHECKS);
     while ops.now() < until {
         ops.next_sample().await?;
@@ -76,8 +83,11 @@ async fn run(ops: &mut Ops, target: ValidatedMove, hold: Span) -> Result<MoveRep
     sample_for(ops, hold).await?;
     let from = ops.next_sample().await?.position;
     let plan = ops.config.plan_move(from, target);
+    let mut switches = SwitchWatch::of_move(&ops.config, from.0, target.target.0);
+    switches.check(ops).await?;
     let (mut guard, started) = start(ops, plan).await?;
-    let (position, arrived) = sample_until_arrival(ops, target.target, &mut guard, started).await?;
+    let (position, arrived) =
+        sample_until_arrival(ops, target.target, &mut guard, &mut switches, started).await?;
     ops.is_moving = false;
     sample_for(ops, hold).await?;
     Ok(MoveReport {
@@ -159,6 +169,7 @@ async fn sample_until_arrival(
     ops: &mut Ops,
     target: Quadcounts,
     guard: &mut MotionGuard,
+    switches: &mut SwitchWatch,
     started: Stamp<Host>,
 ) -> Result<(Quadcounts, Stamp<Host>), DriveError> {
     let limit = started
@@ -167,8 +178,7 @@ async fn sample_until_arrival(
     let tolerance = ops.config.tolerance_qc(ops.config.arrival_tolerance);
     let tolerance = tolerance.0.unsigned_abs();
     let mut check = PeriodicCheck::new(ops, STATUS_CHECKS);
-    let mut switches = PeriodicCheck::new(ops, SWITCH_CHECKS);
-    let pressed_before = ops.read(objects::INPUT_STATE).await?;
+    let mut switch_check = PeriodicCheck::new(ops, SWITCH_CHECKS);
     let mut reached = false;
     // Set when the statusword was requested after the limit. Only a position requested after that
     // proves a failure, as a delayed host may have missed the arrival.
@@ -194,39 +204,28 @@ async fn sample_until_arrival(
         is_overdue = ops.now() > limit;
         if is_overdue || check.is_due(ops.now()) {
             reached = check_enabled(ops).await? & status::TARGET_REACHED != 0;
-        } else if switches.is_due(ops.now()) {
-            check_switches(ops, pressed_before).await?;
+        } else if switch_check.is_due(ops.now()) {
+            switches.check(ops).await?;
         }
     }
 }
 
-/// Fails if a limit switch was pressed since the start of the move. A healthy drive stops by
-/// itself.
-async fn check_switches(ops: &Ops, pressed_before: u16) -> Result<(), DriveError> {
-    let switches = ops.config.limit_switches.mask() & !pressed_before;
-    let mut inputs = ops.read(objects::INPUT_STATE).await?;
-    if inputs & switches != 0 {
-        // A single reply may be that to an earlier request.
-        inputs = ops.read(objects::INPUT_STATE).await?;
+/// Samples an enabled axis at standstill for a time.
+async fn sample_for(ops: &mut Ops, span: Span) -> Result<(), DriveError> {
+    let until = ops.now().saturating_add(span);
+    match span {
+        Span::ZERO => Ok(()),
+        _ => sample_at_rest(ops, until, DeviceState::OperationEnabled).await,
     }
-    let pressed = inputs & switches;
-    if pressed == 0 {
-        return Ok(());
-    }
-    // The drive's own reaction has a better reason than this.
-    check_enabled(ops).await?;
-    Err(DriveError::LimitSwitch {
-        positive: pressed & input::POSITIVE_LIMIT != 0,
-        inputs,
-    })
 }
 
-/// Samples an enabled axis at standstill; it must not move away.
-async fn sample_for(ops: &mut Ops, span: Span) -> Result<(), DriveError> {
-    if span == Span::ZERO {
-        return Ok(());
-    }
-    let until = ops.now().saturating_add(span);
+/// Samples an axis at standstill that stays powered in this state; it must not move away.
+async fn sample_at_rest(
+    ops: &mut Ops,
+    until: Stamp<Host>,
+    state: DeviceState,
+) -> Result<(), DriveError> {
+    ops.silence_limit = ops.config.timing.silence_limit;
     let here = ops.next_sample().await?;
     let no_move = ValidatedMove {
         target: here.position,
@@ -239,25 +238,26 @@ async fn sample_for(ops: &mut Ops, span: Span) -> Result<(), DriveError> {
     while ops.now() < until {
         guarded_sample(ops, &mut guard).await?;
         if check.is_due(ops.now()) {
-            check_enabled(ops).await?;
+            check_state(ops, state).await?;
         }
     }
+    ops.silence_limit = Span::ZERO;
     Ok(())
 }
 
 /// Status periods between two checks of the statusword.
 const STATUS_CHECKS: i64 = 1;
 /// Status periods between two checks of the limit switches.
-const SWITCH_CHECKS: i64 = 4;
+pub(super) const SWITCH_CHECKS: i64 = 4;
 
 /// Timer of repeated checks.
-struct PeriodicCheck {
+pub(super) struct PeriodicCheck {
     next: Stamp<Host>,
     period: Span,
 }
 
 impl PeriodicCheck {
-    fn new(ops: &Ops, status_periods: i64) -> Self {
+    pub fn new(ops: &Ops, status_periods: i64) -> Self {
         let period = ops.config.timing.status_period.as_nanos();
         let period = Span::from_nanos(period.saturating_mul(status_periods));
         Self {
@@ -266,7 +266,7 @@ impl PeriodicCheck {
         }
     }
 
-    fn is_due(&mut self, now: Stamp<Host>) -> bool {
+    pub fn is_due(&mut self, now: Stamp<Host>) -> bool {
         let is_due = now >= self.next;
         if is_due {
             self.next = now.saturating_add(self.period);

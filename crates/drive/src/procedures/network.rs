@@ -14,7 +14,7 @@ use protocol::epos2::objects::{self, Address, TypedObject};
 use crate::can_services::{self, STREAM};
 use crate::config::whole_ms;
 use crate::error::DriveError;
-use crate::event::AngleSource;
+use crate::event::{AngleSource, CommandProgress};
 use crate::ops::Ops;
 
 use super::power::wait_for;
@@ -44,6 +44,9 @@ pub(super) async fn configure(ops: &Ops) -> Result<(AngleSource, bool), DriveErr
         ops.write_verified(objects::CONSUMER_HEARTBEAT, NO_CONSUMER)
             .await,
     )?;
+    if !monitors_host {
+        ops.report(CommandProgress::Unmonitored);
+    }
     let obeys_option = is_known(
         ops.write_verified(objects::ABORT_CONNECTION_OPTION, abort_option(ops))
             .await,

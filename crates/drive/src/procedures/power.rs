@@ -166,18 +166,26 @@ pub(super) async fn enable(ops: &Ops) -> Result<(), DriveError> {
 /// # Errors
 /// [`DriveError::Fault`] without its cause, or [`DriveError::State`].
 pub(super) async fn check_enabled(ops: &Ops) -> Result<u16, DriveError> {
-    let is_enabled = |got| DeviceState::from_statusword(got) == Some(DeviceState::OperationEnabled);
+    check_state(ops, DeviceState::OperationEnabled).await
+}
+
+/// Reads the statusword of an axis that must be in a state.
+///
+/// # Errors
+/// [`DriveError::Fault`] without its cause, or [`DriveError::State`].
+pub(super) async fn check_state(ops: &Ops, state: DeviceState) -> Result<u16, DriveError> {
+    let is_so = |got| DeviceState::from_statusword(got) == Some(state);
     let mut got = ops.read(objects::STATUSWORD).await?;
-    if !is_enabled(got) {
+    if !is_so(got) {
         // A single reply may be that to an earlier request.
         got = ops.read(objects::STATUSWORD).await?;
     }
     if is_fault(got) {
         return Err(DriveError::Fault { error: None });
     }
-    if !is_enabled(got) {
+    if !is_so(got) {
         return Err(DriveError::State {
-            expected: "operation enabled",
+            expected: state.name(),
             got,
         });
     }

@@ -102,6 +102,7 @@ fn a_drive_without_host_monitoring_is_reported() {
         panic!("{:?}", rig.events.last())
     };
     assert!(!connected.monitors_host);
+    assert!(rig.progress().contains(&CommandProgress::Unmonitored));
     rig.run(DriveCommand::Home).unwrap();
     assert!(rig.run(DriveCommand::Goto(to(0.0))).is_ok());
 }

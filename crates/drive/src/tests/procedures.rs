@@ -2,13 +2,14 @@
 
 use firmware_sim::epos2::NodeConfig;
 use protocol::epos2::DeviceError;
+use protocol::epos2::cia402::DeviceState;
+use protocol::epos2::message::SerialRequest;
+use protocol::epos2::objects::Address;
 use protocol::record::DriveLink;
 use units::{Degrees, Quadcounts, Rpm, Span};
 
-use protocol::epos2::cia402::DeviceState;
-
 use super::rig::{Rig, to};
-use super::unit::{SERIAL, near_its_switch};
+use super::unit::{Fate, SERIAL, near_its_switch};
 use crate::{AxisConfig, CommandKind, CommandOutcome, CommandProgress, DriveCommand, DriveError};
 
 fn target(qc: i32) -> (u16, u8, u32) {
@@ -307,4 +308,100 @@ fn the_client_is_send() {
     sendable(&client);
     let first = std::thread::spawn(move || client.poll_transmit(units::Stamp::from_nanos(0)));
     assert!(first.join().unwrap().is_some());
+}
+
+/// Reads of an object give these values in turn, the last one from then on.
+fn reads_as(rig: &mut Rig, address: Address, values: &'static [u32]) {
+    let mut next = 0;
+    rig.unit.hand = Box::new(move |_, request| match request {
+        SerialRequest::ReadObject(read) if read.address == address => {
+            let value = values[next.min(values.len() - 1)];
+            next += 1;
+            Fate::Value(value)
+        }
+        _ => Fate::Sent,
+    });
+}
+
+const SWITCHES: Address = Address::new(0x2071, 1);
+
+#[test]
+fn a_powered_axis_that_moves_away_in_a_hold_is_stopped() {
+    let mut rig = Rig::homed();
+    let here = rig.unit.position(rig.now);
+    // 0.6 deg further after ten samples.
+    let mut left = 10;
+    rig.unit.hand = Box::new(move |_, request| match request {
+        SerialRequest::ReadObject(read) if read.address == Address::new(0x6064, 0) => {
+            left -= 1;
+            Fate::Value((here + if left < 0 { 400 } else { 0 }).cast_unsigned())
+        }
+        _ => Fate::Sent,
+    });
+    let began = rig.now;
+    let until = rig.now + Span::from_secs(10);
+    let error = rig.run(DriveCommand::Hold { until }).unwrap_err();
+    assert!(error.to_string().contains("-60.0"), "{error}");
+    assert!(rig.quick_stop().unwrap() - began < Span::from_millis(30));
+}
+
+#[test]
+fn an_axis_without_power_may_be_turned_by_hand_in_a_hold() {
+    let mut rig = Rig::homed();
+    rig.run(DriveCommand::Brake).unwrap();
+    reads_as(&mut rig, Address::new(0x6064, 0), &[0, 10_000, 20_000]);
+    let until = rig.now + Span::from_millis(100);
+    let held = rig.run(DriveCommand::Hold { until });
+    assert_eq!(held, Ok(CommandOutcome::Held));
+}
+
+#[test]
+fn a_switch_under_the_axis_counts_again_once_it_is_released() {
+    let mut rig = Rig::homed();
+    reads_as(&mut rig, SWITCHES, &[1, 1, 0, 1]);
+    let error = rig.run(DriveCommand::Goto(to(0.0))).unwrap_err();
+    let positive = false;
+    assert_eq!(
+        error,
+        DriveError::LimitSwitch {
+            positive,
+            inputs: 1
+        }
+    );
+    let mut rig = Rig::homed();
+    reads_as(&mut rig, SWITCHES, &[1]);
+    assert!(rig.run(DriveCommand::Goto(to(0.0))).is_ok());
+}
+
+#[test]
+fn no_move_begins_towards_a_pressed_switch() {
+    let mut rig = Rig::homed();
+    reads_as(&mut rig, SWITCHES, &[2]);
+    let error = rig.run(DriveCommand::Goto(to(0.0))).unwrap_err();
+    let positive = true;
+    assert_eq!(
+        error,
+        DriveError::LimitSwitch {
+            positive,
+            inputs: 2
+        }
+    );
+    assert!(rig.unit.is_at_rest() && !rig.writes().contains(&(0x6040, 0, 0x1F)));
+}
+
+#[test]
+fn homing_that_reaches_the_other_limit_switch_is_stopped() {
+    let mut rig = Rig::new(AxisConfig::default());
+    rig.run(DriveCommand::Connect).unwrap();
+    // It may begin on that switch.
+    reads_as(&mut rig, SWITCHES, &[2, 0, 2]);
+    let error = rig.run(DriveCommand::Home).unwrap_err();
+    let positive = true;
+    assert_eq!(
+        error,
+        DriveError::LimitSwitch {
+            positive,
+            inputs: 2
+        }
+    );
 }

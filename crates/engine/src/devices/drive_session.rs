@@ -73,7 +73,8 @@ impl SessionError {
 /// How a fault is cleared.
 pub const CLEARING: &str = "tilt faults --clear clears it, and so does homing the axis";
 
-/// A drive client on a port. Dropped while the axis may move, it sends a stop.
+/// A drive client on a port. Dropped while the axis may move, it sends a stop; if that fails too, its
+/// guardian stops the axis.
 pub struct Session<'g, P: Port> {
     client: DriveClient,
     port: P,
@@ -267,11 +268,11 @@ impl<P: Port> Drop for Session<'_, P> {
     fn drop(&mut self) {
         if self.unsafe_to_leave && self.client.start(DriveCommand::Stop).is_ok() {
             let until = self.port.now().saturating_add(LAST_RESORT);
-            // The error that dropped the session has been reported already.
-            let _ = self.pump(&mut |_| {}, false, Some(until));
-        }
-        if let Some(guardian) = &mut self.guardian {
-            guardian.disarm();
+            // The error that dropped the session has been reported already. Without a confirmed
+            // stop the guardian stays armed: it tries once more when it hears nothing from here.
+            if let Ok(Ended::Done(_)) = self.pump(&mut |_| {}, false, Some(until)) {
+                self.set_safe(true);
+            }
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::failure::{Failure, Kind};
 const HOMING_ACCELERATION: RpmPerS = RpmPerS(5_000);
 
 /// The device to use and its name: `--device`, else the configuration's, else `auto`, which is the
-/// drive plugged in when its port is needed ([`place`](crate::devices::drive_port::place)).
+/// drive plugged in when its port is needed ([`port_path`](crate::devices::drive_port::port_path)).
 ///
 /// # Errors
 /// Returns [`Kind::Usage`] for an unknown name.

@@ -52,8 +52,8 @@ pub fn run() -> Result<CommandOutput, Failure> {
 
 fn message(report: &GuardianReport) -> String {
     let why = match report.parent_died {
-        true => "velomotion died while the axis could move",
-        false => "velomotion did not run for 0.5 s while the axis could move",
+        true => "velomotion ended while the axis could move",
+        false => "velomotion sent no sign of life for 0.5 s while the axis could move",
     };
     match &report.failure {
         None => format!("{why}: its guardian process has stopped the axis"),
