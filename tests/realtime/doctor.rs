@@ -92,7 +92,14 @@ fn the_bring_up_finds_nothing_wrong_with_a_healthy_drive() {
         assert!(value("onto the other switch").starts_with("method 17"));
         assert!(value("in a move").starts_with("at rest after 0."));
         let text = std::fs::read_to_string(bench.folder.path().join("first.md")).unwrap();
-        assert_eq!(text.matches("\n## ").count(), 11);
+        assert_eq!(text.matches("\n## ").count(), 12);
+        // Nobody presses the switches or turns the axis.
+        assert_eq!(
+            (&report["problems"], &report["unchecked"]),
+            (&0.into(), &2.into())
+        );
+        let result = "INCOMPLETE: no problems, but 2 things nobody has checked";
+        assert!(text.contains(result), "{text}");
         // A second report goes behind the first.
         let refused = bench.run("doctor --bring-up --report first.md");
         assert_eq!(refused.status.code(), Some(2), "nobody can answer");

@@ -26,6 +26,8 @@ pub enum Judgement {
     Problem,
     /// No limit applies.
     Noted,
+    /// Nobody looked: still to be checked.
+    Unchecked,
 }
 
 /// A measured value.
@@ -115,6 +117,23 @@ impl BringUpStep {
             step: self.title,
             measurements: std::mem::take(&mut bring_up.found),
             may_move,
+        }
+    }
+}
+
+impl BringUpStepReport {
+    /// The report of a step that the person skips.
+    #[must_use]
+    pub fn skipped(step: &'static str) -> Self {
+        Self {
+            step,
+            measurements: vec![BringUpResult {
+                name: "step".to_owned(),
+                value: "skipped".to_owned(),
+                judgement: Judgement::Unchecked,
+                advice: None,
+            }],
+            may_move: false,
         }
     }
 }
@@ -221,6 +240,10 @@ impl<'a> BringUp<'a> {
 
     fn note(&mut self, name: &str, value: impl Into<String>) {
         self.push(name, value.into(), Judgement::Noted, None);
+    }
+
+    fn unchecked(&mut self, name: &str, value: impl Into<String>) {
+        self.push(name, value.into(), Judgement::Unchecked, None);
     }
 
     fn problem(&mut self, name: &str, value: impl Into<String>, advice: impl Into<String>) {

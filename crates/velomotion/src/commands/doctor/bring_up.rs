@@ -25,6 +25,8 @@ use crate::cli::{Common, Doctor};
 use crate::signals;
 use crate::terminal::to_stderr;
 
+/// Title of the last step.
+const KILLED: &str = "a killed program";
 /// Report if none is named.
 const REPORT: &str = "bring-up.md";
 /// Limit on the start of a move, homing included, and on the wait for the port after a kill.
@@ -38,18 +40,14 @@ struct BringUpReport {
     report: PathBuf,
     steps: Vec<BringUpStepReport>,
     problems: usize,
-}
-
-/// The choice about a step.
-enum Choice {
-    Run,
-    Skip,
-    End,
+    /// What nobody has checked yet, skipped steps included.
+    unchecked: usize,
 }
 
 /// Asks at the terminal; with `--yes` nobody is there.
 struct Person {
     unattended: bool,
+    has_ended: bool,
 }
 
 impl Person {
@@ -62,16 +60,36 @@ impl Person {
         line.trim().to_lowercase()
     }
 
-    fn choose(&self) -> Choice {
-        if self.unattended {
-            return Choice::Run;
+    /// Prints unless the person has ended the bring-up.
+    fn tell(&self, text: &str) {
+        if !self.has_ended {
+            to_stderr(text);
+        }
+    }
+
+    fn show(&self, step: &BringUpStepReport) {
+        // The report has all objects.
+        let (shown, left) = step.measurements.split_at(step.measurements.len().min(12));
+        for measurement in shown {
+            self.tell(&line(measurement));
+            if let Some(advice) = &measurement.advice {
+                self.tell(&format!("         {advice}"));
+            }
+        }
+        if !left.is_empty() {
+            self.tell(&format!("         and {} more in the report", left.len()));
+        }
+    }
+
+    /// Whether a step is done. The end of the bring-up skips all that follow.
+    fn choose(&mut self) -> bool {
+        if self.unattended || self.has_ended {
+            return self.unattended;
         }
         to_stderr("  Enter: do it, s: skip, q: end");
-        match self.answer().as_str() {
-            "" => Choice::Run,
-            "s" => Choice::Skip,
-            _ => Choice::End,
-        }
+        let answer = self.answer();
+        self.has_ended = !matches!(answer.as_str(), "" | "s");
+        answer.is_empty()
     }
 }
 
@@ -116,6 +134,7 @@ pub(super) fn run(
     let mut report = ReportFile::open(&path, &name, &port)?;
     let mut person = Person {
         unattended: arguments.yes,
+        has_ended: false,
     };
     to_stderr(
         "The motor is uncoupled from the head, and you have the supply switch in hand.\n\
@@ -133,19 +152,13 @@ pub(super) fn run(
     let mut opened = drive_port::open(&device, &port, guarding.as_ref())?;
     let acceleration = DegPerS2(device.accel_deg_s2);
     let mut bring_up = BringUp::new(axis, acceleration, &mut opened, Arc::clone(&interrupt));
-    let mut ended = false;
     for (number, step) in STEPS.iter().enumerate() {
-        to_stderr(&format!("\n{}. {}: {}", number + 1, step.title, step.plan));
-        match person.choose() {
-            Choice::Run => {}
-            Choice::Skip => continue,
-            Choice::End => {
-                ended = true;
-                break;
-            }
-        }
-        let done = step.run(&mut bring_up, &mut person);
-        show(&done);
+        person.tell(&format!("\n{}. {}: {}", number + 1, step.title, step.plan));
+        let done = match person.choose() {
+            true => step.run(&mut bring_up, &mut person),
+            false => BringUpStepReport::skipped(step.title),
+        };
+        person.show(&done);
         report.append(&done)?;
         let may_move = done.may_move;
         steps.push(done);
@@ -160,33 +173,42 @@ pub(super) fn run(
         }
     }
     drop(bring_up);
-    if !ended {
-        to_stderr(&format!(
-            "\n{}. a killed program: MOVES: begins a slow move in another process, kills that with SIGKILL, and watches the axis",
-            STEPS.len() + 1
-        ));
-        if let Choice::Run = person.choose() {
+    person.tell(&format!(
+        "\n{}. {KILLED}: MOVES: begins a slow move in another process, kills that with SIGKILL, and watches the axis",
+        STEPS.len() + 1
+    ));
+    let done = match person.choose() {
+        true => {
             drop(opened);
-            let done = kill(common, &name, config, &device, &port, &interrupt)?;
-            show(&done);
-            report.append(&done)?;
-            steps.push(done);
+            kill(common, &name, config, &device, &port, &interrupt)?
         }
-    }
-    let problems = steps
-        .iter()
-        .flat_map(|step| &step.measurements)
-        .filter(|measurement| measurement.judgement == Judgement::Problem)
-        .count();
+        false => BringUpStepReport::skipped(KILLED),
+    };
+    person.show(&done);
+    report.append(&done)?;
+    steps.push(done);
+    let count = |judgement| {
+        let all = steps.iter().flat_map(|step| &step.measurements);
+        all.filter(|found| found.judgement == judgement).count()
+    };
+    let problems = count(Judgement::Problem);
+    let unchecked = count(Judgement::Unchecked);
+    let result = match (problems, unchecked) {
+        (0, 0) => "nothing is wrong, and everything was checked".to_owned(),
+        (0, _) => format!("INCOMPLETE: no problems, but {unchecked} things nobody has checked"),
+        _ => format!("{problems} problems, {unchecked} things nobody has checked"),
+    };
+    report.write(&format!("\n## Result\n\n{result}\n"))?;
     let failure = (problems > 0).then(|| {
         Failure::new(Kind::DeviceFault, format!("{problems} problems found"))
             .help("correct them before the head is coupled; the report has the advice")
     });
-    let text = format!("{} steps, report {}", steps.len(), path.display());
+    let text = format!("{result}; report {}", path.display());
     let output = BringUpReport {
         report: path,
         steps,
         problems,
+        unchecked,
     };
     Ok(CommandOutput {
         failure,
@@ -199,22 +221,9 @@ fn line(measurement: &BringUpResult) -> String {
         Judgement::Good => "good   ",
         Judgement::Problem => "PROBLEM",
         Judgement::Noted => "       ",
+        Judgement::Unchecked => "OPEN   ",
     };
     format!("{mark}  {}: {}", measurement.name, measurement.value)
-}
-
-fn show(step: &BringUpStepReport) {
-    // The report has all objects.
-    let (shown, left) = step.measurements.split_at(step.measurements.len().min(12));
-    for measurement in shown {
-        to_stderr(&line(measurement));
-        if let Some(advice) = &measurement.advice {
-            to_stderr(&format!("         {advice}"));
-        }
-    }
-    if !left.is_empty() {
-        to_stderr(&format!("         and {} more in the report", left.len()));
-    }
 }
 
 /// The report, to which every step is appended at once.
@@ -302,7 +311,7 @@ fn kill(
     let _ = child.kill();
     let _ = child.wait();
     let mut step = BringUpStepReport {
-        step: "a killed program",
+        step: KILLED,
         measurements: Vec::new(),
         may_move: false,
     };
