@@ -177,5 +177,19 @@ seen["enabled_again"] = read(0x6041) & 0x6F == 0x27
 write(0x6040, 0x00, 2)
 seen["error_register"] = read(0x1001)
 
+# Layer setting services: found by its identity, its node id changed and stored.
+identity = [read(0x1018, sub) for sub in range(1, 5)]
+node.nmt.send_command(0x02)
+lss = network.lss
+seen["lss_selected"] = lss.send_switch_state_selective(*identity)
+seen["lss_node_id"] = lss.inquire_node_id()
+lss.configure_node_id(9)
+lss.store_configuration()
+lss.send_switch_state_global(lss.WAITING_STATE)
+node.nmt.send_command(0x81)
+moved = network.add_node(canopen.RemoteNode(9, None))
+moved.nmt.wait_for_bootup(5.0)
+seen["lss_moved_to"] = int.from_bytes(moved.sdo.upload(0x2000, 0), "little")
+
 network.disconnect()
 print(json.dumps(seen))

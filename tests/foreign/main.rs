@@ -207,6 +207,9 @@ fn python_canopen_runs_our_software_drive_over_slcan() {
     );
     assert_eq!(seen["emcy"], 0xFF09, "{seen}");
     assert_eq!(seen["history"], 0xFF09, "{seen}");
+    assert_eq!(seen["lss_selected"], true, "{seen}");
+    assert_eq!(seen["lss_node_id"], 1, "{seen}");
+    assert_eq!(seen["lss_moved_to"], 9, "{seen}");
     let homed = seen["homed"].as_object().unwrap();
     assert_eq!(homed.len(), 15, "{seen}");
     assert!(homed.values().all(|attained| attained == true), "{seen}");

@@ -2,8 +2,8 @@
 //! without I/O, and SLCAN for serial adapters.
 //!
 //! Each service has one file with encoder and parser. Identifiers are those of the predefined
-//! connection set. Not implemented: SDO block transfer, LSS, and the server side of an SDO
-//! transfer, which is part of a device.
+//! connection set. Not implemented: SDO block transfer, a master of layer setting services, and the
+//! server side of an SDO transfer, which is part of a device.
 
 mod abort_code;
 pub mod cob_id;

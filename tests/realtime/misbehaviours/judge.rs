@@ -81,7 +81,7 @@ impl Verdict {
             kept: Some(outcome.kept),
             wrong: Vec::new(),
             printed: outcome.printed.clone(),
-            is_disturbed: outcome.gap > MAX_GAP || is_held_up && outcome.silence > MAX_SILENCE,
+            is_disturbed: outcome.gap > MAX_GAP,
         };
         if !outcome.has_begun(row) {
             verdict.wrong.push("it never began".to_owned());
@@ -91,6 +91,8 @@ impl Verdict {
             verdict.wrong.push("no stop by the guardian".to_owned());
         }
         verdict.check(row.expect);
+        let is_late = is_held_up && outcome.silence > MAX_SILENCE;
+        verdict.is_disturbed |= is_late && !verdict.wrong.is_empty();
         verdict
     }
 

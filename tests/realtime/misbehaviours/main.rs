@@ -3,8 +3,8 @@
 //!
 //! `cargo test -p velomotion --test misbehaviours -- [ROW...] [--include-ignored] [--bless]`.
 //! Without arguments each misbehaviour runs on one link, and times and distances allow for a busy
-//! machine; with arguments they are judged as the table states them. `--include-ignored` runs each on
-//! every link, and `--bless` writes the table of docs/src/misbehaviours.md.
+//! machine; with arguments they are judged as the table states them. `--include-ignored` runs each
+//! on every link, and `--bless` writes the table of docs/src/misbehaviours.md.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // a test program
 
 mod drive;

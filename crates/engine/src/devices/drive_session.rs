@@ -73,8 +73,8 @@ impl SessionError {
 /// How a fault is cleared.
 pub const CLEARING: &str = "tilt faults --clear clears it, and so does homing the axis";
 
-/// A drive client on a port. Dropped while the axis may move, it sends a stop; if that fails too, its
-/// guardian stops the axis.
+/// A drive client on a port. Dropped while the axis may move, it sends a stop; if that fails too,
+/// its guardian stops the axis.
 pub struct Session<'g, P: Port> {
     client: DriveClient,
     port: P,

@@ -2,10 +2,11 @@
 //! "CANopen Communication").
 //!
 //! [`CanServer`] joins the services, one file each: NMT and error control, SDO, transmit and
-//! receive PDOs. Not simulated: bit timing and arbitration, LSS, SDO block transfer. A lost master
+//! receive PDOs, LSS. Not simulated: bit timing and arbitration, SDO block transfer. A lost master
 //! is error 8130 with the reaction of 6007.
 
 mod guard;
+mod lss;
 mod receive;
 mod sdo;
 mod transmit;
@@ -19,6 +20,7 @@ use protocol::canopen::{CanFrame, CobId, CommunicationObject, NodeId, PdoNumber}
 use protocol::epos2::objects::Address;
 
 use self::guard::{HeartbeatMonitor, HeartbeatTimer, NodeGuarding};
+use self::lss::LayerSetting;
 use self::receive::ReceivePdo;
 use self::sdo::SdoServer;
 use self::transmit::TransmitPdo;
@@ -37,6 +39,7 @@ pub struct CanServer {
     heartbeat: HeartbeatTimer,
     guarding: NodeGuarding,
     monitors: [HeartbeatMonitor; 2],
+    lss: LayerSetting,
     sdo: SdoServer,
     transmit: [TransmitPdo; 4],
     receive: [ReceivePdo; 4],
@@ -179,7 +182,11 @@ impl CanServer {
                     pdo.on_frame(node, number, frame);
                 }
             }
-            _ => {}
+            _ => {
+                if let Some(answer) = self.lss.execute(node, frame) {
+                    out(&answer);
+                }
+            }
         }
     }
 

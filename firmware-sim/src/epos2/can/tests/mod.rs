@@ -5,6 +5,7 @@ use std::vec::Vec;
 
 mod errors;
 mod guard;
+mod lss;
 mod pdo;
 mod sdo;
 
