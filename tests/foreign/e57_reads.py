@@ -14,7 +14,9 @@ pye57.e57.SUPPORTED_POINT_FIELDS.update({"timeStamp": "d", "velomotion:tilt": "d
 file = pye57.E57(sys.argv[1])
 header = file.get_header(0)
 scan = file.read_scan_raw(0)
-placed = file.read_scan(0, intensity=True, ignore_missing_fields=True)
+plain = file.read_scan(0)
+placed = file.read_scan(0, intensity=True)
+assert all((plain[name] == placed[name]).all() for name in plain)
 xyz = np.vstack([placed[f"cartesian{axis}"] for axis in "XYZ"])
 print(
     json.dumps(

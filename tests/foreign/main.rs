@@ -17,6 +17,8 @@ use engine::config::AxisSettings;
 use engine::devices::profile as devices;
 use engine::devices::simulated;
 use engine::devices::simulated_drive::{self as software_drive, SoftwarePort};
+use engine::reconstruct::lidar_copy;
+use engine::reconstruct::source::Source;
 use serde_json::Value;
 use sim::Attachment;
 use velomotion_tests::capture::{Captured, Setting};
@@ -109,6 +111,24 @@ fn tshark_reads_our_log_without_a_malformed_record() {
             "_ws.malformed || udp.checksum.status == 0 || ip.checksum.status == 0",
         ]);
     assert_eq!(run(command), "");
+}
+
+/// Programs of libpcap and others read no pcapng with two kinds of interfaces, but this.
+#[test]
+#[ignore = "needs tcpdump, and python3 with the packages of tests/foreign/requirements.txt"]
+fn other_programs_read_the_lidar_of_our_log_as_pcap() {
+    let scan = Captured::new(Setting::default());
+    let pcap = scan.log().with_file_name("lidar.pcap");
+    let source = Source::open(&scan.log(), None).unwrap();
+    let copied = lidar_copy::copy(&source, &pcap, false, &AtomicBool::new(false)).unwrap();
+    let mut command = Command::new("tcpdump");
+    command.args(["-n", "-r"]).arg(&pcap);
+    let printed = run(command);
+    assert_eq!(printed.lines().count() as u64, copied.packets);
+    let data = printed.lines().filter(|line| line.ends_with("length 1206"));
+    assert_eq!(data.count() as u64, scan.data_packets());
+    let read = run_script("velodyne_decoder_pcap.py", &[&pcap]);
+    assert_eq!(read["measurements"], 384 * scan.data_packets(), "{read}");
 }
 
 /// tshark dissects the drive's traffic of a capture over CAN.

@@ -13,6 +13,8 @@ pub struct Metadata {
     pub software: String,
     /// Epoch and clock of the time column, in words.
     pub time_reference: String,
+    /// Whether the lidar reported two returns of each pulse. LAS numbers them.
+    pub dual_return: bool,
     /// Further comments; several lines become several comments.
     pub comments: Vec<String>,
 }

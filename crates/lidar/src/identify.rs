@@ -26,8 +26,9 @@ const MAX_LOST: i64 = 8;
 /// the named model is assumed not to occur.
 const REGULAR_SPACINGS: u8 = 4;
 
-/// Whether two blocks of this packet share a firing.
-pub(crate) fn is_dual(packet: &DataPacket<'_>) -> bool {
+/// Whether two blocks of this packet share a firing: its pulses have two returns.
+#[must_use]
+pub fn is_dual(packet: &DataPacket<'_>) -> bool {
     packet
         .return_mode()
         .is_dual()

@@ -54,6 +54,7 @@ pub use decoder::Decoder;
 pub use fast::{FiringBlock, Heading, ReturnLayer};
 pub use firing::{Duplicates, Echo, Firing, LaserReturn, SensorPoint, azimuth_variance_rad2};
 pub use frames::{FrameCutter, LidarFrameError, RevolutionFrame};
+pub use identify::is_dual;
 pub use options::Options;
 pub use organised::{FiringColumn, OrganisedFrame};
 pub use stats::{ModelConflict, Stats};

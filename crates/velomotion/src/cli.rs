@@ -68,7 +68,8 @@ pub struct DeviceArgument {
 pub enum Command {
     /// Sweep the platform and make a point cloud of it
     Capture(Capture),
-    /// Make the point cloud of a log or of a plain lidar recording
+    /// Make the point cloud of a log or of a plain lidar recording; -o NAME.pcap copies the lidar's
+    /// packets of a log instead
     Replay(Replay),
     /// Simulate a scene into a log, with ground truth
     Simulate(Simulate),

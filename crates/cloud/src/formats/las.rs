@@ -37,8 +37,10 @@ mod at {
     pub const GPS_TIME: usize = 22;
     pub const EXTRA: usize = 30;
 }
-/// The first return of one.
+/// Return number, and number of returns in the upper half.
 const ONE_OF_ONE: u8 = 0x11;
+const ONE_OF_TWO: u8 = 0x21;
+const TWO_OF_TWO: u8 = 0x22;
 /// Classification flag bit 0: not from a real lidar.
 const SYNTHETIC: u8 = 1;
 
@@ -53,6 +55,7 @@ pub(super) struct LasEncoder<W: Write + Seek + Send + Sync + 'static> {
     format: &'static str,
     extras: Vec<ExtraColumn>,
     flags: u8,
+    dual_return: bool,
     fault: WriteFault,
     /// Before begin, or after finish.
     output: Option<FallibleOutput<W>>,
@@ -76,11 +79,13 @@ impl<W: Write + Seek + Send + Sync + 'static> LasWriter<W> {
             format,
             extras: extra_bytes::layout(fields),
             flags: 0,
+            dual_return: false,
             fault,
             output: Some(output),
             open: None,
         };
-        Self::of(encoder, fields)
+        // The return numbers follow from the echoes, whether they are written or not.
+        Self::of(encoder, fields | Fields::ECHO)
     }
 
     /// Returns the output at its start; `None` if writing the header failed.
@@ -122,13 +127,19 @@ impl<W: Write + Seek + Send + Sync + 'static> LasEncoder<W> {
 }
 
 /// Encodes a batch as records of format 6 into `rows`.
-fn encode(batch: &Points, flags: u8, extras: &[ExtraColumn], rows: &mut [u8], row_bytes: usize) {
-    fill(
-        rows,
-        row_bytes,
-        at::RETURNS,
-        std::iter::repeat([ONE_OF_ONE]),
-    );
+fn encode(
+    batch: &Points,
+    (flags, dual_return): (u8, bool),
+    extras: &[ExtraColumn],
+    rows: &mut [u8],
+    row_bytes: usize,
+) {
+    let returns = batch.echo().iter().map(|echo| match echo {
+        1 | 4 if dual_return => [ONE_OF_TWO],
+        2 if dual_return => [TWO_OF_TWO],
+        _ => [ONE_OF_ONE],
+    });
+    fill(rows, row_bytes, at::RETURNS, returns);
     fill(rows, row_bytes, at::FLAGS, std::iter::repeat([flags]));
     for (offset, axis) in at::XYZ
         .into_iter()
@@ -184,6 +195,7 @@ impl<W: Write + Seek + Send + Sync + 'static> Encoder for LasEncoder<W> {
 
     fn begin(&mut self, metadata: &Metadata) -> Result<(), EncodeFault> {
         self.flags = if metadata.simulated { SYNTHETIC } else { 0 };
+        self.dual_return = metadata.dual_return;
         let header = self.header(metadata).map_err(EncodeFault::library)?;
         let slab = PointDataBuilder::new().for_header(&header).build();
         if let Some(output) = self.output.take() {
@@ -200,7 +212,8 @@ impl<W: Write + Seek + Send + Sync + 'static> Encoder for LasEncoder<W> {
         let row_bytes = slab.record_len();
         let rows = slab.resize_for(batch.len());
         rows.fill(0);
-        encode(batch, self.flags, &self.extras, rows, row_bytes);
+        let points = (self.flags, self.dual_return);
+        encode(batch, points, &self.extras, rows, row_bytes);
         self.fault.outcome(writer.write_points(slab))
     }
 

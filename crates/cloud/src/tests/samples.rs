@@ -16,6 +16,7 @@ pub fn metadata() -> Metadata {
         source: "VLP-16 on a tilt axis".into(),
         software: "velomotion 0.1.0".into(),
         time_reference: "Unix seconds, host clock".into(),
+        dual_return: false,
         comments: vec!["first\nsecond".into()],
     }
 }

@@ -5,6 +5,7 @@ pub mod decoder_options;
 pub mod diagnostics;
 mod failures;
 pub mod frames;
+pub mod lidar_copy;
 pub mod replay;
 pub mod report;
 pub mod source;

@@ -6,9 +6,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use analysis::truth::Comparison;
 use cloud::{Metadata, Sink, SinkError, TiltTrack};
 use io::recording::{Gap, Pacer, Wait};
-use lidar::{Options, Stats, UtcClock};
+use lidar::{Options, Stats, UtcClock, is_dual};
 use protocol::record::{DriveLink, Record, Wire};
-use protocol::vlp16::DATA_LEN;
+use protocol::vlp16::{DATA_LEN, DataPacket};
 use scanner::steps::SetClock;
 use scanner::trajectory::Method;
 use scanner::{
@@ -114,6 +114,8 @@ struct FirstPass {
     alignment: Alignment,
     /// Receive time of the last data packet.
     last_data: Option<Stamp<Host>>,
+    /// Whether a pulse has two returns, by the first packet.
+    dual_return: bool,
     /// UTC clock of the lidar's receiver, if requested.
     utc: Option<UtcClock>,
 }
@@ -127,12 +129,16 @@ fn survey(request: &Reconstruction<'_>) -> Result<FirstPass, Failure> {
     let mut utc =
         (request.time == TimeReference::Utc).then(|| UtcSurvey::new(request.options.clone()));
     let mut last_data = None;
+    let mut dual_return = None;
     let pass = source.read(|record| {
         survey.observe(record);
         if let Wire::Lidar { payload, .. } = record.wire
             && payload.len() == DATA_LEN
         {
             last_data = Some(record.host);
+            dual_return.get_or_insert_with(|| {
+                DataPacket::new(payload).is_ok_and(|packet| is_dual(&packet))
+            });
         }
         if let Some(utc) = &mut utc {
             utc.observe(record);
@@ -149,6 +155,7 @@ fn survey(request: &Reconstruction<'_>) -> Result<FirstPass, Failure> {
         pass,
         alignment,
         last_data,
+        dual_return: dual_return == Some(true),
         utc: utc.map(|utc| utc.clock),
     })
 }
@@ -237,7 +244,7 @@ fn place(
 ) -> Result<(PlacementCounts, Stats), Failure> {
     let mut pace = pacer(request.pace)?;
     let cannot_write = |error: SinkError| sink_failure(output, &error);
-    sink.begin(&metadata(&first_pass.config, request))
+    sink.begin(&metadata(&first_pass, request))
         .map_err(cannot_write)?;
     if sink.wants_tilt() {
         let track = tilt_track(&first_pass.alignment);
@@ -260,7 +267,7 @@ fn place(
 /// As [`make`], and [`Kind::Usage`] for invalid frame settings.
 pub fn frames(request: &Reconstruction<'_>, plan: &FramePlan) -> Result<ScanReport, Failure> {
     let first_pass = survey(request)?;
-    let metadata = metadata(&first_pass.config, request);
+    let metadata = metadata(&first_pass, request);
     let mut pace = pacer(request.pace)?;
     let options = request.options.clone();
     let utc = first_pass.utc.as_ref();
@@ -385,7 +392,7 @@ fn wait_until_due(pace: &mut Pacer, record: &Record<'_>, interrupt: &AtomicBool)
     }
 }
 
-fn interrupted(path: &Path) -> Failure {
+pub(super) fn interrupted(path: &Path) -> Failure {
     Failure::new(
         Kind::Interrupted,
         "interrupted by the user during reconstruction",
@@ -414,7 +421,8 @@ fn sync(alignment: &Alignment, tilt: &TiltSource) -> SyncReport {
 
 /// Metadata of the cloud. Independent of file names and of the date, so that a log always gives the
 /// same bytes.
-fn metadata(config: &ScanConfig, request: &Reconstruction<'_>) -> Metadata {
+fn metadata(first_pass: &FirstPass, request: &Reconstruction<'_>) -> Metadata {
+    let config = &first_pass.config;
     let mut comments = Vec::new();
     if request.tilt == TiltSource::None {
         comments.push("not tilted: the sensor's own frame".to_owned());
@@ -428,6 +436,7 @@ fn metadata(config: &ScanConfig, request: &Reconstruction<'_>) -> Metadata {
             TimeReference::Utc => "Unix seconds (UTC) from the lidar's satellite receiver",
         }
         .to_owned(),
+        dual_return: first_pass.dual_return,
         comments,
     }
 }

@@ -124,16 +124,12 @@ enum LogFormat {
 }
 
 impl LogWriter<File> {
-    /// Creates a classic pcap file, for programs that do not read pcapng. It holds the lidar's
-    /// datagrams and skips frames of the drive.
+    /// Creates a file for [`LogWriter::pcap`].
     ///
     /// # Errors
     /// [`LogError::Exists`], [`LogError::Create`], [`LogError::Write`].
     pub fn create_pcap(path: impl AsRef<Path>, overwrite: Overwrite) -> Result<Self, LogError> {
-        let mut writer = Self::empty(new_file(path.as_ref(), overwrite)?, LogFormat::Pcap);
-        block::pcap_header(&mut writer.buffer);
-        writer.flush()?;
-        Ok(writer)
+        Self::pcap(new_file(path.as_ref(), overwrite)?)
     }
 
     /// Creates a log file and writes its header.
@@ -190,6 +186,18 @@ impl<W: Write> LogWriter<W> {
         if let Some(link) = config.drive {
             writer.drive_interface(link);
         }
+        writer.flush()?;
+        Ok(writer)
+    }
+
+    /// Starts a classic pcap, for programs that do not read pcapng. It holds the lidar's datagrams
+    /// and skips frames of the drive.
+    ///
+    /// # Errors
+    /// [`LogError::Write`].
+    pub fn pcap(out: W) -> Result<Self, LogError> {
+        let mut writer = Self::empty(out, LogFormat::Pcap);
+        block::pcap_header(&mut writer.buffer);
         writer.flush()?;
         Ok(writer)
     }

@@ -1,4 +1,8 @@
-//! `velomotion replay`: a cloud from a log, or from a plain lidar recording.
+//! `velomotion replay`: a cloud from a log, or from a plain lidar recording; or the lidar's packets
+//! of a log.
+
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
 use engine::capture::completeness;
 use engine::config;
@@ -7,6 +11,7 @@ use engine::failure::{Failure, Kind};
 use engine::output::{self, Target};
 use engine::reconstruct::decoder_options::decoder_options;
 use engine::reconstruct::frames::FramePlan;
+use engine::reconstruct::lidar_copy;
 use engine::reconstruct::replay::{self, Reconstruction};
 use engine::reconstruct::source::Source;
 use engine::reconstruct::tilt_table::tilt_source;
@@ -27,6 +32,9 @@ pub fn run(arguments: &cli::Replay, common: &Common) -> Result<CommandOutput, Fa
     let interrupt = signals::interrupt_flag()?;
     // Check the input before an output is opened.
     let mut source = Source::open(&arguments.input, arguments.lidar.sensor)?;
+    if let Some(pcap) = arguments.output.output.as_deref().filter(is_pcap) {
+        return copy(arguments, &source, pcap, &interrupt);
+    }
     let tilt = tilt_source(&arguments.tilt)?;
     if let Some(mount) = mount(arguments, common, &tilt, &source)? {
         source.set_mount(mount);
@@ -91,6 +99,46 @@ pub fn run(arguments: &cli::Replay, common: &Common) -> Result<CommandOutput, Fa
         ))
     });
     Ok(CommandOutput::scan(&scan, failure, stdout))
+}
+
+/// Whether an output is the lidar's recording rather than a cloud.
+fn is_pcap(output: &&Path) -> bool {
+    let extension = output.extension().unwrap_or_default();
+    extension.eq_ignore_ascii_case("pcap")
+}
+
+/// The lidar's datagrams alone.
+fn copy(
+    arguments: &cli::Replay,
+    source: &Source,
+    pcap: &Path,
+    interrupt: &AtomicBool,
+) -> Result<CommandOutput, Failure> {
+    if arguments.frames.is_some() || arguments.realtime.is_some() {
+        return Err(Failure::new(
+            Kind::Usage,
+            "a .pcap takes the lidar's packets as they are: --frames and --realtime make clouds",
+        )
+        .help("leave them out, or name a cloud with -o"));
+    }
+    output::refuse_overwrite(&arguments.input, pcap)?;
+    let report = lidar_copy::copy(source, pcap, arguments.output.force, interrupt)?;
+    let failure = report.truncated.as_ref().map(|truncated| {
+        let what = format!(
+            "{}: the recording ends early ({truncated})",
+            arguments.input.display()
+        );
+        Failure::new(Kind::Incomplete, what).help(format!("what is there is in {}", pcap.display()))
+    });
+    let text = format!(
+        "{} packets of the lidar in {}",
+        report.packets,
+        pcap.display()
+    );
+    Ok(CommandOutput {
+        failure,
+        ..CommandOutput::report(&report, text)
+    })
 }
 
 /// The mount that replaces the recording's: that of `--mount`, or the configuration's for a

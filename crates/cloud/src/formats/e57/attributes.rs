@@ -19,6 +19,8 @@ const DOUBLE: RecordDataType = RecordDataType::Double {
     max: None,
 };
 const BYTE: RecordDataType = RecordDataType::Integer { min: 0, max: 255 };
+/// Every point is valid. Readers such as pye57 ask for this state.
+const VALID: RecordDataType = RecordDataType::Integer { min: 0, max: 2 };
 
 /// The attributes of a point.
 pub(super) struct PointAttributes {
@@ -56,13 +58,18 @@ impl PointAttributes {
             name: name(*column),
             data_type: data_type(*column),
         });
-        axes.into_iter().chain(columns).collect()
+        let state = Record {
+            name: RecordName::CartesianInvalidState,
+            data_type: VALID,
+        };
+        axes.into_iter().chain([state]).chain(columns).collect()
     }
 
     /// Values of the attributes.
     pub(super) fn values(&self, point: &Point, start: Stamp<Host>) -> RawValues {
-        let mut values = RawValues::with_capacity(3 + self.columns.len());
+        let mut values = RawValues::with_capacity(4 + self.columns.len());
         values.extend(point.position_m.map(|v| RecordValue::Single(v as f32)));
+        values.push(RecordValue::Integer(0));
         values.extend(self.columns.iter().map(|column| match column {
             Column::Intensity => RecordValue::Integer(point.intensity.into()),
             Column::Ring => RecordValue::Integer(point.ring.into()),

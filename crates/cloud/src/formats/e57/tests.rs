@@ -39,6 +39,7 @@ fn files_round_trip() {
     for (values, point) in raw.iter().zip(cloud.iter()) {
         for (name, value) in names.iter().zip(values) {
             let expected = match name {
+                RecordName::CartesianInvalidState => RecordValue::Integer(0),
                 RecordName::CartesianX => RecordValue::Single(point.position_m[0] as f32),
                 RecordName::CartesianY => RecordValue::Single(point.position_m[1] as f32),
                 RecordName::CartesianZ => RecordValue::Single(point.position_m[2] as f32),
@@ -65,7 +66,7 @@ fn files_round_trip() {
             assert_eq!(*value, expected, "{name:?}");
         }
     }
-    assert_eq!(names.len(), 11);
+    assert_eq!(names.len(), 12);
 }
 
 #[test]

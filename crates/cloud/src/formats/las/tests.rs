@@ -111,6 +111,33 @@ fn a_real_cloud_is_not_marked_simulated() {
     assert!(points_of(&mut reader).all(|point| !point.unwrap().is_synthetic));
 }
 
+/// The last return is the farther one of two.
+#[test]
+fn returns_of_dual_mode_are_numbered_by_distance() {
+    let dual = Metadata {
+        dual_return: true,
+        ..metadata()
+    };
+    for (metadata, numbers) in [
+        (dual, [(1, 1), (1, 2), (2, 2), (1, 1), (1, 2)]),
+        (metadata(), [(1, 1); 5]),
+    ] {
+        let writer = LasWriter::las(Cursor::new(vec![]), Fields::NONE);
+        let bytes = written(writer, &metadata, &[cloud(20)]);
+        let mut reader = Reader::new(Cursor::new(bytes)).unwrap();
+        for (point, given) in points_of(&mut reader).zip(cloud(20).iter()) {
+            let point = point.unwrap();
+            let found = (point.return_number, point.number_of_returns);
+            assert_eq!(
+                found,
+                numbers[usize::from(given.echo)],
+                "echo {}",
+                given.echo
+            );
+        }
+    }
+}
+
 #[test]
 fn every_set_of_columns_can_be_requested() {
     let given = cloud(20);

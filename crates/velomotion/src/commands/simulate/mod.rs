@@ -384,7 +384,7 @@ fn metadata(name: &str) -> Metadata {
         source: format!("the truth of the simulated scene {}", stem(name)),
         software: concat!("velomotion ", env!("CARGO_PKG_VERSION")).to_owned(),
         time_reference: "Unix seconds (UTC) of the simulated host's clock".to_owned(),
-        comments: Vec::new(),
+        ..Metadata::default()
     }
 }
 
