@@ -244,7 +244,7 @@ fn place(
 ) -> Result<(PlacementCounts, Stats), Failure> {
     let mut pace = pacer(request.pace)?;
     let cannot_write = |error: SinkError| sink_failure(output, &error);
-    sink.begin(&metadata(&first_pass, request))
+    sink.begin(&metadata(first_pass, request))
         .map_err(cannot_write)?;
     if sink.wants_tilt() {
         let track = tilt_track(&first_pass.alignment);
