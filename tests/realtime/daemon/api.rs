@@ -238,6 +238,7 @@ fn prometheus_metrics_and_the_page_are_served() {
     let page = rig.get("/");
     assert!(page.text().contains("<!doctype html>"));
     assert!(page.head.to_lowercase().contains("content-security-policy"));
+    page_is_sent_once_and_packed(&rig);
     let described = rig.get("/api/v1/openapi.json").json();
     assert_eq!(described["openapi"], "3.1.0");
     // The schema describes every key of the answer.
@@ -252,6 +253,28 @@ fn prometheus_metrics_and_the_page_are_served() {
             "{part}"
         );
     }
+}
+
+/// A browser keeps the script, and asks whether it has changed.
+fn page_is_sent_once_and_packed(rig: &Rig) {
+    let get = |headers: &str| request(rig.address, "GET", "/page.js", headers, "");
+    let (plain, packed) = (get(""), get("accept-encoding: br, gzip\r\n"));
+    assert!(
+        packed.head.contains("content-encoding: gzip"),
+        "{}",
+        packed.head
+    );
+    assert!(packed.body.starts_with(&[0x1F, 0x8B]));
+    assert!(packed.body.len() < plain.body.len() / 2);
+    for (answer, accepted) in [(&plain, ""), (&packed, "accept-encoding: gzip\r\n")] {
+        let tag = answer
+            .head
+            .lines()
+            .find_map(|line| line.strip_prefix("etag: "));
+        let again = get(&format!("{accepted}if-none-match: {}\r\n", tag.unwrap()));
+        assert_eq!((again.status, again.body.len()), (304, 0));
+    }
+    assert_eq!(get("if-none-match: \"older\"\r\n").status, 200);
 }
 
 #[test]

@@ -32,6 +32,7 @@ fn a_scan_is_listed_downloaded_like_its_replay_and_deleted() {
 
     let log = rig.get(&format!("/api/v1/scans/{id}/log"));
     assert_eq!(log.body, std::fs::read(rig.log(id)).unwrap());
+    downloads_go_on_where_they_ended(&rig, &format!("/api/v1/scans/{id}/log"), &log.body);
     let folder = rig.folder.path();
     for (query, option, extension) in [
         ("", "", "ply"),
@@ -77,6 +78,29 @@ fn a_scan_is_listed_downloaded_like_its_replay_and_deleted() {
     request(rig.address, "DELETE", &path, "", "").refused(404, "deleted");
     rig.get(&path).refused(404, "deleted");
     assert!(!rig.log(id).exists());
+}
+
+/// A second request for what is missing of a file; none of it twice, none of another version.
+fn downloads_go_on_where_they_ended(rig: &Rig, path: &str, whole: &[u8]) {
+    let get = |headers: &str| request(rig.address, "GET", path, headers, "");
+    let head = get("").head;
+    assert!(head.contains("accept-ranges: bytes"), "{head}");
+    let tag = head
+        .lines()
+        .find_map(|line| line.strip_prefix("etag: "))
+        .unwrap();
+    let rest = get(&format!("range: bytes=1000-\r\nif-range: {tag}\r\n"));
+    assert_eq!((rest.status, &*rest.body), (206, &whole[1_000..]));
+    let place = format!(
+        "content-range: bytes 1000-{}/{}",
+        whole.len() - 1,
+        whole.len()
+    );
+    assert!(rest.head.contains(&place), "{}", rest.head);
+    let changed = get("range: bytes=1000-\r\nif-range: \"older\"\r\n");
+    assert_eq!((changed.status, &*changed.body), (200, whole));
+    get("range: bytes=99999999999-\r\n").refused(416, "beyond the end");
+    assert_eq!(get(&format!("if-none-match: {tag}\r\n")).status, 304);
 }
 
 #[test]

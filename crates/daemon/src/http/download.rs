@@ -1,7 +1,7 @@
 //! Files of scans. A cloud in another format is made from the log into an unnamed file and streamed
 //! from there, never all of it in memory.
 
-use std::fs::File;
+use std::fs::{File, Metadata};
 use std::io::{Seek, SeekFrom};
 use std::path::{Path as FilePath, PathBuf};
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use axum::body::Body;
 use axum::extract::rejection::QueryRejection;
 use axum::extract::{Path, Query, State};
-use axum::http::{StatusCode, header};
+use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use cloud::Fields;
 use cloud::formats::Format;
@@ -21,6 +21,7 @@ use tokio::io::AsyncReadExt;
 use tokio::sync::OwnedSemaphorePermit;
 
 use super::Api;
+use super::partial::{FileRange, is_known, range_of, tag_of};
 use super::refusal::Refusal;
 use crate::cloud_builder::defect;
 use crate::disk_quota::{self, DiskQuota, QuotaFile};
@@ -51,6 +52,7 @@ pub async fn cloud(
     State(api): State<Arc<Api>>,
     Path(id): Path<String>,
     query: Result<Query<CloudQuery>, QueryRejection>,
+    headers: HeaderMap,
 ) -> Result<Response, Refusal> {
     let Query(wanted) = query?;
     let name = wanted.format.as_deref().unwrap_or("ply");
@@ -68,7 +70,7 @@ pub async fn cloud(
         && plain
         && let Ok(stored) = open(api.state.cloud(&id)).await?
     {
-        return stream(stored, &id, "ply", permit);
+        return Ok(send(stored, &id, "ply", permit, Some(&headers)));
     }
     let making = Arc::clone(&api.making).try_acquire_owned();
     let making = making.map_err(|_| Refusal::too_many("clouds being made"))?;
@@ -100,7 +102,7 @@ pub async fn cloud(
     });
     let file = made.await.map_err(|_| defect())??;
     drop(client);
-    stream(file, &id, format.extension(), permit)
+    Ok(send(file, &id, format.extension(), permit, None))
 }
 
 /// Interrupts the making of a cloud when its client disconnects.
@@ -147,35 +149,41 @@ fn make(
     })?;
     drop(sink);
     file.seek(SeekFrom::Start(0)).map_err(cannot)?;
-    let length = file.metadata().map_err(cannot)?.len();
-    Ok((file, length))
+    let metadata = file.metadata().map_err(cannot)?;
+    Ok((file, metadata))
 }
 
 /// `GET /scans/ID/log`.
-pub async fn log(State(api): State<Arc<Api>>, Path(id): Path<String>) -> Result<Response, Refusal> {
-    stored(&api, &id, LOG, "pcapng").await
+pub async fn log(
+    State(api): State<Arc<Api>>,
+    Path(id): Path<String>,
+    headers: HeaderMap,
+) -> Result<Response, Refusal> {
+    stored(&api, &id, (LOG, "pcapng"), &headers).await
 }
 
 /// `GET /scans/ID/thumbnail`.
 pub async fn thumbnail(
     State(api): State<Arc<Api>>,
     Path(id): Path<String>,
+    headers: HeaderMap,
 ) -> Result<Response, Refusal> {
-    stored(&api, &id, THUMBNAIL, "png").await
+    stored(&api, &id, (THUMBNAIL, "png"), &headers).await
 }
 
 /// A file of a scan's folder.
-async fn stored(api: &Api, id: &str, name: &str, extension: &str) -> Result<Response, Refusal> {
+async fn stored(
+    api: &Api,
+    id: &str,
+    (name, extension): (&str, &str),
+    headers: &HeaderMap,
+) -> Result<Response, Refusal> {
     let record = api.state.scans.record(id);
     record.ok_or_else(|| Refusal::no_scan(id))?;
     let permit = downloading(api)?;
     let file = open(api.state.scans.place(id).join(name)).await?;
-    stream(
-        file.map_err(|_| Refusal::no_file(name))?,
-        id,
-        extension,
-        permit,
-    )
+    let file = file.map_err(|_| Refusal::no_file(name))?;
+    Ok(send(file, id, extension, permit, Some(headers)))
 }
 
 fn downloading(api: &Api) -> Result<OwnedSemaphorePermit, Refusal> {
@@ -184,8 +192,8 @@ fn downloading(api: &Api) -> Result<OwnedSemaphorePermit, Refusal> {
         .map_err(|_| Refusal::too_many("downloads"))
 }
 
-/// A file and its length.
-type Opened = (File, u64);
+/// A file and what the system says of it.
+type Opened = (File, Metadata);
 
 /// Opens a regular file.
 ///
@@ -194,8 +202,8 @@ type Opened = (File, u64);
 async fn open(path: PathBuf) -> Result<std::io::Result<Opened>, Refusal> {
     super::with_disk(move || {
         let file = io::files::open_regular(&path)?;
-        let length = file.metadata()?.len();
-        Ok((file, length))
+        let metadata = file.metadata()?;
+        Ok((file, metadata))
     })
     .await
 }
@@ -217,13 +225,62 @@ fn attachment(name: &str) -> String {
     format!("attachment; filename=\"{plain}\"; filename*=UTF-8''{escaped}")
 }
 
-/// Sends the rest of a file as it is now, a piece at a time: as fast as the client takes it.
-fn stream(
-    (file, length): Opened,
+/// Sends a file as it is now, a piece at a time: as fast as the client takes it. Of a stored file
+/// the client may ask, by the headers of its request, for a part.
+fn send(
+    (mut file, metadata): Opened,
     id: &str,
     extension: &str,
     permit: OwnedSemaphorePermit,
-) -> Result<Response, Refusal> {
+    asked: Option<&HeaderMap>,
+) -> Response {
+    let length = metadata.len();
+    let tag = tag_of(&metadata);
+    let mut headers = HeaderMap::new();
+    let mut set = |name, value: String| {
+        if let Ok(value) = HeaderValue::from_str(&value) {
+            headers.insert(name, value);
+        }
+    };
+    let content = match extension {
+        "png" => "image/png",
+        "csv" => "text/csv; charset=utf-8",
+        _ => "application/octet-stream",
+    };
+    set(header::CONTENT_TYPE, content.to_owned());
+    let name = format!("velomotion-{id}.{extension}");
+    set(header::CONTENT_DISPOSITION, attachment(&name));
+    // A token may protect it: only the client itself may keep it, and asks each time.
+    let cache = asked.map_or("no-store", |_| "private, no-cache");
+    set(header::CACHE_CONTROL, cache.to_owned());
+    let mut status = StatusCode::OK;
+    let mut range = 0..length;
+    if let Some(asked) = asked {
+        set(header::ETAG, tag.clone());
+        set(header::ACCEPT_RANGES, "bytes".to_owned());
+        if is_known(asked, &tag) {
+            return (StatusCode::NOT_MODIFIED, headers).into_response();
+        }
+        match range_of(asked, &tag, length) {
+            FileRange::Whole => {}
+            FileRange::Bytes(bytes) if file.seek(SeekFrom::Start(bytes.start)).is_ok() => {
+                status = StatusCode::PARTIAL_CONTENT;
+                let last = bytes.end.saturating_sub(1);
+                let place = format!("bytes {}-{last}/{length}", bytes.start);
+                set(header::CONTENT_RANGE, place);
+                range = bytes;
+            }
+            FileRange::Bytes(_) | FileRange::Unsatisfiable => {
+                let (code, reason) = (StatusCode::RANGE_NOT_SATISFIABLE, Kind::Usage);
+                let error = format!("the range of bytes: expected a part of {length} bytes");
+                let refusal = Refusal::new(code, reason, error, "ask for the whole file");
+                let place = [(header::CONTENT_RANGE, format!("bytes */{length}"))];
+                return (place, refusal).into_response();
+            }
+        }
+    }
+    let length = range.end.saturating_sub(range.start);
+    set(header::CONTENT_LENGTH, length.to_string());
     // A log may grow while it is read: the announced length is sent.
     let file = tokio::fs::File::from_std(file).take(length);
     let body = Body::from_stream(try_unfold(
@@ -235,19 +292,5 @@ fn stream(
             Ok::<_, std::io::Error>((read > 0).then_some((piece, (file, permit))))
         },
     ));
-    let content = match extension {
-        "png" => "image/png",
-        "csv" => "text/csv; charset=utf-8",
-        _ => "application/octet-stream",
-    };
-    let headers = [
-        (header::CONTENT_TYPE, content.to_owned()),
-        (header::CONTENT_LENGTH, length.to_string()),
-        (
-            header::CONTENT_DISPOSITION,
-            attachment(&format!("velomotion-{id}.{extension}")),
-        ),
-        (header::CACHE_CONTROL, "no-store".to_owned()),
-    ];
-    Ok((StatusCode::OK, headers, body).into_response())
+    (status, headers, body).into_response()
 }

@@ -8,6 +8,7 @@ pub mod events;
 pub mod guard;
 pub mod metrics;
 pub mod page;
+mod partial;
 pub mod refusal;
 pub mod scans;
 pub mod server;

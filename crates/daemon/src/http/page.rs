@@ -1,12 +1,16 @@
 //! The page with its files from the binary, the sign-in form, and the API description.
 
-use std::sync::Arc;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::io::Write;
+use std::sync::{Arc, LazyLock};
 use std::time::Instant;
 
 use axum::body::Bytes;
 use axum::extract::{Request, State};
-use axum::http::{Extensions, HeaderMap, Method, StatusCode, header};
+use axum::http::{Extensions, HeaderMap, HeaderValue, Method, StatusCode, header};
 use axum::response::{IntoResponse, Response};
+use flate2::Compression;
+use flate2::write::GzEncoder;
 use serde::Deserialize;
 
 use engine::failure::Kind;
@@ -14,6 +18,7 @@ use engine::failure::Kind;
 use super::Api;
 use super::captures;
 use super::guard::{NO_COOKIE, host_of};
+use super::partial::is_known;
 use super::refusal::{Reason, Refusal};
 
 /// The API in OpenAPI 3.1.
@@ -52,6 +57,28 @@ const ASSETS: [Asset; 6] = [
     ),
 ];
 
+/// What clients get of an asset.
+struct Packed {
+    tag: String,
+    gzip: Vec<u8>,
+}
+
+/// The assets' packed forms, in their order.
+static PACKED: LazyLock<Vec<Packed>> = LazyLock::new(|| {
+    let pack = |(_, _, bytes): &Asset| {
+        let mut hasher = DefaultHasher::new();
+        bytes.hash(&mut hasher);
+        let mut gzip = GzEncoder::new(Vec::new(), Compression::best());
+        // Writing to memory does not fail.
+        let _ = gzip.write_all(bytes);
+        Packed {
+            tag: format!("\"{:016x}\"", hasher.finish()),
+            gzip: gzip.finish().unwrap_or_default(),
+        }
+    };
+    ASSETS.iter().map(pack).collect()
+});
+
 /// Content security policy: a page loads only files of this server.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; worker-src 'self'; \
                       base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
@@ -76,7 +103,8 @@ pub async fn asset(request: Request) -> Response {
         "/index.html" => "/",
         path => path,
     };
-    let Some((_, content, bytes)) = ASSETS.iter().find(|(own, _, _)| *own == path) else {
+    let mut assets = ASSETS.iter().zip(PACKED.iter());
+    let Some(((_, content, bytes), packed)) = assets.find(|((own, ..), _)| *own == path) else {
         return Refusal::new(
             StatusCode::NOT_FOUND,
             Reason::NotFound,
@@ -87,11 +115,37 @@ pub async fn asset(request: Request) -> Response {
     };
     if !matches!(*request.method(), Method::GET | Method::HEAD) {
         let mut response = super::no_method().await.into_response();
-        let allow = header::HeaderValue::from_static("GET,HEAD");
+        let allow = HeaderValue::from_static("GET,HEAD");
         response.headers_mut().insert(header::ALLOW, allow);
         return response;
     }
-    html(StatusCode::OK, content, bytes)
+    let mut headers = HeaderMap::new();
+    headers.insert(header::VARY, HeaderValue::from_static("accept-encoding"));
+    // An encoding is a version of its own.
+    let accepted = request.headers().get(header::ACCEPT_ENCODING);
+    let is_packed = accepted
+        .and_then(|value| value.to_str().ok())
+        .is_some_and(|value| value.split(',').any(|name| name.trim() == "gzip"));
+    let (tag, bytes) = match is_packed {
+        true => {
+            headers.insert(header::CONTENT_ENCODING, HeaderValue::from_static("gzip"));
+            (
+                format!("{}-gzip\"", packed.tag.trim_end_matches('"')),
+                &*packed.gzip,
+            )
+        }
+        false => (packed.tag.clone(), *bytes),
+    };
+    if let Ok(value) = HeaderValue::from_str(&tag) {
+        headers.insert(header::ETAG, value);
+    }
+    match is_known(request.headers(), &tag) {
+        true => {
+            headers.remove(header::CONTENT_ENCODING);
+            (headers, html(StatusCode::NOT_MODIFIED, content, &[])).into_response()
+        }
+        false => (headers, html(StatusCode::OK, content, bytes)).into_response(),
+    }
 }
 
 fn html(status: StatusCode, content: &'static str, bytes: &'static [u8]) -> Response {
