@@ -131,11 +131,7 @@ impl<'a> Candidates<'a> {
             Some(Method::Spline) => self.spline().into_iter().collect(),
             Some(method) => self.profile(servo(method)?, method).into_iter().collect(),
             None => {
-                let methods = [Method::Profile, Method::ProfileServo, Method::ProfileServo2];
-                let mut all: Vec<Candidate> = methods
-                    .into_iter()
-                    .filter_map(|method| self.profile(servo(method)?, method))
-                    .collect();
+                let mut all = self.profiles();
                 let best = least(&all).and_then(|best| all.get(best));
                 // Ages of a latch are errors that neighbours share: a spline would follow them.
                 if best.is_none_or(|best| best.latch != LatchEvidence::Present) {
@@ -160,6 +156,29 @@ impl<'a> Candidates<'a> {
             best.fit.remarks.push(remark);
         }
         Some((best.fit, best.pieces))
+    }
+
+    /// The commanded motion behind each servo that may be there.
+    fn profiles(&self) -> Vec<Candidate> {
+        let mut all = Vec::new();
+        let Some(guess) = self.guess() else {
+            return all;
+        };
+        let observed = condensed(&self.observed, &guess);
+        let fit = |servo| profile_fit::fit(&observed, guess, servo);
+        let lag = fit(ServoModel::Lag);
+        let swing = match &lag {
+            Some(lag) if !profile_fit::shows_swing(&observed, lag) => None,
+            _ => fit(ServoModel::Swing),
+        };
+        for (fit, method) in [
+            (fit(ServoModel::None), Method::Profile),
+            (lag, Method::ProfileServo),
+            (swing, Method::ProfileServo2),
+        ] {
+            all.extend(fit.and_then(|fit| self.candidate(fit, method)));
+        }
+        all
     }
 
     fn profile(&self, servo: ServoModel, method: Method) -> Option<Candidate> {

@@ -86,6 +86,9 @@ const INITIAL_LAG_S: f64 = 0.01;
 const MIN_DAMPING: f64 = 0.1;
 /// Residual of parameters that are no motion.
 const INVALID_RESIDUAL: f64 = 1e9;
+/// Score below which no swing shows: two more parameters pay in cross-validation, as in Akaike's
+/// criterion, if the sum of squares falls by more than twice its part of each.
+const SWING_SCORE: f64 = 2.0;
 /// Greatest lag of a servo that moves a head.
 const MAX_LAG_S: f64 = 1.0;
 
@@ -105,6 +108,75 @@ impl ProfileFit {
             .map(|(column, by)| by * column.iter().zip(row).map(|(c, by)| c * by).sum::<f64>())
             .sum();
         (variance.max(0.0) * self.reduced_chi2).sqrt()
+    }
+}
+
+/// Whether the residuals of a fit with a lag show a servo that swings: the score test (Rao 1948) of
+/// a step from the fit towards each start of [`ServoModel::Swing`]. Without one the long search for
+/// its parameters finds nothing that cross-validation would choose.
+pub(super) fn shows_swing(observed: &[Observed], lag: &ProfileFit) -> bool {
+    let shape = ProfileShape::of(lag);
+    let n = shape.len();
+    // Normal equations of the residuals, and of each step. Priors enter by the covariance.
+    let starts = ServoModel::Swing
+        .starts()
+        .iter()
+        .map(|&[lag_s, inertia_s]| {
+            let profile = Profile {
+                start_s: lag.profile.start_s + lag.profile.lag_s - lag_s,
+                lag_s,
+                inertia_s2: inertia_s * inertia_s,
+                ..lag.profile
+            };
+            (profile, StepSums::new(n))
+        });
+    let mut starts: Vec<(Profile, StepSums)> = starts.collect();
+    for o in observed {
+        let (angle_deg, row) = shape.row(&lag.profile, o.at_s);
+        let off = (o.angle_deg - angle_deg) / o.sd_deg;
+        for (profile, sums) in &mut starts {
+            let step = (profile.angle_deg(o.at_s) - angle_deg) / o.sd_deg;
+            sums.add(step, off, row.iter().map(|by| by / o.sd_deg));
+        }
+    }
+    let score = |sums: &StepSums| {
+        let along = &lag.covariance * &sums.step_by;
+        let (step_off, step_step) = (
+            sums.step_off - along.dot(&sums.off_by),
+            sums.step_step - along.dot(&sums.step_by),
+        );
+        step_off * step_off / (step_step * lag.reduced_chi2)
+    };
+    // Written so that a score that is no number shows one.
+    !starts.iter().all(|(_, sums)| score(sums) < SWING_SCORE)
+}
+
+/// Sums over the observations for one step: products of step, residual and derivatives.
+struct StepSums {
+    step_step: f64,
+    step_off: f64,
+    step_by: DVector<f64>,
+    off_by: DVector<f64>,
+}
+
+impl StepSums {
+    fn new(parameters: usize) -> Self {
+        Self {
+            step_step: 0.0,
+            step_off: 0.0,
+            step_by: DVector::zeros(parameters),
+            off_by: DVector::zeros(parameters),
+        }
+    }
+
+    fn add(&mut self, step: f64, off: f64, by: impl Iterator<Item = f64>) {
+        self.step_step += step * step;
+        self.step_off += step * off;
+        let sums = self.step_by.iter_mut().zip(self.off_by.iter_mut());
+        for ((step_by, off_by), by) in sums.zip(by) {
+            *step_by += step * by;
+            *off_by += off * by;
+        }
     }
 }
 
