@@ -17,6 +17,11 @@ pub trait Encoder {
         None
     }
 
+    /// Columns that it uses, where a batch has them, for other fields of the format.
+    fn also(&self) -> Fields {
+        Fields::NONE
+    }
+
     /// Writes the header of a file with these columns.
     ///
     /// # Errors
@@ -83,7 +88,7 @@ pub struct FileSink<E> {
 }
 
 impl<E: Encoder> FileSink<E> {
-    /// A file with the columns of [`Fields::FILE`].
+    /// A file with the columns `fields`.
     pub(super) fn of(encoder: E, fields: Fields) -> Self {
         Self {
             encoder,
@@ -117,7 +122,7 @@ impl<E: Encoder> Sink for FileSink<E> {
     }
 
     fn fields(&self) -> Fields {
-        self.fields
+        self.fields | self.encoder.also()
     }
 
     fn begin(&mut self, metadata: &Metadata) -> Result<(), SinkError> {

@@ -84,8 +84,7 @@ impl<W: Write + Seek + Send + Sync + 'static> LasWriter<W> {
             output: Some(output),
             open: None,
         };
-        // The return numbers follow from the echoes, whether they are written or not.
-        Self::of(encoder, fields | Fields::ECHO)
+        Self::of(encoder, fields)
     }
 
     /// Returns the output at its start; `None` if writing the header failed.
@@ -134,7 +133,9 @@ fn encode(
     rows: &mut [u8],
     row_bytes: usize,
 ) {
-    let returns = batch.echo().iter().map(|echo| match echo {
+    // Without echoes each return counts as the only one.
+    let echoes = batch.echo().iter().chain(std::iter::repeat(&0));
+    let returns = echoes.take(batch.len()).map(|echo| match echo {
         1 | 4 if dual_return => [ONE_OF_TWO],
         2 if dual_return => [TWO_OF_TWO],
         _ => [ONE_OF_ONE],
@@ -191,6 +192,10 @@ impl<W: Write + Seek + Send + Sync + 'static> Encoder for LasEncoder<W> {
 
     fn limit_m(&self) -> Option<f64> {
         Some(LIMIT_M)
+    }
+
+    fn also(&self) -> Fields {
+        Fields::ECHO
     }
 
     fn begin(&mut self, metadata: &Metadata) -> Result<(), EncodeFault> {
