@@ -4,10 +4,14 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use cloud::{Fields, Points};
+use engine::failure::Failure;
 use engine::reconstruct::replay::{self, Reconstruction};
 use engine::reconstruct::report::ScanReport;
 use engine::reconstruct::source::Source;
 use firmware_sim::epos2::Servo;
+use io::log::{LogConfig, LogWriter};
+use io::recording::Recording;
+use protocol::record::{Record, Wire};
 use scanner::TiltSource;
 use sim::Attachment;
 use units::{DegPerS2, Degrees, Span, Stamp};
@@ -198,7 +202,94 @@ fn without_replies(log: &Path, dropped: &dyn Fn(Stamp<units::Host>, usize) -> bo
     kept
 }
 
+/// `cat`, and `mergecap`, which merges by time and appends the names of the files to the comment:
+/// each log has its own clocks, zero and configuration, so that no cloud of two is right. A single
+/// log that mergecap has copied is whole.
+#[test]
+fn logs_that_were_joined_are_refused_and_a_copy_is_not() {
+    let captured = Captured::new(Setting::default());
+    let folder = tempfile::tempdir().unwrap();
+    let log = folder.path().join("joined.pcapng");
+    let bytes = std::fs::read(captured.log()).unwrap();
+    std::fs::write(&log, [&bytes[..], &bytes].concat()).unwrap();
+    let refused = try_scan(&log).unwrap_err().message;
+    let place = format!("a second one begins at byte {}", bytes.len());
+    assert!(refused.contains(&place), "{refused}");
+    let whole = captured.scan().1;
+    for (files, is_whole) in [(1, true), (2, false)] {
+        let mut comment = config_of(&captured.log());
+        comment.push_str("\nFile created by merging: \n");
+        (1..=files).for_each(|n| comment.push_str(&format!("File{n}: part-{n}.pcapng \n")));
+        std::fs::write(&log, rewritten(&captured.log(), &comment, 0)).unwrap();
+        match try_scan(&log) {
+            Ok((_, cloud)) => assert!(is_whole && cloud.len() == whole.len()),
+            Err(error) => assert!(!is_whole && error.message.contains("several")),
+        }
+    }
+}
+
+/// A recorder that writes stretches of packets twice, longer than what a decoder reorders.
+#[test]
+fn packets_that_were_recorded_twice_in_bursts_count_once() {
+    let captured = Captured::new(Setting::default());
+    let folder = tempfile::tempdir().unwrap();
+    let log = folder.path().join("doubled.pcapng");
+    let comment = config_of(&captured.log());
+    std::fs::write(&log, rewritten(&captured.log(), &comment, 20)).unwrap();
+    let (scan, cloud) = scan(&log);
+    assert_eq!(cloud.len(), captured.scan().1.len());
+    assert_eq!(scan.contents.lost_packets, 0);
+    let warnings = &scan.contents.warnings;
+    assert!(
+        warnings.len() == 1 && warnings[0].contains("arrived twice"),
+        "{warnings:?}"
+    );
+}
+
+fn config_of(log: &Path) -> String {
+    Recording::open(log).unwrap().metadata().unwrap().to_owned()
+}
+
+/// The bytes of a log with another comment, and with every stretch of `burst` data packets twice.
+fn rewritten(log: &Path, comment: &str, burst: usize) -> Vec<u8> {
+    let config = LogConfig {
+        metadata: comment.to_owned(),
+        ..LogConfig::default()
+    };
+    let mut writer = LogWriter::new(Vec::new(), &config).unwrap();
+    let mut recording = Recording::open(log).unwrap();
+    let mut stretch = Vec::new();
+    while let Some(record) = recording.next_record().unwrap() {
+        writer.write(&record).unwrap();
+        if let Wire::Lidar {
+            source,
+            port,
+            payload,
+        } = record.wire
+            && payload.len() == 1206
+        {
+            stretch.push((record.host, source, port, payload.to_vec()));
+        }
+        if burst > 0 && stretch.len() == burst {
+            for (host, source, port, payload) in stretch.drain(..) {
+                let payload = &payload[..];
+                let wire = Wire::Lidar {
+                    source,
+                    port,
+                    payload,
+                };
+                writer.write(&Record { host, wire }).unwrap();
+            }
+        }
+    }
+    writer.finish().unwrap().1
+}
+
 fn scan(log: &Path) -> (ScanReport, Points) {
+    try_scan(log).unwrap()
+}
+
+fn try_scan(log: &Path) -> Result<(ScanReport, Points), Failure> {
     let mut points = Points::new(Fields::ALL);
     let request = Reconstruction {
         recording: &Source::open(log, None).unwrap(),
@@ -211,6 +302,6 @@ fn scan(log: &Path) -> (ScanReport, Points) {
         lost_records: 0,
         interrupt: &AtomicBool::new(false),
     };
-    let scan = replay::scan(&request, &mut points, Path::new("memory")).unwrap();
-    (scan, points)
+    let scan = replay::scan(&request, &mut points, Path::new("memory"))?;
+    Ok((scan, points))
 }

@@ -68,6 +68,8 @@ enum FormatState {
 enum FileItem {
     /// A packet; `data` counts from the front of the window.
     Packet(CapturedPacket),
+    /// The header of a section after the first.
+    Section { length: usize },
     /// An unusable packet with a valid frame.
     Malformed { length: usize, fault: PacketFault },
     /// Damaged bytes, which the window has passed.
@@ -269,6 +271,10 @@ impl<R: Read> Recording<R> {
             match item {
                 FileItem::End(end) => self.end = Some(end),
                 FileItem::Skip { length } => self.consumed = length,
+                FileItem::Section { length } => {
+                    self.consumed = length;
+                    self.counts.second_section.get_or_insert(offset);
+                }
                 FileItem::Malformed { length, fault } => {
                     self.consumed = length;
                     self.counts.records += 1;

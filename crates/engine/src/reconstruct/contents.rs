@@ -304,7 +304,7 @@ fn warnings(stats: &Stats, pass: &Pass, steps: &[ClockStep]) -> Vec<String> {
     let counts_with_text = [
         (stats.lost_packets, "lidar packets are missing"),
         (
-            stats.duplicates,
+            stats.duplicates + pass.doubled,
             "lidar packets arrived twice and were used once",
         ),
         (

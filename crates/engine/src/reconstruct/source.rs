@@ -1,7 +1,7 @@
 //! Recordings as a source of records: passes over a file or pipe, the selected sensor, the log's
 //! configuration.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, VecDeque};
 use std::fmt;
 use std::io::ErrorKind;
 use std::net::Ipv4Addr;
@@ -12,6 +12,7 @@ use io::recording::{
     DatagramKind, End, Recording, RecordingCounts, RecordingError, RecordingInput, SPOOL_LIMIT,
 };
 use protocol::record::{Record, Wire};
+use protocol::vlp16::{DATA_LEN, DataPacket};
 use scanner::ScanConfig;
 use scanner::config::MountConfig;
 
@@ -40,6 +41,8 @@ pub struct Pass {
     pub counts: RecordingCounts,
     /// Where and why the file ends early.
     pub truncated: Option<String>,
+    /// Data packets that the file has twice. The second ones were left out.
+    pub doubled: u64,
 }
 
 impl FromStr for SensorAddress {
@@ -83,10 +86,24 @@ struct Filter {
     port: Option<u16>,
     /// Sensors that send data.
     sensors: BTreeSet<SensorAddress>,
+    recent: RecentPackets,
+    doubled: u64,
 }
 
 impl Filter {
     fn takes(&mut self, record: &Record<'_>) -> bool {
+        let takes = self.is_wanted(record);
+        match record.wire {
+            Wire::Lidar { payload, .. } if takes && self.recent.has(payload) => {
+                self.doubled += 1;
+                false
+            }
+            _ => takes,
+        }
+    }
+
+    /// Whether a record is of the drive or of the selected sensor.
+    fn is_wanted(&mut self, record: &Record<'_>) -> bool {
         let Wire::Lidar {
             source,
             port,
@@ -114,6 +131,39 @@ impl Filter {
             DatagramKind::Position => self.source.is_none_or(|wanted| wanted == source),
             DatagramKind::Foreign => true,
         }
+    }
+}
+
+/// The newest data packets. One that comes again was recorded twice: a lidar's packets differ at
+/// least by their times.
+#[derive(Debug, Default)]
+struct RecentPackets {
+    packets: VecDeque<[u8; DATA_LEN]>,
+}
+
+/// Packets remembered: those of 80 ms.
+const MAX_RECENT: usize = 64;
+
+impl RecentPackets {
+    /// Whether a datagram is one of these; else it becomes one.
+    fn has(&mut self, payload: &[u8]) -> bool {
+        let Ok(packet) = <&[u8; DATA_LEN]>::try_from(payload) else {
+            return false;
+        };
+        // The time, in the last six bytes, tells nearly all apart.
+        let time = packet.last_chunk::<6>();
+        let mut like_it = self
+            .packets
+            .iter()
+            .filter(|old| old.last_chunk::<6>() == time);
+        if DataPacket::new(packet).is_ok() && like_it.any(|old| old == packet) {
+            return true;
+        }
+        if self.packets.len() == MAX_RECENT {
+            self.packets.pop_front();
+        }
+        self.packets.push_back(*packet);
+        false
     }
 }
 
@@ -174,6 +224,12 @@ impl Source {
         let Some(text) = recording.metadata().filter(|text| is_own(text)) else {
             return Ok(ScanConfig::default());
         };
+        let (text, merged) = text.split_once(MERGED).unwrap_or((text, ""));
+        if merged.matches("\nFile").count() > 1 {
+            return Err(self
+                .joined("mergecap has joined it with other files".to_owned())
+                .help("replay each of these files"));
+        }
         let wrong = |what: String| {
             Failure::new(
                 Kind::BadInput,
@@ -207,7 +263,10 @@ impl Source {
             Ok(())
         })?;
         self.check(&filter.sensors)?;
-        Ok(pass)
+        Ok(Pass {
+            doubled: filter.doubled,
+            ..pass
+        })
     }
 
     /// Passes records of the selected sensor and of the drive to `take` until it returns false.
@@ -230,6 +289,8 @@ impl Source {
             source: self.wanted.map(|wanted| wanted.address.octets()),
             port: self.wanted.and_then(|wanted| wanted.port),
             sensors: BTreeSet::new(),
+            recent: RecentPackets::default(),
+            doubled: 0,
         }
     }
 
@@ -245,10 +306,32 @@ impl Source {
         while let Some(record) = recording.next_record().map_err(|error| failure(&error))? {
             take(&record)?;
         }
+        let counts = recording.counts().clone();
+        if let Some(offset) = counts.second_section.filter(|_| self.is_own(&recording)) {
+            let file = self.path.display();
+            return Err(self.joined(format!("a second one begins at byte {offset}")).help(format!(
+                "cut it apart there: head -c {offset} {file} > first.pcapng; tail -c +{} {file} > second.pcapng",
+                offset.saturating_add(1)
+            )));
+        }
         Ok(Pass {
-            counts: recording.counts().clone(),
+            counts,
             truncated: recording.end().and_then(cut_off),
+            doubled: 0,
         })
+    }
+
+    fn is_own(&self, recording: &Recording) -> bool {
+        recording.metadata().is_some_and(is_own)
+    }
+
+    /// A file of several logs: each has its own clocks, zero and configuration.
+    fn joined(&self, how: String) -> Failure {
+        let file = self.path.display();
+        Failure::new(
+            Kind::BadInput,
+            format!("{file}: expected one log, got several: {how}"),
+        )
     }
 
     /// Checks that the selection names exactly one sensor that is present.
@@ -279,6 +362,9 @@ impl Source {
         }
     }
 }
+
+/// Beginning of what mergecap appends to a comment: the files, a line each.
+const MERGED: &str = "\nFile created by merging:";
 
 /// Whether a comment is a log's configuration. Other programs write comments too.
 fn is_own(comment: &str) -> bool {

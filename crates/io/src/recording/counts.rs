@@ -41,6 +41,8 @@ pub struct RecordingCounts {
     pub damaged: u64,
     /// Bytes in those stretches.
     pub damaged_bytes: u64,
+    /// Offset of a section after the first (pcapng): files that were joined.
+    pub second_section: Option<u64>,
 }
 
 impl RecordingCounts {

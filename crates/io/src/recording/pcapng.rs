@@ -122,7 +122,7 @@ impl PcapngSection {
         Ok(match kind {
             SHB_MAGIC => {
                 self.interfaces.clear();
-                FileItem::Skip { length }
+                FileItem::Section { length }
             }
             IDB_MAGIC => {
                 self.describe(block);
