@@ -11,7 +11,7 @@
 use cloud::Point;
 use cloud::mount::{Mount, Tilt};
 use lidar::SensorPoint;
-use units::{Host, Lidar, Stamp};
+use units::{Degrees, Host, Lidar, Stamp};
 
 use crate::clock::{LidarClock, Moment};
 use crate::steps::ClockStep;
@@ -33,6 +33,9 @@ pub struct Alignment {
     pub choice: Option<MethodChoice>,
     /// The sweeps; empty if the angles are not those of the log.
     pub sweeps: Vec<Sweep>,
+    /// Beginnings and ends of sweeps of which the log holds no positions; there are no points of
+    /// them.
+    pub unseen_sweeps: Vec<(Degrees, Degrees)>,
     /// Mount of the lidar on the axis.
     pub mount: Mount,
     /// Shaft samples discarded as implausible.
@@ -72,6 +75,7 @@ impl Alignment {
             trajectory,
             choice: None,
             sweeps: Vec::new(),
+            unseen_sweeps: Vec::new(),
             mount,
             implausible: 0,
             range_sd_m,

@@ -162,12 +162,24 @@ impl SweepPlan {
         target: Degrees,
         tolerance_deg: f64,
     ) -> bool {
-        let near = |a: f64, b: f64| (a - b).abs() <= tolerance_deg;
-        let (start, end) = if self.both_ways && done % 2 == 1 {
-            (self.to_deg, self.from_deg)
-        } else {
-            (self.from_deg, self.to_deg)
-        };
-        (done as u64) < u64::from(self.sweeps) && near(from.0, start) && near(target.0, end)
+        let near = |a: Degrees, b: Degrees| (a.0 - b.0).abs() <= tolerance_deg;
+        let (start, end) = self.ends(done);
+        (done as u64) < u64::from(self.sweeps) && near(from, start) && near(target, end)
+    }
+
+    /// Beginning and end of the sweep after `done` sweeps.
+    #[must_use]
+    pub const fn ends(&self, done: usize) -> (Degrees, Degrees) {
+        let (from, to) = (Degrees(self.from_deg), Degrees(self.to_deg));
+        match self.both_ways && done % 2 == 1 {
+            true => (to, from),
+            false => (from, to),
+        }
+    }
+
+    /// Whether an angle is between the ends.
+    pub(crate) fn is_between(&self, angle: Degrees) -> bool {
+        let low = self.from_deg.min(self.to_deg);
+        (low..=self.from_deg.max(self.to_deg)).contains(&angle.0)
     }
 }

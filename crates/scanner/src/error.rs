@@ -1,7 +1,7 @@
 //! Errors of the reconstruction.
 
 use thiserror::Error;
-use units::GearingError;
+use units::{Degrees, GearingError};
 
 use crate::angles::AngleTableError;
 use crate::tolerance::UnreachableTolerance;
@@ -20,6 +20,16 @@ pub enum ScanError {
         "no sweep: the drive's traffic holds no move from one end of the plan towards the other"
     )]
     NoSweep,
+    /// The log holds no positions of the sweeps.
+    #[error(
+        "no positions of the sweep from {:.3} to {:.3} deg: expected answers of the drive while the axis moved, got none", from.0, to.0
+    )]
+    UnseenSweep {
+        /// Where it began.
+        from: Degrees,
+        /// Where it ended.
+        to: Degrees,
+    },
     /// The table of angles is unusable.
     #[error(transparent)]
     Table(#[from] AngleTableError),

@@ -15,6 +15,7 @@ use crate::error::ScanError;
 use crate::placer::Placer;
 use crate::steps::Timeline;
 use crate::survey::Survey;
+use crate::sweeps::FoundSweeps;
 use crate::tilt_source::TiltSource;
 use crate::tolerance::Accuracy;
 
@@ -61,7 +62,10 @@ impl Survey {
         // `angles`: encoder positions at the middle of their polls, or by the drive's own clock.
         let angles = tilt.resolve(&shaft, &arrivals, config)?;
         // `sweeps`: profile moves as commanded, found in the angles.
-        let sweeps = angles.sweeps(&shaft.moves, config.sweep.as_ref())?;
+        let FoundSweeps {
+            seen: sweeps,
+            unseen: unseen_sweeps,
+        } = angles.sweeps(&shaft.moves, config.sweep.as_ref())?;
         let spans = angles.spans(&sweeps);
         // `trajectory`: the commanded profile or a spline, by least squares (Levenberg-Marquardt).
         let (trajectory, choice) = angles.trajectory(&sweeps, &spans, accuracy, clock.bound())?;
@@ -71,6 +75,7 @@ impl Survey {
             trajectory,
             choice,
             sweeps,
+            unseen_sweeps,
             mount: angles.mount,
             implausible: angles.implausible,
             range_sd_m: config.lidar.range_sd_m,

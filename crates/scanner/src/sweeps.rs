@@ -3,7 +3,9 @@
 //! The commands show when a profile move was requested and its target; the samples show when the
 //! axis left its place and came to rest. A move is a sweep of the plan if it starts at one end of
 //! the plan and heads for the other. Moves to the starting place, homing and returns are thereby
-//! excluded without marks in the log. A sweep that was cut short counts, with the angle it reached.
+//! excluded without marks in the log. A sweep that was cut short counts, with the angle it reached,
+//! and so does one whose beginning no sample shows. One that happens between two samples does not:
+//! only the command would place its points.
 
 mod streaming;
 
@@ -42,6 +44,24 @@ pub struct Commanded {
     pub deceleration: DegPerS2,
 }
 
+/// The sweeps of a log.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FoundSweeps {
+    /// Those that the samples show, in order of time.
+    pub seen: Vec<Sweep>,
+    /// Beginnings and ends of those that happened between two samples.
+    pub unseen: Vec<(Degrees, Degrees)>,
+}
+
+/// The motion after a command.
+struct Motion {
+    sweep: Sweep,
+    target: Degrees,
+    /// No sample shows where it began.
+    is_cut_off: bool,
+    is_seen: bool,
+}
+
 /// A profile move as commanded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Move {
@@ -70,6 +90,8 @@ const END_TOLERANCE_DEG: f64 = 0.1;
 /// A jump exceeds this, and the way at three times the commanded speed.
 const JUMP_DEG: f64 = 0.1;
 const JUMP_SPEEDS: f64 = 3.0;
+/// A sweep is not seen if so much of its way is between two samples.
+const UNSEEN_SHARE: f64 = 0.75;
 /// Range of an axis at rest: an encoder at an edge flickers by one count.
 const REST_QC: f64 = 1.5;
 
@@ -131,7 +153,7 @@ impl MoveWatch {
 
     /// The sweeps among the moves, from samples in order of time. Without a plan every move is one.
     #[must_use]
-    pub fn sweeps(&self, samples: &[AngleSample], plan: Option<&SweepPlan>) -> Vec<Sweep> {
+    pub fn sweeps(&self, samples: &[AngleSample], plan: Option<&SweepPlan>) -> FoundSweeps {
         let rest = REST_QC * self.gearing.degrees_per_qc();
         let ends = self
             .moves
@@ -143,38 +165,34 @@ impl MoveWatch {
             .moves
             .iter()
             .zip(ends)
-            .filter_map(|(command, end)| sweep(command, end, samples, rest));
-        match plan {
-            None => moved.map(|(sweep, _)| sweep).collect(),
-            Some(plan) => planned(moved, plan),
+            .filter_map(|(command, end)| motion(command, end, samples, rest));
+        let mut found = FoundSweeps::default();
+        for moved in moved {
+            let done = found.seen.len() + found.unseen.len();
+            let sweep = moved.sweep;
+            let is_wanted = |plan: &SweepPlan| {
+                let from = match moved.is_cut_off && plan.is_between(sweep.from) {
+                    true => plan.ends(done).0,
+                    false => sweep.from,
+                };
+                plan.is_next_sweep(done, from, moved.target, END_TOLERANCE_DEG)
+            };
+            match moved.is_seen {
+                _ if !plan.is_none_or(is_wanted) => {}
+                true => found.seen.push(sweep),
+                false => found.unseen.push((sweep.from, sweep.to)),
+            }
         }
+        found
     }
 }
 
-/// The plan's sweeps among the moves.
-fn planned(moved: impl Iterator<Item = (Sweep, Degrees)>, plan: &SweepPlan) -> Vec<Sweep> {
-    let mut sweeps: Vec<Sweep> = Vec::new();
-    for (sweep, target) in moved {
-        if plan.is_next_sweep(sweeps.len(), sweep.from, target, END_TOLERANCE_DEG) {
-            sweeps.push(sweep);
-        }
-    }
-    sweeps
-}
-
-/// The motion between `command` and `end`, with its target; `None` if the axis did not move.
-fn sweep(
-    command: &Move,
-    end: Stamp<Host>,
-    samples: &[AngleSample],
-    rest: f64,
-) -> Option<(Sweep, Degrees)> {
+/// The motion between `command` and `end`; `None` if the axis did not move.
+fn motion(command: &Move, end: Stamp<Host>, samples: &[AngleSample], rest: f64) -> Option<Motion> {
     // One sample before the command, for the place at rest.
-    let first = samples
-        .partition_point(|s| s.host < command.commanded)
-        .saturating_sub(1);
+    let after = samples.partition_point(|s| s.host < command.commanded);
     let last = samples.partition_point(|s| s.host < end);
-    let window = samples.get(first..last)?;
+    let window = samples.get(after.saturating_sub(1)..last)?;
     let window = window.get(..unbroken(window, command.motion.speed))?;
     let (from, to) = (window.first()?.angle, window.last()?.angle);
     let leaves = window
@@ -188,16 +206,27 @@ fn sweep(
     if stop <= start {
         return None;
     }
-    let moving = window.get(leaves..=moving_last.max(leaves))?;
-    let sweep = Sweep {
-        from,
-        to,
-        cruise: cruise(moving, from, to),
-        start,
-        end: stop,
-        commanded: command.motion,
-    };
-    Some((sweep, command.target))
+    let steps = window.windows(2).filter_map(|pair| match pair {
+        [a, b] => Some((b.angle.0 - a.angle.0).abs()),
+        _ => None,
+    });
+    let longest = steps.fold(0.0, f64::max);
+    let moving = window
+        .get(leaves..=moving_last.max(leaves))
+        .unwrap_or_default();
+    Some(Motion {
+        sweep: Sweep {
+            from,
+            to,
+            cruise: cruise(moving, from, to),
+            start,
+            end: stop,
+            commanded: command.motion,
+        },
+        target: command.target,
+        is_cut_off: after == 0,
+        is_seen: longest <= END_TOLERANCE_DEG.max(UNSEEN_SHARE * (to.0 - from.0).abs()),
+    })
 }
 
 /// Number of samples before the angle jumps farther than the axis can move. A drive that loses its

@@ -8,7 +8,7 @@ use crate::clock::Arrival;
 use crate::config::{ScanConfig, SweepPlan};
 use crate::error::ScanError;
 use crate::survey::ShaftRecords;
-use crate::sweeps::{MoveWatch, Sweep};
+use crate::sweeps::{FoundSweeps, MoveWatch, Sweep};
 use crate::tolerance::{Accuracy, MethodChoice};
 use crate::trajectory::{Method, Trajectory};
 
@@ -89,15 +89,16 @@ impl TiltAngles {
         &self,
         moves: &MoveWatch,
         plan: Option<&SweepPlan>,
-    ) -> Result<Vec<Sweep>, ScanError> {
+    ) -> Result<FoundSweeps, ScanError> {
         if self.method.is_some() {
-            return Ok(Vec::new());
+            return Ok(FoundSweeps::default());
         }
-        let sweeps = moves.sweeps(&self.samples, plan);
-        if sweeps.is_empty() && !self.samples.is_empty() {
-            return Err(ScanError::NoSweep);
+        let found = moves.sweeps(&self.samples, plan);
+        match (&*found.seen, &*found.unseen) {
+            ([], &[(from, to), ..]) => Err(ScanError::UnseenSweep { from, to }),
+            ([], []) if !self.samples.is_empty() => Err(ScanError::NoSweep),
+            _ => Ok(found),
         }
-        Ok(sweeps)
     }
 
     /// The spans of time within which firings become points.

@@ -40,8 +40,18 @@ pub(super) fn incomplete_sweeps(config: &ScanConfig, alignment: &Alignment) -> V
     };
     let mut incomplete = Vec::new();
     for (number, sweep) in alignment.sweeps.iter().enumerate() {
-        let back = plan.both_ways && number % 2 == 1;
-        let end = if back { plan.from_deg } else { plan.to_deg };
+        let is_forth = (sweep.to.0 - sweep.from.0) * (plan.to_deg - plan.from_deg) > 0.0;
+        let (start, end) = match is_forth {
+            true => (plan.from_deg, plan.to_deg),
+            false => (plan.to_deg, plan.from_deg),
+        };
+        if (sweep.from.0 - start).abs() > CUT_SHORT_DEG {
+            incomplete.push(format!(
+                "the positions of sweep {} begin at {:.3} deg, not at {start} deg",
+                number + 1,
+                sweep.from.0
+            ));
+        }
         if (sweep.to.0 - end).abs() > CUT_SHORT_DEG {
             incomplete.push(format!(
                 "sweep {} was cut short at {:.3} deg of {end} deg",
@@ -50,7 +60,13 @@ pub(super) fn incomplete_sweeps(config: &ScanConfig, alignment: &Alignment) -> V
             ));
         }
     }
-    let made = alignment.sweeps.len();
+    incomplete.extend(alignment.unseen_sweeps.iter().map(|(from, to)| {
+        format!(
+            "the log holds no positions of the sweep from {:.3} to {:.3} deg: no cloud of it",
+            from.0, to.0
+        )
+    }));
+    let made = alignment.sweeps.len() + alignment.unseen_sweeps.len();
     if (made as u64) < u64::from(plan.sweeps) {
         incomplete.push(format!(
             "{made} of {} planned sweeps are in the log",

@@ -74,7 +74,7 @@ fn a_move_between_the_limits_is_a_sweep_with_its_measured_speed() {
     let mut axis = Axis::new();
     axis.command(-45.0, 0x1F);
     axis.travel(-45.0, 45.0);
-    let sweeps = axis.watch.sweeps(&axis.samples, Some(&PLAN));
+    let sweeps = axis.watch.sweeps(&axis.samples, Some(&PLAN)).seen;
     let [sweep] = sweeps[..] else {
         panic!("{sweeps:?}");
     };
@@ -91,14 +91,20 @@ fn the_return_move_is_a_sweep_only_if_planned() {
         axis.command(axis.angle + way, 0x1F);
         axis.travel(way, 45.0);
     }
-    assert_eq!(axis.watch.sweeps(&axis.samples, Some(&PLAN)).len(), 1);
+    assert_eq!(axis.watch.sweeps(&axis.samples, Some(&PLAN)).seen.len(), 1);
     let both_ways = SweepPlan {
         both_ways: true,
         sweeps: 2,
         ..PLAN
     };
-    assert_eq!(axis.watch.sweeps(&axis.samples, Some(&both_ways)).len(), 2);
-    assert_eq!(axis.watch.sweeps(&axis.samples, None).len(), 2);
+    assert_eq!(
+        axis.watch
+            .sweeps(&axis.samples, Some(&both_ways))
+            .seen
+            .len(),
+        2
+    );
+    assert_eq!(axis.watch.sweeps(&axis.samples, None).seen.len(), 2);
 }
 
 #[test]
@@ -114,7 +120,12 @@ fn moves_to_the_start_and_homing_are_not_sweeps() {
     axis.travel(-20.0, 45.0);
     axis.command(-45.0, 0x1F);
     axis.travel(-25.0, 45.0);
-    assert!(axis.watch.sweeps(&axis.samples, Some(&PLAN)).is_empty());
+    assert!(
+        axis.watch
+            .sweeps(&axis.samples, Some(&PLAN))
+            .seen
+            .is_empty()
+    );
 }
 
 #[test]
@@ -130,7 +141,7 @@ fn the_approach_from_the_far_end_is_never_a_sweep() {
         axis.command(axis.angle + way, 0x1F);
         axis.travel(way, 45.0);
     }
-    let sweeps = axis.watch.sweeps(&axis.samples, Some(&plan));
+    let sweeps = axis.watch.sweeps(&axis.samples, Some(&plan)).seen;
     assert_eq!(sweeps.len(), 1, "{sweeps:?}");
     assert!(sweeps[0].cruise.0 > 0.0, "{sweeps:?}");
 }
@@ -140,7 +151,7 @@ fn an_interrupted_sweep_ends_at_the_angle_it_reached() {
     let mut axis = Axis::new();
     axis.command(-45.0, 0x1F);
     axis.travel(-12.0, 45.0);
-    let sweeps = axis.watch.sweeps(&axis.samples, Some(&PLAN));
+    let sweeps = axis.watch.sweeps(&axis.samples, Some(&PLAN)).seen;
     assert!((sweeps[0].to.0 + 12.0).abs() < 1e-9, "{sweeps:?}");
 }
 
@@ -152,7 +163,7 @@ fn a_drive_that_lost_its_position_ends_the_sweep() {
     let known = axis.now;
     axis.angle = 0.0;
     axis.stay(100);
-    let sweeps = axis.watch.sweeps(&axis.samples, Some(&PLAN));
+    let sweeps = axis.watch.sweeps(&axis.samples, Some(&PLAN)).seen;
     assert!((sweeps[0].to.0 + 20.0).abs() < 1e-9, "{sweeps:?}");
     assert!(sweeps[0].end < ms(known), "{sweeps:?}");
 }
@@ -162,8 +173,13 @@ fn an_axis_at_rest_has_no_sweep() {
     let mut axis = Axis::new();
     axis.command(-45.0, 0x1F);
     axis.stay(100);
-    assert!(axis.watch.sweeps(&axis.samples, Some(&PLAN)).is_empty());
-    assert!(axis.watch.sweeps(&[], Some(&PLAN)).is_empty());
+    assert!(
+        axis.watch
+            .sweeps(&axis.samples, Some(&PLAN))
+            .seen
+            .is_empty()
+    );
+    assert!(axis.watch.sweeps(&[], Some(&PLAN)).seen.is_empty());
 }
 
 #[test]
@@ -176,6 +192,42 @@ fn encoder_flicker_at_rest_does_not_start_a_sweep() {
     }
     axis.angle = 0.0;
     axis.travel(-45.0, 45.0);
-    let sweeps = axis.watch.sweeps(&axis.samples, Some(&PLAN));
+    let sweeps = axis.watch.sweeps(&axis.samples, Some(&PLAN)).seen;
     assert_eq!((sweeps[0].end - sweeps[0].start).as_nanos(), 1_000_000_000);
+}
+
+/// The command alone would place its points.
+#[test]
+fn a_sweep_between_two_samples_is_not_seen() {
+    let mut axis = Axis::new();
+    axis.command(-45.0, 0x1F);
+    axis.travel(-45.0, 45.0);
+    // All but the first degree.
+    let silence = ms(45)..ms(1_020);
+    axis.samples
+        .retain(|sample| !silence.contains(&sample.host));
+    let found = axis.watch.sweeps(&axis.samples, Some(&PLAN));
+    let [(from, to)] = found.unseen[..] else {
+        panic!("{found:?}")
+    };
+    assert!(found.seen.is_empty() && from.0 == 0.0 && (to.0 + 45.0).abs() < 1e-9);
+    // It was the planned one.
+    axis.command(0.0, 0x1F);
+    axis.travel(45.0, 45.0);
+    let again = axis.watch.sweeps(&axis.samples, Some(&PLAN));
+    assert_eq!(again, found);
+}
+
+#[test]
+fn a_sweep_whose_beginning_was_not_recorded_begins_with_the_samples() {
+    let mut axis = Axis::new();
+    axis.command(-45.0, 0x1F);
+    axis.travel(-45.0, 45.0);
+    axis.samples.retain(|sample| sample.host > ms(120));
+    let sweeps = axis.watch.sweeps(&axis.samples, Some(&PLAN)).seen;
+    let [sweep] = sweeps[..] else {
+        panic!("{sweeps:?}");
+    };
+    assert!((sweep.from.0 + 4.5).abs() < 0.1, "{sweep:?}");
+    assert_eq!(sweep.start, ms(121));
 }
