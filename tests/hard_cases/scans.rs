@@ -250,6 +250,76 @@ fn config_of(log: &Path) -> String {
     Recording::open(log).unwrap().metadata().unwrap().to_owned()
 }
 
+/// The lidar's clock is set back in mid-sweep by less than a packet's time, as where its receiver
+/// regains the pulse. A decoder emits a packet when the next one arrives, so that the last one
+/// before the step comes with the receive time of the first one after it.
+#[test]
+fn no_packet_is_misplaced_where_the_clock_of_the_lidar_is_set_back() {
+    let captured = Captured::new(Setting::default());
+    let whole = captured.scan().1;
+    let (from, to) = captured.sweep_span();
+    let middle = from + (to - from).half();
+    let folder = tempfile::tempdir().unwrap();
+    let log = folder.path().join("stepped.pcapng");
+    for by_us in [100, 300, 1_200] {
+        std::fs::write(&log, set_back(&captured.log(), middle, by_us)).unwrap();
+        let (scan, cloud) = scan(&log);
+        assert_eq!(
+            scan.sync.steps.len(),
+            1,
+            "{by_us} us: {:?}",
+            scan.sync.steps
+        );
+        assert_eq!(cloud.len(), whole.len(), "{by_us} us");
+        let apart = cloud.positions().zip(whole.positions()).map(|(a, b)| {
+            let squares = a.iter().zip(b).map(|(a, b)| (a - b).powi(2));
+            squares.sum::<f64>().sqrt()
+        });
+        let worst = apart.fold(0.0, f64::max);
+        // A packet at the wrong time would be up to 20 mm off.
+        assert!(worst < 0.3e-3, "{by_us} us: {worst}");
+    }
+}
+
+/// The bytes of a log whose lidar has set its clock back when a packet of time `at` is received.
+fn set_back(log: &Path, at: Stamp<units::Host>, by_us: u32) -> Vec<u8> {
+    let config = LogConfig {
+        metadata: config_of(log),
+        ..LogConfig::default()
+    };
+    let mut writer = LogWriter::new(Vec::new(), &config).unwrap();
+    let mut recording = Recording::open(log).unwrap();
+    while let Some(record) = recording.next_record().unwrap() {
+        let Wire::Lidar {
+            source,
+            port,
+            payload,
+        } = record.wire
+        else {
+            writer.write(&record).unwrap();
+            continue;
+        };
+        let mut payload = payload.to_vec();
+        if payload.len() == 1206 && record.host >= at {
+            let us = u32::from_le_bytes(payload[1200..1204].try_into().unwrap());
+            // Microseconds of the hour.
+            let us = match us.checked_sub(by_us) {
+                Some(us) => us,
+                None => us + 3_600_000_000 - by_us,
+            };
+            payload[1200..1204].copy_from_slice(&us.to_le_bytes());
+        }
+        let payload = &payload[..];
+        let wire = Wire::Lidar {
+            source,
+            port,
+            payload,
+        };
+        writer.write(&Record { wire, ..record }).unwrap();
+    }
+    writer.finish().unwrap().1
+}
+
 /// The bytes of a log with another comment, and with every stretch of `burst` data packets twice.
 fn rewritten(log: &Path, comment: &str, burst: usize) -> Vec<u8> {
     let config = LogConfig {

@@ -48,6 +48,16 @@ struct PendingPacket {
     model: Option<&'static Model>,
 }
 
+impl PendingPacket {
+    /// Time to fill it, as [`Timekeeper`] has it.
+    fn fill(&self) -> Span {
+        let fill_ns = self
+            .model
+            .map_or(0, |model| model.packet_period_ns(self.dual));
+        Span::from_nanos(fill_ns.into())
+    }
+}
+
 /// Decodes a packet with its successor.
 #[derive(Clone, Debug)]
 struct PacketDecoder {
@@ -328,6 +338,7 @@ impl PacketDecoder {
             .offsets(&tables.geometry.channels, slot.step_per_block_cdeg);
         emit(&FiringBlock {
             start: pending.start + slot.after,
+            began: pending.host.saturating_add(-pending.fill()),
             azimuth_cdeg: slot.azimuth_cdeg,
             step_per_block_cdeg: slot.step_per_block_cdeg,
             geometry: &tables.geometry,

@@ -40,7 +40,6 @@ impl<'a> Placer<'a> {
             return Ok(());
         };
         let (blocks, batch, counts) = (&mut self.blocks, &mut self.batch, &mut self.counts);
-        blocks.received(record.host);
         self.decoder
             .firing_blocks(record.host, payload, &mut |block| {
                 blocks.place(block, batch, counts);

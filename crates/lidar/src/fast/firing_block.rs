@@ -6,7 +6,7 @@
 //! channels at a time, to within 1e-14 of the distance.
 
 use protocol::vlp16::{CHANNELS, Model};
-use units::{Lidar, Real, Span, Stamp};
+use units::{Host, Lidar, Real, Span, Stamp};
 
 use super::azimuth::{PaceOffsets, SinCos};
 use super::unpack::{RawChannels, UnpackedBlock};
@@ -26,6 +26,9 @@ pub struct ReturnLayer<'a> {
 pub struct FiringBlock<'a> {
     /// Firing time of channel 0.
     pub start: Stamp<Lidar>,
+    /// When its packet was received, less the time that the lidar takes to fill it: the host's time
+    /// of the packet's first firing, but for the delay of the link.
+    pub began: Stamp<Host>,
     pub(crate) azimuth_cdeg: i32,
     pub(crate) step_per_block_cdeg: f64,
     pub(crate) geometry: &'a Geometry,

@@ -82,9 +82,10 @@ impl<'a> FiringBlockPlacer<'a> {
         }
     }
 
-    /// Sets the receive time of the next blocks.
-    pub(crate) fn received(&mut self, host: Stamp<Host>) {
-        if self.alignment.clock.is_cut() {
+    /// Notes the arrival of a block's packet, which a decoder emits when the next one arrives.
+    #[inline(always)]
+    fn received(&mut self, host: Stamp<Host>) {
+        if self.alignment.clock.is_cut() && self.received != Some(host) {
             self.received = Some(host);
             self.clock.received(host);
         }
@@ -114,6 +115,7 @@ impl<'a> FiringBlockPlacer<'a> {
         if first.kept() == 0 && second.is_none() {
             return;
         }
+        self.received(block.began);
         match self.placement(simd, block) {
             BlockPlacement::Together(pose) => {
                 if batch.fields().contains(Fields::SD) {
