@@ -186,9 +186,11 @@ seen["lss_node_id"] = lss.inquire_node_id()
 lss.configure_node_id(9)
 lss.store_configuration()
 lss.send_switch_state_global(lss.WAITING_STATE)
-node.nmt.send_command(0x81)
 moved = network.add_node(canopen.RemoteNode(9, None))
-moved.nmt.wait_for_bootup(5.0)
+states = []
+moved.nmt.add_heartbeat_callback(states.append)
+node.nmt.send_command(0x81)
+wait("the boot-up of node 9", lambda: 0 in states)
 seen["lss_moved_to"] = int.from_bytes(moved.sdo.upload(0x2000, 0), "little")
 
 network.disconnect()
