@@ -55,7 +55,8 @@ impl Sin2Progress {
         let half = sin_pi(passed / 2);
         let lag = (sin_pi(passed) * INVERSE_PI) >> SHARE_BITS;
         Self {
-            share: (half * half) >> SHARE_BITS,
+            // Rounding may put the sine a bit above one.
+            share: ((half * half) >> SHARE_BITS).min(ONE),
             integral: (duration * (passed - lag)) >> SHARE_BITS,
         }
     }
@@ -107,6 +108,17 @@ mod tests {
         // 500 - 1000 / pi.
         assert_eq!(at(500).integral, 181);
         assert_eq!(Sin2Progress::at(0, 0).of(7), 7);
+    }
+
+    /// 2^-32 ms before the end of a ramp of a second to 1000 rpm, the speed was above 1000 rpm.
+    #[test]
+    fn no_ramp_goes_beyond_its_end() {
+        let (duration, change) = (1000 << 32, 1000 << 32);
+        for before in 1..100 {
+            let progress = Sin2Progress::at(duration - before, duration);
+            assert!(progress.of(change) <= change);
+            assert!(progress.of(-change) >= -change);
+        }
     }
 
     #[test]
