@@ -63,8 +63,8 @@ const MAX_OUTSTANDING: usize = 32;
 /// Age at which a request is dropped: four times the drive's own frame timeout of 500 ms.
 const EXPIRY: Span = Span::from_secs(2);
 
-/// No master gives a request up sooner: half of the shortest timeout of this client.
-const SHORTEST_TIMEOUT: Span = Span::from_millis(20);
+/// No master gives a request up sooner: three quarters of the shortest timeout of this client.
+const SHORTEST_TIMEOUT: Span = Span::from_millis(30);
 
 impl RequestMatcher {
     pub fn handle_sent(&mut self, request: SentRequest) {
@@ -124,9 +124,13 @@ impl RequestMatcher {
 
     /// Retires requests that were answered, though no reply was recorded: a master that sends its
     /// next request after the shortest reply time and before any timeout has received the reply.
-    pub fn retire_answered(&mut self, next: Stamp<Host>, shortest: Span) {
+    /// A probe follows a reply that is missing.
+    pub fn retire_answered(&mut self, next: &SentRequest, shortest: Span) {
+        if probe_error(next).is_some() {
+            return;
+        }
         let answered = |old: &SentRequest| {
-            let gap = next.saturating_since(old.sent);
+            let gap = next.sent.saturating_since(old.sent);
             probe_error(old).is_none() && (shortest..=SHORTEST_TIMEOUT).contains(&gap)
         };
         if let Some(newest) = self.outstanding.iter().rposition(answered) {
@@ -263,6 +267,20 @@ mod tests {
         let answered = matcher.handle_reply(&NO_OBJECT);
         assert_eq!(answered, ReplyMatch::Probe(PROBES[0].0));
         assert!(matcher.is_synchronised());
+    }
+
+    #[test]
+    fn a_request_before_any_timeout_shows_that_the_last_was_answered() {
+        let shortest = Span::from_millis(1);
+        let mut polled = matcher(&[read(1)]);
+        polled.retire_answered(&read(26), shortest);
+        polled.handle_sent(read(26));
+        assert_eq!(polled.handle_reply(&READ_OK), ReplyMatch::Request(read(26)));
+        // A probe shows the opposite.
+        let mut probed = matcher(&[read(1)]);
+        probed.retire_answered(&probe(26, 0), shortest);
+        probed.handle_sent(probe(26, 0));
+        assert_eq!(probed.handle_reply(&READ_OK), ReplyMatch::Request(read(1)));
     }
 
     #[test]

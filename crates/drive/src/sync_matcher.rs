@@ -3,8 +3,8 @@
 //! A PDO does not name its SYNC. PDOs arrive in the order of the SYNCs, but both may be lost, and
 //! at 1 kHz a PDO may arrive after the next SYNC. A position must never be matched to a SYNC later
 //! than itself: the span from SYNC to arrival would not contain the time of the sample. An earlier
-//! SYNC only makes the span longer. Matching therefore starts with a single SYNC and goes on in
-//! order. After a loss it skips a SYNC only if the drive's clock shows that the next one also
+//! SYNC only makes the span longer. Matching therefore starts with a single SYNC, or with the first
+//! since the PDOs were enabled, and goes on in order. After a loss it skips a SYNC only if the drive's clock shows that the next one also
 //! preceded the sample. The matches themselves relate that clock to the host's: a sample is never
 //! older than its SYNC, so the maximum of (SYNC - drive time) over all matches is a lower bound of
 //! the clock offset.
@@ -24,6 +24,9 @@ pub(crate) struct SyncMatcher {
     last_open: Option<Stamp<Host>>,
     /// Start of observation.
     since: Option<Stamp<Host>>,
+    /// Whether every SYNC since the PDOs were enabled is known: the first PDO is not older than
+    /// the oldest of them.
+    is_complete: bool,
     last: Option<SyncMatch>,
 }
 
@@ -74,7 +77,7 @@ impl SyncMatcher {
         self.observe(sent);
         self.expire(sent);
         if self.is_stale(sent) {
-            self.last = None;
+            self.restart();
         }
         let is_early = |open: &Stamp<Host>| sent.saturating_since(*open) < CONTROL_CYCLE;
         if self.last.is_none() && self.unanswered.back().is_some_and(is_early) {
@@ -82,7 +85,7 @@ impl SyncMatcher {
             self.unanswered.clear();
             self.last_open = None;
         }
-        if sent < self.earliest_sync(sent) {
+        if sent < self.earliest_sync(sent) && !self.is_complete {
             // Its PDO cannot be told from an earlier one's.
             self.unanswered.clear();
         } else {
@@ -139,6 +142,13 @@ impl SyncMatcher {
     pub fn restart(&mut self) {
         self.last = None;
         self.unanswered.clear();
+        self.is_complete = false;
+    }
+
+    /// Restarts matching where the PDOs are enabled: no PDO is under way.
+    pub fn handle_enabled(&mut self) {
+        self.restart();
+        self.is_complete = true;
     }
 
     fn next_match(
@@ -199,9 +209,10 @@ impl SyncMatcher {
             .is_some_and(|sync| now.saturating_since(*sync) > EXPIRY)
         {
             self.unanswered.pop_front();
-            if let Some(last) = &mut self.last {
-                // PDOs of skipped SYNCs are even older.
-                last.skipped = 0;
+            // PDOs of skipped SYNCs are even older.
+            match &mut self.last {
+                Some(last) => last.skipped = 0,
+                None => self.restart(),
             }
         }
     }

@@ -10,8 +10,9 @@
 //! All host stamps after a step of the host's clock, including the drive's (`monotonic`), are
 //! converted to the clock before it. After a step of the lidar's clock, that clock has another
 //! piece. The spacing of packets shows steps of the lidar's clock down to 0.1 ms if the delays
-//! confirm them. Steps of the host's clock below 10 ms, and steps undone within six seconds, are
-//! not searched for; the clock's bound contains them. `lidar` unwraps hours.
+//! confirm them. Steps of the host's clock below 10 ms are searched for only where neither device
+//! was recorded for half a second, as on a host that sleeps; from 1 ms on. Others, and steps undone
+//! within six seconds, are not searched for; the clock's bound contains them. `lidar` unwraps hours.
 
 mod jumps;
 mod monotonic;
@@ -21,7 +22,7 @@ use core::fmt;
 use units::{Host, Span, Stamp};
 
 use crate::clock::{Arrival, LidarClock, Stretch};
-use jumps::Jump;
+use jumps::{Evidence, Jump};
 use monotonic::before;
 pub(crate) use monotonic::{ClockSteps, HostTimeline};
 
@@ -140,8 +141,14 @@ fn attribute(
     arrivals: &[Arrival],
     clock_steps: &ClockSteps,
 ) -> Option<SetClock> {
-    if jump.is_in_spacing {
-        return Some(SetClock::Lidar);
+    match jump.evidence {
+        Evidence::Spacing => return Some(SetClock::Lidar),
+        Evidence::Silence(silence) => {
+            return clock_steps
+                .sleeps(jump.at, silence)
+                .then_some(SetClock::Host);
+        }
+        Evidence::Delays => {}
     }
     if clock_steps.shows(jump.at, jump.by) {
         return Some(SetClock::Host);

@@ -117,10 +117,12 @@ impl CanListener {
             return;
         };
         let is_id = sent.address == Address::new(STREAM.communication(), 1);
-        if is_id && !CommunicationId::from_u32(value).valid {
+        match sent.access {
             // The stream is disabled for configuration; the client also restarts with a single
             // SYNC.
-            self.syncs.restart();
+            _ if is_id && !CommunicationId::from_u32(value).valid => self.syncs.restart(),
+            ObjectAccess::Write { .. } if is_id => self.syncs.handle_enabled(),
+            _ => {}
         }
         self.known.insert(sent.address, value);
     }

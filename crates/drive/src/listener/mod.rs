@@ -238,20 +238,21 @@ impl DriveListener {
         emit: &mut impl FnMut(Observation),
     ) {
         let is_own = node == self.node || node == 0;
-        // A recorder may have dropped a reply. A stop does not wait for the reply under way.
-        if let Some(shortest) = self.shortest_reply
-            && address != objects::CONTROLWORD.address
-        {
-            self.matcher.retire_answered(sent, shortest);
-            self.report_lost_writes(emit);
-        }
         self.last_id += u64::from(is_own);
-        self.matcher.handle_sent(SentRequest {
+        let request = SentRequest {
             address,
             access,
             sent,
             id: if is_own { self.last_id } else { 0 },
-        });
+        };
+        // A recorder may have dropped a reply. A stop does not wait for the reply under way.
+        if let Some(shortest) = self.shortest_reply
+            && address != objects::CONTROLWORD.address
+        {
+            self.matcher.retire_answered(&request, shortest);
+            self.report_lost_writes(emit);
+        }
+        self.matcher.handle_sent(request);
     }
 
     fn learn_reply_time(&mut self, sent: Stamp<Host>, answer: Stamp<Host>) {

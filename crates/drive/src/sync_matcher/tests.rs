@@ -56,6 +56,33 @@ fn matching_starts_with_the_second_sync_if_the_first_pdo_was_dropped() {
     assert_eq!(matcher.handle_pdo(1_300, us(201_600)), None);
 }
 
+/// An adapter so slow that the second SYNC goes out before the first PDO arrives.
+#[test]
+fn matching_starts_with_the_first_sync_since_the_pdos_were_enabled() {
+    let mut syncs = SyncMatcher::default();
+    syncs.observe(us(0));
+    syncs.handle_enabled();
+    for n in 200..260 {
+        syncs.handle_sync(us(1_000 * n));
+        let before = 1_000 * (n - 1);
+        if n > 200 {
+            let matched = syncs.handle_pdo((before + 300) as u32, us(1_000 * n + 500));
+            assert_eq!(matched, Some(us(before)));
+        }
+    }
+}
+
+#[test]
+fn matching_needs_a_single_sync_again_if_none_was_answered() {
+    let mut syncs = SyncMatcher::default();
+    syncs.observe(us(0));
+    syncs.handle_enabled();
+    for n in 0..200 {
+        syncs.handle_sync(us(1_000 * n));
+    }
+    assert_eq!(syncs.handle_pdo(300, us(199_500)), None);
+}
+
 #[test]
 fn pdos_after_the_next_sync_are_matched_in_order() {
     let mut syncs = started(0);

@@ -5,6 +5,9 @@
 //! seconds: delayed packets arrive together, so the values fall back as fast as they rose. Near the
 //! ends of a recording the values must be level instead. Jumps up that are undone within six
 //! seconds are not found.
+//!
+//! Two kinds of smaller jumps are found: those of the lidar's clock, which the spacing of packets
+//! shows, and those of the host's clock across a silence, in which the host slept.
 
 use std::collections::VecDeque;
 
@@ -21,6 +24,12 @@ const SMALLEST_NS: i64 = 90_000;
 const MIN_IRREGULAR_NS: i64 = 20_000;
 /// Packets on either side that confirm a small jump.
 const SMALL_WINDOW: usize = 256;
+/// Shortest silence of a host that slept.
+const SILENCE: Span = Span::from_millis(500);
+/// The smallest jump across a silence to look for: the delays of most networks vary by less.
+const SMALLEST_ACROSS_SILENCE_NS: i64 = 1_000_000;
+/// Largest relative drift of two crystals, in ppm.
+const DRIFT_PPM: i64 = 200;
 /// Time for which a jump must last.
 const WINDOW_NS: i64 = 6_000_000_000;
 /// Least number of packets that form a level, and greatest number within which a jump happens.
@@ -44,8 +53,19 @@ pub(crate) struct Jump {
     pub at: usize,
     /// Change of the delay.
     pub by: Span,
-    /// Whether the spacing of packets shows that the lidar's clock jumped.
-    pub is_in_spacing: bool,
+    /// What shows it, besides the delays.
+    pub evidence: Evidence,
+}
+
+/// What shows which clock jumped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Evidence {
+    /// Nothing in the packets.
+    Delays,
+    /// The spacing of packets: the lidar's clock.
+    Spacing,
+    /// A silence of this length in regular packets: the host's clock, if the host slept.
+    Silence(Span),
 }
 
 /// Jumps and outliers of a recording.
@@ -86,7 +106,7 @@ pub(crate) fn find(arrivals: &[Arrival]) -> JumpReport {
                 found.jumps.push(Jump {
                     at,
                     by,
-                    is_in_spacing: false,
+                    evidence: Evidence::Delays,
                 });
                 search.behind = SlidingMinimum::default();
                 search.behind.push(at, *offset, window);
@@ -96,6 +116,8 @@ pub(crate) fn find(arrivals: &[Arrival]) -> JumpReport {
     }
     let small = found.small_device_jumps(arrivals, &offsets);
     found.jumps.extend(small);
+    let across = found.jumps_across_silence(arrivals, &offsets);
+    found.jumps.extend(across);
     found.jumps.sort_by_key(|jump| jump.at);
     found
 }
@@ -190,12 +212,6 @@ impl JumpReport {
 
     /// Steps of the lidar's clock that its own spacing shows and the delays confirm.
     fn small_device_jumps(&self, arrivals: &[Arrival], offsets: &[i64]) -> Vec<Jump> {
-        let is_apart = |at: usize| {
-            let jumps = self.jumps.iter().map(|jump| jump.at);
-            jumps
-                .chain(self.strays.iter().copied())
-                .all(|other| other.abs_diff(at) > SMALL_WINDOW)
-        };
         let mut small: Vec<Jump> = Vec::new();
         for at in MIN_LEVEL_PACKETS..arrivals.len().saturating_sub(MIN_LEVEL_PACKETS) {
             let Some((device, _)) = steps(arrivals, at) else {
@@ -204,16 +220,12 @@ impl JumpReport {
             let spacing = self.spacing_ns.max(1);
             let off = (device.as_nanos() + spacing / 2).rem_euclid(spacing) - spacing / 2;
             let count = device.as_nanos().abs() / spacing;
-            if off.abs() < MIN_IRREGULAR_NS + count * 10 || !is_apart(at) {
+            if off.abs() < MIN_IRREGULAR_NS + count * 10 || !self.is_apart(at) {
                 continue;
             }
-            let level = |from: usize, to: usize| offsets.get(from..to)?.iter().min().copied();
-            let begin = at.saturating_sub(SMALL_WINDOW);
-            let end = (at + SMALL_WINDOW).min(offsets.len());
-            let Some((before, after)) = level(begin, at).zip(level(at, end)) else {
+            let Some(rise) = rise_at(offsets, at) else {
                 continue;
             };
-            let rise = after.saturating_sub(before);
             // The step that the spacing shows, up to whole packets, is the one nearest to the rise.
             let whole = (-rise - off + spacing / 2).div_euclid(spacing);
             let by = -(off + whole * spacing);
@@ -227,11 +239,40 @@ impl JumpReport {
                 small.push(Jump {
                     at,
                     by: Span::from_nanos(by),
-                    is_in_spacing: true,
+                    evidence: Evidence::Spacing,
                 });
             }
         }
         small
+    }
+
+    /// Steps between packets that are far apart, though whole packets by the lidar's clock.
+    fn jumps_across_silence(&self, arrivals: &[Arrival], offsets: &[i64]) -> Vec<Jump> {
+        let spacing = self.spacing_ns.max(1);
+        let ends = MIN_LEVEL_PACKETS..arrivals.len().saturating_sub(MIN_LEVEL_PACKETS);
+        ends.filter(|at| self.is_apart(*at))
+            .filter_map(|at| {
+                let (device, _) = steps(arrivals, at).filter(|(device, _)| *device > SILENCE)?;
+                let off = (device.as_nanos() + spacing / 2).rem_euclid(spacing) - spacing / 2;
+                let count = device.as_nanos() / spacing;
+                let by = rise_at(offsets, at)?;
+                let drift = device.as_nanos() / 1_000_000 * DRIFT_PPM;
+                let is_regular = off.abs() < MIN_IRREGULAR_NS + count * 10;
+                (is_regular && by.abs() >= SMALLEST_ACROSS_SILENCE_NS + drift).then(|| Jump {
+                    at,
+                    by: Span::from_nanos(by),
+                    evidence: Evidence::Silence(device),
+                })
+            })
+            .collect()
+    }
+
+    /// Whether no jump or stray packet is near.
+    fn is_apart(&self, at: usize) -> bool {
+        let jumps = self.jumps.iter().map(|jump| jump.at);
+        jumps
+            .chain(self.strays.iter().copied())
+            .all(|other| other.abs_diff(at) > SMALL_WINDOW)
     }
 
     /// Whether a spacing is a whole number of packets, some lost, or that of reordered ones.
@@ -243,6 +284,14 @@ impl JumpReport {
         let reordered = device_ns <= 0 && count <= NEAR as i64;
         (ordered || reordered) && off <= QUANTUM_NS + count * 10
     }
+}
+
+/// Rise of the least offset from the packets before `at` to those from it on.
+fn rise_at(offsets: &[i64], at: usize) -> Option<i64> {
+    let least = |from: usize, to: usize| offsets.get(from..to)?.iter().min().copied();
+    let before = least(at.saturating_sub(SMALL_WINDOW), at)?;
+    let after = least(at, (at + SMALL_WINDOW).min(offsets.len()))?;
+    Some(after.saturating_sub(before))
 }
 
 /// Whether a spacing occurs in other places too, within the tolerance.

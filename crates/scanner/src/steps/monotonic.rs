@@ -107,6 +107,14 @@ impl ClockSteps {
         self.pause(at, by).is_some()
     }
 
+    /// Whether the drive's records pause, too, while the lidar's are silent before its packet `at`.
+    pub fn sleeps(&self, at: usize, silence: Span) -> bool {
+        let at = packets(at);
+        self.pauses
+            .iter()
+            .any(|pause| pause.packets.abs_diff(at) <= NEAR && pause.length >= silence.half())
+    }
+
     /// Whether the drive's samples are dense enough near there to show a jump.
     pub fn is_dense(&self, at: usize) -> bool {
         let at = packets(at);

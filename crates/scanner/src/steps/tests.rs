@@ -362,6 +362,48 @@ fn undetectably_small_steps_are_within_the_bound() {
     }
 }
 
+/// A host that sleeps for two seconds, and whose clock is set by a little when it wakes.
+#[test]
+fn a_small_step_of_the_host_clock_while_it_sleeps_is_found() {
+    for by in [1_600_000, 5_000_000, -1_600_000, -5_000_000, 0] {
+        let mut recorded = Recorded::new(30, Some(2_500));
+        let asleep = EPOCH + 9 * S..EPOCH + 11 * S;
+        let is_awake = |host: i64| !asleep.contains(&host);
+        recorded.packets.retain(|p| is_awake(p.host.as_nanos()));
+        recorded.polls.retain(|poll| is_awake(poll.0));
+        let seen = recorded.stepped(&[(10 * S, by)]);
+        let timeline = seen.timeline();
+        if by == 0 {
+            assert_eq!(timeline.steps, []);
+            continue;
+        }
+        let step = only(&timeline);
+        assert_eq!(step.clock, SetClock::Host, "{by}");
+        assert!((step.by.as_nanos() - by).abs() < 10_000, "{by}: {step:?}");
+        let (worst_us, polls_off) = seen.errors(&timeline, &recorded);
+        assert!(
+            worst_us < 5.0 && polls_off == 0,
+            "{by}: {worst_us} us, {polls_off}"
+        );
+    }
+}
+
+/// After a silence of the lidar alone, packets that take longer are no step of the host's clock.
+#[test]
+fn a_slower_network_after_a_silence_of_the_lidar_is_no_step() {
+    let mut recorded = Recorded::new(30, Some(2_500));
+    let silent = EPOCH + 9 * S..EPOCH + 11 * S;
+    recorded
+        .packets
+        .retain(|p| !silent.contains(&p.host.as_nanos()));
+    for packet in &mut recorded.packets {
+        if packet.host.as_nanos() >= silent.end {
+            packet.host += Span::from_millis(3);
+        }
+    }
+    assert_eq!(recorded.stepped(&[]).timeline().steps, []);
+}
+
 /// A damaged stamp, early by minutes, is ignored and does not bend the clock.
 #[test]
 fn an_early_packet_is_ignored() {

@@ -457,6 +457,19 @@ fn degenerate_profiles_are_fitted_or_joined() {
     ));
 }
 
+/// At 0.05 deg/s a ramp of 0.1 ms covers a thousandth of a count.
+#[test]
+fn ramps_of_less_than_a_count_are_not_reported() {
+    let run = Drive {
+        speed: 0.05,
+        way: -0.1,
+        ..REFERENCE
+    }
+    .run();
+    let fits = run.trajectory(None);
+    assert_eq!(fits.fits()[0].remarks, [], "{:?}", fits.fits());
+}
+
 /// A filter by round-trip time must keep some polls.
 #[test]
 fn polls_of_equal_round_trip_are_fitted() {
