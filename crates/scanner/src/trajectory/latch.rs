@@ -2,8 +2,9 @@
 //! control cycle. No manual says whether it does.
 //!
 //! Then the instants at which the fitted curve has the samples' angles lie on a grid of the cycle,
-//! while the polls do not. Where the polls lie on such a grid too, or where a cycle is less than an
-//! encoder count, the samples cannot show it, and the age is unknown from zero to a cycle.
+//! while the polls do not. Where the polls lie on such a grid too, ages that jump by a cycle still
+//! show it. Where none does, or where a cycle is less than an encoder count, the samples cannot
+//! show it, and the age is unknown from zero to a cycle.
 
 use units::Span;
 
@@ -14,6 +15,12 @@ const WINDOW: usize = 48;
 /// Mean resultant lengths above which instants lie on a grid, and below which they do not.
 const ON_GRID: f64 = 0.7;
 const OFF_GRID: f64 = 0.45;
+/// Ages explain the residuals, or the residuals exclude them, by this ratio of variances.
+const DECISIVE: f64 = 3.0;
+/// Error of instants by the drive's own timing, seconds.
+const UNCERTAINTY_S: f64 = 20e-6;
+/// Samples whose bound exceeds the median by this factor are left out: their instant is unknown.
+const MAX_BOUND: f64 = 1.5;
 /// Greatest duration of an encoder count at which a grid is visible.
 const MAX_COUNT_S: f64 = 0.3e-3;
 
@@ -67,7 +74,7 @@ pub(super) fn evidence(residuals: &[Residual], angle_sd_deg: f64) -> LatchEviden
         .fold(0.0, f64::max);
     let instants = resultant(&quick, |r| r.at_s + r.late_s());
     if polls > OFF_GRID {
-        LatchEvidence::Unknown
+        evidence_of_ages(&quick, count_s)
     } else if instants > ON_GRID {
         LatchEvidence::Present
     } else if instants < OFF_GRID {
@@ -75,6 +82,44 @@ pub(super) fn evidence(residuals: &[Residual], angle_sd_deg: f64) -> LatchEviden
     } else {
         LatchEvidence::Unknown
     }
+}
+
+/// What residuals show if the instants of sampling are known to less than a cycle: those of a latch
+/// are the ages of the samples, up to the phase of the cycle.
+fn evidence_of_ages(residuals: &[Residual], count_s: f64) -> LatchEvidence {
+    let unseen = (count_s * count_s / 12.0 + UNCERTAINTY_S * UNCERTAINTY_S) * WINDOW as f64;
+    let (mut plain, mut aged) = (0.0, 0.0);
+    for window in residuals.chunks_exact(WINDOW) {
+        let bound_s = MAX_BOUND * median_bound_s(window);
+        let sharp: Vec<&Residual> = window.iter().filter(|r| r.bound_s <= bound_s).collect();
+        plain += unseen + square_deviations(sharp.iter().map(|r| r.late_s()));
+        // Between two samples every phase is alike.
+        let beginning_at = |phase: &&Residual| {
+            let age = |r: &Residual| (r.at_s - phase.at_s).rem_euclid(CYCLE_S);
+            square_deviations(sharp.iter().map(|r| r.late_s() + age(r)))
+        };
+        aged += unseen + sharp.iter().map(beginning_at).fold(f64::INFINITY, f64::min);
+    }
+    if aged * DECISIVE < plain {
+        LatchEvidence::Present
+    } else if plain * DECISIVE < aged {
+        LatchEvidence::Absent
+    } else {
+        LatchEvidence::Unknown
+    }
+}
+
+fn median_bound_s(residuals: &[Residual]) -> f64 {
+    let mut bounds: Vec<f64> = residuals.iter().map(|r| r.bound_s).collect();
+    bounds.sort_by(f64::total_cmp);
+    bounds.get(bounds.len() / 2).copied().unwrap_or_default()
+}
+
+/// Sum of the squared deviations from the mean.
+fn square_deviations(values: impl Iterator<Item = f64> + Clone) -> f64 {
+    let count = values.clone().count().max(1) as f64;
+    let mean = values.clone().sum::<f64>() / count;
+    values.map(|value| (value - mean).powi(2)).sum()
 }
 
 /// Mean resultant length (Rayleigh) of instants in the cycle, over windows: 1 on a grid.
@@ -115,9 +160,7 @@ pub(super) fn delay(residuals: &[Residual], latch: LatchEvidence) -> (Span, (Spa
     // In conflict, no sample can be believed more than its own bound, and the conflict is an error.
     if high < low {
         let conflict = low - high;
-        let mut bounds: Vec<f64> = quick.iter().map(|r| r.bound_s).collect();
-        bounds.sort_by(f64::total_cmp);
-        let bound = bounds.get(bounds.len() / 2).copied().unwrap_or_default();
+        let bound = median_bound_s(&quick);
         (low, high) = (-bound - age_s - conflict, bound + conflict);
     }
     let shift = if latch == LatchEvidence::Present {
@@ -130,4 +173,43 @@ pub(super) fn delay(residuals: &[Residual], latch: LatchEvidence) -> (Span, (Spa
         Span::from_secs_f64((high - shift).max(0.0)),
     );
     (Span::from_secs_f64(shift), limits)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Residuals of a drive that renews its position at a phase of the cycle, if it does, polled at
+    /// instants with that jitter, at 50 deg/s.
+    fn residuals(period_s: f64, jitter_s: f64, latch_phase: Option<f64>) -> Vec<Residual> {
+        let polled = (0..960).map(|i| {
+            // Numbers that look drawn at random: the golden ratio's multiples.
+            let drawn = (f64::from(i) * 0.618_033_988_749_895).fract();
+            let at_s = f64::from(i) * period_s + jitter_s * drawn;
+            let age_s = latch_phase.map_or(0.0, |phase| (at_s - phase).rem_euclid(CYCLE_S));
+            Residual {
+                at_s,
+                off_deg: 50.0 * (0.4e-3 - age_s),
+                rate_deg_s: 50.0,
+                bound_s: 0.2e-3,
+            }
+        });
+        polled.collect()
+    }
+
+    #[test]
+    fn polls_of_any_phase_show_whether_positions_are_latched() {
+        let seen = |latch| evidence(&residuals(2.513e-3, 0.1e-3, latch), 0.0004);
+        assert_eq!(seen(Some(0.2e-3)), LatchEvidence::Present);
+        assert_eq!(seen(None), LatchEvidence::Absent);
+    }
+
+    /// As by SYNCs of 1 kHz: their ages jump by a cycle if their jitter crosses its end.
+    #[test]
+    fn polls_in_step_with_the_cycle_show_a_latch_only_where_their_ages_jump() {
+        let seen = |latch| evidence(&residuals(1e-3, 0.1e-3, latch), 0.0004);
+        assert_eq!(seen(Some(0.05e-3)), LatchEvidence::Present);
+        assert_eq!(seen(Some(0.5e-3)), LatchEvidence::Unknown);
+        assert_eq!(seen(None), LatchEvidence::Unknown);
+    }
 }
