@@ -3,11 +3,11 @@
 //! A PDO does not name its SYNC. PDOs arrive in the order of the SYNCs, but both may be lost, and
 //! at 1 kHz a PDO may arrive after the next SYNC. A position must never be matched to a SYNC later
 //! than itself: the span from SYNC to arrival would not contain the time of the sample. An earlier
-//! SYNC only makes the span longer. Matching therefore starts with a single SYNC, or with the first
-//! since the PDOs were enabled, and goes on in order. After a loss it skips a SYNC only if the drive's clock shows that the next one also
-//! preceded the sample. The matches themselves relate that clock to the host's: a sample is never
-//! older than its SYNC, so the maximum of (SYNC - drive time) over all matches is a lower bound of
-//! the clock offset.
+//! SYNC only makes the span longer. Matching therefore starts with a single SYNC, or with the
+//! first since the PDOs were enabled, and goes on in order. After a loss it skips a SYNC only if
+//! the drive's clock shows that the next one also preceded the sample. The matches themselves
+//! relate that clock to the host's: a sample is never older than its SYNC, so the maximum of (SYNC
+//! - drive time) over all matches is a lower bound of the clock offset.
 //!
 //! The client and the listener share this code, so a log is matched as its capture was.
 

@@ -10,15 +10,18 @@
 //! All host stamps after a step of the host's clock, including the drive's (`monotonic`), are
 //! converted to the clock before it. After a step of the lidar's clock, that clock has another
 //! piece. The spacing of packets shows steps of the lidar's clock down to 0.1 ms if the delays
-//! confirm them. Steps of the host's clock below 10 ms are searched for only where neither device
-//! was recorded for half a second, as on a host that sleeps; from 1 ms on. Others, and steps undone
-//! within six seconds, are not searched for; the clock's bound contains them. `lidar` unwraps hours.
+//! confirm them. Steps of the host's clock from 1 ms to 10 ms are found where neither device was
+//! recorded for half a second, as on a host that sleeps, and where the samples of a moving axis
+//! jump too (`motion`). Others, and steps undone within six seconds, are not; the clock's bound
+//! contains them. `lidar` unwraps hours.
 
 mod jumps;
 mod monotonic;
+mod motion;
 
 use core::fmt;
 
+use drive::ShaftSample;
 use units::{Host, Span, Stamp};
 
 use crate::clock::{Arrival, LidarClock, Stretch};
@@ -84,42 +87,44 @@ pub(crate) struct Timeline {
 const UNCERTAIN_PACKETS: usize = 16;
 
 impl Timeline {
-    /// Finds the lidar's clock and the steps, from packets in order of recording. `None` without
-    /// packets.
-    pub fn new(arrivals: &[Arrival], clock_steps: &ClockSteps) -> Option<Self> {
+    /// Finds the lidar's clock and the steps, from packets and samples in order of recording, the
+    /// samples with monotonic stamps. `None` without packets.
+    pub fn new(
+        arrivals: &[Arrival],
+        samples: &[ShaftSample],
+        clock_steps: &ClockSteps,
+    ) -> Option<Self> {
         let found = jumps::find(arrivals);
-        let mut cuts: Vec<(Jump, SetClock)> = found
+        let mut cuts: Vec<Cut> = found
             .jumps
             .iter()
-            .filter_map(|jump| Some((*jump, attribute(*jump, &found, arrivals, clock_steps)?)))
+            .filter_map(|jump| attribute(*jump, &found, arrivals, samples, clock_steps))
             .collect();
-        cuts.sort_by_key(|(jump, _)| jump.at);
+        cuts.sort_by_key(|cut| cut.at);
         let pieces = pieces(arrivals, &cuts, &found.strays);
-        let host_was_set: Vec<bool> = cuts
-            .iter()
-            .map(|(_, clock)| *clock == SetClock::Host)
-            .collect();
+        let host_was_set: Vec<bool> = cuts.iter().map(|cut| cut.clock == SetClock::Host).collect();
         let (clock, rises) = LidarClock::fit_pieces(&pieces, &host_was_set)?;
         let begin = arrivals.first()?.host;
         let mut line = HostTimeline::new(clock_steps);
         let mut steps = Vec::new();
         let mut corrected = arrivals.to_vec();
         let mut total = Span::ZERO;
-        for ((jump, clock), rise) in cuts.iter().zip(rises) {
-            let first = arrivals.get(jump.at)?;
+        for (cut, rise) in cuts.iter().zip(rises) {
+            let first = arrivals.get(cut.at)?;
             let mut when = before(first.host, total);
             let mut by = Span::ZERO.saturating_sub(rise);
-            if *clock == SetClock::Host {
+            if cut.clock == SetClock::Host {
                 by = rise;
                 when = before(when, by);
                 total = total.saturating_add(by);
-                for arrival in corrected.get_mut(jump.at..).unwrap_or_default() {
+                for arrival in corrected.get_mut(cut.at..).unwrap_or_default() {
                     arrival.host = before(arrival.host, by);
                 }
-                line.set(clock_steps.boundary(jump.at, by), by);
+                let boundary = cut.boundary.or_else(|| clock_steps.boundary(cut.at, by));
+                line.set(boundary, by);
             }
             steps.push(ClockStep {
-                clock: *clock,
+                clock: cut.clock,
                 when,
                 after: when.saturating_since(begin),
                 by,
@@ -134,34 +139,60 @@ impl Timeline {
     }
 }
 
+/// A step of a clock among the packets.
+#[derive(Clone, Copy, Debug)]
+struct Cut {
+    /// First packet after it.
+    at: usize,
+    clock: SetClock,
+    /// Monotonic time of the first record of the drive after it, if known.
+    boundary: Option<Stamp<Host>>,
+}
+
 /// The clock that jumped; `None` if packets were merely delayed.
 fn attribute(
     jump: Jump,
     found: &jumps::JumpReport,
     arrivals: &[Arrival],
+    samples: &[ShaftSample],
     clock_steps: &ClockSteps,
-) -> Option<SetClock> {
+) -> Option<Cut> {
+    let cut = |clock| Cut {
+        at: jump.at,
+        clock,
+        boundary: None,
+    };
     match jump.evidence {
-        Evidence::Spacing => return Some(SetClock::Lidar),
+        Evidence::Spacing => return Some(cut(SetClock::Lidar)),
         Evidence::Silence(silence) => {
-            return clock_steps
-                .sleeps(jump.at, silence)
-                .then_some(SetClock::Host);
+            let sleeps = clock_steps.sleeps(jump.at, silence);
+            return sleeps.then(|| cut(SetClock::Host));
+        }
+        // No delay puts the records of the drive back.
+        Evidence::Regular if jump.by < Span::ZERO && clock_steps.shows(jump.at, jump.by) => {
+            return Some(cut(SetClock::Host));
+        }
+        Evidence::Regular => {
+            let next = clock_steps.next_sample(jump.at);
+            return motion::step(samples, next, jump.by).map(|boundary| Cut {
+                boundary: Some(boundary),
+                ..cut(SetClock::Host)
+            });
         }
         Evidence::Delays => {}
     }
     if clock_steps.shows(jump.at, jump.by) {
-        return Some(SetClock::Host);
+        return Some(cut(SetClock::Host));
     }
     if found.device_jumped(arrivals, jump.at) {
-        return Some(SetClock::Lidar);
+        return Some(cut(SetClock::Lidar));
     }
-    (!clock_steps.is_dense(jump.at)).then_some(SetClock::Host)
+    (!clock_steps.is_dense(jump.at)).then(|| cut(SetClock::Host))
 }
 
 /// The packets between the steps, without uncertain ones, in order of device time.
-fn pieces(arrivals: &[Arrival], cuts: &[(Jump, SetClock)], strays: &[usize]) -> Vec<Stretch> {
-    let ends = cuts.iter().map(|(jump, _)| jump.at).chain([arrivals.len()]);
+fn pieces(arrivals: &[Arrival], cuts: &[Cut], strays: &[usize]) -> Vec<Stretch> {
+    let ends = cuts.iter().map(|cut| cut.at).chain([arrivals.len()]);
     let mut from = 0;
     let mut pieces = Vec::new();
     for to in ends {

@@ -94,7 +94,7 @@ impl Survey {
     }
 
     pub(crate) fn timeline(&self) -> Option<Timeline> {
-        Timeline::new(&self.arrivals, &self.clock_steps)
+        Timeline::new(&self.arrivals, &self.samples, &self.clock_steps)
     }
 
     /// The drive's records, on the host clock as it was at the beginning.

@@ -20,7 +20,7 @@ use units::{Host, Span, Stamp};
 use super::contents::contents;
 use super::failures::scan_failure;
 use super::frames::{FramePlan, FrameWriter};
-use super::warnings::{angle_warnings, incomplete_sweeps};
+use super::warnings::{alignment_warnings, incomplete_sweeps};
 use crate::failure::{Failure, Kind};
 use crate::output::{Target, sink_failure};
 use crate::reconstruct::diagnostics as checks;
@@ -328,7 +328,7 @@ fn report(
         &alignment.steps,
     );
     let incomplete = incomplete_sweeps(&first_pass.config, alignment);
-    let warnings = angle_warnings(alignment).into_iter();
+    let warnings = alignment_warnings(alignment).into_iter();
     contents
         .warnings
         .extend(warnings.chain(incomplete.iter().cloned()));

@@ -1,15 +1,26 @@
-//! Warnings about a reconstructed scan: uncertain angles and incomplete sweeps.
+//! Warnings about a reconstructed scan: uncertain times and angles, and incomplete sweeps.
 
 use scanner::{Alignment, ScanConfig};
+use units::Span;
 
 /// Angle bound above which a warning is due: 17 mm at 10 m.
 const WARNING_BOUND_DEG: f64 = 0.1;
+/// Clock bound above which a warning is due: the networks of the trials stay below half of it.
+const WARNING_CLOCK_BOUND: Span = Span::from_micros(500);
 /// Distance from the planned end above which a sweep counts as cut short.
 const CUT_SHORT_DEG: f64 = 0.1;
 
-/// Warnings about angles: slow or missing polls, sweeps that deviate from the plan.
-pub(super) fn angle_warnings(alignment: &Alignment) -> Vec<String> {
+/// Warnings about times and angles: packets that all came late, slow or missing polls, sweeps that
+/// deviate from the plan.
+pub(super) fn alignment_warnings(alignment: &Alignment) -> Vec<String> {
     let mut warnings = Vec::new();
+    let clock_bound = alignment.clock.bound();
+    if clock_bound > WARNING_CLOCK_BOUND {
+        warnings.push(format!(
+            "for a while all packets of the lidar came late, or the host's clock was slewed or set by a little: times may be wrong by {:.1} ms",
+            clock_bound.as_secs_f64() * 1e3
+        ));
+    }
     if let Some(bound) = alignment
         .angle_bound_deg()
         .filter(|bound| *bound > WARNING_BOUND_DEG)

@@ -5,7 +5,7 @@ use core::marker::PhantomData;
 use units::{Host, Lidar, Span, Stamp};
 
 use super::Arrival;
-use super::envelope::Envelope;
+use super::envelope::{BOUND_SDS, Envelope};
 use super::segment::{ClockSegment, Moment, OffsetLine};
 
 /// Maps device time to host time.
@@ -126,6 +126,7 @@ impl<C: Copy> DeviceClock<C> {
         let mut late: Vec<i64> = Vec::new();
         let mut rises = Vec::new();
         let mut set_by = 0i64;
+        let mut uncertain_ns = 0.0;
         for stretch in stretches {
             let mut piece = ClockPiece::fit(stretch, origin_ns)?;
             late.extend(stretch.arrivals.iter().map(|arrival| {
@@ -149,11 +150,18 @@ impl<C: Copy> DeviceClock<C> {
                 let rise = after.saturating_sub(before);
                 if by_host {
                     set_by = set_by.saturating_add(rise.as_nanos());
+                    // The size of the step has the errors of both lines.
+                    let ends = last.cells.last().into_iter().chain(piece.cells.first());
+                    uncertain_ns = ends.map(|cell| cell.bound_ns).sum();
                 }
                 rises.push(rise);
             }
             piece.whole = piece.whole.wrapping_sub(set_by);
             piece.set_by = set_by;
+            for cell in &mut piece.cells {
+                cell.bound_ns += uncertain_ns;
+                cell.sd_ns = cell.sd_ns.hypot(uncertain_ns / BOUND_SDS);
+            }
             pieces.push(piece);
         }
         let clock = Self {

@@ -36,7 +36,7 @@ const ROUNDS: usize = 3;
 const WANDER_PER_S: f64 = 0.03e-6;
 const WANDER_MARGIN: f64 = 1.25;
 /// Standard deviations that contain a whole recording in 99 of 100 cases.
-const BOUND_SDS: f64 = 3.5;
+pub(super) const BOUND_SDS: f64 = 3.5;
 /// Cells per block.
 const CELLS: f64 = 16.0;
 /// A cell's smallest delay is not by chance if this many packets were expected below it.

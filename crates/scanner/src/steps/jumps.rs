@@ -6,8 +6,9 @@
 //! ends of a recording the values must be level instead. Jumps up that are undone within six
 //! seconds are not found.
 //!
-//! Two kinds of smaller jumps are found: those of the lidar's clock, which the spacing of packets
-//! shows, and those of the host's clock across a silence, in which the host slept.
+//! Smaller jumps are found where something else confirms them: those of the lidar's clock by the
+//! spacing of packets, those of the host's clock by a silence, in which the host slept, or by the
+//! motion of the axis.
 
 use std::collections::VecDeque;
 
@@ -26,8 +27,8 @@ const MIN_IRREGULAR_NS: i64 = 20_000;
 const SMALL_WINDOW: usize = 256;
 /// Shortest silence of a host that slept.
 const SILENCE: Span = Span::from_millis(500);
-/// The smallest jump across a silence to look for: the delays of most networks vary by less.
-const SMALLEST_ACROSS_SILENCE_NS: i64 = 1_000_000;
+/// The smallest jump of the host's clock to look for: the delays of most networks vary by less.
+const SMALLEST_OF_HOST_NS: i64 = 1_000_000;
 /// Largest relative drift of two crystals, in ppm.
 const DRIFT_PPM: i64 = 200;
 /// Time for which a jump must last.
@@ -66,6 +67,8 @@ pub(crate) enum Evidence {
     Spacing,
     /// A silence of this length in regular packets: the host's clock, if the host slept.
     Silence(Span),
+    /// Packets that go on regularly: the host's clock, if the samples of the axis jump too.
+    Regular,
 }
 
 /// Jumps and outliers of a recording.
@@ -118,6 +121,8 @@ pub(crate) fn find(arrivals: &[Arrival]) -> JumpReport {
     found.jumps.extend(small);
     let across = found.jumps_across_silence(arrivals, &offsets);
     found.jumps.extend(across);
+    let regular = found.jumps_of_regular_packets(arrivals, &offsets, window);
+    found.jumps.extend(regular);
     found.jumps.sort_by_key(|jump| jump.at);
     found
 }
@@ -223,7 +228,7 @@ impl JumpReport {
             if off.abs() < MIN_IRREGULAR_NS + count * 10 || !self.is_apart(at) {
                 continue;
             }
-            let Some(rise) = rise_at(offsets, at) else {
+            let Some(rise) = self.rise_at(offsets, at) else {
                 continue;
             };
             // The step that the spacing shows, up to whole packets, is the one nearest to the rise.
@@ -255,10 +260,10 @@ impl JumpReport {
                 let (device, _) = steps(arrivals, at).filter(|(device, _)| *device > SILENCE)?;
                 let off = (device.as_nanos() + spacing / 2).rem_euclid(spacing) - spacing / 2;
                 let count = device.as_nanos() / spacing;
-                let by = rise_at(offsets, at)?;
+                let by = self.rise_at(offsets, at)?;
                 let drift = device.as_nanos() / 1_000_000 * DRIFT_PPM;
                 let is_regular = off.abs() < MIN_IRREGULAR_NS + count * 10;
-                (is_regular && by.abs() >= SMALLEST_ACROSS_SILENCE_NS + drift).then(|| Jump {
+                (is_regular && by.abs() >= SMALLEST_OF_HOST_NS + drift).then(|| Jump {
                     at,
                     by: Span::from_nanos(by),
                     evidence: Evidence::Silence(device),
@@ -267,12 +272,72 @@ impl JumpReport {
             .collect()
     }
 
+    /// Jumps of the delays that last, though the lidar's clock goes on.
+    fn jumps_of_regular_packets(
+        &self,
+        arrivals: &[Arrival],
+        offsets: &[i64],
+        window: usize,
+    ) -> Vec<Jump> {
+        let ahead = least_ahead(offsets, SMALL_WINDOW);
+        let lasting = least_ahead(offsets, window);
+        let mut behind = SlidingMinimum::default();
+        let mut long_behind = SlidingMinimum::default();
+        let mut found: Vec<Jump> = Vec::new();
+        for (at, offset) in offsets.iter().enumerate() {
+            let least = [&behind, &long_behind].map(SlidingMinimum::get);
+            behind.push(at, *offset, SMALL_WINDOW);
+            long_behind.push(at, *offset, window);
+            let ([Some(before), Some(long_before)], Some(after), Some(long_after)) =
+                (least, ahead.get(at), lasting.get(at))
+            else {
+                continue;
+            };
+            let rise = after.saturating_sub(before);
+            let lasting = long_after.saturating_sub(long_before);
+            let is_lasting =
+                lasting.signum() == rise.signum() && lasting.abs() > rise.abs() * 7 / 10;
+            let is_inside = at >= MIN_LEVEL_PACKETS && offsets.len() - at >= MIN_LEVEL_PACKETS;
+            if rise.abs() < SMALLEST_OF_HOST_NS || !is_lasting || !is_inside {
+                continue;
+            }
+            let jump = Jump {
+                at,
+                by: Span::from_nanos(rise),
+                evidence: Evidence::Regular,
+            };
+            match found.last_mut() {
+                // A rise is complete at once, a fall only where it happened.
+                Some(last) if at - last.at <= SMALL_WINDOW => {
+                    let grows = rise.abs() > last.by.as_nanos().abs() * 11 / 10;
+                    if grows || (rise < 0 && rise.abs() > last.by.as_nanos().abs() * 7 / 10) {
+                        *last = jump;
+                    }
+                }
+                _ => found.push(jump),
+            }
+        }
+        found.retain(|jump| self.is_apart(jump.at) && !self.device_jumped(arrivals, jump.at));
+        found
+    }
+
     /// Whether no jump or stray packet is near.
     fn is_apart(&self, at: usize) -> bool {
-        let jumps = self.jumps.iter().map(|jump| jump.at);
-        jumps
-            .chain(self.strays.iter().copied())
-            .all(|other| other.abs_diff(at) > SMALL_WINDOW)
+        let mut jumps = self.jumps.iter().map(|jump| jump.at);
+        let mut strays = self.strays.iter();
+        jumps.all(|other| other.abs_diff(at) >= MIN_LEVEL_PACKETS)
+            && strays.all(|other| other.abs_diff(at) > SMALL_WINDOW)
+    }
+
+    /// Rise of the least offset from the packets before `at` to those from it on, up to the next
+    /// jumps.
+    fn rise_at(&self, offsets: &[i64], at: usize) -> Option<i64> {
+        let before = self.jumps.iter().map(|jump| jump.at).filter(|j| *j <= at);
+        let after = self.jumps.iter().map(|jump| jump.at).filter(|j| *j > at);
+        let begin = before.fold(at.saturating_sub(SMALL_WINDOW), usize::max);
+        let end = after.fold((at + SMALL_WINDOW).min(offsets.len()), usize::min);
+        let least = |from: usize, to: usize| offsets.get(from..to)?.iter().min().copied();
+        Some(least(at, end)?.saturating_sub(least(begin, at)?))
     }
 
     /// Whether a spacing is a whole number of packets, some lost, or that of reordered ones.
@@ -284,14 +349,6 @@ impl JumpReport {
         let reordered = device_ns <= 0 && count <= NEAR as i64;
         (ordered || reordered) && off <= QUANTUM_NS + count * 10
     }
-}
-
-/// Rise of the least offset from the packets before `at` to those from it on.
-fn rise_at(offsets: &[i64], at: usize) -> Option<i64> {
-    let least = |from: usize, to: usize| offsets.get(from..to)?.iter().min().copied();
-    let before = least(at.saturating_sub(SMALL_WINDOW), at)?;
-    let after = least(at, (at + SMALL_WINDOW).min(offsets.len()))?;
-    Some(after.saturating_sub(before))
 }
 
 /// Whether a spacing occurs in other places too, within the tolerance.

@@ -9,7 +9,7 @@
 use units::{Host, Span, Stamp};
 
 /// Stamps that go back by more are of a clock that was set back.
-const BACK: Span = Span::from_millis(-5);
+const BACK: Span = Span::from_millis(-2);
 /// Stamps that leap by more than the lidar's clock are of a clock that was set forward. Smaller
 /// leaps do not disturb pairing.
 const LEAP: Span = Span::from_millis(1_500);
@@ -113,6 +113,11 @@ impl ClockSteps {
         self.pauses
             .iter()
             .any(|pause| pause.packets.abs_diff(at) <= NEAR && pause.length >= silence.half())
+    }
+
+    /// Number of samples before the lidar's packet `at`.
+    pub fn next_sample(&self, at: usize) -> usize {
+        self.samples.partition_point(|s| *s < packets(at))
     }
 
     /// Whether the drive's samples are dense enough near there to show a jump.

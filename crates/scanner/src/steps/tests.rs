@@ -1,6 +1,7 @@
 //! Steps of either clock, and delays that resemble them.
 
-use units::{Lidar, Span};
+use drive::SampleTrigger;
+use units::{Lidar, Quadcounts, Span};
 
 use super::*;
 
@@ -25,12 +26,14 @@ struct Recorded {
     packets: Vec<Arrival>,
     /// Request and answer.
     polls: Vec<(i64, i64)>,
+    /// Speed of the axis.
+    counts_per_s: i64,
 }
 
 /// Records in the order of the file.
 enum Entry {
     Packet(Arrival),
-    Poll(i64, i64),
+    Poll(i64, i64, i32),
 }
 
 impl Recorded {
@@ -62,7 +65,11 @@ impl Recorded {
                 })
                 .collect()
         });
-        Self { packets, polls }
+        Self {
+            packets,
+            polls,
+            counts_per_s: 0,
+        }
     }
 
     /// The recording of a host whose clock is set at these true times.
@@ -81,7 +88,10 @@ impl Recorded {
             entries.push((host, Entry::Packet(stamped)));
         }
         for (request, answer) in &self.polls {
-            entries.push((*answer, Entry::Poll(clock(*request), clock(*answer))));
+            let taken = request + (answer - request) * 2 / 5 - EPOCH;
+            let position = taken * self.counts_per_s / S;
+            let poll = Entry::Poll(clock(*request), clock(*answer), position as i32);
+            entries.push((*answer, poll));
         }
         entries.sort_by_key(|(host, _)| *host);
         let mut seen = Seen::default();
@@ -91,13 +101,20 @@ impl Recorded {
                     seen.monotonic.packet(packet.device.as_nanos(), packet.host);
                     seen.arrivals.push(packet);
                 }
-                Entry::Poll(request, answer) => {
+                Entry::Poll(request, answer, position) => {
                     let stamp = Stamp::from_nanos;
                     let sewn = (
                         seen.monotonic.monotonic(stamp(request)),
                         seen.monotonic.monotonic(stamp(answer)),
                     );
                     seen.polls.push(sewn);
+                    seen.samples.push(ShaftSample {
+                        request: sewn.0,
+                        answer: sewn.1,
+                        position: Quadcounts(position),
+                        trigger: SampleTrigger::Request,
+                        device_us: None,
+                    });
                     seen.monotonic.sample();
                 }
             }
@@ -112,11 +129,12 @@ struct Seen {
     arrivals: Vec<Arrival>,
     monotonic: ClockSteps,
     polls: Vec<(Stamp<Host>, Stamp<Host>)>,
+    samples: Vec<ShaftSample>,
 }
 
 impl Seen {
     fn timeline(&self) -> Timeline {
-        Timeline::new(&self.arrivals, &self.monotonic).unwrap()
+        Timeline::new(&self.arrivals, &self.samples, &self.monotonic).unwrap()
     }
 
     /// Greatest error of clock and polls in microseconds, without a constant, and the number of
@@ -245,6 +263,7 @@ fn a_step_of_the_lidar_clock_is_found() {
             let truth = Recorded {
                 packets: recorded.packets.clone(),
                 polls: recorded.polls.clone(),
+                counts_per_s: 0,
             };
             for packet in &mut recorded.packets {
                 if packet.device.as_nanos() >= at {
@@ -339,12 +358,64 @@ fn delays_are_not_steps() {
     assert_eq!(recorded.stepped(&[]).timeline().steps, []);
 }
 
+/// While the axis moves at 56.25 deg/s, its positions show steps of the host's clock.
+#[test]
+fn a_small_step_of_the_host_clock_while_the_axis_moves_is_found() {
+    for poll_us in [2_500, 1_000] {
+        let recorded = Recorded {
+            counts_per_s: 37_500,
+            ..Recorded::new(20, Some(poll_us))
+        };
+        for by in [
+            1_200_000, 3_000_000, 6_000_000, -1_200_000, -3_000_000, -6_000_000,
+        ] {
+            let seen = recorded.stepped(&[(7 * S + 345_678, by)]);
+            let timeline = seen.timeline();
+            let step = only(&timeline);
+            assert_eq!(step.clock, SetClock::Host, "{by}");
+            assert!((step.by.as_nanos() - by).abs() < 10_000, "{by}: {step:?}");
+            let (worst_us, polls_off) = seen.errors(&timeline, &recorded);
+            assert!(
+                worst_us < 5.0 && polls_off <= 3,
+                "{by}: {worst_us} us, {polls_off}"
+            );
+        }
+    }
+}
+
+/// A clock set back puts the records of the drive back, too.
+#[test]
+fn a_small_step_back_of_the_host_clock_is_found_while_the_axis_rests() {
+    let recorded = Recorded::new(20, Some(2_500));
+    for by in [-6_000_000, -8_000_000] {
+        let seen = recorded.stepped(&[(7 * S + 345_678, by)]);
+        let timeline = seen.timeline();
+        let step = only(&timeline);
+        assert_eq!(step.clock, SetClock::Host, "{by}");
+        let (worst_us, polls_off) = seen.errors(&timeline, &recorded);
+        assert!(worst_us < 5.0 && polls_off == 0, "{by}: {worst_us} us");
+    }
+}
+
+/// A network that becomes slower for good does not set the host's clock.
+#[test]
+fn a_slower_network_while_the_axis_moves_is_no_step() {
+    let mut recorded = Recorded {
+        counts_per_s: 37_500,
+        ..Recorded::new(20, Some(2_500))
+    };
+    for packet in &mut recorded.packets {
+        if packet.host.as_nanos() >= EPOCH + 7 * S {
+            packet.host += Span::from_millis(3);
+        }
+    }
+    assert_eq!(recorded.stepped(&[]).timeline().steps, []);
+}
+
 /// A step below 10 ms is absorbed, and the bound contains it.
 #[test]
 fn undetectably_small_steps_are_within_the_bound() {
-    for by in [
-        100_000, 2_000_000, 8_000_000, -100_000, -2_000_000, -8_000_000,
-    ] {
+    for by in [100_000, 2_000_000, 8_000_000, -100_000, -2_000_000] {
         let recorded = Recorded::new(60, Some(2_500));
         let seen = recorded.stepped(&[(31 * S, by)]);
         let timeline = seen.timeline();
@@ -430,5 +501,5 @@ fn few_packets_have_no_steps() {
         let seen = recorded.stepped(&[]);
         assert_eq!(seen.timeline().steps, []);
     }
-    assert!(Timeline::new(&[], &ClockSteps::default()).is_none());
+    assert!(Timeline::new(&[], &[], &ClockSteps::default()).is_none());
 }

@@ -191,15 +191,15 @@ impl<'a> Candidates<'a> {
     fn candidate(&self, fit: ProfileFit, method: Method) -> Option<Candidate> {
         let end_s = self.observed.last()?.at_s;
         let pieces = pieces(&fit, self.origin, end_s)?;
-        // A ramp of less than an encoder count may have any duration.
+        // Parameters that trade off against each other leave the curve as it is.
         let count_deg = self.noise.angle_sd_deg * f64::sqrt(12.0);
-        let is_seen = |ramp_s: f64| fit.profile.speed_deg_s.abs() * ramp_s / 2.0 > count_deg;
-        let mut regularised = fit.regularised;
-        regularised.ramp_up &= is_seen(fit.profile.ramp_up_s);
-        regularised.ramp_down &= is_seen(fit.profile.ramp_down_s);
-        let remarks = regularised
-            .any()
-            .then_some(Remark::Regularised(regularised));
+        let worst_sd_deg = pieces
+            .as_slice()
+            .iter()
+            .map(|p| p.sd_deg)
+            .fold(0.0, f64::max);
+        let is_undetermined = fit.regularised.any() && worst_sd_deg > count_deg;
+        let remarks = is_undetermined.then_some(Remark::Regularised(fit.regularised));
         let mut candidate = self.evaluated(method, pieces, fit.parameters())?;
         candidate.fit.profile = Some(fit.profile);
         candidate.fit.condition = Some(fit.condition);

@@ -442,7 +442,8 @@ fn degenerate_profiles_are_fitted_or_joined() {
     }
     // Ramps without samples are reported as regularised.
     let run = Drive {
-        acceleration: 50_000.0,
+        acceleration: 5_000.0,
+        hertz: 40.0,
         ..still
     }
     .run();
@@ -459,7 +460,7 @@ fn degenerate_profiles_are_fitted_or_joined() {
 
 /// At 0.05 deg/s a ramp of 0.1 ms covers a thousandth of a count.
 #[test]
-fn ramps_of_less_than_a_count_are_not_reported() {
+fn ramps_and_servos_of_less_than_a_count_are_not_reported() {
     let run = Drive {
         speed: 0.05,
         way: -0.1,

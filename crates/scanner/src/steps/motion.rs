@@ -1,0 +1,82 @@
+//! Steps of the host's clock that the samples of a moving axis show.
+//!
+//! After a step forward the axis seems to be behind: its positions over the host's time jump by the
+//! rate times the step. A network that becomes slower does not do that.
+
+use drive::ShaftSample;
+use nalgebra::{Matrix4, Vector4};
+use units::{Host, Span, Stamp};
+
+/// Samples on either side of a step.
+const SIDE: usize = 24;
+const MIN_SIDE: usize = 10;
+/// Samples by which the place of the step among them is uncertain.
+const NEAR: usize = 6;
+/// Greatest relative difference between the steps that packets and samples show.
+const DIFFERENCE: f64 = 0.3;
+/// Least jump of the positions, in its standard deviations.
+const MIN_SDS: f64 = 4.0;
+
+/// The request of the first sample after a step of the host's clock by `by`, if the samples show it
+/// near the index `at`.
+pub(super) fn step(samples: &[ShaftSample], at: usize, by: Span) -> Option<Stamp<Host>> {
+    let places = at.saturating_sub(NEAR)..=at + NEAR;
+    let fits = places.filter_map(|first| Some((first, JumpFit::new(samples, first)?)));
+    let (first, fit) = fits.min_by(|a, b| a.1.squares.total_cmp(&b.1.squares))?;
+    let by_s = by.as_secs_f64();
+    let shows = (fit.by_s - by_s).abs() < DIFFERENCE * by_s.abs() && fit.sds > MIN_SDS;
+    shows.then(|| samples.get(first).map(|sample| sample.request))?
+}
+
+/// A parabola through the positions, with a jump.
+struct JumpFit {
+    /// The step of the clock.
+    by_s: f64,
+    /// The jump in its standard deviations.
+    sds: f64,
+    /// Sum of the squared residuals.
+    squares: f64,
+}
+
+impl JumpFit {
+    /// Least squares of `a + b t + c t^2 + d [i >= first]`.
+    fn new(samples: &[ShaftSample], first: usize) -> Option<Self> {
+        let from = first.saturating_sub(SIDE);
+        let to = (first + SIDE).min(samples.len());
+        if first - from < MIN_SIDE || to.checked_sub(first)? < MIN_SIDE {
+            return None;
+        }
+        let origin = samples.get(first)?;
+        let rows = || {
+            (from..to).filter_map(|i| {
+                let sample = samples.get(i)?;
+                let middle = |s: &ShaftSample| {
+                    let length = s.answer.saturating_since(s.request);
+                    s.request.saturating_since(origin.request).as_secs_f64()
+                        + length.as_secs_f64() / 2.0
+                };
+                let t = middle(sample);
+                let after = f64::from(u8::from(i >= first));
+                let position = f64::from(sample.position.0.wrapping_sub(origin.position.0));
+                Some((Vector4::new(1.0, t, t * t, after), position))
+            })
+        };
+        let (mut normal, mut right) = (Matrix4::zeros(), Vector4::zeros());
+        for (row, position) in rows() {
+            normal += row * row.transpose();
+            right += row * position;
+        }
+        let inverse = normal.try_inverse()?;
+        let found = inverse * right;
+        let squares: f64 = rows()
+            .map(|(row, position)| (position - row.dot(&found)).powi(2))
+            .sum();
+        let variance = squares / ((to - from) as f64 - 4.0);
+        Some(Self {
+            by_s: -found.w / found.y,
+            // Counts are whole.
+            sds: found.w.abs() / (variance.max(1.0 / 12.0) * inverse.m44).sqrt(),
+            squares,
+        })
+    }
+}
