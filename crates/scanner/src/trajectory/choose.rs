@@ -167,10 +167,7 @@ impl<'a> Candidates<'a> {
         let observed = condensed(&self.observed, &guess);
         let fit = |servo| profile_fit::fit(&observed, guess, servo);
         let lag = fit(ServoModel::Lag);
-        let swing = match &lag {
-            Some(lag) if !profile_fit::shows_swing(&observed, lag) => None,
-            _ => fit(ServoModel::Swing),
-        };
+        let swing = profile_fit::fit_swing(&observed, guess, lag.as_ref());
         for (fit, method) in [
             (fit(ServoModel::None), Method::Profile),
             (lag, Method::ProfileServo),

@@ -95,7 +95,10 @@ fn evidence_of_ages(residuals: &[Residual], count_s: f64) -> LatchEvidence {
         plain += unseen + square_deviations(sharp.iter().map(|r| r.late_s()));
         // Between two samples every phase is alike.
         let beginning_at = |phase: &&Residual| {
-            let age = |r: &Residual| (r.at_s - phase.at_s).rem_euclid(CYCLE_S);
+            let age = |r: &Residual| {
+                let cycles = (r.at_s - phase.at_s) / CYCLE_S;
+                (cycles - cycles.floor()) * CYCLE_S
+            };
             square_deviations(sharp.iter().map(|r| r.late_s() + age(r)))
         };
         aged += unseen + sharp.iter().map(beginning_at).fold(f64::INFINITY, f64::min);

@@ -76,8 +76,8 @@ const MIN_RAMP_SAMPLES: usize = 3;
 /// Above this the samples do not determine all parameters.
 const MAX_CONDITION: f64 = 1e6;
 /// Relative change of the sum of squares at convergence: with a thousand samples, parameters are
-/// then within a thirtieth of their standard deviation.
-const SQUARES_TOLERANCE: f64 = 1e-6;
+/// then within a tenth of their standard deviation.
+const SQUARES_TOLERANCE: f64 = 1e-5;
 /// Relative change of the parameters at convergence.
 const PARAMETER_TOLERANCE: f64 = 1e-9;
 /// Initial lag: that of a servo of 15 Hz.
@@ -86,9 +86,8 @@ const INITIAL_LAG_S: f64 = 0.01;
 const MIN_DAMPING: f64 = 0.1;
 /// Residual of parameters that are no motion.
 const INVALID_RESIDUAL: f64 = 1e9;
-/// Score below which no swing shows: two more parameters pay in cross-validation, as in Akaike's
-/// criterion, if the sum of squares falls by more than twice its part of each.
-const SWING_SCORE: f64 = 2.0;
+/// Reduced chi-squared at which the residuals are the samples' errors: no other start fits better.
+const FITTED_CHI2: f64 = 1.2;
 /// Greatest lag of a servo that moves a head.
 const MAX_LAG_S: f64 = 1.0;
 
@@ -111,10 +110,32 @@ impl ProfileFit {
     }
 }
 
-/// Whether the residuals of a fit with a lag show a servo that swings: the score test (Rao 1948) of
-/// a step from the fit towards each start of [`ServoModel::Swing`]. Without one the long search for
-/// its parameters finds nothing that cross-validation would choose.
-pub(super) fn shows_swing(observed: &[Observed], lag: &ProfileFit) -> bool {
+/// The fit of a servo that swings, if the residuals of the fit with a lag show one: the score test
+/// (Rao 1948) of a step from that fit towards each start of [`ServoModel::Swing`]. Without one the
+/// long search for its parameters finds nothing that cross-validation would choose.
+pub(super) fn fit_swing(
+    observed: &[Observed],
+    guess: Profile,
+    lag: Option<&ProfileFit>,
+) -> Option<ProfileFit> {
+    let mut starts = ServoModel::Swing.starts().to_vec();
+    if let Some(lag) = lag {
+        let scores = swing_scores(observed, lag);
+        // A parameter must pay by the Bayesian information criterion (Schwarz 1978). Written so that
+        // a score that is no number shows a swing.
+        let least = (observed.len() as f64).ln();
+        if scores.iter().all(|score| *score < least) {
+            return None;
+        }
+        let mut ordered: Vec<(f64, [f64; 2])> = scores.into_iter().zip(starts).collect();
+        ordered.sort_by(|a, b| b.0.total_cmp(&a.0));
+        starts = ordered.into_iter().map(|(_, start)| start).collect();
+    }
+    fit_from(observed, guess, ServoModel::Swing, &starts)
+}
+
+/// Scores of a step towards each start of [`ServoModel::Swing`].
+fn swing_scores(observed: &[Observed], lag: &ProfileFit) -> Vec<f64> {
     let shape = ProfileShape::of(lag);
     let n = shape.len();
     // Normal equations of the residuals, and of each step. Priors enter by the covariance.
@@ -147,8 +168,7 @@ pub(super) fn shows_swing(observed: &[Observed], lag: &ProfileFit) -> bool {
         );
         step_off * step_off / (step_step * lag.reduced_chi2)
     };
-    // Written so that a score that is no number shows one.
-    !starts.iter().all(|(_, sums)| score(sums) < SWING_SCORE)
+    starts.iter().map(|(_, sums)| score(sums)).collect()
 }
 
 /// Sums over the observations for one step: products of step, residual and derivatives.
@@ -183,18 +203,37 @@ impl StepSums {
 /// Fits from `guess`. `None` with fewer observations than parameters, or if no minimum is a
 /// motion.
 pub(super) fn fit(observed: &[Observed], guess: Profile, servo: ServoModel) -> Option<ProfileFit> {
+    fit_from(observed, guess, servo, servo.starts())
+}
+
+/// The best fit of a servo from several starts.
+fn fit_from(
+    observed: &[Observed],
+    guess: Profile,
+    servo: ServoModel,
+    starts: &[[f64; 2]],
+) -> Option<ProfileFit> {
     let is_triangle = guess.braking_s() <= guess.ramp_up_s;
     let best = |guess: Profile, is_triangle| {
         let shape = ProfileShape { is_triangle, servo };
-        let fits = servo.starts().iter().filter_map(|&[lag_s, inertia_s]| {
+        let mut best: Option<ProfileFit> = None;
+        for &[lag_s, inertia_s] in starts {
             let guess = Profile {
                 lag_s,
                 inertia_s2: inertia_s * inertia_s,
                 ..guess
             };
-            solve(observed, guess, shape)
-        });
-        fits.min_by(|a, b| a.reduced_chi2.total_cmp(&b.reduced_chi2))
+            let chi2 = |fit: &ProfileFit| fit.reduced_chi2;
+            let next = solve(observed, guess, shape);
+            best = best
+                .into_iter()
+                .chain(next)
+                .min_by(|a, b| chi2(a).total_cmp(&chi2(b)));
+            if best.as_ref().is_some_and(|best| chi2(best) < FITTED_CHI2) {
+                break;
+            }
+        }
+        best
     };
     let first = best(guess, is_triangle)?;
     let cruises = first.profile.braking_s() - first.profile.ramp_up_s;
