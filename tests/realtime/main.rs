@@ -5,6 +5,7 @@
 mod command_line;
 mod daemon;
 mod doctor;
+mod generator;
 mod network;
 mod software_drive;
 mod tilt;
