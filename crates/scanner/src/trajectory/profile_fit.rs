@@ -121,8 +121,8 @@ pub(super) fn fit_swing(
     let mut starts = ServoModel::Swing.starts().to_vec();
     if let Some(lag) = lag {
         let scores = swing_scores(observed, lag);
-        // A parameter must pay by the Bayesian information criterion (Schwarz 1978). A score that is
-        // no number shows a swing.
+        // A parameter must pay by the Bayesian information criterion (Schwarz 1978). A score that
+        // is no number shows a swing.
         let least = (observed.len() as f64).ln();
         if scores.iter().all(|score| *score < least) {
             return None;
