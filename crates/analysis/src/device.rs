@@ -5,6 +5,7 @@
 //! Obstacles are ignored.
 
 use serde::Serialize;
+use utoipa::ToSchema;
 
 /// A sensor on a tilt axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,7 +21,7 @@ pub struct TiltedSensor {
 }
 
 /// Ranges and elevations that a tilted sensor covers.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct VisibleRange {
     /// Smallest and largest distance of a point from the origin of the base, metres.
     pub range_m: [f64; 2],

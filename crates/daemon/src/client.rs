@@ -219,22 +219,14 @@ impl Client {
     /// The failure in a refusal.
     fn refused(&self, answer: Answer) -> Failure {
         #[derive(Deserialize)]
-        struct Said {
-            error: String,
-            help: Option<String>,
-            kind: String,
+        struct Refused {
+            error: Failure,
         }
         let status = answer.status;
         let length = answer.length.min(JSON);
-        let Ok(said) = serde_json::from_reader::<_, Said>(answer.body.take(length)) else {
-            return self.gone(&format!("it answers {status}"));
-        };
-        let kind = serde_json::from_value(serde_json::Value::String(said.kind));
-        Failure {
-            // `busy` has no kind of its own: another client moves the axis.
-            kind: kind.unwrap_or(Kind::NoDevice),
-            message: said.error,
-            help: said.help,
+        match serde_json::from_reader::<_, Refused>(answer.body.take(length)) {
+            Ok(refused) => refused.error,
+            Err(_) => self.gone(&format!("it answers {status}")),
         }
     }
 

@@ -17,6 +17,7 @@ use scanner::Accuracy;
 use sim::Truth;
 
 use engine::capture::run;
+use engine::document::Document;
 use engine::failure::{Failure, Kind};
 use engine::output::{Buffered, Target, file_failure};
 use engine::reconstruct::report::ScanReport;
@@ -161,7 +162,7 @@ fn build(state: &Arc<DaemonState>, job: &CloudJob) {
             record.why = why;
             record.points = Some(scan.points);
             record.duration_s = Some(scan.contents.duration_s);
-            record.report = serde_json::to_value(&scan).ok();
+            record.report = Some(scan.to_json());
         }
         Err(why) => {
             record.state = ScanState::Failed;

@@ -8,6 +8,7 @@ use engine::capture::request::CapturePlan;
 use engine::capture_request::CaptureRequest;
 use engine::failure::Failure;
 use serde::Serialize;
+use utoipa::ToSchema;
 
 /// Bytes per second of the log of an unknown lidar: VLP-16 in dual return, 1508 packets of 1206
 /// bytes with headers, position packets, and the drive.
@@ -29,7 +30,7 @@ const BEFORE_S: f64 = 15.0;
 const RPM: f64 = 600.0;
 
 /// Estimate of a capture.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct CaptureEstimate {
     /// The request.
     pub asked: CaptureRequest,

@@ -2,12 +2,15 @@
 
 use scanner::{Accuracy, Tolerance};
 use serde::{Deserialize, Serialize};
+use utoipa::{IntoParams, ToSchema};
 
 use crate::failure::{Failure, Kind};
 
 /// A requested capture. Absent values default to those of the axis or the device.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema, IntoParams)]
 #[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+#[schema(example = json!({"speed_deg_s": 56.25, "from_deg": -45, "to_deg": 45, "both_ways": true, "name": "hall"}))]
 pub struct CaptureRequest {
     /// Cruise speed of the tilt axis, degrees per second.
     pub speed_deg_s: f64,
@@ -22,6 +25,8 @@ pub struct CaptureRequest {
     pub accel_deg_s2: Option<f64>,
     /// Number of sweeps; 2 if `both_ways`, else 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(minimum = 1, maximum = 10_000)]
+    #[param(minimum = 1, maximum = 10_000)]
     pub sweeps: Option<u32>,
     /// Whether the return move is a sweep too.
     #[serde(default)]
@@ -31,6 +36,8 @@ pub struct CaptureRequest {
     pub tolerance: Option<String>,
     /// Name of the scan, if it is stored by name.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(pattern = "^[A-Za-z0-9_-]{1,60}$")]
+    #[param(pattern = "^[A-Za-z0-9_-]{1,60}$")]
     pub name: Option<String>,
 }
 

@@ -9,6 +9,7 @@ pub mod capture_request;
 pub mod config;
 pub mod default_paths;
 pub mod devices;
+pub mod document;
 pub mod failure;
 pub mod output;
 pub mod reconstruct;

@@ -3,9 +3,10 @@
 use cloud::mount::Mount;
 use serde::{Deserialize, Serialize};
 use units::{Degrees, Gearing, GearingError, Metres, Span};
+use utoipa::ToSchema;
 
 /// The configuration of a scan.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct ScanConfig {
     /// Version of the program that wrote it.
@@ -43,7 +44,7 @@ impl ScanConfig {
 }
 
 /// Mount of the lidar on the tilt axis.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct MountConfig {
     /// Height of the lidar's origin above the tilt axis, metres (d of Eq. 4-6).
@@ -51,7 +52,7 @@ pub struct MountConfig {
 }
 
 /// Accuracy of the lidar.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct LidarConfig {
     /// Standard deviation of a range, including quantisation, metres.
@@ -59,7 +60,7 @@ pub struct LidarConfig {
 }
 
 /// Encoder, gear and node id.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct TiltAxisConfig {
     /// Node id of the drive.
@@ -71,7 +72,7 @@ pub struct TiltAxisConfig {
 }
 
 /// The sweeps of a capture.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SweepPlan {
     /// Angle where sweeps start, degrees.

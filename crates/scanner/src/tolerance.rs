@@ -181,7 +181,8 @@ impl fmt::Display for MethodChoice {
                 bound.0 * 1e3
             ),
             None => f.write_str("; nothing is cheaper"),
-        }
+        }?;
+        f.write_str("; tilt angle and clock alone, without the error of the ranges")
     }
 }
 

@@ -234,8 +234,8 @@ fn effect_or_all() -> PossibleValuesParser {
 /// Requested accuracy.
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub struct AccuracyArguments {
-    /// Tolerated point error at a distance, such as 2mm@20m: selects the cheapest sufficient method
-    /// [default: the most accurate]
+    /// Tolerated point error at a distance, such as 2mm@20m, by tilt angle and clock, without that
+    /// of the ranges: selects the cheapest sufficient method [default: the most accurate]
     #[arg(long, value_name = "LENGTH@DISTANCE", allow_hyphen_values = true)]
     pub tolerance: Option<Tolerance>,
 }

@@ -2,6 +2,7 @@
 
 pub mod cli;
 pub mod commands;
+mod documents;
 pub mod logging;
 pub mod signals;
 pub mod sweep_ranges;

@@ -4,6 +4,7 @@ use std::io::Write;
 use std::process::ExitCode;
 use std::time::Duration;
 
+use engine::document::{Document, ErrorReport};
 use engine::failure::{Failure, Kind};
 use velomotion::cli::Common;
 use velomotion::commands::{CommandOutput, guard_axis, help};
@@ -65,7 +66,7 @@ fn refuse(failure: &Failure) -> ExitCode {
     let mut words = std::env::args_os().take_while(|word| word != "--");
     if words.any(|word| word == "--json") {
         // A closed pipe is not a failure.
-        let object = serde_json::json!({ "error": error_object(failure) });
+        let object = error_report(failure).to_json();
         let _ = writeln!(std::io::stdout(), "{object}");
     }
     logging::failed(failure);
@@ -84,10 +85,17 @@ fn print(
     let line = match (common.json, output) {
         (_, Some(output)) if output.json.is_null() => return Ok(()),
         (true, output) => {
-            let mut object = output.map_or_else(|| serde_json::json!({}), |output| output.json);
-            if let (Some(failure), Some(object)) = (failure, object.as_object_mut()) {
-                object.insert("error".to_owned(), error_object(failure));
-            }
+            let object = match (output, failure) {
+                (Some(output), None) => output.json,
+                (Some(CommandOutput { mut json, .. }), Some(failure)) => {
+                    if let Some(object) = json.as_object_mut() {
+                        object.insert("error".to_owned(), serde_json::json!(failure));
+                    }
+                    json
+                }
+                (None, Some(failure)) => error_report(failure).to_json(),
+                (None, None) => return Ok(()),
+            };
             object.to_string()
         }
         (false, Some(output)) if output.is_result || !common.quiet => output.text,
@@ -112,12 +120,10 @@ fn print(
     }
 }
 
-fn error_object(failure: &Failure) -> serde_json::Value {
-    serde_json::json!({
-        "message": failure.message,
-        "help": failure.help,
-        "exit_code": failure.kind.exit_code(),
-    })
+fn error_report(failure: &Failure) -> ErrorReport {
+    ErrorReport {
+        error: failure.clone(),
+    }
 }
 
 fn start_log(common: &Common) {

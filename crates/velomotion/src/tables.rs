@@ -2,17 +2,51 @@
 
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, Table};
-use engine::reconstruct::report::{Contents, Reception, ScanReport, SensorReport};
+use engine::reconstruct::report::{
+    Contents, InfoReport, Reception, ScanReport, SensorReport, SweepReport,
+};
 
 /// Label and value of a table row.
 type Row = (&'static str, String);
 
 /// The contents of a file as a table.
 #[must_use]
-pub fn contents_table(contents: &Contents) -> String {
-    let mut rows = contents_rows(contents);
+pub fn info_table(report: &InfoReport) -> String {
+    let contents = &report.contents;
+    let mut rows = vec![("file", report.file.clone())];
+    rows.extend(report.start_s.map(|start_s| ("start", utc_time(start_s))));
+    rows.extend(contents_rows(contents));
+    rows.extend(
+        report
+            .sensor
+            .iter()
+            .map(|sensor| ("address", sensor.clone())),
+    );
+    if let Some(position) = contents.gps.as_ref().and_then(|gps| gps.position) {
+        let (latitude, longitude) = (position.latitude_deg, position.longitude_deg);
+        rows.push((
+            "position",
+            format!("{latitude:.6}, {longitude:.6} deg (WGS 84)"),
+        ));
+    }
+    if let Some(config) = &report.configuration {
+        let (device, version) = (&config.device, &config.velomotion);
+        let d_m = config.mount.d_m;
+        rows.push((
+            "device",
+            format!("{device}, lidar {d_m} m above the axis; by velomotion {version}"),
+        ));
+    }
+    rows.extend(sweep_rows(&report.sweeps));
     rows.extend(warning_rows(contents));
     table(rows)
+}
+
+/// Date and time of Unix seconds, UTC.
+fn utc_time(unix_s: f64) -> String {
+    let since = std::time::Duration::try_from_secs_f64(unix_s).unwrap_or_default();
+    let time = std::time::UNIX_EPOCH + since;
+    humantime::format_rfc3339_millis(time).to_string()
 }
 
 fn contents_rows(contents: &Contents) -> Vec<Row> {
@@ -102,32 +136,26 @@ fn cloud_line(scan: &ScanReport) -> String {
 #[must_use]
 pub fn scan_table(scan: &ScanReport) -> String {
     let mut rows = contents_rows(&scan.contents);
-    for sweep in &scan.sweeps {
-        rows.push((
-            "sweep",
-            format!(
-                "{:.3} to {:.3} deg in {:.3} s, {}\ncruise {:.3}, mean {:.3} deg/s",
-                sweep.from_deg,
-                sweep.to_deg,
-                sweep.duration_s,
-                frames(sweep.frames),
-                sweep.cruise_deg_s,
-                sweep.mean_deg_s
-            ),
-        ));
-    }
+    rows.extend(sweep_rows(&scan.sweeps));
     let sync = &scan.sync;
+    let moved = sync.clock_bound_deg.zip(sync.clock_bound_mm_at_20m);
+    let moved = moved.map_or(String::new(), |(deg, mm)| {
+        format!(" ({deg:.4} deg, {mm:.1} mm at 20 m)")
+    });
     rows.push((
         "clock",
         format!(
-            "{}, within {:.0} us, packets {:.0} us above it, drift {:.1} ppm",
+            "{}, within {:.0} us{moved}, packets {:.0} us above it, drift {:.1} ppm",
             sync.clock_method, sync.clock_bound_us, sync.clock_residual_us, sync.clock_drift_ppm
         ),
     ));
+    let bound = sync
+        .angle_bound_deg
+        .map_or(String::new(), |bound| format!(", within {bound:.4} deg"));
     let rms = sync.angle_rms_deg.map_or(String::new(), |rms| {
         format!(", samples agree to {rms:.4} deg RMS")
     });
-    rows.push(("angle", format!("{}{rms}", sync.angle_method)));
+    rows.push(("angle", format!("{}{bound}{rms}", sync.angle_method)));
     if let Some(tolerance) = &sync.tolerance {
         for (line, why) in tolerance.why.split("; ").enumerate() {
             rows.push((if line == 0 { "tolerance" } else { "" }, why.to_owned()));
@@ -154,6 +182,21 @@ pub fn scan_table(scan: &ScanReport) -> String {
     }
     rows.extend(warning_rows(&scan.contents));
     table(rows)
+}
+
+fn sweep_rows(sweeps: &[SweepReport]) -> impl Iterator<Item = Row> + '_ {
+    sweeps.iter().map(|sweep| {
+        let line = format!(
+            "{:.3} to {:.3} deg in {:.3} s, {}\ncruise {:.3}, mean {:.3} deg/s",
+            sweep.from_deg,
+            sweep.to_deg,
+            sweep.duration_s,
+            frames(sweep.frames),
+            sweep.cruise_deg_s,
+            sweep.mean_deg_s
+        );
+        ("sweep", line)
+    })
 }
 
 fn frames(frames: Option<f64>) -> String {

@@ -17,5 +17,5 @@ pub use data::{
 };
 pub use error::PacketError;
 pub use models::{Laser, Model};
-pub use nmea::{NmeaError, NmeaFault, Rmc, UtcTime};
+pub use nmea::{GpsPosition, NmeaError, NmeaFault, Rmc, UtcTime};
 pub use position::{POSITION_LEN, PositionPacket, Pps};

@@ -1,4 +1,4 @@
-//! Date and time of NMEA 0183 RMC sentences.
+//! Date, time and position of NMEA 0183 RMC sentences.
 
 use core::fmt;
 
@@ -11,14 +11,57 @@ const DAY_S: i64 = 86_400;
 /// Two-digit years from here on belong to the twentieth century: GPS time begins in 1980.
 const FIRST_YEAR: u16 = 80;
 
-/// Date, time and validity of an RMC sentence (`$GPRMC`, or of another talker such as `$GNRMC`),
-/// its checksum verified.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Date, time, position and validity of an RMC sentence (`$GPRMC`, or of another talker such as
+/// `$GNRMC`), its checksum verified.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rmc {
     /// Whether the receiver declares the data valid: status A, not V.
     pub valid: bool,
     /// Date and time; `None` where the receiver does not know them, which only status V permits.
     pub utc: Option<UtcTime>,
+    /// Position; `None` where the receiver does not know it.
+    pub position: Option<GpsPosition>,
+}
+
+/// A position in WGS 84.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GpsPosition {
+    /// Degrees, positive in the north.
+    pub latitude_deg: f64,
+    /// Degrees, positive in the east.
+    pub longitude_deg: f64,
+}
+
+impl GpsPosition {
+    /// From `ddmm.mm`, `N` or `S`, `dddmm.mm`, `E` or `W`.
+    fn parse([latitude, north, longitude, east]: [&[u8]; 4]) -> Option<Self> {
+        let sign = |letter: &[u8], [positive, negative]: [u8; 2]| match letter {
+            [letter] if *letter == positive => Some(1.0),
+            [letter] if *letter == negative => Some(-1.0),
+            _ => None,
+        };
+        let within = |value: f64, limit: f64| (value.abs() <= limit).then_some(value);
+        let latitude_deg = sign(north, *b"NS")? * degrees(latitude, 2)?;
+        let longitude_deg = sign(east, *b"EW")? * degrees(longitude, 3)?;
+        Some(Self {
+            latitude_deg: within(latitude_deg, 90.0)?,
+            longitude_deg: within(longitude_deg, 180.0)?,
+        })
+    }
+}
+
+/// Degrees from `digits` digits of degrees, two of minutes, and a fraction of a minute.
+fn degrees(field: &[u8], digits: usize) -> Option<f64> {
+    let (whole, minutes) = field.split_at_checked(digits)?;
+    let [b'0'..=b'5', b'0'..=b'9', ..] = minutes else {
+        return None;
+    };
+    let number = |text| core::str::from_utf8(text).ok()?.parse::<f64>().ok();
+    let is_plain = |byte: &u8| byte.is_ascii_digit() || *byte == b'.';
+    if !field.iter().all(is_plain) || whole.contains(&b'.') {
+        return None;
+    }
+    Some(number(whole)? + number(minutes)? / 60.0)
 }
 
 /// An existing date and time of day, UTC.
@@ -111,7 +154,9 @@ impl Rmc {
         let absent = (NMEA_AT + sentence.len(), &[][..]);
         let time = fields.nth(1).unwrap_or(absent);
         let (status_at, status) = fields.next().unwrap_or(absent);
-        let date = fields.nth(6).unwrap_or(absent);
+        let position = [(); 4].map(|()| fields.next().unwrap_or(absent).1);
+        // Speed and course come before the date.
+        let date = fields.nth(2).unwrap_or(absent);
         let valid = match status {
             b"A" => true,
             b"V" => false,
@@ -123,7 +168,11 @@ impl Rmc {
         } else {
             Some(UtcTime::parse(time, date)?)
         };
-        Ok(Self { valid, utc })
+        Ok(Self {
+            valid,
+            utc,
+            position: GpsPosition::parse(position),
+        })
     }
 
     /// The bytes between `$` and `*` of an RMC sentence with a matching checksum.
@@ -289,6 +338,32 @@ mod tests {
         // Fractions are kept to the nanosecond.
         let rmc = Rmc::parse(sentence("101112.0000000019", "A", "131015").as_bytes()).unwrap();
         assert_eq!(rmc.utc.unwrap().nanosecond, 1);
+    }
+
+    #[test]
+    fn positions_are_signed_degrees() {
+        let at = |latitude: &str, north: &str, longitude: &str, east: &str| {
+            let body =
+                format!("GPRMC,123519,A,{latitude},{north},{longitude},{east},0,0,230394,0,W");
+            let sum = body.bytes().fold(0, |sum, byte| sum ^ byte);
+            let rmc = Rmc::parse(format!("${body}*{sum:02X}").as_bytes()).unwrap();
+            let position = rmc.position?;
+            Some([position.latitude_deg, position.longitude_deg])
+        };
+        assert_eq!(at("4807.5", "N", "01131.2", "E"), Some([48.125, 11.52]));
+        assert_eq!(at("0030", "S", "18000.0", "W"), Some([-0.5, -180.0]));
+        for (latitude, longitude) in [
+            ("9000.1", "01131.2"),
+            ("4807.5", "18000.1"),
+            ("4860.0", "01131.2"),
+            ("-807.5", "01131.2"),
+            ("4807e1", "01131.2"),
+            ("48", "01131.2"),
+            ("", ""),
+        ] {
+            assert_eq!(at(latitude, "N", longitude, "E"), None, "{latitude}");
+        }
+        assert_eq!(at("4807.5", "E", "01131.2", "N"), None);
     }
 
     #[test]

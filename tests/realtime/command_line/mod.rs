@@ -4,6 +4,7 @@
 mod analyze;
 mod frames;
 mod packets;
+mod schemas;
 mod tradeoff;
 
 use std::path::{Path, PathBuf};

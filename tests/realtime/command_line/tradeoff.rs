@@ -13,7 +13,7 @@ fn the_cost_of_accuracy_is_measured_and_reported() {
     let report = json(&output);
     assert_eq!(
         (&report["schema"], &report["effort"]),
-        (&1.into(), &"quick".into())
+        (&"tradeoff-1".into(), &"quick".into())
     );
     for key in ["cpu", "cores", "os", "build"] {
         assert!(!report["machine"][key].is_null(), "{key}");

@@ -34,7 +34,7 @@ fn requests_from_other_sites_are_refused() {
     ] {
         let foreign = format!("origin: {origin}\r\n");
         let answer = capture(rig.address, &foreign);
-        assert_eq!(answer.refused(403, origin).json()["kind"], "denied");
+        assert_eq!(answer.refused(403, origin)["kind"], "denied");
         let socket = format!(
             "{foreign}upgrade: websocket\r\nconnection: upgrade\r\nsec-websocket-version: 13\r\nsec-websocket-key: AAAAAAAAAAAAAAAAAAAAAA==\r\n"
         );
@@ -66,7 +66,7 @@ fn configured_tls_proxies_are_allowed() {
         "https://scanner.example.evil.example",
     ] {
         let refused = from(other);
-        let printed = refused.refused(403, other).json();
+        let printed = refused.refused(403, other);
         assert!(
             printed["help"].as_str().unwrap().contains("origins"),
             "{printed}"
@@ -92,7 +92,7 @@ fn every_request_needs_the_token() {
         format!("Basic {TOKEN}"),
         TOKEN.to_owned(),
     ] {
-        assert_eq!(with(&wrong).refused(401, &wrong).json()["kind"], "denied");
+        assert_eq!(with(&wrong).refused(401, &wrong)["kind"], "denied");
     }
     for path in [
         "/",

@@ -46,7 +46,7 @@ fn an_unplugged_drive_is_reported_and_found_again() {
     });
     assert_eq!(absent["referenced"], false);
     let refused = rig.post("/api/v1/tilt/home", &json!({}));
-    assert_eq!(refused.refused(409, "absent").json()["kind"], "no-device");
+    assert_eq!(refused.refused(409, "absent")["kind"], "no-device");
 
     let unit = Drive::plug(&link);
     let found = drive(&rig, "connected");
@@ -56,10 +56,10 @@ fn an_unplugged_drive_is_reported_and_found_again() {
     );
     // Without a lidar nothing moves, nothing is recorded, and no scan remains.
     let refused = rig.post("/api/v1/captures", &json!({"speed_deg_s": 10.0}));
-    let printed = refused.refused(409, "no lidar").json();
+    let printed = refused.refused(409, "no lidar");
     assert_eq!(printed["kind"], "no-device");
     assert!(
-        printed["error"].as_str().unwrap().contains("no lidar"),
+        printed["message"].as_str().unwrap().contains("no lidar"),
         "{printed}"
     );
     assert_eq!(rig.get("/api/v1/scans").json(), json!({"scans": []}));
@@ -125,9 +125,9 @@ fn a_drive_is_found_on_any_port_after_reconnecting() {
         ("/api/v1/captures", json!({"speed_deg_s": 10.0})),
     ] {
         let refused = rig.post(path, &body);
-        let refused = refused.refused(409, path).json();
+        let refused = refused.refused(409, path);
         assert!(
-            refused["error"].as_str().unwrap().starts_with(looking),
+            refused["message"].as_str().unwrap().starts_with(looking),
             "{refused}"
         );
     }

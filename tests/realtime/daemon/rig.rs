@@ -154,14 +154,17 @@ impl Answer {
         serde_json::from_slice(&self.body).unwrap_or_else(|error| panic!("{error}: {self:?}"))
     }
 
-    /// Checks that the request was refused with this status and an error object.
-    pub fn refused(&self, status: u16, what: &str) -> &Self {
+    /// Checks that the request was refused with this status, and returns the error object.
+    pub fn refused(&self, status: u16, what: &str) -> Value {
         assert_eq!(self.status, status, "{what}: {}", self.text());
         let printed = self.json();
-        for key in ["error", "help", "kind"] {
-            assert!(printed[key].is_string(), "{what}: no {key} in {printed}");
+        assert_eq!(printed["schema"], "error-1", "{what}: {printed}");
+        let error = &printed["error"];
+        for key in ["message", "help", "kind"] {
+            assert!(error[key].is_string(), "{what}: no {key} in {printed}");
         }
-        self
+        assert!(error["exit_code"].is_u64(), "{what}: {printed}");
+        error.clone()
     }
 }
 

@@ -66,7 +66,7 @@ fn a_scan_is_listed_downloaded_like_its_replay_and_deleted() {
         );
     }
     let wrong = rig.get(&format!("/api/v1/scans/{id}/cloud?format=xyz"));
-    assert!(wrong.refused(400, "format").text().contains(".laz"));
+    assert!(wrong.refused(400, "format").to_string().contains(".laz"));
     rig.get(&format!("/api/v1/scans/{id}/cloud?formt=ply"))
         .refused(400, "misspelt");
     let picture = rig.get(&format!("/api/v1/scans/{id}/thumbnail"));
@@ -164,7 +164,7 @@ fn a_scan_is_recovered_after_the_daemon_was_killed() {
     let scan = finished(again.address, &id);
     assert_eq!(scan["state"], "partial", "{scan}");
     assert!(
-        scan["why"]["error"]
+        scan["why"]["message"]
             .as_str()
             .unwrap()
             .contains("in the middle of this scan")
@@ -216,7 +216,7 @@ fn a_truncated_log_does_not_count_as_a_complete_scan() {
     .unwrap();
     let scan = finished(again.address(), id);
     assert_eq!(scan["state"], "partial", "{scan}");
-    let why = scan["why"]["error"].as_str().unwrap();
+    let why = scan["why"]["message"].as_str().unwrap();
     assert!(
         why.contains("the log is incomplete") && why.contains("cut short"),
         "{why}"
@@ -244,7 +244,7 @@ fn a_nearly_full_disk_ends_a_scan_and_prevents_new_ones() {
     let scan = rig.finished(&id);
     assert_eq!(scan["state"], "partial", "{scan}");
     assert!(
-        scan["why"]["error"]
+        scan["why"]["message"]
             .as_str()
             .unwrap()
             .contains("disk is nearly full"),
@@ -253,7 +253,10 @@ fn a_nearly_full_disk_ends_a_scan_and_prevents_new_ones() {
     assert!(scan["points"].as_u64().unwrap() > 0);
     let refused = rig.post("/api/v1/captures", &json!({"speed_deg_s": 56.25}));
     assert!(
-        refused.refused(409, "full").text().contains("may need"),
+        refused
+            .refused(409, "full")
+            .to_string()
+            .contains("may need"),
         "{}",
         refused.text()
     );
@@ -276,7 +279,7 @@ fn after_a_suspension_devices_reconnect_and_the_scan_is_partial() {
     let scan = rig.finished(&id);
     assert_eq!(scan["state"], "partial", "{scan}");
     assert!(
-        scan["why"]["error"]
+        scan["why"]["message"]
             .as_str()
             .unwrap()
             .contains("suspended for 3600 s"),
@@ -307,9 +310,9 @@ fn a_suspension_detected_only_afterwards_makes_a_scan_partial() {
     rig.post("/api/v1/captures/stop", &json!({}));
     let scan = rig.finished(&id);
     assert_eq!(scan["state"], "partial", "{scan}");
-    let why = scan["why"]["error"].as_str().unwrap();
+    let why = scan["why"]["message"].as_str().unwrap();
     assert_eq!(why, "the machine was suspended for 60 s");
-    assert_eq!(scan["recording"]["error"], why);
+    assert_eq!(scan["recording"]["message"], why);
     // The next scan is not affected.
     let next = rig.ready().whole_scan(&json!({"speed_deg_s": 56.25}));
     assert_eq!(next["why"], json!(null));
@@ -398,7 +401,7 @@ fn a_cloud_is_built_once_the_disk_has_space() {
     assert!(scan["points"].as_u64().unwrap() > 0, "{scan}");
     assert_eq!(scan["waits_for_room"], false);
     assert!(
-        scan["why"]["error"]
+        scan["why"]["message"]
             .as_str()
             .unwrap()
             .contains("nearly full"),
@@ -459,7 +462,7 @@ fn a_download_leaves_the_space_reserved_for_a_scan() {
         // Exactly the reserve of these tests.
         free.store(1_000 + most - 1, Ordering::Relaxed);
         let refused = rig.get(&path(format));
-        assert_eq!(refused.refused(507, "full").json()["kind"], "incomplete");
+        assert_eq!(refused.refused(507, "full")["kind"], "incomplete");
         free.store(1_000 + most, Ordering::Relaxed);
         let made = rig.get(&path(format));
         assert_eq!(made.status, 200, "{format}: {}", made.text());
@@ -484,7 +487,7 @@ fn a_download_leaves_the_space_reserved_for_a_scan() {
         Ordering::Relaxed,
     );
     let refused = rig.get(&path(Format::Pcd));
-    let printed = refused.refused(507, "promised").text();
+    let printed = refused.refused(507, "promised").to_string();
     assert!(printed.contains("may still need"), "{printed}");
     let status = rig.status();
     assert_eq!(status["activity"]["scan"], running.as_str(), "{status}");

@@ -102,10 +102,10 @@ fn an_unstopped_axis_is_reported_as_moving_until_it_is_at_rest() {
     wait("a move", || (cable.seen().1 != home).then_some(()));
     cable.cut.store(true, Ordering::Release);
     let refused = goto.join().unwrap();
-    let printed = refused.json();
-    assert!(refused.status >= 400, "{printed}");
+    assert!(refused.status >= 400, "{}", refused.text());
+    let printed = refused.refused(refused.status, "stopped");
     assert!(
-        printed["error"]
+        printed["message"]
             .as_str()
             .unwrap()
             .contains("stopping the axis failed"),
@@ -124,7 +124,10 @@ fn an_unstopped_axis_is_reported_as_moving_until_it_is_at_rest() {
     wait("its end", || (!connecting()).then_some(()));
     let problem = rig.status()["drive"].clone();
     assert_eq!(problem["state"], "fault", "{problem}");
-    assert_eq!(problem["problem"]["error"], printed["error"], "{problem}");
+    assert_eq!(
+        problem["problem"]["message"], printed["message"],
+        "{problem}"
+    );
     assert!(
         problem["problem"]["help"]
             .as_str()

@@ -26,7 +26,7 @@ use velomotion::terminal::Progress;
 /// A simulated scene: its log, and the truth by firing and laser.
 struct Simulated {
     folder: TempDir,
-    report: simulate::Report,
+    report: simulate::SimulationReport,
     truth: BTreeMap<(i64, u8), Vec<TruePoint>>,
     firing_ns: i64,
     clock_ns: i64,

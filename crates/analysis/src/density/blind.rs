@@ -10,13 +10,14 @@ use std::collections::{BTreeMap, HashMap};
 
 use glam::DVec3;
 use serde::Serialize;
+use utoipa::ToSchema;
 
 use super::hole::{CellOutcome, Hole, HoleSearch, RegionDepth};
 use super::nearby::Nearby;
 use super::{DensityError, check};
 
 /// Holes at one angle from an axis.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct HoleRow {
     /// Mean angle of the holes from the axis, degrees.
     pub from_axis_deg: f64,
@@ -27,7 +28,7 @@ pub struct HoleRow {
 }
 
 /// A range of angles from an axis without points.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct EmptyBand {
     /// Start: the angle of the last point before, or 0; degrees.
     pub from_deg: f64,

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
+use utoipa::ToSchema;
 
 use super::{DensityError, Locator, SPHERE_DEG2, check};
 
@@ -11,7 +12,7 @@ use super::{DensityError, Locator, SPHERE_DEG2, check};
 pub struct BinCounts(Vec<u64>);
 
 /// Statistics of the points per bin.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Statistics {
     /// Number of bins.
     pub bins: usize,
@@ -36,7 +37,7 @@ pub struct Statistics {
 }
 
 /// A class of a histogram.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 pub struct HistogramClass {
     /// Smallest number of points.
     pub from: u64,

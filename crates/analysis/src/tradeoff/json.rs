@@ -1,54 +1,125 @@
-//! Findings as JSON. The format is a contract: [`SCHEMA`] increases when it changes.
+//! Findings as JSON.
 
-use serde_json::{Map, Value, json};
+use std::collections::BTreeMap;
 
+use serde::Serialize;
+use utoipa::ToSchema;
+
+use super::study::{Effort, Machine, Measurement};
 use super::{StudyFindings, StudyReport, Trade};
 
-/// Version of the format.
-pub const SCHEMA: u32 = 1;
-
-/// A report as one JSON object: `schema`, `program`, `effort`, `machine` {`cpu`, `cores`, `os`,
-/// `build`} and `studies`, each {`name`, `title`, `choice`, `columns` [{`key`, `heading`}], `rows`
-/// [{`name`, `group`, `values`}], `trades` [{`cost`, `loss`, `front`}]}. `values` goes by the
-/// columns' keys; a timed one is {`median`, `min`, `max`, `runs`}, another a number. `front` has
-/// the names of its rows.
-#[must_use]
-pub fn json(report: &StudyReport) -> Value {
-    json!({
-        "schema": SCHEMA,
-        "program": report.program,
-        "effort": report.effort,
-        "machine": report.machine,
-        "studies": report.studies.iter().map(study).collect::<Vec<_>>(),
-    })
+/// Findings of one run.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct TradeoffReport {
+    /// Name and version of the program.
+    pub program: String,
+    /// Size of the workloads.
+    pub effort: Effort,
+    /// The machine.
+    pub machine: Machine,
+    /// The studies.
+    pub studies: Vec<TradeoffStudy>,
 }
 
-fn study(findings: &StudyFindings) -> Value {
+/// Findings of one study.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct TradeoffStudy {
+    /// Name, as for `--only`.
+    pub name: &'static str,
+    /// Title.
+    pub title: &'static str,
+    /// What is chosen between.
+    pub choice: &'static str,
+    /// What is measured of each choice.
+    pub columns: Vec<TradeoffColumn>,
+    /// The choices.
+    pub rows: Vec<TradeoffRow>,
+    /// Costs against losses.
+    pub trades: Vec<TradeoffFront>,
+}
+
+/// A column.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct TradeoffColumn {
+    /// Its key in `values`.
+    pub key: &'static str,
+    /// Heading, with the unit.
+    pub heading: &'static str,
+}
+
+/// A choice.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct TradeoffRow {
+    /// Name.
+    pub name: String,
+    /// Choices of a group are compared.
+    pub group: &'static str,
+    /// Values by the keys of the columns.
+    pub values: BTreeMap<&'static str, Measurement>,
+}
+
+/// A trade.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct TradeoffFront {
+    /// Column of the cost.
+    pub cost: &'static str,
+    /// Column of the loss.
+    pub loss: &'static str,
+    /// Names of the choices that no other beats in both.
+    pub front: Vec<String>,
+}
+
+impl TradeoffReport {
+    /// A report in this form.
+    #[must_use]
+    pub fn new(report: &StudyReport) -> Self {
+        Self {
+            program: report.program.clone(),
+            effort: report.effort,
+            machine: report.machine.clone(),
+            studies: report.studies.iter().map(study).collect(),
+        }
+    }
+}
+
+fn study(findings: &StudyFindings) -> TradeoffStudy {
     let of = &findings.study;
-    let columns = of
-        .columns
-        .iter()
-        .map(|(key, heading)| json!({"key": key, "heading": heading}));
-    let rows = findings.rows.iter().map(|row| {
-        let values = of.columns.iter().zip(&row.values);
-        let values = values.map(|((key, _), value)| ((*key).to_owned(), json!(value)));
-        json!({"name": row.name, "group": row.group, "values": values.collect::<Map<_, _>>()})
+    let columns = || of.columns.iter().copied();
+    let rows = findings.rows.iter().map(|row| TradeoffRow {
+        name: row.name.clone(),
+        group: row.group,
+        values: columns()
+            .map(|(key, _)| key)
+            .zip(row.values.iter().copied())
+            .collect(),
     });
-    json!({
-        "name": of.name,
-        "title": of.title,
-        "choice": of.choice,
-        "columns": columns.collect::<Vec<_>>(),
-        "rows": rows.collect::<Vec<_>>(),
-        "trades": of.trades.iter().map(|trade| self::trade(findings, trade)).collect::<Vec<_>>(),
-    })
+    TradeoffStudy {
+        name: of.name,
+        title: of.title,
+        choice: of.choice,
+        columns: columns()
+            .map(|(key, heading)| TradeoffColumn { key, heading })
+            .collect(),
+        rows: rows.collect(),
+        trades: of
+            .trades
+            .iter()
+            .map(|trade| front(findings, trade))
+            .collect(),
+    }
 }
 
-fn trade(findings: &StudyFindings, trade: &Trade) -> Value {
+fn front(findings: &StudyFindings, trade: &Trade) -> TradeoffFront {
     let [(cost, _), (loss, _)] = [trade.cost, trade.loss].map(|column| findings.column(column));
     let rows = findings.rows.iter().zip(findings.front(trade));
-    let front = rows.filter_map(|(row, on)| on.then_some(&row.name));
-    json!({"cost": cost, "loss": loss, "front": front.collect::<Vec<_>>()})
+    TradeoffFront {
+        cost,
+        loss,
+        front: rows
+            .filter(|(_, on)| *on)
+            .map(|(row, _)| row.name.clone())
+            .collect(),
+    }
 }
 
 #[cfg(test)]
@@ -56,16 +127,14 @@ mod tests {
     use super::super::study::example;
     use super::*;
 
-    /// The whole format: a key that is renamed, added or removed fails here, and [`SCHEMA`] must
-    /// increase.
+    /// The whole format: a key that is renamed, added or removed fails here.
     #[test]
     fn the_json_structure_is_stable() {
         let mut report = example();
         report.studies[0].rows.truncate(2);
-        let json = self::json(&report);
+        let json = serde_json::to_value(TradeoffReport::new(&report)).unwrap();
         let timed = |median: f64, min: f64, max: f64| serde_json::json!({"median": median, "min": min, "max": max, "runs": 5});
         let expected = serde_json::json!({
-            "schema": 1,
             "program": "velomotion 0.0.0",
             "effort": "quick",
             "machine": {"cpu": "Processor <4>", "cores": 2, "os": "Linux", "build": "release"},
@@ -91,6 +160,5 @@ mod tests {
             }],
         });
         assert_eq!(json, expected);
-        assert_eq!(SCHEMA, 1);
     }
 }

@@ -19,7 +19,7 @@ pub mod text;
 mod timing;
 
 pub use crate::noise::SeededNoise;
-pub use json::json;
+pub use json::TradeoffReport;
 pub use k_function::K_FUNCTION;
 pub use markdown::Book;
 pub use scan_speed::SCAN_SPEED;

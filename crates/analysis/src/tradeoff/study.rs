@@ -5,6 +5,7 @@ use std::fmt;
 use cloud::SinkError;
 use serde::Serialize;
 use units::{Host, Span, Stamp};
+use utoipa::ToSchema;
 
 use super::front::{front, front_within_spread};
 use super::{TimingPlan, TimingSpread, Work, in_rounds};
@@ -75,7 +76,7 @@ impl StudyError {
 }
 
 /// Size of the workloads and number of rounds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Effort {
     /// Smaller workloads and fewer rounds.
@@ -147,7 +148,7 @@ impl Bench<'_> {
 }
 
 /// A measured value. Smaller is better wherever values are traded.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(untagged)]
 pub enum Measurement {
     /// Computed, and equal in every run.
@@ -425,7 +426,7 @@ fn costs(rows: &[&Row], trade: &Trade, of: impl Fn(&Measurement) -> f64) -> Vec<
 }
 
 /// The machine of a measurement.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Machine {
     /// Processor.
     pub cpu: String,

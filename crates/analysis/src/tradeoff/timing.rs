@@ -3,11 +3,12 @@
 
 use serde::Serialize;
 use units::{Host, Span, Stamp};
+use utoipa::ToSchema;
 
 use super::StudyError;
 
 /// Median and extremes of repeated measurements.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct TimingSpread {
     /// Median; of an even number the mean of the two in the middle.
     pub median: f64,

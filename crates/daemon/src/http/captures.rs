@@ -9,12 +9,15 @@ use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::Response;
 use engine::capture_request::CaptureRequest;
 use engine::failure::{Failure, Kind};
-use engine::service::scan_record::check_name;
+use engine::service::scan_record::{ScanView, check_name};
 use engine::service::status::AxisTask;
 use engine::service::{AxisLease, DeviceService, LeaseError};
+use serde::Serialize;
 use serde::de::DeserializeOwned;
+use utoipa::ToSchema;
 
 use super::Api;
+use super::openapi::{NotNow, Usage};
 use super::refusal::Refusal;
 use crate::plan as plans;
 use crate::state::{Counters, DaemonState};
@@ -44,7 +47,14 @@ pub fn body<T: DeserializeOwned>(headers: &HeaderMap, body: &Bytes) -> Result<T,
     serde_json::from_slice(body).map_err(|error| Refusal::usage(format!("the body: {error}")))
 }
 
-/// `POST /captures`.
+/// Start a capture.
+///
+/// Takes the options of `velomotion capture`.
+#[utoipa::path(post, path = "/api/v1/captures", tag = "captures", request_body = CaptureRequest, responses(
+    (status = 201, description = "The started scan", body = ScanView, headers(("Location" = String))),
+    (status = 409, response = NotNow),
+    (status = 415, response = Usage),
+))]
 pub async fn begin(
     State(api): State<Arc<Api>>,
     headers: HeaderMap,
@@ -123,14 +133,29 @@ fn run(
     Ok(())
 }
 
-/// `POST /captures/stop`.
-pub async fn stop(State(service): State<Arc<DeviceService>>) -> Response {
-    let (stopped, scan) = service.stop_capture().await;
-    let body = serde_json::json!({ "stopped": stopped, "scan": scan });
-    super::json(StatusCode::OK, &body)
+/// Body of `POST /captures/stop`.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct StoppedCapture {
+    /// Whether a capture was stopped.
+    stopped: bool,
+    /// Id of its scan.
+    scan: Option<String>,
 }
 
-/// `GET /plan`.
+/// Stop the capture. Other moves go on.
+#[utoipa::path(post, path = "/api/v1/captures/stop", tag = "captures", responses(
+    (status = 200, description = "The axis is at rest", body = StoppedCapture),
+))]
+pub async fn stop(State(service): State<Arc<DeviceService>>) -> Response {
+    let (stopped, scan) = service.stop_capture().await;
+    super::json(StatusCode::OK, &StoppedCapture { stopped, scan })
+}
+
+/// Plan of a capture: duration, resolution, bytes. Nothing moves.
+#[utoipa::path(get, path = "/api/v1/plan", tag = "captures", params(CaptureRequest), responses(
+    (status = 200, body = plans::CaptureEstimate),
+    (status = 409, response = NotNow),
+))]
 pub async fn plan(
     State(api): State<Arc<Api>>,
     query: Result<Query<CaptureRequest>, QueryRejection>,

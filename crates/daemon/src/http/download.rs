@@ -19,8 +19,10 @@ use scanner::Accuracy;
 use serde::Deserialize;
 use tokio::io::AsyncReadExt;
 use tokio::sync::OwnedSemaphorePermit;
+use utoipa::IntoParams;
 
 use super::Api;
+use super::openapi::{NotNow, StoredFile};
 use super::partial::{FileRange, is_known, range_of, tag_of};
 use super::refusal::Refusal;
 use crate::cloud_builder::defect;
@@ -36,10 +38,12 @@ use engine::reconstruct::source::Source;
 const PIECE: usize = 256 << 10;
 
 /// Query of `GET /scans/ID/cloud`.
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Default, Deserialize, IntoParams)]
 #[serde(default, deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
 pub struct CloudQuery {
     /// Format by its extension; PLY by default.
+    #[param(schema_with = super::openapi::formats)]
     format: Option<String>,
     /// Whether to add the column sd.
     uncertainty: bool,
@@ -47,7 +51,14 @@ pub struct CloudQuery {
     echo: bool,
 }
 
-/// `GET /scans/ID/cloud`.
+/// The cloud of a scan.
+///
+/// In PLY it is a stored file, of which a part can be requested. Other formats and more columns are
+/// made on request.
+#[utoipa::path(get, path = "/api/v1/scans/{id}/cloud", tag = "scans",
+    params(("id" = String, Path, description = "Id of a scan"), CloudQuery, ("Range" = Option<String>, Header, description = "The requested part (RFC 9110)")), responses(StoredFile,
+    (status = 409, response = NotNow), (status = 507, response = NotNow),
+))]
 pub async fn cloud(
     State(api): State<Arc<Api>>,
     Path(id): Path<String>,
@@ -153,7 +164,8 @@ fn make(
     Ok((file, metadata))
 }
 
-/// `GET /scans/ID/log`.
+/// The log of a scan.
+#[utoipa::path(get, path = "/api/v1/scans/{id}/log", tag = "scans", params(("id" = String, Path, description = "Id of a scan"), ("Range" = Option<String>, Header, description = "The requested part (RFC 9110)")), responses(StoredFile))]
 pub async fn log(
     State(api): State<Arc<Api>>,
     Path(id): Path<String>,
@@ -162,7 +174,8 @@ pub async fn log(
     stored(&api, &id, (LOG, "pcapng"), &headers).await
 }
 
-/// `GET /scans/ID/thumbnail`.
+/// A picture of the cloud.
+#[utoipa::path(get, path = "/api/v1/scans/{id}/thumbnail", tag = "scans", params(("id" = String, Path, description = "Id of a scan"), ("Range" = Option<String>, Header, description = "The requested part (RFC 9110)")), responses(StoredFile))]
 pub async fn thumbnail(
     State(api): State<Arc<Api>>,
     Path(id): Path<String>,

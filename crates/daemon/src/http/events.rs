@@ -12,10 +12,12 @@ use axum::http::StatusCode;
 use axum::response::Response;
 use engine::service::events::{Event, PointsRequest, RecvError, Subscription};
 use serde::Deserialize;
+use utoipa::IntoParams;
 
 use engine::failure::Kind;
 
 use super::Api;
+use super::openapi::Limit;
 use super::refusal::Refusal;
 use crate::limits::CLIENT_MESSAGE_BYTES;
 
@@ -30,10 +32,15 @@ const LAG_POLL: Duration = Duration::from_millis(50);
 const CLOSE_WAIT: Duration = Duration::from_millis(200);
 
 /// Query of `GET /events`.
-#[derive(Clone, Copy, Debug, Deserialize)]
+#[derive(Clone, Copy, Debug, Deserialize, IntoParams)]
 #[serde(default, deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
 pub struct EventsQuery {
+    /// Whether points are sent, too.
+    #[param(default = true)]
     points: bool,
+    /// One point in this many is sent.
+    #[param(default = 1, minimum = 1, maximum = 1000)]
     thin: usize,
 }
 
@@ -46,7 +53,14 @@ impl Default for EventsQuery {
     }
 }
 
-/// `GET /events`.
+/// Events over a WebSocket.
+///
+/// Text messages are objects of the type `Event`; the book's page on the daemon describes the
+/// binary ones, which are points.
+#[utoipa::path(get, path = "/api/v1/events", tag = "events", params(EventsQuery), responses(
+    (status = 101, description = "The connection becomes a WebSocket", body = Event),
+    (status = 429, response = Limit),
+))]
 pub async fn events(
     State(api): State<Arc<Api>>,
     query: Result<Query<EventsQuery>, QueryRejection>,

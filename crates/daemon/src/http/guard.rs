@@ -17,13 +17,14 @@ use axum::response::{IntoResponse, Response};
 use super::Api;
 use super::connection_limits::{Connection, Trust};
 use super::page;
-use super::refusal::{Reason, Refusal, in_one_form};
+use super::refusal::{Refusal, in_one_form};
 use crate::limits::{
     BODY_BYTES, SIGNED_IN, TARGET_BYTES, WRONG_TOKENS, WRONG_TOKENS_WITHIN, Waits,
 };
 use engine::config::daemon::Token;
 use engine::config::daemon::equal;
 use engine::config::origin::Origin;
+use engine::failure::Kind;
 
 /// Transport of a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,7 +75,7 @@ impl Sessions {
         if tries >= WRONG_TOKENS {
             return Err(Refusal::new(
                 StatusCode::TOO_MANY_REQUESTS,
-                Reason::Limit,
+                Kind::Limit,
                 format!("{tries} wrong tokens in the last minute"),
                 "try again in a minute",
             )
@@ -90,7 +91,7 @@ impl Sessions {
         tracing::warn!("wrong token from {from}, {} in the last minute", tries + 1);
         Err(Refusal::new(
             StatusCode::UNAUTHORIZED,
-            Reason::Denied,
+            Kind::Denied,
             "the token is missing or wrong",
             "send Authorization: Bearer TOKEN with the token of the daemon's configuration",
         ))
@@ -152,7 +153,7 @@ pub async fn limits(State(waits): State<Waits>, request: Request, next: Next) ->
     if target > TARGET_BYTES {
         return Refusal::new(
             StatusCode::URI_TOO_LONG,
-            Reason::Limit,
+            Kind::Limit,
             format!("path and query have more than {TARGET_BYTES} bytes"),
             "no request needs as much",
         )
@@ -165,7 +166,7 @@ pub async fn limits(State(waits): State<Waits>, request: Request, next: Next) ->
     let too_large = || {
         Refusal::new(
             StatusCode::PAYLOAD_TOO_LARGE,
-            Reason::Limit,
+            Kind::Limit,
             format!("the body has more than {BODY_BYTES} bytes, or did not come whole"),
             "no request needs as much",
         )
@@ -179,7 +180,7 @@ pub async fn limits(State(waits): State<Waits>, request: Request, next: Next) ->
         Ok(Err(_)) => too_large(),
         Err(_elapsed) => Refusal::new(
             StatusCode::REQUEST_TIMEOUT,
-            Reason::Limit,
+            Kind::Limit,
             "the body did not come in time",
             "send it at once",
         )
@@ -274,7 +275,7 @@ fn check(api: &Api, peer: Peer, request: &Request) -> Result<Trust, (Refusal, bo
     Err((
         Refusal::new(
             StatusCode::UNAUTHORIZED,
-            Reason::Denied,
+            Kind::Denied,
             "the token is missing or wrong",
             "send Authorization: Bearer TOKEN with the token of the daemon's configuration",
         ),
@@ -296,7 +297,7 @@ fn may_change(origin: &str, host: &str, listed: &[Origin]) -> bool {
 }
 
 fn denied(error: String, help: &str) -> Refusal {
-    Refusal::new(StatusCode::FORBIDDEN, Reason::Denied, error, help)
+    Refusal::new(StatusCode::FORBIDDEN, Kind::Denied, error, help)
 }
 
 fn cookie(headers: &HeaderMap) -> Option<&str> {

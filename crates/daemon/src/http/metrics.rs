@@ -22,7 +22,10 @@ use engine::service::status::{AxisTask, DeviceHealth};
 /// Unit of CPU times in proc(5), the same on all Linux architectures of today.
 const TICKS_PER_S: f64 = 100.0;
 
-/// `GET /metrics`: OpenMetrics, or the older text format for clients that accept only that.
+/// Metrics for Prometheus: OpenMetrics, or the text format 0.0.4 for clients that accept only that.
+#[utoipa::path(get, path = "/metrics", tag = "daemon", responses(
+    (status = 200, body = String, content_type = "application/openmetrics-text"),
+))]
 pub async fn metrics(State(api): State<Arc<Api>>, headers: HeaderMap) -> Result<Response, Refusal> {
     let mut registry = Registry::default();
     registry.register_collector(Box::new(ProcessFigures));

@@ -1,5 +1,5 @@
 //! The daemon's HTTP: lists of routes, each answered by a function of a few lines.
-//! docs/src/daemon.md and `openapi.json` document them.
+//! docs/src/daemon.md and [`openapi`] document them.
 
 pub mod captures;
 pub mod connection_limits;
@@ -7,6 +7,7 @@ pub mod download;
 pub mod events;
 pub mod guard;
 pub mod metrics;
+mod openapi;
 pub mod page;
 mod partial;
 pub mod refusal;
@@ -25,8 +26,10 @@ use axum::response::{IntoResponse, Response};
 use axum::routing::{MethodRouter, delete, get, post};
 use engine::failure::{Failure, Kind};
 use engine::service::DeviceService;
-use engine::service::status::DeviceHealth;
+use engine::service::status::{DeviceHealth, ServiceStatus};
+use serde::Serialize;
 use tokio::sync::{Semaphore, watch};
+use utoipa::ToSchema;
 
 use crate::limits::{CONNECTIONS, DOWNLOADS, LOCAL_CONNECTIONS, MAKING, Waits};
 use crate::state::{Counters, DaemonState};
@@ -68,7 +71,7 @@ fn device_routes() -> Routes<Arc<DeviceService>> {
 /// Routes of a daemon.
 fn daemon_routes() -> Routes<Arc<Api>> {
     vec![
-        ("/api/v1/openapi.json", get(page::openapi)),
+        ("/api/v1/openapi.json", get(openapi::description)),
         ("/api/v1/plan", get(captures::plan)),
         ("/api/v1/captures", post(captures::begin)),
         ("/api/v1/scans", get(scans::list)),
@@ -96,6 +99,7 @@ fn router<S: Clone + Send + Sync + 'static>(routes: Routes<S>) -> Router<S> {
 fn daemon_router(api: &Arc<Api>, peer: Peer) -> Router {
     let devices = router(device_routes()).with_state(Arc::clone(&api.state.service));
     router(daemon_routes())
+        .route("/", get(page::page))
         .route("/login", get(page::signed_in).post(page::login))
         .route("/logout", post(page::logout))
         .merge(devices)
@@ -144,7 +148,7 @@ pub(crate) fn serve(
 async fn in_use() -> Refusal {
     Refusal::new(
         StatusCode::CONFLICT,
-        Kind::NoDevice,
+        Kind::Busy,
         "another velomotion command uses the device",
         "wait for its end, or stop it (tilt stop)",
     )
@@ -169,11 +173,30 @@ async fn count(State(api): State<Arc<Api>>, request: Request, next: Next) -> Res
     response
 }
 
+/// State of the daemon, both devices and the current activity.
+#[utoipa::path(get, path = "/api/v1/status", tag = "daemon", responses((status = 200, body = ServiceStatus)))]
 async fn status(State(service): State<Arc<DeviceService>>) -> Response {
     json(StatusCode::OK, &service.status())
 }
 
-/// `GET /health`, for monitors: an answer means live, 200 ready for a capture, 503 not ready.
+/// Body of `GET /health`.
+#[derive(Clone, Copy, Debug, Serialize, ToSchema)]
+pub struct HealthReport {
+    /// Whether the daemon answers: always true.
+    live: bool,
+    /// Whether it could capture now.
+    ready: bool,
+    /// The drive.
+    drive: DeviceHealth,
+    /// The lidar.
+    lidar: DeviceHealth,
+}
+
+/// For monitors: an answer means live, 200 ready for a capture.
+#[utoipa::path(get, path = "/health", tag = "daemon", responses(
+    (status = 200, body = HealthReport),
+    (status = 503, description = "Not ready for a capture", body = HealthReport),
+))]
 async fn health(State(api): State<Arc<Api>>) -> Response {
     let status = api.state.service.status();
     let (drive, lidar) = (status.drive.state, status.lidar.state);
@@ -182,7 +205,12 @@ async fn health(State(api): State<Arc<Api>>) -> Response {
         true => StatusCode::OK,
         false => StatusCode::SERVICE_UNAVAILABLE,
     };
-    let body = serde_json::json!({ "live": true, "ready": ready, "drive": drive, "lidar": lidar });
+    let body = HealthReport {
+        live: true,
+        ready,
+        drive,
+        lidar,
+    };
     json(code, &body)
 }
 
@@ -201,7 +229,7 @@ pub async fn with_disk<T: Send + 'static>(
 }
 
 /// A response in JSON.
-pub fn json(status: StatusCode, body: &impl serde::Serialize) -> Response {
+pub fn json(status: StatusCode, body: &impl Serialize) -> Response {
     match serde_json::to_vec(body) {
         Ok(body) => {
             let headers = [
@@ -213,97 +241,6 @@ pub fn json(status: StatusCode, body: &impl serde::Serialize) -> Response {
         Err(error) => {
             let error = format!("the answer has no JSON form: {error}");
             Refusal::defect(error, "this is a defect of the program").into_response()
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use std::collections::BTreeSet;
-
-    /// Methods of a route, from the debug form of its router.
-    fn methods<S>(router: &MethodRouter<S>) -> BTreeSet<String> {
-        let shown = format!("{router:?}");
-        ["get", "post", "put", "delete", "patch"]
-            .into_iter()
-            .filter(|method| !shown.contains(&format!(" {method}: None")))
-            .map(str::to_owned)
-            .collect()
-    }
-
-    #[test]
-    fn the_description_lists_exactly_the_routes() {
-        let described: serde_json::Value = serde_json::from_str(page::OPENAPI).unwrap();
-        let paths = described["paths"].as_object().unwrap();
-        let devices = device_routes();
-        let devices = devices
-            .iter()
-            .map(|(path, router)| (*path, methods(router)));
-        let daemon = daemon_routes();
-        let daemon = daemon.iter().map(|(path, router)| (*path, methods(router)));
-        let ours: std::collections::BTreeMap<&str, _> = devices.chain(daemon).collect();
-        let theirs: BTreeSet<&str> = paths.keys().map(String::as_str).collect();
-        let mut all: BTreeSet<&str> = ours.keys().copied().collect();
-        all.extend(["/", "/login", "/logout"]);
-        assert_eq!(all, theirs);
-        for (path, methods) in ours {
-            let described = paths[path].as_object().unwrap().keys();
-            let described: BTreeSet<String> = described
-                .filter(|key| *key != "parameters")
-                .cloned()
-                .collect();
-            assert_eq!(methods, described, "{path}");
-        }
-    }
-
-    #[test]
-    fn the_description_lists_every_format() {
-        let described: serde_json::Value = serde_json::from_str(page::OPENAPI).unwrap();
-        let parameters = &described["paths"]["/api/v1/scans/{id}/cloud"]["get"]["parameters"];
-        let format = parameters
-            .as_array()
-            .unwrap()
-            .iter()
-            .find(|p| p["name"] == "format");
-        let listed = format.unwrap()["schema"]["enum"].as_array().unwrap();
-        let ours: Vec<&str> = cloud::formats::Format::ALL
-            .iter()
-            .map(|f| f.extension())
-            .collect();
-        assert_eq!(
-            listed
-                .iter()
-                .map(|name| name.as_str().unwrap())
-                .collect::<Vec<_>>(),
-            ours
-        );
-    }
-
-    #[test]
-    fn every_reference_in_the_description_resolves() {
-        let described: serde_json::Value = serde_json::from_str(page::OPENAPI).unwrap();
-        let mut references = Vec::new();
-        collect(&described, &mut references);
-        assert!(references.len() > 20);
-        for reference in references {
-            let pointer = reference.trim_start_matches('#');
-            assert!(described.pointer(pointer).is_some(), "{reference}");
-        }
-    }
-
-    fn collect(value: &serde_json::Value, into: &mut Vec<String>) {
-        match value {
-            serde_json::Value::Object(object) => {
-                for (key, value) in object {
-                    match value.as_str() {
-                        Some(text) if key == "$ref" => into.push(text.to_owned()),
-                        _ => collect(value, into),
-                    }
-                }
-            }
-            serde_json::Value::Array(array) => array.iter().for_each(|v| collect(v, into)),
-            _ => {}
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The page with its files from the binary, the sign-in form, and the API description.
+//! The page with its files from the binary, and the sign-in form.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::Write;
@@ -11,18 +11,17 @@ use axum::http::{Extensions, HeaderMap, HeaderValue, Method, StatusCode, header}
 use axum::response::{IntoResponse, Response};
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 use engine::failure::Kind;
 
 use super::Api;
 use super::captures;
 use super::guard::{NO_COOKIE, host_of};
+use super::openapi::{Denied, Limit, NotNow, Usage};
 use super::partial::is_known;
-use super::refusal::{Reason, Refusal};
-
-/// The API in OpenAPI 3.1.
-pub const OPENAPI: &str = include_str!("openapi.json");
+use super::refusal::Refusal;
 
 /// Path, content type, content.
 type Asset = (&'static str, &'static str, &'static [u8]);
@@ -92,9 +91,10 @@ pub fn is_open(path: &str) -> bool {
     )
 }
 
-/// `GET /api/v1/openapi.json`.
-pub async fn openapi() -> Response {
-    ([(header::CONTENT_TYPE, "application/json")], OPENAPI).into_response()
+/// The page.
+#[utoipa::path(get, path = "/", tag = "page", responses((status = 200, body = String, content_type = "text/html")))]
+pub async fn page(request: Request) -> Response {
+    asset(request).await
 }
 
 /// Answers paths without a route.
@@ -107,7 +107,7 @@ pub async fn asset(request: Request) -> Response {
     let Some(((_, content, bytes), packed)) = assets.find(|((own, ..), _)| *own == path) else {
         return Refusal::new(
             StatusCode::NOT_FOUND,
-            Reason::NotFound,
+            Kind::NotFound,
             format!("there is nothing at {path}"),
             "GET /api/v1/openapi.json lists what there is",
         )
@@ -165,13 +165,21 @@ pub fn sign_in(status: StatusCode) -> Response {
     html(status, HTML, page)
 }
 
-#[derive(Deserialize)]
+/// Body of `POST /login`.
+#[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 struct Login {
+    /// The daemon's token.
     token: String,
 }
 
-/// `POST /login`: takes the token as a form or JSON and sets a cookie.
+/// Sign in a browser: sets a cookie.
+#[utoipa::path(post, path = "/login", tag = "page",
+    request_body(content((Login = "application/json"), (Login = "application/x-www-form-urlencoded"))), responses(
+    (status = 204, description = "Signed in"), (status = 303, description = "Signed in from a form"),
+    (status = 400, response = Usage), (status = 401, response = Denied), (status = 409, response = NotNow),
+    (status = 415, response = Usage), (status = 429, response = Limit),
+))]
 pub async fn login(
     State(api): State<Arc<Api>>,
     extensions: Extensions,
@@ -227,17 +235,23 @@ pub async fn login(
     })
 }
 
-/// `POST /logout`: ends the session of the cookie.
+/// Sign a browser out.
+#[utoipa::path(post, path = "/logout", tag = "page", responses((status = 204, description = "Signed out")))]
 pub async fn logout(State(api): State<Arc<Api>>, headers: HeaderMap) -> Response {
     api.sessions.end(&headers);
     (StatusCode::NO_CONTENT, [(header::SET_COOKIE, NO_COOKIE)]).into_response()
 }
 
-/// `GET /login`: whether the browser is signed in.
+/// Body of `GET /login`.
+#[derive(Serialize, ToSchema)]
+struct SignedIn {
+    /// Whether the browser is signed in.
+    signed_in: bool,
+}
+
+/// Whether the browser is signed in.
+#[utoipa::path(get, path = "/login", tag = "page", responses((status = 200, body = SignedIn)))]
 pub async fn signed_in(State(api): State<Arc<Api>>, headers: HeaderMap) -> Response {
     let signed_in = api.sessions.includes(&headers);
-    super::json(
-        StatusCode::OK,
-        &serde_json::json!({ "signed_in": signed_in }),
-    )
+    super::json(StatusCode::OK, &SignedIn { signed_in })
 }

@@ -1,4 +1,4 @@
-//! Refused and failed requests, all in one form: error, help, kind.
+//! Refused and failed requests, all in the form of a failed command.
 
 use std::fmt;
 
@@ -6,9 +6,9 @@ use axum::body::to_bytes;
 use axum::extract::rejection::QueryRejection;
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
+use engine::document::{Document, ErrorReport};
 use engine::failure::{Failure, Kind};
 use engine::service::LeaseError;
-use serde::Serialize;
 
 use crate::limits::BODY_BYTES;
 
@@ -16,39 +16,12 @@ use crate::limits::BODY_BYTES;
 const RETRY_S: u32 = 5;
 
 /// A refused request.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub struct Refusal {
-    #[serde(skip)]
     status: StatusCode,
-    error: String,
-    help: Option<String>,
-    kind: Reason,
+    failure: Failure,
     /// After how many seconds the client may try again.
-    #[serde(skip)]
     retry_after_s: Option<u32>,
-}
-
-/// Reason of a refusal.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Reason {
-    /// The axis is busy.
-    Busy,
-    /// No such scan, file or path.
-    NotFound,
-    /// Not allowed.
-    Denied,
-    /// A limit is exceeded.
-    Limit,
-    /// A failure.
-    #[serde(untagged)]
-    Failure(Kind),
-}
-
-impl From<Kind> for Reason {
-    fn from(kind: Kind) -> Self {
-        Self::Failure(kind)
-    }
 }
 
 impl Refusal {
@@ -56,15 +29,13 @@ impl Refusal {
     #[must_use]
     pub fn new(
         status: StatusCode,
-        kind: impl Into<Reason>,
+        kind: Kind,
         error: impl Into<String>,
         help: impl Into<String>,
     ) -> Self {
         Self {
             status,
-            error: error.into(),
-            help: Some(help.into()),
-            kind: kind.into(),
+            failure: Failure::new(kind, error).help(help),
             retry_after_s: None,
         }
     }
@@ -105,7 +76,7 @@ impl Refusal {
     pub fn no_scan(id: &str) -> Self {
         Self::new(
             StatusCode::NOT_FOUND,
-            Reason::NotFound,
+            Kind::NotFound,
             format!("there is no scan {id:?}"),
             "GET /api/v1/scans lists all scans",
         )
@@ -116,7 +87,7 @@ impl Refusal {
     pub fn no_file(what: &str) -> Self {
         Self::new(
             StatusCode::NOT_FOUND,
-            Reason::NotFound,
+            Kind::NotFound,
             format!("this scan has no {what}"),
             "see its state and why",
         )
@@ -136,7 +107,7 @@ impl Refusal {
     pub fn too_many(what: &str) -> Self {
         Self::new(
             StatusCode::TOO_MANY_REQUESTS,
-            Reason::Limit,
+            Kind::Limit,
             format!("too many {what} at once"),
             "try again when others have ended",
         )
@@ -163,8 +134,8 @@ pub async fn in_one_form(response: Response) -> Response {
 
 impl fmt::Display for Refusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.error)?;
-        match &self.help {
+        f.write_str(&self.failure.message)?;
+        match &self.failure.help {
             Some(help) => write!(f, " ({help})"),
             None => Ok(()),
         }
@@ -173,7 +144,10 @@ impl fmt::Display for Refusal {
 
 impl IntoResponse for Refusal {
     fn into_response(self) -> Response {
-        let mut response = super::json(self.status, &self);
+        let body = ErrorReport {
+            error: self.failure,
+        };
+        let mut response = super::json(self.status, &body.to_json());
         if let Some(s) = self.retry_after_s {
             response.headers_mut().insert(header::RETRY_AFTER, s.into());
         }
@@ -189,9 +163,7 @@ impl From<Failure> for Refusal {
                 Kind::Usage => StatusCode::BAD_REQUEST,
                 _ => StatusCode::CONFLICT,
             },
-            error: failure.message,
-            help: failure.help,
-            kind: failure.kind.into(),
+            failure,
             retry_after_s: None,
         }
     }
@@ -203,7 +175,7 @@ impl From<LeaseError> for Refusal {
             LeaseError::Failure(failure) => failure.into(),
             LeaseError::Busy(task) => Self::new(
                 StatusCode::CONFLICT,
-                Reason::Busy,
+                Kind::Busy,
                 format!("the axis is busy: {}", task.description()),
                 "wait until it is done, or stop it (POST /api/v1/tilt/stop, tilt stop)",
             ),

@@ -7,15 +7,18 @@ use axum::extract::{Path, Query, State};
 use axum::http::StatusCode;
 use axum::response::Response;
 use serde::{Deserialize, Serialize};
+use utoipa::{IntoParams, ToSchema};
 
 use super::Api;
+use super::openapi::{NotFound, NotNow};
 use super::refusal::Refusal;
 use engine::failure::{Failure, Kind};
-use engine::service::scan_record::ScanView;
+use engine::service::scan_record::{ScanDetails, ScanView};
 
 /// Query of `GET /scans`.
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Default, Deserialize, IntoParams)]
 #[serde(default, deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
 pub struct ScansQuery {
     /// Most scans of the answer; all by default.
     limit: Option<usize>,
@@ -23,16 +26,22 @@ pub struct ScansQuery {
     before: Option<String>,
 }
 
-/// `GET /scans`.
+/// Body of `GET /scans`.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct ScanList {
+    /// The newest first.
+    scans: Vec<ScanView>,
+}
+
+/// All scans, the newest first.
+#[utoipa::path(get, path = "/api/v1/scans", tag = "scans", params(ScansQuery), responses(
+    (status = 200, body = ScanList), (status = 404, response = NotFound),
+))]
 pub async fn list(
     State(api): State<Arc<Api>>,
     query: Result<Query<ScansQuery>, QueryRejection>,
 ) -> Result<Response, Refusal> {
     let Query(ScansQuery { limit, before }) = query?;
-    #[derive(Serialize)]
-    struct List {
-        scans: Vec<ScanView>,
-    }
     let state = Arc::clone(&api.state);
     let limit = limit.unwrap_or(usize::MAX);
     if let Some(id) = before
@@ -42,10 +51,13 @@ pub async fn list(
         return Err(Refusal::no_scan(id));
     }
     let scans = super::with_disk(move || state.scans.part(before.as_deref(), limit)).await?;
-    Ok(super::json(StatusCode::OK, &List { scans }))
+    Ok(super::json(StatusCode::OK, &ScanList { scans }))
 }
 
-/// `GET /scans/ID`.
+/// One scan.
+#[utoipa::path(get, path = "/api/v1/scans/{id}", tag = "scans", params(("id" = String, Path, description = "Id of a scan")), responses(
+    (status = 200, body = ScanDetails), (status = 404, response = NotFound),
+))]
 pub async fn one(State(api): State<Arc<Api>>, Path(id): Path<String>) -> Result<Response, Refusal> {
     let (state, asked) = (Arc::clone(&api.state), id.clone());
     let scan = super::with_disk(move || state.scans.whole(&asked)).await?;
@@ -53,7 +65,10 @@ pub async fn one(State(api): State<Arc<Api>>, Path(id): Path<String>) -> Result<
     Ok(super::json(StatusCode::OK, &scan))
 }
 
-/// `DELETE /scans/ID`.
+/// Delete a scan.
+#[utoipa::path(delete, path = "/api/v1/scans/{id}", tag = "scans", params(("id" = String, Path, description = "Id of a scan")), responses(
+    (status = 204, description = "Deleted"), (status = 404, response = NotFound), (status = 409, response = NotNow),
+))]
 pub async fn delete(
     State(api): State<Arc<Api>>,
     Path(id): Path<String>,

@@ -6,11 +6,13 @@ use axum::body::Bytes;
 use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::Response;
-use engine::capture::jog::JogRequest;
+use engine::capture::jog::{GotoRequest, JogRequest};
 use engine::service::DeviceService;
+use engine::service::axis_report::{AxisReport, StopAnswer};
 use serde::Serialize;
 
 use super::captures::body;
+use super::openapi::{NotNow, Usage};
 use super::refusal::Refusal;
 
 type Service = State<Arc<DeviceService>>;
@@ -23,8 +25,13 @@ async fn jog(service: &Arc<DeviceService>, request: JogRequest) -> Result<Respon
     Ok(ok(&service.run_jog(request).await?))
 }
 
-/// `GET /tilt`. Answered from the last report while the axis is busy and shortly after, so that
-/// clients that look do not keep motions waiting.
+/// State of the axis.
+///
+/// The last report while the axis is busy and shortly after: clients that look do not keep motions
+/// waiting.
+#[utoipa::path(get, path = "/api/v1/tilt", tag = "tilt", responses(
+    (status = 200, body = AxisReport), (status = 409, response = NotNow),
+))]
 pub async fn status(State(service): Service) -> Result<Response, Refusal> {
     match service.known_report() {
         Some(report) => Ok(ok(&report)),
@@ -32,12 +39,18 @@ pub async fn status(State(service): Service) -> Result<Response, Refusal> {
     }
 }
 
-/// `POST /tilt/home`.
+/// Home the axis.
+#[utoipa::path(post, path = "/api/v1/tilt/home", tag = "tilt", responses(
+    (status = 200, body = AxisReport), (status = 409, response = NotNow),
+))]
 pub async fn home(State(service): Service) -> Result<Response, Refusal> {
     jog(&service, JogRequest::Home).await
 }
 
-/// `POST /tilt/goto`.
+/// Move the axis.
+#[utoipa::path(post, path = "/api/v1/tilt/goto", tag = "tilt", request_body = GotoRequest, responses(
+    (status = 200, body = AxisReport), (status = 409, response = NotNow), (status = 415, response = Usage),
+))]
 pub async fn goto(
     State(service): Service,
     headers: HeaderMap,
@@ -46,12 +59,18 @@ pub async fn goto(
     jog(&service, JogRequest::Goto(body(&headers, &bytes)?)).await
 }
 
-/// `POST /tilt/stop`: stops any motion and sets the brake.
+/// Stop the axis: any motion, also of a capture. Sets the brake.
+#[utoipa::path(post, path = "/api/v1/tilt/stop", tag = "tilt", responses(
+    (status = 200, description = "The axis is at rest", body = StopAnswer), (status = 409, response = NotNow),
+))]
 pub async fn stop(State(service): Service) -> Result<Response, Refusal> {
     Ok(ok(&service.stop_axis().await?))
 }
 
-/// `POST /tilt/clear`.
+/// Take the drive out of its fault state.
+#[utoipa::path(post, path = "/api/v1/tilt/clear", tag = "tilt", responses(
+    (status = 200, body = AxisReport), (status = 409, response = NotNow),
+))]
 pub async fn clear(State(service): Service) -> Result<Response, Refusal> {
     jog(&service, JogRequest::ClearFaults).await
 }

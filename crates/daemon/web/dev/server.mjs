@@ -23,8 +23,8 @@ const scan = (n, more = {}) => ({
 });
 let scans = [
   scan(3),
-  scan(2, { state: "partial", why: { error: "stopped by the user", help: "what was captured is saved: the cloud /data/scans/x/cloud.ply and the log /data/scans/x/log.pcapng", kind: "interrupted" }, summary: "Stopped by the user. What was captured is kept.", points: 97_220, simulated: false, asked: { speed_deg_s: 5 } }),
-  scan(1, { state: "failed", why: { error: "the disk is nearly full: 12 MB free, 1000 MB are left free", help: "delete scans", kind: "incomplete" }, waits_for_room: true,
+  scan(2, { state: "partial", why: { message: "stopped by the user", help: "what was captured is saved: the cloud /data/scans/x/cloud.ply and the log /data/scans/x/log.pcapng", kind: "interrupted" }, summary: "Stopped by the user. What was captured is kept.", points: 97_220, simulated: false, asked: { speed_deg_s: 5 } }),
+  scan(1, { state: "failed", why: { message: "the disk is nearly full: 12 MB free, 1000 MB are left free", help: "delete scans", kind: "incomplete" }, waits_for_room: true,
     summary: "The disk is nearly full: 12 MB free, 1000 MB are left free. Delete scans, or give another folder or a smaller reserve_bytes under [daemon] of the configuration. The log is kept: its cloud is made as soon as the disk has room.", points: null }),
 ];
 const sync = { clock_method: "hull", clock_residual_us: 18.4, clock_bound_us: 36.2, clock_drift_ppm: 12.02, angle_method: "profile", angle_rms_deg: 0.00071, angle_bound_deg: 0.0021 };
@@ -36,8 +36,8 @@ const status = () => ({
     : { doing: "idle", scan: null, step: 0, steps: 0, from_deg: null, to_deg: null, left_s: null },
   drive: {
     state: mode === "fault" ? "fault" : mode === "absent" ? "absent" : "connected",
-    problem: mode === "fault" ? { error: "the drive reports 0x8611: following error", help: "see whether something holds the platform; then clear the fault and home" }
-      : mode === "absent" ? { error: "no drive found yet: looking for an EPOS2 (USB 0403:A8B0) with a serial port (serial ports: none)", help: "plug the EPOS2 in and switch it on: it is connected as soon as it is there\nvelomotion doctor lists what is there; a drive that is not on USB needs a [device.NAME] of the configuration", kind: "no-device" } : null,
+    problem: mode === "fault" ? { message: "the drive reports 0x8611: following error", help: "see whether something holds the platform; then clear the fault and home" }
+      : mode === "absent" ? { message: "no drive found yet: looking for an EPOS2 (USB 0403:A8B0) with a serial port (serial ports: none)", help: "plug the EPOS2 in and switch it on: it is connected as soon as it is there\nvelomotion doctor lists what is there; a drive that is not on USB needs a [device.NAME] of the configuration", kind: "no-device" } : null,
     port: "/dev/pts/4", link: "usb", cia402: mode === "fault" ? "Fault" : mode === "live" ? "Operation Enabled" : "Switch On Disabled", referenced: true,
     angle_deg: mode === "absent" ? null : angle, speed_deg_s: mode === "live" ? -5.625 : 0, faults: mode === "fault" ? [{ code: "0x8611", meaning: "following error" }] : [],
   },
@@ -112,19 +112,19 @@ function answer(request, response) {
     mode = "idle";
     return reply(200, {});
   }
-  if (pathname.startsWith("/api/") && mode === "token") return reply(401, { error: "a token is needed", help: "sign in", kind: "denied" });
+  if (pathname.startsWith("/api/") && mode === "token") return reply(401, { error: { message: "a token is needed", help: "sign in", kind: "denied" } });
   if (pathname === "/api/v1/status") return reply(200, status());
   if (pathname === "/api/v1/scans") return reply(200, scans);
   if (pathname === "/api/v1/plan") {
     const speed = Number(searchParams.get("speed_deg_s"));
-    if (!(speed <= 98)) return reply(400, { error: `speed ${speed} deg/s: expected 0.025 to 98`, help: "choose a slower one", kind: "usage" });
+    if (!(speed <= 98)) return reply(400, { error: { message: `speed ${speed} deg/s: expected 0.025 to 98`, help: "choose a slower one", kind: "usage" } });
     return reply(200, { motor_rpm: Math.round(20 * speed), cruise_deg_s: Math.round(20 * speed) / 20, sweep_s: 45 / speed + 0.011, moves_s: 45 / speed + 0.6, step_deg: speed / 10, frames: 450 / speed, bytes: (45 / speed + 3) * 1.3e6 });
   }
   const one = /^\/api\/v1\/scans\/([^/]+)(?:\/(\w+))?$/.exec(pathname);
   if (one !== null) {
     const found = scans.find((each) => each.id === one[1]);
-    if (found === undefined) return reply(404, { error: "no such scan", help: "GET /api/v1/scans lists them", kind: "not-found" });
-    if (mode === "stuck" && one[2] !== undefined) return reply(429, { error: "too many downloads at once", help: "try again when others have ended", kind: "limit" });
+    if (found === undefined) return reply(404, { error: { message: "no such scan", help: "GET /api/v1/scans lists them", kind: "not-found" } });
+    if (mode === "stuck" && one[2] !== undefined) return reply(429, { error: { message: "too many downloads at once", help: "try again when others have ended", kind: "limit" } });
     if (one[2] === "cloud" && ply !== null) return response.writeHead(200, { "content-type": "application/octet-stream" }).end(ply);
     if (request.method === "DELETE") scans = scans.filter((each) => each !== found);
     return reply(200, { ...found, report: { lost_packets: 0, sync, truth: { rms_m: 0.00071, worst_m: 0.0018 } }, messages: [] });
@@ -137,7 +137,7 @@ function answer(request, response) {
     if (!/^[\w.]+$/.test(name) || !statSync(dist + name).isFile()) throw new Error(name);
     response.writeHead(200, { "content-type": TYPES[name.split(".").pop()], "cache-control": "no-store" }).end(readFileSync(dist + name));
   } catch {
-    reply(404, { error: "no such path", kind: "not-found" });
+    reply(404, { error: { message: "no such path", kind: "not-found" } });
   }
 }
 

@@ -2,7 +2,7 @@
 
 /** An error and its remedy. */
 export interface Problem {
-  error: string;
+  message: string;
   help?: string | null;
   kind?: string;
 }
@@ -155,7 +155,7 @@ export class RequestError extends Error {
   readonly status: number;
 
   constructor(problem: Problem, status: number) {
-    super(problem.error);
+    super(problem.message);
     this.help = problem.help ?? null;
     this.status = status;
   }
@@ -181,7 +181,7 @@ async function answered(url: string, init: RequestInit): Promise<Response> {
     answer = await fetch(url, { credentials: "same-origin", cache: "no-store", ...init });
   } catch {
     const help = "check that it runs and that this device can reach it";
-    throw new RequestError({ error: "the daemon does not answer", help }, 0);
+    throw new RequestError({ message: "the daemon does not answer", help }, 0);
   }
   if (answer.ok) return answer;
   const text = await answer.text();
@@ -205,8 +205,8 @@ function parse(text: string): unknown {
 }
 
 function problem(json: unknown, text: string, status: number): Problem {
-  if (typeof json === "object" && json !== null && "error" in json) return json as Problem;
-  return { error: text.slice(0, 200) || `the daemon answers ${status}` };
+  if (typeof json === "object" && json !== null && "error" in json) return json.error as Problem;
+  return { message: text.slice(0, 200) || `the daemon answers ${status}` };
 }
 
 export const api = {

@@ -2,6 +2,7 @@
 //
 // Each batch is shuffled, so that its first points are an even sample, which the moving view draws.
 
+import type { Problem } from "./api.ts";
 import type { Columns } from "./frame.ts";
 import { PlyReader } from "./ply.ts";
 import { type Ranges, Sample } from "./sample.ts";
@@ -34,8 +35,9 @@ here.onmessage = (event) => {
 async function load(order: LoadRequest): Promise<void> {
   const answer = await fetch(order.url, { credentials: "same-origin" });
   if (!answer.ok || answer.body === null) {
-    const problem = (await answer.json().catch(() => null)) as { error?: string; help?: string } | null;
-    const error = [problem?.error ?? `the daemon answers ${answer.status}`, problem?.help].filter(Boolean).join(": ");
+    const body = (await answer.json().catch(() => null)) as { error?: Problem } | null;
+    const problem = body?.error;
+    const error = [problem?.message ?? `the daemon answers ${answer.status}`, problem?.help].filter(Boolean).join(": ");
     here.postMessage({ kind: "failed", error, status: answer.status });
     return;
   }

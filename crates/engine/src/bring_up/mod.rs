@@ -12,12 +12,13 @@ use drive::{CommandOutcome, DriveClient, DriveCommand, DriveError, DriveEvent, S
 use io::port::Port;
 use serde::Serialize;
 use units::{DegPerS2, Span};
+use utoipa::ToSchema;
 
 use crate::devices::drive_port::Opened;
 use crate::devices::drive_session::{Session, SessionError};
 
 /// Judgement of a measured value.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Judgement {
     /// As it should be.
@@ -31,7 +32,7 @@ pub enum Judgement {
 }
 
 /// A measured value.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct BringUpResult {
     /// What was measured.
     pub name: String,
@@ -90,7 +91,7 @@ pub struct BringUp<'a> {
 }
 
 /// The end of a step.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, ToSchema)]
 pub struct BringUpStepReport {
     /// Title of the step.
     pub step: &'static str,

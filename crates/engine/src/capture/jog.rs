@@ -4,6 +4,7 @@ use drive::{CommandOutcome, DriveCommand, DriveEvent, DriveStatus};
 use io::port::Port;
 use serde::{Deserialize, Serialize};
 use units::{DegPerS, DegPerS2, Degrees};
+use utoipa::ToSchema;
 
 use crate::capture::moves;
 use crate::config::{Config, Device};
@@ -13,8 +14,9 @@ use crate::devices::profile as devices;
 use crate::failure::{Failure, Kind};
 
 /// A move to an angle; the body of `POST /tilt/goto`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
+#[schema(example = json!({"to_deg": 30, "speed_deg_s": 10}))]
 pub struct GotoRequest {
     /// Target, degrees.
     pub to_deg: f64,

@@ -3,36 +3,57 @@
 use io::recording::DatagramKind;
 use lidar::{Decoder, Options, Stats, UtcClock, UtcState};
 use protocol::record::{DriveLink, Record, Wire};
-use protocol::vlp16::{PositionPacket, Pps, ReturnMode};
+use protocol::vlp16::{GpsPosition, PositionPacket, Pps, ReturnMode};
 use scanner::steps::{ClockStep, SetClock};
-use scanner::{ScanConfig, Survey};
+use scanner::{Accuracy, ScanConfig, Survey, TiltSource};
 
 use super::failures::scan_failure;
 use crate::failure::Failure;
-use crate::reconstruct::report::{Contents, Gps, PacketCounts, SensorReport, TiltReport};
+use crate::reconstruct::report::{
+    Contents, Gps, GpsReport, InfoReport, PacketCounts, SensorReport, SweepReport, TiltReport,
+};
 use crate::reconstruct::source::{Pass, SensorAddress, Source};
 
-/// Reads the whole recording and lists what it holds, with the error of a file that ends early.
+/// Reads the whole recording and lists what it holds.
 ///
 /// # Errors
 /// [`Kind::BadInput`](crate::failure::Kind::BadInput) for a file that is not a recording.
-pub fn read_contents(
-    source: &Source,
-    options: Options,
-) -> Result<(Contents, Option<String>), Failure> {
+pub fn read_contents(source: &Source, options: Options) -> Result<InfoReport, Failure> {
     let config = source.config()?;
+    let mut start = None;
     let mut sensors = SensorSurveys::new(options.clone());
     let mut survey =
         Survey::new(&config, options).map_err(|error| scan_failure(source.path(), &error))?;
     let pass = source.read_all(|record| {
+        start.get_or_insert(record.host);
         sensors.observe(record);
         if sensors.is_reported(record) {
             survey.observe(record);
         }
         Ok(())
     })?;
-    let contents = sensors.contents(&config, survey.drive(), &pass, &survey.steps());
-    Ok((contents, pass.truncated))
+    let sensor = sensors.first().map(|survey| survey.name().to_string());
+    let mut contents = sensors.contents(&config, survey.drive(), &pass, &survey.steps());
+    let mut sweeps = Vec::new();
+    if survey.drive().is_some() && contents.packets.data > 0 {
+        match survey.solve(&config, &TiltSource::Log, Accuracy::Best) {
+            Ok(alignment) => {
+                let found = alignment.sweeps.iter();
+                sweeps = found
+                    .map(|sweep| SweepReport::new(sweep, contents.rpm))
+                    .collect();
+            }
+            Err(error) => contents.warnings.push(format!("no sweeps: {error}")),
+        }
+    }
+    Ok(InfoReport {
+        contents,
+        file: source.path().display().to_string(),
+        start_s: start.map(|start| start.as_secs_f64()),
+        sensor,
+        sweeps,
+        configuration: source.has_config()?.then_some(config),
+    })
 }
 
 /// One survey per sensor.
@@ -51,6 +72,7 @@ struct SensorSurvey {
     decoder: Decoder,
     utc: UtcClock,
     pps: Option<Pps>,
+    position: Option<GpsPosition>,
 }
 
 /// Sensors with statistics of their own. Packets of further sensors are only counted.
@@ -148,6 +170,7 @@ impl SensorSurveys {
             decoder: Decoder::new(self.options.clone()),
             utc: UtcClock::new(),
             pps: None,
+            position: None,
         });
         Some(self.sensors.len() - 1)
     }
@@ -200,18 +223,23 @@ impl SensorSurvey {
         self.decoder.packet(record.host, payload, &mut |_| {});
         if let Ok(packet) = PositionPacket::new(payload) {
             self.pps = Some(packet.pps());
+            let position = packet.rmc().ok().and_then(|rmc| rmc.position);
+            self.position = position.or(self.position);
             self.utc.position(record.host, &packet);
         }
     }
 
-    fn report(&self) -> SensorReport {
-        let name = SensorAddress {
+    fn name(&self) -> SensorAddress {
+        SensorAddress {
             address: self.source.into(),
             port: self.port,
-        };
+        }
+    }
+
+    fn report(&self) -> SensorReport {
         let stats = self.decoder.stats();
         SensorReport {
-            name: name.to_string(),
+            name: self.name().to_string(),
             model: stats.model.map(|model| model.name.to_owned()),
             return_mode: stats.return_mode.map(return_mode_name),
             data: stats.data,
@@ -235,6 +263,10 @@ impl SensorSurvey {
             pps: pps_name(pps),
             locked,
             state: counts_with_text,
+            position: self.position.map(|position| GpsReport {
+                latitude_deg: position.latitude_deg,
+                longitude_deg: position.longitude_deg,
+            }),
         })
     }
 }

@@ -8,6 +8,7 @@ use ::io::files::NewFile;
 use ::io::log::{LogError, LogWriter};
 use protocol::record::Wire;
 use serde::Serialize;
+use utoipa::ToSchema;
 
 use super::replay::interrupted;
 use super::source::Source;
@@ -15,10 +16,11 @@ use crate::failure::{Failure, Kind};
 use crate::output::{file_failure, overwrite};
 
 /// What was copied.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, ToSchema)]
 #[non_exhaustive]
 pub struct LidarCopyReport {
     /// The pcap.
+    #[schema(value_type = String)]
     pub output: PathBuf,
     /// Datagrams in it, those with positions included.
     pub packets: u64,

@@ -406,7 +406,12 @@ pub(super) fn interrupted(path: &Path) -> Failure {
 fn sync(alignment: &Alignment, tilt: &TiltSource) -> SyncReport {
     // The accuracy of a table is not known.
     let is_table = matches!(tilt, TiltSource::Table(_));
+    let speeds = alignment.sweeps.iter().map(|sweep| sweep.cruise.0.abs());
+    let clock_s = alignment.clock.bound().as_secs_f64();
+    let clock_bound_deg = speeds.reduce(f64::max).map(|speed| speed * clock_s);
     SyncReport {
+        clock_bound_deg,
+        clock_bound_mm_at_20m: clock_bound_deg.map(|deg| 20e3 * deg.to_radians()),
         clock_method: "lower envelope",
         clock_residual_us: alignment.clock.residual().as_micros_f64(),
         clock_bound_us: alignment.clock.bound().as_micros_f64(),

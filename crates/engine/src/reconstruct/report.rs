@@ -1,11 +1,12 @@
 //! Reports of reconstructions, serialised as the JSON of `info`, `replay` and `capture`.
 
-use scanner::MethodChoice;
 use scanner::steps::{ClockStep, SetClock};
+use scanner::{MethodChoice, ScanConfig};
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// Packet counts by kind.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, ToSchema)]
 pub struct PacketCounts {
     /// Decoded lidar data packets.
     pub data: u64,
@@ -18,7 +19,7 @@ pub struct PacketCounts {
 }
 
 /// The drive part of a log.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
 pub struct TiltReport {
     /// Shaft samples.
     pub samples: u64,
@@ -27,7 +28,7 @@ pub struct TiltReport {
 }
 
 /// State of a lidar's satellite receiver.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Gps {
     /// State of the pulse per second: `absent`, `synchronising`, `locked` or `error`.
     pub pps: String,
@@ -35,10 +36,22 @@ pub struct Gps {
     pub locked: bool,
     /// Description of the state, with its reason.
     pub state: String,
+    /// Last position of its antenna in WGS 84.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub position: Option<GpsReport>,
+}
+
+/// Position of an antenna in WGS 84.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+pub struct GpsReport {
+    /// Degrees, positive in the north.
+    pub latitude_deg: f64,
+    /// Degrees, positive in the east.
+    pub longitude_deg: f64,
 }
 
 /// One of several lidars in a file.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct SensorReport {
     /// Address and data port.
     pub name: String,
@@ -60,7 +73,7 @@ pub struct SensorReport {
 }
 
 /// Contents of a file.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, ToSchema)]
 pub struct Contents {
     /// Sensor model.
     pub model: Option<String>,
@@ -94,8 +107,26 @@ pub struct Contents {
     pub warnings: Vec<String>,
 }
 
+/// Report of `info`.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+pub struct InfoReport {
+    /// Contents of the file.
+    #[serde(flatten)]
+    pub contents: Contents,
+    /// Path of the file.
+    pub file: String,
+    /// Receive time of the first lidar packet or drive record, Unix seconds of the host clock.
+    pub start_s: Option<f64>,
+    /// Address and data port of the lidar that `packets` and `returns` describe.
+    pub sensor: Option<String>,
+    /// Sweeps of a log. Why there are none is a warning.
+    pub sweeps: Vec<SweepReport>,
+    /// Configuration of the scanner in a log; null for a plain recording.
+    pub configuration: Option<ScanConfig>,
+}
+
 /// One sweep.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct SweepReport {
     /// Angle at the start.
     pub from_deg: f64,
@@ -112,7 +143,7 @@ pub struct SweepReport {
 }
 
 /// A clock step during the recording.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct StepReport {
     /// `host` or `lidar`.
     pub clock: &'static str,
@@ -141,7 +172,7 @@ impl StepReport {
 }
 
 /// Choice of a trajectory method under a tolerance.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct ToleranceReport {
     /// Tolerated error, metres.
     pub asked_m: f64,
@@ -157,7 +188,7 @@ pub struct ToleranceReport {
 }
 
 /// A method and its error bound.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct TriedMethod {
     /// Its name.
     pub method: &'static str,
@@ -184,7 +215,7 @@ impl ToleranceReport {
 }
 
 /// Synchronisation of clocks and angles.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct SyncReport {
     /// Method of the clock model.
     pub clock_method: &'static str,
@@ -192,6 +223,10 @@ pub struct SyncReport {
     pub clock_residual_us: f64,
     /// Bound on the clock error, apart from a constant delay.
     pub clock_bound_us: f64,
+    /// The same as an angle, at the speed of the fastest sweep.
+    pub clock_bound_deg: Option<f64>,
+    /// The same as a displacement of a point at 20 m.
+    pub clock_bound_mm_at_20m: Option<f64>,
     /// Drift of the lidar's clock against the host clock; positive if it runs slow.
     pub clock_drift_ppm: f64,
     /// Clock steps during the recording.
@@ -208,7 +243,7 @@ pub struct SyncReport {
 }
 
 /// Packets received and lost during a capture.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Reception {
     /// Packets received, position packets included.
     pub packets: u64,
@@ -223,7 +258,7 @@ pub struct Reception {
 }
 
 /// Errors of a cloud against the simulator's truth.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct TruthErrors {
     /// Root mean square of the point errors.
     pub rms_m: f64,
@@ -232,7 +267,7 @@ pub struct TruthErrors {
 }
 
 /// Report of `replay` and `capture`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct ScanReport {
     /// Contents of the log.
     #[serde(flatten)]

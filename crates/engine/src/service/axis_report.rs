@@ -3,11 +3,12 @@
 use drive::cia402::{DeviceState, status};
 use drive::{DeviceError, DriveIdentity, DriveStatus};
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 use super::status::AxisTask;
 
 /// State of the drive.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct AxisReport {
     /// Name of the device's profile.
     pub device: String,
@@ -48,7 +49,7 @@ pub struct AxisReport {
 }
 
 /// An entry of the error history.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct DriveFault {
     /// Four hexadecimal digits.
     pub code: String,
@@ -61,7 +62,7 @@ pub struct DriveFault {
 }
 
 /// Answer to `POST /tilt/stop` of a service that ends with its command.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StoppedCommand {
     /// Name of the device's profile.
@@ -75,7 +76,7 @@ pub struct StoppedCommand {
 }
 
 /// Answer to `POST /tilt/stop`.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(untagged)]
 pub enum StopAnswer {
     /// Of a daemon: the drive's state.

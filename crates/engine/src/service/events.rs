@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use serde::Serialize;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore, broadcast};
 use units::{Host, Stamp};
+use utoipa::ToSchema;
 
 pub use tokio::sync::broadcast::error::RecvError;
 
@@ -23,7 +24,7 @@ pub const SUBSCRIBERS: usize = 32;
 pub const QUEUE: usize = 256;
 
 /// Something that happened. All but points have a JSON form with a `type`.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, ToSchema)]
 #[serde(tag = "type", rename_all = "lowercase")]
 pub enum Event {
     /// The status changed, or a second has passed.
@@ -67,7 +68,7 @@ pub enum Event {
 }
 
 /// Severity of a message.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum MessageLevel {
     /// For information.

@@ -4,6 +4,7 @@ use std::ops::{Deref, DerefMut};
 
 use scanner::Accuracy;
 use serde::{Deserialize, Deserializer, Serialize};
+use utoipa::ToSchema;
 
 use crate::capture::run::Outcome;
 use crate::capture_request::CaptureRequest;
@@ -14,7 +15,7 @@ use crate::reconstruct::report::Reception;
 pub const NAME_BYTES: usize = 60;
 
 /// State of a scan.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum ScanState {
     /// The devices are recorded.
@@ -39,7 +40,7 @@ impl ScanState {
 }
 
 /// The part of a scan's record that every form of it has.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ScanHead {
     /// The name of its folder.
     pub id: String,
@@ -85,7 +86,7 @@ fn if_understood<'de, D: Deserializer<'de>>(from: D) -> Result<Option<CaptureReq
 }
 
 /// The file `scan.json` in a scan's folder.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ScanRecord {
     /// Head.
     #[serde(flatten)]
@@ -131,7 +132,7 @@ impl ScanRecord {
 }
 
 /// A scan in a list.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ScanView {
     /// Head.
     #[serde(flatten)]
@@ -149,7 +150,7 @@ pub struct ScanView {
 }
 
 /// A scan in full.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ScanDetails {
     /// As in a list.
     #[serde(flatten)]

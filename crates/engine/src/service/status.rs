@@ -1,12 +1,13 @@
 //! Status of the devices and of what they do, in the form that clients read (docs/src/daemon.md).
 
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 use super::axis_report::DriveFault;
 use crate::failure::Failure;
 
 /// What the axis is used for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum AxisTask {
     /// Nothing.
@@ -39,7 +40,7 @@ impl AxisTask {
 }
 
 /// The task of the axis and its progress.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, ToSchema)]
 pub struct Activity {
     /// The task.
     pub doing: AxisTask,
@@ -65,7 +66,7 @@ pub struct Activity {
 }
 
 /// State of a device.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum DeviceHealth {
     /// Not connected.
@@ -78,7 +79,7 @@ pub enum DeviceHealth {
 }
 
 /// The drive.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, ToSchema)]
 pub struct DriveSnapshot {
     /// State.
     pub state: DeviceHealth,
@@ -101,7 +102,7 @@ pub struct DriveSnapshot {
 }
 
 /// The lidar.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, ToSchema)]
 pub struct LidarStatus {
     /// State.
     pub state: DeviceHealth,
@@ -124,7 +125,7 @@ pub struct LidarStatus {
 }
 
 /// Limits and defaults of the axis.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct AxisStatus {
     /// Smallest angle, degrees.
     pub min_deg: f64,
@@ -143,7 +144,7 @@ pub struct AxisStatus {
 }
 
 /// The disk of the scans.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, ToSchema)]
 pub struct DiskStatus {
     /// Free bytes; absent where the system does not report them.
     pub free_bytes: Option<u64>,
@@ -160,7 +161,7 @@ pub struct DiskStatus {
 }
 
 /// Event clients.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 pub struct ClientsStatus {
     /// Connected clients.
     pub events: usize,
@@ -169,7 +170,7 @@ pub struct ClientsStatus {
 }
 
 /// Status of the whole service: the body of `GET /api/v1/status`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct ServiceStatus {
     /// Version of the program.
     pub version: &'static str,

@@ -6,12 +6,13 @@ use crate::effects::EffectUsage;
 use core::fmt::{self, Display, Write};
 
 use serde::Serialize;
+use utoipa::ToSchema;
 
 /// Width of the table, columns.
 const WIDTH: usize = 80;
 
 /// The line of a scene file that configures an effect.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 pub struct EffectLine {
     /// Name of the effect.
     pub name: &'static str,
@@ -20,7 +21,7 @@ pub struct EffectLine {
 }
 
 /// One effect that was on.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct EffectExplanation {
     /// Its name.
     pub effect: &'static str,
@@ -43,7 +44,7 @@ pub struct EffectExplanation {
 }
 
 /// The effects of a run.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, ToSchema)]
 pub struct Explanation {
     /// Effects that were on, in the order in which they act.
     pub on: Vec<EffectExplanation>,

@@ -10,10 +10,12 @@ use super::CommandOutput;
 use super::device_backend::thread_gone;
 use super::guard_axis::environment;
 use crate::cli::{self, Common};
+use crate::documents::DaemonReport;
 use crate::signals;
 use crate::terminal::to_stderr;
 use daemon::{Daemon, Options};
 use engine::config;
+use engine::document::Document;
 use engine::failure::Failure;
 
 /// Between two polls of signals.
@@ -64,11 +66,12 @@ fn greet(daemon: &Daemon, common: &Common) {
     let address = daemon.address();
     let folder = state.scans.folder().display();
     if common.json {
-        let object = serde_json::json!({
-            "address": address.to_string(),
-            "scans": folder.to_string(),
-            "simulated": state.service.simulated(),
-        });
+        let report = DaemonReport {
+            address: address.to_string(),
+            scans: folder.to_string(),
+            simulated: state.service.simulated(),
+        };
+        let object = report.to_json();
         // Programs that start a daemon wait for this line.
         let mut out = std::io::stdout().lock();
         let _ = std::io::Write::write_all(&mut out, format!("{object}\n").as_bytes());

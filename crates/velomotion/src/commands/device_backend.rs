@@ -285,7 +285,7 @@ pub fn jog_locally(local: &LocalService, jog: JogRequest) -> Result<StopAnswer, 
 fn lease_failure(error: LeaseError) -> Failure {
     match error {
         LeaseError::Failure(failure) => failure,
-        LeaseError::Busy(_) => Failure::new(Kind::NoDevice, "another command moves the axis")
+        LeaseError::Busy(_) => Failure::new(Kind::Busy, "another command moves the axis")
             .help("wait for its end, or stop it (tilt stop)"),
     }
 }

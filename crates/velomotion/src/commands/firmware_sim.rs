@@ -17,11 +17,13 @@ use units::DegPerS2;
 
 use super::CommandOutput;
 use crate::cli::{self, Common};
+use crate::documents::SoftwareDrive;
 use crate::signals;
 use engine::config;
 use engine::devices::profile as devices;
 use engine::devices::simulated;
 use engine::devices::simulated_drive::{self as software_drive, SoftwarePort};
+use engine::document::Document;
 use engine::failure::{Failure, Kind};
 
 /// Runs the command. The first line on stdout is the port. It ends at SIGTERM, Ctrl-C, or when
@@ -37,10 +39,10 @@ pub fn run(arguments: &cli::FirmwareSim, common: &Common) -> Result<CommandOutpu
     let (port, link) = match &arguments.can {
         Some(name) => {
             let bus = SocketCan::open(name).map_err(|error| failed(&error))?;
-            announce(Path::new(name))?;
+            announce(Path::new(name), common)?;
             (SoftwarePort::Can(bus), None)
         }
-        None => on_terminal(arguments)?,
+        None => on_terminal(arguments, common)?,
     };
     let attachment = match arguments {
         cli::FirmwareSim { can: Some(_), .. } => Attachment::Can,
@@ -81,14 +83,17 @@ fn load(arguments: &cli::FirmwareSim, axis: &AxisConfig) -> Option<AxisLoad> {
 }
 
 /// Opens a pseudo-terminal with its optional link.
-fn on_terminal(arguments: &cli::FirmwareSim) -> Result<(SoftwarePort, Option<Link>), Failure> {
+fn on_terminal(
+    arguments: &cli::FirmwareSim,
+    common: &Common,
+) -> Result<(SoftwarePort, Option<Link>), Failure> {
     let pty = Pty::open().map_err(|error| failed(&error))?;
     let link = arguments
         .link
         .as_deref()
         .map(|link| Link::make(link, pty.path()))
         .transpose()?;
-    announce(pty.path())?;
+    announce(pty.path(), common)?;
     Ok((SoftwarePort::Serial(pty), link))
 }
 
@@ -97,9 +102,16 @@ fn failed(error: &dyn std::fmt::Display) -> Failure {
         .help("velomotion doctor lists the CAN interfaces; pseudo-terminals come from /dev/ptmx")
 }
 
-fn announce(port: &Path) -> Result<(), Failure> {
+fn announce(port: &Path, common: &Common) -> Result<(), Failure> {
+    let line = match common.json {
+        true => {
+            let port = port.to_owned();
+            SoftwareDrive { port }.to_json().to_string()
+        }
+        false => port.display().to_string(),
+    };
     let mut stdout = std::io::stdout().lock();
-    writeln!(stdout, "{}", port.display())
+    writeln!(stdout, "{line}")
         .and_then(|()| stdout.flush())
         .map_err(|error| {
             Failure::new(

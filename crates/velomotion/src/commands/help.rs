@@ -9,6 +9,7 @@ use engine::failure::{Failure, Kind};
 
 use super::CommandOutput;
 use crate::cli::{self, Cli};
+use crate::documents::HelpText;
 
 /// Two examples of each command, and the page of the book about it.
 const EXAMPLES: [(&str, [&str; 2], &str); 12] = [
@@ -182,8 +183,11 @@ pub fn run(arguments: &cli::Help) -> Result<CommandOutput, Failure> {
         let message = format!("{topic} is neither a command nor a page of the book");
         Failure::new(Kind::Usage, message).help("velomotion help lists both")
     })?;
-    let object = serde_json::json!({ "topic": topic, "text": text });
-    Ok(CommandOutput::result(&object, text))
+    let page = HelpText {
+        topic,
+        text: text.clone(),
+    };
+    Ok(CommandOutput::result(&page, text))
 }
 
 /// Explains a command, with the page of its name if there is one, or a page; without words lists

@@ -18,8 +18,8 @@ pub fn run(arguments: &cli::Info) -> Result<CommandOutput, Failure> {
         model: arguments.model.map(cli::ModelName::model),
         ..Options::default()
     };
-    let (contents, truncated) = read_contents(&source, options)?;
-    let failure = truncated.map(|truncated| {
+    let report = read_contents(&source, options)?;
+    let failure = report.contents.truncated.as_ref().map(|truncated| {
         Failure::new(
             Kind::Incomplete,
             format!("{} is incomplete: {truncated}", source.path().display()),
@@ -28,6 +28,6 @@ pub fn run(arguments: &cli::Info) -> Result<CommandOutput, Failure> {
     });
     Ok(CommandOutput {
         failure,
-        ..CommandOutput::result(&contents, tables::contents_table(&contents))
+        ..CommandOutput::result(&report, tables::info_table(&report))
     })
 }

@@ -14,6 +14,7 @@ pub mod simulate;
 pub mod tilt;
 pub mod tradeoff;
 
+use engine::document::Document;
 use engine::failure::Failure;
 use engine::reconstruct::report::ScanReport;
 
@@ -34,16 +35,16 @@ pub struct CommandOutput {
 
 impl CommandOutput {
     /// Report of an action.
-    fn report(report: &impl serde::Serialize, text: String) -> Self {
+    fn report(report: &impl Document, text: String) -> Self {
         Self {
-            json: json(report),
+            json: report.to_json(),
             text,
             ..Self::default()
         }
     }
 
     /// Report that is the result of the command.
-    fn result(report: &impl serde::Serialize, text: String) -> Self {
+    fn result(report: &impl Document, text: String) -> Self {
         Self {
             is_result: true,
             ..Self::report(report, text)
@@ -58,10 +59,4 @@ impl CommandOutput {
             ..Self::report(scan, crate::tables::scan_table(scan))
         }
     }
-}
-
-/// The report as JSON. Reports hold numbers and strings only, so that serialisation cannot fail.
-fn json(report: &impl serde::Serialize) -> serde_json::Value {
-    serde_json::to_value(report)
-        .unwrap_or_else(|error| serde_json::json!({ "error": error.to_string() }))
 }

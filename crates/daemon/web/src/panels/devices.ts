@@ -88,7 +88,7 @@ function problems(status: Status): void {
   const found: { device: string; state: string; problem: Problem }[] = [];
   for (const [device, of] of [["Drive", status.drive], ["Lidar", status.lidar]] as const) {
     if (of.problem) found.push({ device, state: of.state, problem: of.problem });
-    else if (of.state !== "connected") found.push({ device, state: of.state, problem: { error: of.state === "absent" ? "not connected" : "in fault" } });
+    else if (of.state !== "connected") found.push({ device, state: of.state, problem: { message: of.state === "absent" ? "not connected" : "in fault" } });
   }
   const now = JSON.stringify([found, status.activity.doing === "connecting"]);
   if (now === shown) return;
@@ -96,12 +96,12 @@ function problems(status: Status): void {
   const list = id("problems");
   list.replaceChildren(...found.map(({ device, state, problem }) => h("section", { class: "problem", "aria-label": `Problem: ${device}`, "data-device": device.toLowerCase(), "data-state": state },
     h("h2", {}, `${device} ${STATES[state] ?? state}`),
-    h("p", {}, sentence(problem.error)),
+    h("p", {}, sentence(problem.message)),
     problem.help ? h("p", { class: "todo" }, `What to do: ${problem.help}`) : null,
     device === "Drive" && state === "fault" ? h("div", { class: "row" }, h("button", { type: "button", id: "clear", click: () => void command("Clear", () => api.clear(), id("clear-error")) }, "Clear the fault")) : null,
     h("p", { class: "wrong", id: device === "Drive" ? "clear-error" : "", hidden: true }),
   )));
-  if (found.length > 0) alarm(found.map(({ device, state, problem }) => `${device} ${STATES[state] ?? state}: ${sentence(problem.error)} ${problem.help ?? ""}`).join(" "));
+  if (found.length > 0) alarm(found.map(({ device, state, problem }) => `${device} ${STATES[state] ?? state}: ${sentence(problem.message)} ${problem.help ?? ""}`).join(" "));
 }
 
 const head = id("gauge-head");

@@ -11,8 +11,8 @@ use analysis::figures::{self, AnalyzedScan, AnalyzedScans, InView, Planes, csv};
 use super::input::Input;
 use super::report::{AnalyzeReport, PatternReport};
 use crate::cli;
-use crate::commands::json;
 use crate::terminal::Progress;
+use engine::document::Document;
 use engine::failure::{Failure, Kind};
 use engine::output::{make_folder, write_text};
 
@@ -78,7 +78,7 @@ impl Folder {
     /// [`Kind::BadInput`] if the system refuses.
     pub fn write(&self, report: &AnalyzeReport, progress: &Progress) -> Result<(), Failure> {
         let scans = &self.scans;
-        let json = json(report);
+        let json = report.to_json();
         let files = [
             ("density.svg", figures::density(scans)),
             ("histogram.svg", figures::histogram(scans)),

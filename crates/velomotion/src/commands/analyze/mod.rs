@@ -4,8 +4,8 @@
 
 mod folder;
 mod input;
-mod report;
-mod sweep;
+pub(crate) mod report;
+pub(crate) mod sweep;
 mod text;
 mod view;
 

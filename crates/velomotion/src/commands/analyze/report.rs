@@ -4,18 +4,19 @@ use analysis::density::{BinCounts, EmptyBand, HistogramClass, HoleRow, Statistic
 use analysis::device::VisibleRange;
 use analysis::k::KCurve;
 use serde::Serialize;
+use utoipa::ToSchema;
 
 use super::view::Seen;
 
 /// Report on all inputs.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct AnalyzeReport {
     /// One entry per pattern, cloud or log, in the order of the arguments.
     pub patterns: Vec<PatternReport>,
 }
 
 /// Report on one pattern, cloud or log.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct PatternReport {
     /// Name in the arguments.
     pub name: String,
@@ -54,7 +55,7 @@ pub struct PatternReport {
 }
 
 /// Points per bin.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Density {
     /// Statistics.
     #[serde(flatten)]
@@ -69,7 +70,7 @@ pub struct Density {
 }
 
 /// The largest circle without a point.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct HoleReport {
     /// Radius, degrees.
     pub radius_deg: f64,
@@ -85,7 +86,7 @@ pub struct HoleReport {
 /// 0 they repel. `k_minus_csr` is K - K_csr on a sphere of `radius_m`, square metres. `d` is K -
 /// K_csr over the area of the sphere: the excess share of all pairs within an angle. Null for a
 /// single point.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct KReport {
     /// Method: exact, turned (exact too) or sampled.
     pub method: &'static str,
@@ -118,7 +119,7 @@ pub struct KReport {
 }
 
 /// Distance to the nearest point, from the centres of bins.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct GapReport {
     /// Bins used: those in `view`, or `all`.
     pub of: &'static str,
@@ -130,7 +131,7 @@ pub struct GapReport {
 
 /// Holes in view that are larger than the 99 % gap, and bands about the tilt axis without points.
 /// Without a known view holes cannot be told from directions out of view: all values are null.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Blind {
     /// Smallest radius of the counted holes, degrees.
     pub least_radius_deg: Option<f64>,
@@ -147,7 +148,7 @@ pub struct Blind {
 }
 
 /// Geometry of the sensor on its mount.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct DeviceReport {
     /// Ranges and fields of view.
     #[serde(flatten)]

@@ -14,6 +14,7 @@ use analysis::tradeoff::front::front;
 use glam::DVec3;
 use serde::Serialize;
 use sim::patterns::{Pattern, PatternRequest};
+use utoipa::ToSchema;
 
 use super::input::pattern_failure;
 use super::text::{aligned, number};
@@ -23,7 +24,7 @@ use crate::terminal::Progress;
 use engine::failure::{Failure, Kind};
 
 /// Report on all settings.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct SettingsReport {
     /// Pattern as named by the user.
     pub pattern: String,
@@ -34,7 +35,7 @@ pub struct SettingsReport {
 }
 
 /// Report on one setting.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct SweepSetting {
     /// Values of the parameters.
     pub values: Vec<f64>,

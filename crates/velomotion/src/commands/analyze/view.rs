@@ -10,11 +10,12 @@ use protocol::vlp16::Laser;
 use protocol::vlp16::models::ALL;
 use serde::Serialize;
 use sim::patterns::{FieldOfView, Pattern, SPHERE_M};
+use utoipa::ToSchema;
 
 use engine::reconstruct::report::ScanReport;
 
 /// A field of view and its parameters.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Seen {
     /// The directions.
     #[serde(skip)]

@@ -18,6 +18,7 @@ use engine::failure::{Failure, Kind};
 use io::discover::discover;
 use serde::Serialize;
 use units::DegPerS2;
+use utoipa::ToSchema;
 
 use super::super::CommandOutput;
 use super::super::guard_axis::environment;
@@ -35,10 +36,15 @@ const START_LIMIT: Duration = Duration::from_secs(90);
 const MOVING: Duration = Duration::from_millis(500);
 
 /// Result of the command.
-#[derive(Serialize)]
-struct BringUpReport {
+/// Report of `doctor --bring-up`.
+#[derive(Serialize, ToSchema)]
+pub struct BringUpReport {
+    /// The file that the steps were appended to.
+    #[schema(value_type = String)]
     report: PathBuf,
+    /// The steps.
     steps: Vec<BringUpStepReport>,
+    /// Values to be corrected.
     problems: usize,
     /// What nobody has checked yet, skipped steps included.
     unchecked: usize,

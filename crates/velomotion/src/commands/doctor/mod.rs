@@ -1,6 +1,6 @@
 //! `velomotion doctor`: checks the scanner setup of this machine and suggests fixes.
 
-mod bring_up;
+pub(crate) mod bring_up;
 mod devices;
 
 use std::fs;
@@ -9,6 +9,7 @@ use std::path::Path;
 use io::can::CanInterface;
 use io::discover::{ConnectedDevices, Epos2Found, discover};
 use serde::Serialize;
+use utoipa::ToSchema;
 
 use super::CommandOutput;
 use crate::cli::{Common, Doctor};
@@ -17,7 +18,7 @@ use engine::devices::profile;
 use engine::failure::{Failure, Kind};
 
 /// Result of one check.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
 struct Finding {
     /// Item checked.
     what: String,
@@ -30,7 +31,7 @@ struct Finding {
     todo: Option<String>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 enum Verdict {
     Ok,
@@ -38,8 +39,9 @@ enum Verdict {
     Problem,
 }
 
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-struct Findings {
+/// Report of `doctor`.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
+pub struct DoctorReport {
     findings: Vec<Finding>,
 }
 
@@ -73,7 +75,7 @@ pub fn run(arguments: &Doctor, common: &Common) -> Result<CommandOutput, Failure
     if is_valid {
         findings.extend(devices::check(&config, chosen));
     }
-    let report = Findings { findings };
+    let report = DoctorReport { findings };
     let text = text(&report);
     let is_problem = |finding: &&Finding| finding.verdict == Verdict::Problem;
     let failure = match report.findings.iter().filter(is_problem).count() {
@@ -260,7 +262,7 @@ fn receive_buffer(read: Sysfs<'_>) -> Finding {
     }
 }
 
-fn text(report: &Findings) -> String {
+fn text(report: &DoctorReport) -> String {
     let mut lines = Vec::new();
     for finding in &report.findings {
         let mark = match finding.verdict {

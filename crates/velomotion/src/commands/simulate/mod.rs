@@ -21,18 +21,20 @@ use sim::effects::{Effects, FiringEffectSet, Stopwatch};
 use sim::scene_file::{EffectLine, SHIPPED, SceneFile};
 use sim::simulate::SimulateError;
 use units::Metres;
+use utoipa::ToSchema;
 
 use super::CommandOutput;
 use crate::cli::{self, Common};
 use crate::signals;
 use crate::terminal::Progress;
+use engine::document::Document;
 use engine::failure::{Failure, Kind};
 use engine::output::{self, Target};
 use log::{Log, scan_config};
 
 /// Report on a simulation.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Report {
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+pub struct SimulationReport {
     /// Scene as named by the user.
     pub scene: String,
     /// Random seed.
@@ -133,7 +135,7 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, 
     };
     let (report, failure) = make(scene, request)?;
     Ok(CommandOutput {
-        json: super::json(&report),
+        json: report.to_json(),
         text: report.text(),
         failure,
         stdout_taken,
@@ -211,7 +213,7 @@ fn stem(name: &str) -> &str {
 pub fn make(
     mut scene: SceneFile,
     request: Request<'_>,
-) -> Result<(Report, Option<Failure>), Failure> {
+) -> Result<(SimulationReport, Option<Failure>), Failure> {
     let Request {
         name,
         log: path,
@@ -286,7 +288,7 @@ pub fn make(
     // Of a run that was cut short only the simulated part counts.
     let duration_s = after.unwrap_or(summary.duration).as_secs_f64();
     let took_s = took.as_secs_f64();
-    let report = Report {
+    let report = SimulationReport {
         scene: name,
         seed: scene.seed,
         effects: scene.effects.lines,
@@ -308,7 +310,7 @@ pub fn make(
     Ok((report, failure))
 }
 
-impl Report {
+impl SimulationReport {
     /// Text of the report.
     #[must_use]
     pub fn text(&self) -> String {

@@ -8,12 +8,14 @@ mod trajectory;
 use std::path::{Path, PathBuf};
 
 use analysis::tradeoff::{
-    self, Bench, Book, Effort, K_FUNCTION, Machine, SCAN_SPEED, Study, StudyReport, html, svg, text,
+    self, Bench, Book, Effort, K_FUNCTION, Machine, SCAN_SPEED, Study, StudyReport, TradeoffReport,
+    html, svg, text,
 };
 
 use super::CommandOutput;
 use crate::cli::{self, Common};
 use crate::terminal::Progress;
+use engine::document::Document;
 use engine::failure::{Failure, Kind};
 use engine::output::{check_free, make_folder, write_text};
 
@@ -63,7 +65,7 @@ pub fn run(arguments: &cli::Tradeoff, common: &Common) -> Result<CommandOutput, 
         progress.say(&format!("wrote {}", path.display()));
     }
     Ok(CommandOutput::result(
-        &tradeoff::json(&report),
+        &TradeoffReport::new(&report),
         text::report(&report),
     ))
 }
@@ -95,7 +97,7 @@ fn files(arguments: &cli::Tradeoff, report: &StudyReport) -> Vec<(PathBuf, Strin
     let mut files = Vec::new();
     if let Some(folder) = &arguments.report {
         files.push((folder.join("index.html"), html::page(report)));
-        let json = tradeoff::json(report);
+        let json = TradeoffReport::new(report).to_json();
         files.push((folder.join("tradeoff.json"), format!("{json:#}\n")));
         files.extend(report.studies.iter().map(|study| {
             let path = folder.join(format!("{}.svg", study.study.name));

@@ -1,0 +1,271 @@
+//! The API in OpenAPI 3.1, described by the functions that answer it.
+
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+use axum::http::header;
+use axum::response::{IntoResponse, Response};
+use cloud::formats::Format;
+use engine::document::ErrorReport;
+use engine::service::events::Event;
+use utoipa::openapi::path::PathItem;
+use utoipa::openapi::response::{Response as Answer, ResponseBuilder};
+use utoipa::openapi::schema::{ObjectBuilder, Type};
+use utoipa::openapi::security::{
+    ApiKey, ApiKeyValue, HttpAuthScheme, HttpBuilder, SecurityRequirement, SecurityScheme,
+};
+use utoipa::openapi::{ContentBuilder, OpenApi, Ref, RefOr, Schema};
+use utoipa::{IntoResponses, Modify, OpenApi as _, ToResponse};
+
+use super::{captures, download, events, metrics, page, scans, tilt};
+
+/// Refusals, each with the meaning of its status.
+macro_rules! refusals {
+    ($($name:ident: $meaning:literal;)*) => {
+        $(
+            #[doc = $meaning]
+            pub struct $name;
+
+            impl<'r> ToResponse<'r> for $name {
+                fn response() -> (&'r str, RefOr<Answer>) {
+                    (stringify!($name), refusal($meaning).into())
+                }
+            }
+        )*
+    };
+}
+
+refusals! {
+    Usage: "Invalid request";
+    Denied: "Missing or wrong token, or a request of another site's page";
+    NotFound: "Not found";
+    NotNow: "Not possible now: busy, a device is absent or in fault, or the disk is nearly full";
+    Limit: "Too large, too many, or too slow";
+}
+
+fn refusal(meaning: &str) -> Answer {
+    let body = RefOr::<Schema>::Ref(Ref::from_schema_name("ErrorReport"));
+    ResponseBuilder::new()
+        .description(meaning)
+        .content(
+            "application/json",
+            ContentBuilder::new().schema(Some(body)).build(),
+        )
+        .build()
+}
+
+/// Responses of a request for a file that is stored.
+pub struct StoredFile;
+
+impl IntoResponses for StoredFile {
+    fn responses() -> BTreeMap<String, RefOr<Answer>> {
+        let plain = |meaning: &str| RefOr::T(Answer::new(meaning));
+        let named = |name: &str| RefOr::Ref(Ref::from_response_name(name));
+        let file = ResponseBuilder::new().description("The file").content(
+            "application/octet-stream",
+            ContentBuilder::new().schema(None::<Schema>).build(),
+        );
+        let all = [
+            ("200", file.build().into()),
+            ("206", plain("The requested part")),
+            ("304", plain("Not modified")),
+            ("404", named("NotFound")),
+            ("416", named("Usage")),
+            ("429", named("Limit")),
+        ];
+        all.map(|(status, answer)| (status.to_owned(), answer))
+            .into()
+    }
+}
+
+/// Extensions of the formats of clouds.
+pub fn formats() -> Schema {
+    let names = Format::ALL.iter().map(|format| format.extension());
+    ObjectBuilder::new()
+        .schema_type(Type::String)
+        .enum_values(Some(names))
+        .build()
+        .into()
+}
+
+#[derive(utoipa::OpenApi)]
+#[openapi(
+    info(
+        title = "velomotion daemon",
+        version = "1",
+        description = "A lidar on a tilting platform: captures, scans, motions of the axis. Objects may get new keys. No content of a request causes a 5xx status except 507."
+    ),
+    paths(
+        super::status,
+        super::health,
+        page::page,
+        page::signed_in,
+        page::login,
+        page::logout,
+        description,
+        metrics::metrics,
+        captures::plan,
+        captures::begin,
+        captures::stop,
+        tilt::status,
+        tilt::home,
+        tilt::goto,
+        tilt::stop,
+        tilt::clear,
+        scans::list,
+        scans::one,
+        scans::delete,
+        download::cloud,
+        download::log,
+        download::thumbnail,
+        events::events,
+    ),
+    components(schemas(ErrorReport, Event), responses(Usage, Denied, NotFound, NotNow, Limit)),
+    modifiers(&SharedParts)
+)]
+struct Description;
+
+/// What holds for all requests: their refusals, and how a client identifies itself.
+struct SharedParts;
+
+/// Responses of every request.
+const EVERY: [(&str, &str); 4] = [
+    ("403", "Denied"),
+    ("408", "Limit"),
+    ("413", "Limit"),
+    ("414", "Limit"),
+];
+/// Responses of every request that needs a token.
+const GUARDED: [(&str, &str); 2] = [("400", "Usage"), ("401", "Denied")];
+
+impl Modify for SharedParts {
+    fn modify(&self, api: &mut OpenApi) {
+        for (path, item) in &mut api.paths.paths {
+            let guarded = GUARDED.iter().filter(|_| !page::is_open(path));
+            let responses: Vec<_> = EVERY.iter().chain(guarded).collect();
+            let PathItem {
+                get, post, delete, ..
+            } = item;
+            for operation in [get, post, delete].into_iter().flatten() {
+                for (status, name) in &responses {
+                    let answer = RefOr::Ref(Ref::from_response_name(*name));
+                    let known = &mut operation.responses.responses;
+                    known.entry((*status).to_owned()).or_insert(answer);
+                }
+            }
+        }
+        let components = api.components.get_or_insert_default();
+        let bearer = HttpBuilder::new().scheme(HttpAuthScheme::Bearer).build();
+        components.add_security_scheme("token", SecurityScheme::Http(bearer));
+        let cookie = ApiKey::Cookie(ApiKeyValue::new("velomotion"));
+        components.add_security_scheme("cookie", SecurityScheme::ApiKey(cookie));
+        let none = SecurityRequirement::default();
+        let named = |name: &str| SecurityRequirement::new::<_, [&str; 0], &str>(name, []);
+        api.security = Some(vec![none, named("token"), named("cookie")]);
+    }
+}
+
+static JSON: LazyLock<String> =
+    LazyLock::new(|| Description::openapi().to_json().unwrap_or_default());
+
+/// This description.
+#[utoipa::path(get, path = "/api/v1/openapi.json", tag = "daemon", responses(
+    (status = 200, description = "OpenAPI 3.1", body = Object),
+))]
+pub async fn description() -> Response {
+    ([(header::CONTENT_TYPE, "application/json")], JSON.as_str()).into_response()
+}
+
+#[cfg(test)]
+mod tests {
+    use axum::routing::MethodRouter;
+
+    use super::super::{daemon_routes, device_routes};
+    use super::*;
+    use std::collections::BTreeSet;
+
+    /// Methods of a route, from the debug form of its router.
+    fn methods<S>(router: &MethodRouter<S>) -> BTreeSet<String> {
+        let shown = format!("{router:?}");
+        ["get", "post", "put", "delete", "patch"]
+            .into_iter()
+            .filter(|method| !shown.contains(&format!(" {method}: None")))
+            .map(str::to_owned)
+            .collect()
+    }
+
+    #[test]
+    fn the_description_lists_exactly_the_routes() {
+        let described: serde_json::Value = serde_json::from_str(&JSON).unwrap();
+        let paths = described["paths"].as_object().unwrap();
+        let devices = device_routes();
+        let devices = devices
+            .iter()
+            .map(|(path, router)| (*path, methods(router)));
+        let daemon = daemon_routes();
+        let daemon = daemon.iter().map(|(path, router)| (*path, methods(router)));
+        let ours: std::collections::BTreeMap<&str, _> = devices.chain(daemon).collect();
+        let theirs: BTreeSet<&str> = paths.keys().map(String::as_str).collect();
+        let mut all: BTreeSet<&str> = ours.keys().copied().collect();
+        all.extend(["/", "/login", "/logout"]);
+        assert_eq!(all, theirs);
+        for (path, methods) in ours {
+            let described = paths[path].as_object().unwrap().keys();
+            let described: BTreeSet<String> = described
+                .filter(|key| *key != "parameters")
+                .cloned()
+                .collect();
+            assert_eq!(methods, described, "{path}");
+        }
+    }
+
+    #[test]
+    fn the_description_lists_every_format() {
+        let described: serde_json::Value = serde_json::from_str(&JSON).unwrap();
+        let parameters = &described["paths"]["/api/v1/scans/{id}/cloud"]["get"]["parameters"];
+        let format = parameters
+            .as_array()
+            .unwrap()
+            .iter()
+            .find(|p| p["name"] == "format");
+        let listed = format.unwrap()["schema"]["enum"].as_array().unwrap();
+        let ours: Vec<&str> = cloud::formats::Format::ALL
+            .iter()
+            .map(|f| f.extension())
+            .collect();
+        assert_eq!(
+            listed
+                .iter()
+                .map(|name| name.as_str().unwrap())
+                .collect::<Vec<_>>(),
+            ours
+        );
+    }
+
+    #[test]
+    fn every_reference_in_the_description_resolves() {
+        let described: serde_json::Value = serde_json::from_str(&JSON).unwrap();
+        let mut references = Vec::new();
+        collect(&described, &mut references);
+        assert!(references.len() > 20);
+        for reference in references {
+            let pointer = reference.trim_start_matches('#');
+            assert!(described.pointer(pointer).is_some(), "{reference}");
+        }
+    }
+
+    fn collect(value: &serde_json::Value, into: &mut Vec<String>) {
+        match value {
+            serde_json::Value::Object(object) => {
+                for (key, value) in object {
+                    match value.as_str() {
+                        Some(text) if key == "$ref" => into.push(text.to_owned()),
+                        _ => collect(value, into),
+                    }
+                }
+            }
+            serde_json::Value::Array(array) => array.iter().for_each(|v| collect(v, into)),
+            _ => {}
+        }
+    }
+}

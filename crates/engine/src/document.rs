@@ -1,0 +1,118 @@
+//! The JSON objects that commands print, and their schemas (docs/src/schema).
+
+use analysis::tradeoff::TradeoffReport;
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+use utoipa::ToSchema;
+use utoipa::openapi::{RefOr, Schema};
+
+use crate::failure::Failure;
+use crate::reconstruct::lidar_copy::LidarCopyReport;
+use crate::reconstruct::report::{InfoReport, ScanReport};
+use crate::service::axis_report::{AxisReport, StoppedCommand};
+
+/// An object that a command prints with `--json`.
+pub trait Document: Serialize + ToSchema {
+    /// Name and version of the schema: the value of the key `schema`. A key that goes or changes
+    /// its meaning makes a new version; new keys do not.
+    const SCHEMA: &'static str;
+
+    /// The object, with its schema's name.
+    #[must_use]
+    fn to_json(&self) -> Value {
+        match serde_json::to_value(self) {
+            Ok(Value::Object(mut object)) => {
+                object.insert("schema".to_owned(), Self::SCHEMA.into());
+                Value::Object(object)
+            }
+            // Documents are structs of numbers and strings, which cannot fail.
+            Ok(other) => other,
+            Err(error) => json!({ "schema": Self::SCHEMA, "error": error.to_string() }),
+        }
+    }
+}
+
+impl Document for ScanReport {
+    const SCHEMA: &'static str = "scan-1";
+}
+
+impl Document for InfoReport {
+    const SCHEMA: &'static str = "info-1";
+}
+
+impl Document for LidarCopyReport {
+    const SCHEMA: &'static str = "pcap-1";
+}
+
+impl Document for AxisReport {
+    const SCHEMA: &'static str = "axis-1";
+}
+
+impl Document for StoppedCommand {
+    const SCHEMA: &'static str = "stopped-1";
+}
+
+impl Document for TradeoffReport {
+    const SCHEMA: &'static str = "tradeoff-1";
+}
+
+/// The object of a command or request that failed without a result.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct ErrorReport {
+    /// The failure.
+    pub error: Failure,
+}
+
+impl Document for ErrorReport {
+    const SCHEMA: &'static str = "error-1";
+}
+
+/// The schema of a document, in JSON Schema 2020-12. A command that fails with a result adds
+/// `error` to it. Objects may have keys that the schema does not list.
+#[must_use]
+pub fn schema<T: Document>() -> Value {
+    let mut parts: Vec<(String, RefOr<Schema>)> = Vec::new();
+    T::schemas(&mut parts);
+    parts.push((T::name().into_owned(), T::schema()));
+    parts.push((
+        Failure::name().into_owned(),
+        <Failure as utoipa::PartialSchema>::schema(),
+    ));
+    <Failure as ToSchema>::schemas(&mut parts);
+    let definitions: Map<String, Value> = parts
+        .into_iter()
+        .filter_map(|(name, part)| Some((name, serde_json::to_value(part).ok()?)))
+        .collect();
+    let mut schema = json!({
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": T::SCHEMA,
+        "type": "object",
+        "allOf": [{ "$ref": format!("#/components/schemas/{}", T::name()) }],
+        "properties": {
+            "schema": { "const": T::SCHEMA },
+            "error": { "$ref": "#/components/schemas/Failure" },
+        },
+        "required": ["schema"],
+        "$defs": definitions,
+    });
+    refer_to_definitions(&mut schema);
+    schema
+}
+
+/// Rewrites the references of OpenAPI.
+fn refer_to_definitions(value: &mut Value) {
+    match value {
+        Value::Object(object) => {
+            for (key, value) in object {
+                match value {
+                    Value::String(text) if key == "$ref" => {
+                        *text = text.replace("#/components/schemas/", "#/$defs/");
+                    }
+                    value => refer_to_definitions(value),
+                }
+            }
+        }
+        Value::Array(array) => array.iter_mut().for_each(refer_to_definitions),
+        _ => {}
+    }
+}

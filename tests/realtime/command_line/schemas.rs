@@ -1,0 +1,71 @@
+//! What commands print with `--json` follows the schemas in docs/src/schema.
+
+use std::collections::BTreeSet;
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use super::{Place, json, recording};
+
+#[test]
+#[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
+fn what_commands_print_follows_the_schemas() {
+    let place = Place::new();
+    let gps = recording("vlp16-strongest-gps.pcap");
+    let gps = gps.display();
+    let lines = [
+        "capture --speed 90 --from 0 --to -2 -o scan.ply --json".to_owned(),
+        "replay scan.pcapng --tolerance 200mm@20m -o again.ply --json".to_owned(),
+        "replay scan.pcapng -o lidar.pcap --json".to_owned(),
+        format!("replay {gps} --tilt none --frames 0 -o frames.ply --json"),
+        "info scan.pcapng --json".to_owned(),
+        format!("info {gps} --json"),
+        "simulate hall --explain --truth truth.ply --json".to_owned(),
+        "analyze velomotion16:56.25 again.ply scan.pcapng --json".to_owned(),
+        "analyze velomotion16 --sweep speed=50..90/3 --json".to_owned(),
+        "tradeoff --quick --only scan-speed --json".to_owned(),
+        "tilt status --json".to_owned(),
+        "doctor --json".to_owned(),
+        "help formats --json".to_owned(),
+        "info absent.pcap --json".to_owned(),
+        "replay --json".to_owned(),
+    ];
+    let mut input = String::new();
+    for line in &lines {
+        let object = json(&place.run(line));
+        let fails = line.contains("absent") || line == "replay --json";
+        assert_eq!(object["schema"] == "error-1", fails, "{line}: {object}");
+        input.push_str(&format!("{object}\n"));
+    }
+    let python = std::env::var_os("VELOMOTION_PYTHON").unwrap_or_else(|| "python3".into());
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let mut validator = Command::new(python)
+        .arg(root.join("tests/foreign/json_schema.py"))
+        .arg(root.join("docs/src/schema"))
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut stdin = validator.stdin.take().unwrap();
+    stdin.write_all(input.as_bytes()).unwrap();
+    drop(stdin);
+    let output = validator.wait_with_output().unwrap();
+    assert!(output.status.success());
+    let printed = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(printed.lines().count(), lines.len());
+    let schemas: BTreeSet<&str> = printed.lines().collect();
+    let expected = [
+        "analyze-1",
+        "analyze-sweep-1",
+        "axis-1",
+        "doctor-1",
+        "error-1",
+        "help-1",
+        "info-1",
+        "pcap-1",
+        "scan-1",
+        "simulate-1",
+        "tradeoff-1",
+    ];
+    assert_eq!(schemas, expected.into());
+}
