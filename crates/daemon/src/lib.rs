@@ -31,6 +31,7 @@ use engine::failure::{Failure, Kind};
 use engine::service::{DeviceService, DeviceThread, Environment, Lifetime, ServiceOptions};
 use engine::spawn;
 use http::server::{self, Server, UnixSocket};
+use http::tls;
 use limits::Waits;
 use scans::Scans;
 use state::{DaemonState, FreeBytes};
@@ -95,10 +96,11 @@ impl Daemon {
     pub fn start(options: Options) -> Result<Self, Failure> {
         let mut config = options.config;
         let credentials = std::env::var_os("CREDENTIALS_DIRECTORY").map(PathBuf::from);
-        config.daemon.load_token(credentials.as_deref())?;
+        config.daemon.load_credentials(credentials.as_deref())?;
         let listen = options.listen.unwrap_or(config.daemon.listen);
         config.daemon.check(listen)?;
         ros2_bridge::check(config.daemon.ros2.as_ref())?;
+        let tls = tls::acceptor(&config.daemon)?;
         let (name, device) = profile::choose(&config, options.device.as_deref())?;
         let runtime = options.runtime.unwrap_or_else(sockets::folder);
         let socket = runtime.join(sockets::name(&name, &device)?);
@@ -134,7 +136,7 @@ impl Daemon {
         let health_monitor = spawn("health", "health", move || {
             health_monitor::run(&monitored, &end);
         })?;
-        let server = http::serve(&state, (tcp, address), unix, options.waits)?;
+        let server = http::serve(&state, (tcp, address), tls, unix, options.waits)?;
         Ok(Self {
             state,
             server,

@@ -11,4 +11,4 @@ mod lanes;
 mod spans;
 mod trajectory_cursor;
 
-pub(crate) use firing_blocks::{FiringBlockPlacer, MAX_PACKET_POINTS};
+pub(crate) use firing_blocks::{FiringBlockPlacer, MAX_PACKET_POINTS, returns};

@@ -20,7 +20,7 @@ use crate::angles::{SlowPollFilter, sample};
 use crate::clock::{DeviceClock, Moment, OnlineClock};
 use crate::config::{ScanConfig, SweepPlan};
 use crate::error::ScanError;
-use crate::fast::{FiringBlockPlacer, MAX_PACKET_POINTS};
+use crate::fast::{FiringBlockPlacer, MAX_PACKET_POINTS, returns};
 use crate::survey::RecordReader;
 use crate::sweeps::{MoveWatch, SweepWatch};
 use crate::trajectory::{Method, StreamingFit, Trajectory};
@@ -142,6 +142,12 @@ impl<'a> Live<'a> {
                 .finish_firing_blocks(&mut |block| placer.place(block, batch, counts));
             self.sink.points(&self.batch)?;
         }
+        while let Some(packet) = self.waiting.pop_front() {
+            self.omit(&packet);
+        }
+        let counts = &mut self.counts;
+        self.decoder
+            .finish_firing_blocks(&mut |block| counts.outside += returns(block));
         Ok((self.counts, self.decoder.stats().clone()))
     }
 
@@ -151,8 +157,10 @@ impl<'a> Live<'a> {
             self.clock.observe(arrival);
             Some((arrival.device, self.clock.moment(arrival.device)?.host))
         });
-        if self.waiting.len() >= MAX_WAITING {
-            self.waiting.pop_front();
+        if self.waiting.len() >= MAX_WAITING
+            && let Some(packet) = self.waiting.pop_front()
+        {
+            self.omit(&packet);
         }
         self.waiting.push_back(WaitingPacket {
             received,
@@ -205,6 +213,15 @@ impl<'a> Live<'a> {
         Ok(())
     }
 
+    /// Decodes a packet, and counts its returns as left out.
+    fn omit(&mut self, packet: &WaitingPacket) {
+        let counts = &mut self.counts;
+        self.decoder
+            .firing_blocks(packet.received, &packet.payload, &mut |block| {
+                counts.outside += returns(block);
+            });
+    }
+
     /// Decodes a packet, and places what the decoder emits: the packet before it.
     fn decode(&mut self, packet: &WaitingPacket) {
         let (batch, counts) = (&mut self.batch, &mut self.counts);
@@ -217,9 +234,7 @@ impl<'a> Live<'a> {
         };
         let moment = pending.and_then(|device| Some((device, self.clock.moment(device)?)));
         let (Some(alignment), Some((device, moment))) = (&mut self.alignment, moment) else {
-            self.decoder
-                .firing_blocks(packet.received, &packet.payload, &mut |_| {});
-            return;
+            return self.omit(packet);
         };
         // Through the first firing of the pending packet: within a packet the clock drifts by ns.
         alignment.clock = DeviceClock::through(device, moment);

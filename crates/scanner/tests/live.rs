@@ -135,6 +135,43 @@ fn record((ns, traffic): &(i64, Traffic)) -> Record<'_> {
     }
 }
 
+/// Points that go nowhere.
+struct Ignored;
+
+impl cloud::Sink for Ignored {
+    fn points(&mut self, _: &Points) -> Result<(), cloud::SinkError> {
+        Ok(())
+    }
+}
+
+/// All of 4,200 packets wait for a drive that never answers, which is more than may wait, or none
+/// is answered after the first half of the move.
+#[test]
+fn returns_without_an_angle_are_counted() {
+    let returns = |packets: i64| 384 * packets as u64;
+    let sink = &mut Ignored;
+    let mut live = Live::new(&ScanConfig::default(), Options::default(), sink).unwrap();
+    for n in 0..4_200 {
+        let sent = ((n + 1) * PACKET_NS, Traffic::Lidar(packet(n)));
+        live.observe(&record(&sent)).unwrap();
+    }
+    let (counts, _) = live.finish().unwrap();
+    assert_eq!((counts.points, counts.outside), (0, returns(4_200)));
+    let (log, sink) = (log(), &mut Ignored);
+    let mut live = Live::new(&ScanConfig::default(), Options::default(), sink).unwrap();
+    let middle = MOVE_NS + 450_000_000;
+    let is_kept = |(ns, traffic): &(i64, Traffic)| match traffic {
+        Traffic::Lidar(_) => true,
+        Traffic::Drive(..) => *ns < middle,
+    };
+    for entry in log.iter().filter(|entry| is_kept(entry)) {
+        live.observe(&record(entry)).unwrap();
+    }
+    let (counts, _) = live.finish().unwrap();
+    assert!(counts.points > 100_000, "{counts:?}");
+    assert_eq!(counts.points + counts.outside, returns(PACKETS));
+}
+
 #[test]
 fn live_points_equal_those_of_a_replay() {
     let log = log();

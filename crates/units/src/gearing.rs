@@ -29,6 +29,8 @@ pub struct Gearing {
 pub enum GearingError {
     /// One of the gearing's numbers is zero.
     Zero,
+    /// The quadcounts of a revolution exceed 32 bits.
+    EncoderLines(u32),
     /// The angle is not finite or its quadcounts exceed 32 bits.
     AngleRange(Degrees),
 }
@@ -37,6 +39,9 @@ impl fmt::Display for GearingError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Zero => write!(f, "encoder lines and gear turns must be above zero"),
+            Self::EncoderLines(lines) => {
+                write!(f, "{lines} encoder lines: expected at most 1073741823")
+            }
             Self::AngleRange(angle) => {
                 write!(
                     f,
@@ -55,14 +60,18 @@ impl Gearing {
     /// revolution.
     ///
     /// # Errors
-    /// [`GearingError::Zero`] if any of the three is zero or the encoder has more than 2^30 lines.
+    /// [`GearingError::Zero`] if any of the three is zero, [`GearingError::EncoderLines`] from 2^30
+    /// lines on.
     pub const fn new(
         encoder_lines: u32,
         motor_turns: u32,
         axis_turns: u32,
     ) -> Result<Self, GearingError> {
-        if encoder_lines == 0 || encoder_lines > 1 << 30 || motor_turns == 0 || axis_turns == 0 {
+        if encoder_lines == 0 || motor_turns == 0 || axis_turns == 0 {
             return Err(GearingError::Zero);
+        }
+        if encoder_lines >= 1 << 30 {
+            return Err(GearingError::EncoderLines(encoder_lines));
         }
         Ok(Self {
             qc_per_turn: 4 * encoder_lines,
@@ -184,6 +193,10 @@ mod tests {
         assert_eq!(Gearing::new(0, 120, 1), Err(GearingError::Zero));
         assert_eq!(Gearing::new(500, 0, 1), Err(GearingError::Zero));
         assert_eq!(Gearing::new(500, 1, 0), Err(GearingError::Zero));
+        let most = (1 << 30) - 1;
+        assert!(Gearing::new(most, 1, 1).is_ok());
+        let refused = Gearing::new(most + 1, 1, 1).unwrap_err();
+        assert_eq!(refused, GearingError::EncoderLines(most + 1));
     }
 
     #[test]

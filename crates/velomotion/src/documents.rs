@@ -37,6 +37,8 @@ documents! {
 pub struct DaemonReport {
     /// Address and port of its page.
     pub address: String,
+    /// Its page.
+    pub url: String,
     /// Folder of the scans.
     pub scans: String,
     /// Whether the devices are software.

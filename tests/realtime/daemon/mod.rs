@@ -14,3 +14,4 @@ mod scans;
 mod service;
 mod silent_drive;
 mod stalled_disk;
+mod tls;

@@ -118,7 +118,7 @@ impl Sessions {
             secrets.pop_front();
         }
         secrets.push_back(secret.clone());
-        // Browsers name the origin, and only that of a configured proxy may have TLS.
+        // Browsers name the origin: that of the daemon with TLS, or of a configured proxy.
         let origin = text(headers, header::ORIGIN).unwrap_or_default();
         let secure = if origin.starts_with("https://") {
             "; Secure"
@@ -240,7 +240,8 @@ fn check(api: &Api, peer: Peer, request: &Request) -> Result<Trust, (Refusal, bo
         || headers.contains_key(header::UPGRADE);
     if changes && let Some(origin) = headers.get(header::ORIGIN) {
         let origin = origin.to_str().unwrap_or_default();
-        if !may_change(origin, host, &api.state.settings().origins) {
+        let page = Origin::of_host(api.secure, host);
+        if !may_change(origin, page.as_ref(), &api.state.settings().origins) {
             return Err((
                 denied(
                     format!("a page of {origin:?} is not allowed to do this"),
@@ -288,12 +289,10 @@ pub fn host_of(extensions: &Extensions) -> Option<IpAddr> {
     extensions.get::<Arc<Connection>>()?.host()
 }
 
-/// Whether a page of this origin may request changes: the daemon's own at `host`, or a `listed`
-/// one.
-fn may_change(origin: &str, host: &str, listed: &[Origin]) -> bool {
-    origin.parse().is_ok_and(|origin: Origin| {
-        Origin::of_host(host).as_ref() == Some(&origin) || listed.contains(&origin)
-    })
+/// Whether a page of this origin may request changes: the daemon's `own`, or a `listed` one.
+fn may_change(origin: &str, own: Option<&Origin>, listed: &[Origin]) -> bool {
+    let parsed: Result<Origin, _> = origin.parse();
+    parsed.is_ok_and(|origin| own == Some(&origin) || listed.contains(&origin))
 }
 
 fn denied(error: String, help: &str) -> Refusal {

@@ -14,6 +14,7 @@ pub mod refusal;
 pub mod scans;
 pub mod server;
 pub mod tilt;
+pub mod tls;
 
 use std::net::{SocketAddr, TcpListener};
 use std::sync::Arc;
@@ -29,6 +30,7 @@ use engine::service::DeviceService;
 use engine::service::status::{DeviceHealth, ServiceStatus};
 use serde::Serialize;
 use tokio::sync::{Semaphore, watch};
+use tokio_rustls::TlsAcceptor;
 use utoipa::ToSchema;
 
 use crate::limits::{CONNECTIONS, DOWNLOADS, LOCAL_CONNECTIONS, MAKING, Waits};
@@ -43,6 +45,8 @@ pub struct Api {
     pub state: Arc<DaemonState>,
     /// Time limits.
     pub waits: Waits,
+    /// Whether TCP has TLS.
+    pub secure: bool,
     /// Browsers that are signed in.
     pub sessions: Sessions,
     /// Permits for making clouds.
@@ -127,6 +131,7 @@ pub(crate) fn command_router(service: &Arc<DeviceService>, waits: Waits) -> Rout
 pub(crate) fn serve(
     state: &Arc<DaemonState>,
     (tcp, address): (TcpListener, SocketAddr),
+    tls: Option<TlsAcceptor>,
     unix: UnixSocket,
     waits: Waits,
 ) -> Result<Server, Failure> {
@@ -134,13 +139,14 @@ pub(crate) fn serve(
     let api = Arc::new(Api {
         state: Arc::clone(state),
         waits,
+        secure: tls.is_some(),
         sessions: Sessions::default(),
         making: Arc::new(Semaphore::new(MAKING)),
         downloads: Arc::new(Semaphore::new(DOWNLOADS)),
         closing: server.closing(),
     });
     let router = daemon_router(&api, Peer::Tcp(address.ip()));
-    server.accept_tcp(tcp, router, CONNECTIONS)?;
+    server.accept_tcp(tcp, tls, router, CONNECTIONS)?;
     server.accept_unix(unix, daemon_router(&api, Peer::Local), LOCAL_CONNECTIONS)?;
     Ok(server)
 }

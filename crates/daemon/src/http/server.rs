@@ -23,6 +23,8 @@ use tokio::io::{AsyncRead, AsyncWrite};
 use tokio::net::{TcpListener, UnixListener};
 use tokio::runtime::{Builder, Runtime};
 use tokio::sync::{mpsc, watch};
+use tokio::time::timeout;
+use tokio_rustls::TlsAcceptor;
 
 use super::connection_limits::{ConnectionLimits, ConnectionSlot, TimedStream};
 use crate::limits::{HEAD_BYTES, HEADERS, Waits};
@@ -135,17 +137,21 @@ impl Server {
         self.closing.subscribe()
     }
 
-    /// Serves a TCP socket with at most this many connections.
+    /// Serves a TCP socket, with TLS if that is given, with at most this many connections.
     pub(crate) fn accept_tcp(
         &mut self,
         listener: StdTcpListener,
+        tls: Option<TlsAcceptor>,
         router: Router,
         connections: usize,
     ) -> Result<(), Failure> {
         let inside = self.runtime.enter();
         let listener = TcpListener::from_std(listener).map_err(no_runtime)?;
         drop(inside);
-        let acceptor = self.acceptor(connections);
+        let acceptor = Acceptor {
+            tls,
+            ..self.acceptor(connections)
+        };
         self.runtime
             .spawn(acceptor.run(router, listener, remote_host));
         Ok(())
@@ -170,6 +176,7 @@ impl Server {
     fn acceptor(&self, connections: usize) -> Acceptor {
         Acceptor {
             limits: ConnectionLimits::new(connections),
+            tls: None,
             open: self.open.clone(),
             closing: self.closing.subscribe(),
             waits: self.waits,
@@ -193,7 +200,7 @@ impl Server {
                 let _ = all_closed.recv().await;
                 upgraded.await;
             };
-            let _ = tokio::time::timeout(CLOSE_WAIT, ended).await;
+            let _ = timeout(CLOSE_WAIT, ended).await;
         });
         runtime.shutdown_timeout(CLOSE_WAIT);
     }
@@ -208,6 +215,7 @@ fn remote_host(address: &SocketAddr) -> Option<IpAddr> {
 /// Accepts the connections of a socket.
 struct Acceptor {
     limits: Arc<ConnectionLimits>,
+    tls: Option<TlsAcceptor>,
     open: mpsc::Sender<Infallible>,
     closing: watch::Receiver<bool>,
     waits: Waits,
@@ -230,10 +238,21 @@ impl Acceptor {
                 continue;
             };
             let (waits, router, closing) = (self.waits, router.clone(), self.closing.clone());
-            let open = self.open.clone();
+            let (open, tls) = (self.open.clone(), self.tls.clone());
             tokio::spawn(async move {
+                let stream = TimedStream::new(stream, Arc::clone(&slot.connection), waits);
+                let served = async {
+                    match tls {
+                        None => serve(stream, &slot, router, waits, closing).await,
+                        // A client without TLS, or with another's certificate, is disconnected.
+                        Some(tls) => match timeout(waits.headers, tls.accept(stream)).await {
+                            Ok(Ok(stream)) => serve(stream, &slot, router, waits, closing).await,
+                            Ok(Err(_)) | Err(_) => {}
+                        },
+                    }
+                };
                 tokio::select! {
-                    () = serve(stream, &slot, router, waits, closing) => {}
+                    () = served => {}
                     () = slot.revoked() => {}
                 }
                 drop(open);
@@ -250,7 +269,6 @@ async fn serve<S: AsyncRead + AsyncWrite + Unpin + Send + 'static>(
     mut closing: watch::Receiver<bool>,
 ) {
     let connection = Arc::clone(&slot.connection);
-    let stream = TimedStream::new(stream, Arc::clone(&connection), waits);
     let router = TowerToHyperService::new(router);
     // The guard records in it what a request proves.
     let answer = service_fn(move |mut request: Request<Incoming>| {

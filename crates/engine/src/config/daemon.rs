@@ -29,6 +29,10 @@ pub struct DaemonConfig {
     pub token: Option<Token>,
     /// File with the token.
     pub token_file: Option<PathBuf>,
+    /// File with the certificate and its chain (PEM): TCP is encrypted.
+    pub certificate: Option<PathBuf>,
+    /// File with the certificate's private key (PEM).
+    pub certificate_key: Option<PathBuf>,
     /// Further origins whose pages may send changes, such as a TLS proxy in front of the daemon.
     pub origins: Vec<Origin>,
     /// Folder of the scans.
@@ -49,6 +53,8 @@ impl Default for DaemonConfig {
             listen: SocketAddr::from((Ipv4Addr::LOCALHOST, PORT)),
             token: None,
             token_file: None,
+            certificate: None,
+            certificate_key: None,
             origins: Vec::new(),
             scans: None,
             keep_scans: 100,
@@ -105,13 +111,13 @@ pub fn equal(secret: &[u8], given: &[u8]) -> bool {
     black_box(different) == 0
 }
 
-/// Warns if other users can read a file that holds the token. Returns whether they can.
-pub fn warn_if_readable(path: &Path) -> bool {
+/// Warns if other users can read a file that holds a secret. Returns whether they can.
+pub fn warn_if_readable(secret: &str, path: &Path) -> bool {
     // Bits of group and others.
     let readable = std::fs::metadata(path).is_ok_and(|there| there.mode() & 0o044 != 0);
     if readable {
         tracing::warn!(
-            "other users can read the token in {}: chmod 600 {0}, or token_file = \"...\" under [daemon]",
+            "other users can read the {secret} in {}: move it to a file of its own, chmod 600",
             path.display()
         );
     }
@@ -120,14 +126,19 @@ pub fn warn_if_readable(path: &Path) -> bool {
 
 impl DaemonConfig {
     /// Reads the token of `token_file`, or of the file `token` in systemd's folder of credentials
-    /// (systemd.exec(5), LoadCredential).
+    /// (systemd.exec(5), LoadCredential), and finds `certificate` and `certificate_key` there.
     ///
     /// # Errors
     /// [`Kind::BadInput`] for an unusable file, [`Kind::Usage`] for two tokens.
-    pub fn load_token(&mut self, credentials: Option<&Path>) -> Result<(), Failure> {
-        let credential = credentials.map(|folder| folder.join("token"));
-        let credential = credential.filter(|path| path.exists());
-        let Some(path) = self.token_file.clone().or(credential) else {
+    pub fn load_credentials(&mut self, credentials: Option<&Path>) -> Result<(), Failure> {
+        let credential = |name| {
+            let path = credentials.map(|folder| folder.join(name));
+            path.filter(|path| path.exists())
+        };
+        self.certificate = self.certificate.take().or(credential("certificate"));
+        let key = self.certificate_key.take();
+        self.certificate_key = key.or(credential("certificate_key"));
+        let Some(path) = self.token_file.clone().or(credential("token")) else {
             return Ok(());
         };
         if self.token.is_some() {
@@ -146,7 +157,7 @@ impl DaemonConfig {
         self.token = Some(Token::try_from(text.trim().to_owned()).map_err(wrong)?);
         // Credentials are in a folder of their own that others cannot enter.
         if self.token_file.is_some() {
-            warn_if_readable(&path);
+            warn_if_readable("token", &path);
         }
         Ok(())
     }
@@ -249,17 +260,21 @@ mod tests {
         let from_file = format!("token_file = {file:?}");
         for (text, credentials) in [(from_file.as_str(), None), ("", Some(folder.path()))] {
             let mut config = settings(text).unwrap();
-            config.load_token(credentials).unwrap();
+            config.load_credentials(credentials).unwrap();
             assert!(config.token.unwrap().is(b"0123456789abcdef"), "{text}");
         }
         let mut both = settings(&format!("{from_file}\ntoken = '0123456789abcdef'")).unwrap();
-        assert_eq!(both.load_token(None).unwrap_err().kind, Kind::Usage);
+        assert_eq!(both.load_credentials(None).unwrap_err().kind, Kind::Usage);
         std::fs::write(&file, "short").unwrap();
-        let failure = settings(&from_file).unwrap().load_token(None).unwrap_err();
+        let failure = settings(&from_file)
+            .unwrap()
+            .load_credentials(None)
+            .unwrap_err();
         assert!(failure.message.contains("16"), "{failure:?}");
         assert!(!failure.message.contains("short"), "{failure:?}");
         let mut none = settings("").unwrap();
-        none.load_token(Some(Path::new("/nonexistent"))).unwrap();
+        none.load_credentials(Some(Path::new("/nonexistent")))
+            .unwrap();
         assert_eq!(none.token, None);
     }
 

@@ -15,11 +15,11 @@ pub struct Origin {
 }
 
 impl Origin {
-    /// Origin of the pages of an HTTP server addressed as `host`: a name, with a port unless it is
-    /// 80.
+    /// Origin of the pages of a server addressed as `host`, with TLS if `secure`: a name, with a
+    /// port unless it is the usual one.
     #[must_use]
-    pub fn of_host(host: &str) -> Option<Self> {
-        Self::new(false, host)
+    pub fn of_host(secure: bool, host: &str) -> Option<Self> {
+        Self::new(secure, host)
     }
 
     fn new(secure: bool, authority: &str) -> Option<Self> {
@@ -90,7 +90,7 @@ mod tests {
         assert_ne!(of("http://a.example"), of("http://a.example:8016"));
         assert_ne!(of("http://a.example"), of("http://b.example"));
         assert_eq!(
-            Origin::of_host("a.example:8016"),
+            Origin::of_host(false, "a.example:8016"),
             Some(of("http://a.example:8016"))
         );
     }
@@ -120,7 +120,7 @@ mod tests {
             assert!(text.parse::<Origin>().is_err(), "{text}");
         }
         for host in ["", "a.example/", "a b"] {
-            assert_eq!(Origin::of_host(host), None, "{host}");
+            assert_eq!(Origin::of_host(false, host), None, "{host}");
         }
     }
 }

@@ -38,16 +38,16 @@ fn without_slow(samples: &[AngleSample]) -> Vec<AngleSample> {
     let (least, limit) = round_trips(samples);
     let quick = |s: &AngleSample| s.bound + s.bound <= limit;
     let mut kept = Vec::with_capacity(samples.len());
-    for (i, this) in samples.iter().enumerate() {
+    let all: Vec<&AngleSample> = samples.iter().filter(|s| quick(s)).collect();
+    let mut passed = 0;
+    for this in samples {
         if quick(this) {
             kept.push(*this);
+            passed += 1;
             continue;
         }
-        let before = samples.get(..i).unwrap_or_default();
-        let after = samples.get(i + 1..).unwrap_or_default();
-        let quick_before = before.iter().rev().filter(|s| quick(s));
-        let quick_after = after.iter().filter(|s| quick(s));
-        let hole = PollGap::between(quick_before, quick_after);
+        let (before, after) = all.split_at(passed);
+        let hole = PollGap::between(before.iter().rev().copied(), after.iter().copied());
         // At the ends of a recording there is nothing to replace a poll.
         if hole.is_none_or(|hole| hole.line_error() > hole.poll_error(this, least)) {
             kept.push(*this);

@@ -59,6 +59,13 @@ enum BlockPlacement {
     OneByOne,
 }
 
+/// Returns in a block.
+pub(crate) fn returns(block: &FiringBlock<'_>) -> u64 {
+    let (first, second) = block.layers();
+    let second = second.map_or(0, |second| second.kept().count_ones());
+    u64::from(first.kept().count_ones() + second)
+}
+
 impl<'a> FiringBlockPlacer<'a> {
     pub(crate) fn new(alignment: &'a Alignment) -> Self {
         Self {
@@ -131,11 +138,7 @@ impl<'a> FiringBlockPlacer<'a> {
                 batch.keep(points);
                 counts.points += points as u64;
             }
-            BlockPlacement::Outside => {
-                let returns = first.kept().count_ones();
-                let second = second.map_or(0, |second| second.kept().count_ones());
-                counts.outside += u64::from(returns + second);
-            }
+            BlockPlacement::Outside => counts.outside += returns(block),
             BlockPlacement::OneByOne => {
                 one_by_one(self.alignment, self.received, block, batch, counts)
             }

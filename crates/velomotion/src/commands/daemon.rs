@@ -36,10 +36,7 @@ pub fn run(arguments: &cli::DaemonArguments, common: &Common) -> Result<CommandO
     })?;
     greet(&daemon, common);
     // Without a service manager this does nothing.
-    let _ = sd_notify::notify(&[
-        NotifyState::Ready,
-        NotifyState::Status(&format!("http://{}/", daemon.address())),
-    ]);
+    let _ = sd_notify::notify(&[NotifyState::Ready, NotifyState::Status(&url(&daemon))]);
     while !interrupt.load(Ordering::Acquire) && !daemon.is_broken() {
         std::thread::sleep(SIGNAL_POLL);
     }
@@ -61,6 +58,15 @@ fn end(daemon: Daemon, interrupt: &Arc<AtomicBool>) -> Result<(), Failure> {
     daemon.stop(|| interrupt.load(Ordering::Acquire))
 }
 
+/// Address of the page.
+fn url(daemon: &Daemon) -> String {
+    let scheme = match daemon.state().settings().certificate {
+        Some(_) => "https",
+        None => "http",
+    };
+    format!("{scheme}://{}/", daemon.address())
+}
+
 fn greet(daemon: &Daemon, common: &Common) {
     let state = daemon.state();
     let address = daemon.address();
@@ -68,6 +74,7 @@ fn greet(daemon: &Daemon, common: &Common) {
     if common.json {
         let report = DaemonReport {
             address: address.to_string(),
+            url: url(daemon),
             scans: folder.to_string(),
             simulated: state.service.simulated(),
         };
@@ -89,7 +96,7 @@ fn greet(daemon: &Daemon, common: &Common) {
         (true, Some(_)) => "only from this machine, with the token",
         (false, _) => "with the token",
     };
-    to_stderr(&format!("http://{address}/ ({who}); scans in {folder}"));
+    to_stderr(&format!("{} ({who}); scans in {folder}", url(daemon)));
 }
 
 /// The configuration; warns if others can read a token in it.
@@ -97,7 +104,7 @@ fn load(common: &Common) -> Result<config::Config, Failure> {
     let config = config::load(common.config.as_deref())?;
     let path = common.config.clone().or_else(config::usual_place);
     if let Some(path) = path.filter(|_| config.daemon.token.is_some()) {
-        config::daemon::warn_if_readable(&path);
+        config::daemon::warn_if_readable("token", &path);
     }
     Ok(config)
 }
