@@ -119,6 +119,7 @@ fn replayed(log: &Path, accuracy: Accuracy, cloud: &Path) -> (u64, &'static str)
         accuracy,
         pace: None,
         truth: None,
+        live: false,
         lost_records: 0,
         interrupt: &AtomicBool::new(false),
     };

@@ -369,6 +369,7 @@ fn try_scan(log: &Path) -> Result<(ScanReport, Points), Failure> {
         accuracy: scanner::Accuracy::Best,
         pace: None,
         truth: None,
+        live: false,
         lost_records: 0,
         interrupt: &AtomicBool::new(false),
     };

@@ -387,6 +387,7 @@ impl Captured {
             accuracy: scanner::Accuracy::Best,
             pace: None,
             truth: None,
+            live: false,
             lost_records: 0,
             interrupt: &AtomicBool::new(false),
         };
@@ -423,6 +424,7 @@ impl Captured {
             accuracy: scanner::Accuracy::Best,
             pace: None,
             truth: None,
+            live: false,
             lost_records: 0,
             interrupt: &AtomicBool::new(false),
         };

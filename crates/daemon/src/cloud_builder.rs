@@ -137,6 +137,15 @@ fn build(state: &Arc<DaemonState>, job: &CloudJob) {
     let waits = made.is_err() && quota.refused().is_some();
     let no_cloud = made.as_ref().err().map(run::no_cloud);
     let concluded = run::conclude(made, record.outcome(), (&cloud, &log));
+    if let Ok((scan, _)) = &concluded
+        && let Some((rms_m, worst_m)) = scan.live.and_then(|live| live.rms_m.zip(live.worst_m))
+    {
+        let (rms_mm, worst_mm) = (rms_m * 1e3, worst_m * 1e3);
+        let text = format!(
+            "scan {id}: the live points were RMS {rms_mm:.1} mm, at worst {worst_mm:.1} mm from the cloud's"
+        );
+        state.events().message(MessageLevel::Info, text, None);
+    }
     let counters = &state.counters;
     match &concluded {
         Ok((scan, None)) => {
@@ -214,6 +223,7 @@ fn cloud(
     let made = run::cloud(
         log,
         job.truth.as_ref(),
+        true,
         job.lost_records,
         &state.abandon,
         target,

@@ -56,9 +56,9 @@ impl SyncMatch {
 const EXPIRY: Span = Span::from_millis(100);
 /// The same for SYNCs before the start of observation; shorter, as a log may start with a command.
 const STARTUP: Span = Span::from_millis(10);
-/// Shortest period of SYNCs, less a tenth for jitter: the drive's position control runs at 1 kHz. A
-/// SYNC that follows sooner was sent because the one before it was answered.
-const CONTROL_CYCLE: Span = Span::from_micros(900);
+/// Shortest period of SYNCs: the drive's position control runs at 1 kHz. A SYNC that follows after
+/// less than half of it was sent because the one before it was answered, not by jitter.
+const CONTROL_CYCLE: Span = Span::from_millis(1);
 /// Age of the last match after which matching restarts: the clocks may have drifted by 0.4 ms.
 const STALE: Span = Span::from_secs(2);
 /// Margin of comparisons with the lower bound: less than a SYNC takes to the drive (a frame of at
@@ -79,8 +79,9 @@ impl SyncMatcher {
         if self.is_stale(sent) {
             self.restart();
         }
-        let is_early = |open: &Stamp<Host>| sent.saturating_since(*open) < CONTROL_CYCLE;
-        if self.last.is_none() && self.unanswered.back().is_some_and(is_early) {
+        let is_early = |open: &Stamp<Host>| sent.saturating_since(*open) < CONTROL_CYCLE.half();
+        if self.last.is_none() && !self.is_complete && self.unanswered.back().is_some_and(is_early)
+        {
             // The master has received the PDO of the single SYNC; a recorder has dropped it.
             self.unanswered.clear();
             self.last_open = None;

@@ -178,6 +178,9 @@ pub struct Replay {
     /// on, NAME.mcap one file
     #[arg(long, value_name = "DEG", allow_negative_numbers = true, value_parser = azimuth)]
     pub frames: Option<f64>,
+    /// Report how far the points of the live view are from the cloud
+    #[arg(long, conflicts_with = "frames")]
+    pub live: bool,
     /// Keep shots without a return: one row per ring, one column per firing (.pcd, with --frames)
     #[arg(long, requires = "frames")]
     pub organised: bool,

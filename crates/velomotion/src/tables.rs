@@ -3,7 +3,7 @@
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, Table};
 use engine::reconstruct::report::{
-    Contents, InfoReport, Reception, ScanReport, SensorReport, SweepReport,
+    Contents, InfoReport, LiveReport, Reception, ScanReport, SensorReport, SweepReport,
 };
 
 /// Label and value of a table row.
@@ -115,6 +115,22 @@ fn reception_line(reception: &Reception) -> String {
     )
 }
 
+fn live_line(live: &LiveReport) -> String {
+    let off = match live.rms_m.zip(live.worst_m) {
+        Some((rms_m, worst_m)) => format!(
+            "RMS {:.2} mm, worst {:.2} mm from the cloud",
+            rms_m * 1e3,
+            worst_m * 1e3
+        ),
+        None => "no point in common with the cloud".to_owned(),
+    };
+    format!(
+        "{} points, {off}; at most {:.0} ms late",
+        live.points,
+        live.lag_s * 1e3
+    )
+}
+
 fn warning_rows(contents: &Contents) -> impl Iterator<Item = Row> + '_ {
     contents
         .warnings
@@ -175,6 +191,7 @@ pub fn scan_table(scan: &ScanReport) -> String {
             ),
         ));
     }
+    rows.extend(scan.live.iter().map(|live| ("live view", live_line(live))));
     rows.push(("cloud", cloud_line(scan)));
     rows.push(("log", scan.log.clone()));
     if let Some(reception) = &scan.reception {

@@ -155,6 +155,7 @@ fn points_of(log: &Path) -> Option<u64> {
         accuracy: Accuracy::Best,
         pace: None,
         truth: None,
+        live: false,
         lost_records: 0,
         interrupt: &AtomicBool::new(false),
     };

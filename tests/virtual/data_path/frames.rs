@@ -22,6 +22,7 @@ fn frames(log: &Path, output: &Path, organised: bool) -> ScanReport {
         accuracy: scanner::Accuracy::Best,
         pace: None,
         truth: None,
+        live: false,
         lost_records: 0,
         interrupt: &AtomicBool::new(false),
     };

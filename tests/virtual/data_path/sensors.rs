@@ -56,6 +56,7 @@ fn scan(log: &Path, sensor: Option<&str>) -> Result<ScanReport, Failure> {
         accuracy: scanner::Accuracy::Best,
         pace: None,
         truth: None,
+        live: false,
         lost_records: 0,
         interrupt: &AtomicBool::new(false),
     };

@@ -142,6 +142,7 @@ fn replayed(log: &Path, tilt: TiltSource) -> (ScanReport, Points) {
         accuracy: scanner::Accuracy::Best,
         pace: None,
         truth: None,
+        live: false,
         lost_records: 0,
         interrupt: &AtomicBool::new(false),
     };

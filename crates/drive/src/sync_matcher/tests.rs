@@ -72,6 +72,18 @@ fn matching_starts_with_the_first_sync_since_the_pdos_were_enabled() {
     }
 }
 
+/// The second SYNC follows early by jitter, while the PDO of the first is under way.
+#[test]
+fn a_sync_that_jitter_sends_early_leaves_the_first_its_pdo() {
+    let mut syncs = SyncMatcher::default();
+    syncs.observe(us(0));
+    syncs.handle_enabled();
+    syncs.handle_sync(us(200_000));
+    syncs.handle_sync(us(200_400));
+    assert_eq!(syncs.handle_pdo(300, us(200_900)), Some(us(200_000)));
+    assert_eq!(syncs.handle_pdo(700, us(201_300)), Some(us(200_400)));
+}
+
 #[test]
 fn matching_needs_a_single_sync_again_if_none_was_answered() {
     let mut syncs = SyncMatcher::default();

@@ -211,13 +211,14 @@ pub fn silence(config: &ListenConfig, waited: Duration) -> Failure {
     ))
 }
 
-/// Makes the cloud of a capture from its log.
+/// Makes the cloud of a capture from its log, and compares it with the live view if `live`.
 ///
 /// # Errors
 /// As [`replay::make`].
 pub fn cloud(
     (log, accuracy): (&Path, Accuracy),
     truth: Option<&Truth>,
+    live: bool,
     lost_records: u64,
     interrupt: &AtomicBool,
     target: Target,
@@ -225,6 +226,7 @@ pub fn cloud(
     let source = Source::open(log, None)?;
     let request = Reconstruction {
         truth,
+        live,
         lost_records,
         ..Reconstruction::of_log(&source, accuracy, interrupt)
     };

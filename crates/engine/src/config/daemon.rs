@@ -254,9 +254,9 @@ mod tests {
         std::fs::write(&file, "0123456789abcdef\n").unwrap();
         let mode = |bits| std::fs::set_permissions(&file, PermissionsExt::from_mode(bits)).unwrap();
         mode(0o600);
-        assert!(!warn_if_readable(&file));
+        assert!(!warn_if_readable("token", &file));
         mode(0o640);
-        assert!(warn_if_readable(&file));
+        assert!(warn_if_readable("token", &file));
         let from_file = format!("token_file = {file:?}");
         for (text, credentials) in [(from_file.as_str(), None), ("", Some(folder.path()))] {
             let mut config = settings(text).unwrap();

@@ -6,6 +6,7 @@ pub mod diagnostics;
 mod failures;
 pub mod frames;
 pub mod lidar_copy;
+pub mod live;
 pub mod replay;
 pub mod report;
 pub mod source;

@@ -20,6 +20,7 @@ use units::{Host, Span, Stamp};
 use super::contents::contents;
 use super::failures::scan_failure;
 use super::frames::{FramePlan, FrameWriter};
+use super::live::{LiveDifference, LivePoints};
 use super::warnings::{alignment_warnings, incomplete_sweeps};
 use crate::failure::{Failure, Kind};
 use crate::output::{Target, sink_failure};
@@ -56,6 +57,8 @@ pub struct Reconstruction<'a> {
     pub pace: Option<f64>,
     /// Ground truth, if the recording is simulated.
     pub truth: Option<&'a Truth>,
+    /// Whether to compare the cloud with the points of the live view.
+    pub live: bool,
     /// Records lost during the recording.
     pub lost_records: u64,
     /// Stops the reconstruction when set.
@@ -74,8 +77,17 @@ impl<'a> Reconstruction<'a> {
             accuracy,
             pace: None,
             truth: None,
+            live: false,
             lost_records: 0,
             interrupt,
+        }
+    }
+
+    /// Fails once the reconstruction is to stop.
+    pub(super) fn check_interrupt(&self) -> Result<(), Failure> {
+        match self.interrupt.load(Ordering::Relaxed) {
+            true => Err(interrupted(self.recording.path())),
+            false => Ok(()),
         }
     }
 }
@@ -87,13 +99,20 @@ impl<'a> Reconstruction<'a> {
 /// written.
 pub fn make(request: &Reconstruction<'_>, mut target: Target) -> Result<ScanReport, Failure> {
     let output = target.path().to_owned();
-    let written = match request.truth {
-        None => scan(request, target.sink(), &output)?,
-        Some(truth) => {
+    let live = request.live.then(|| LivePoints::of(request)).transpose()?;
+    let mut live = live.map(LiveDifference::new);
+    let mut written = match (request.truth, &mut live) {
+        (None, None) => scan(request, target.sink(), &output)?,
+        (None, Some(live)) => scan(request, &mut (target.sink(), live), &output)?,
+        (Some(truth), _) => {
             let mut comparison = Comparison::new(|time: units::Stamp<units::Lidar>, laser| {
                 truth.point(time.as_nanos(), laser)
             });
-            let mut written = scan(request, &mut (target.sink(), &mut comparison), &output)?;
+            let sinks = (target.sink(), &mut comparison);
+            let mut written = match &mut live {
+                None => scan(request, &mut { sinks }, &output)?,
+                Some(live) => scan(request, &mut (sinks, live), &output)?,
+            };
             let errors = comparison.report();
             written.truth = Some(TruthErrors {
                 rms_m: errors.rms_m,
@@ -102,6 +121,7 @@ pub fn make(request: &Reconstruction<'_>, mut target: Target) -> Result<ScanRepo
             written
         }
     };
+    written.live = live.map(|live| live.report());
     target.commit()?;
     Ok(written)
 }
@@ -143,7 +163,7 @@ fn survey(request: &Reconstruction<'_>) -> Result<FirstPass, Failure> {
         if let Some(utc) = &mut utc {
             utc.observe(record);
         }
-        check_interrupt(request)
+        request.check_interrupt()
     })?;
     let drive = survey.drive();
     let alignment = survey
@@ -158,13 +178,6 @@ fn survey(request: &Reconstruction<'_>) -> Result<FirstPass, Failure> {
         dual_return: dual_return == Some(true),
         utc: utc.map(|utc| utc.clock),
     })
-}
-
-fn check_interrupt(request: &Reconstruction<'_>) -> Result<(), Failure> {
-    match request.interrupt.load(Ordering::Relaxed) {
-        true => Err(interrupted(request.recording.path())),
-        false => Ok(()),
-    }
 }
 
 /// Both passes, with points going to `sink`.
@@ -256,7 +269,7 @@ fn place(
             wait_until_due(pace, record, request.interrupt);
         }
         placer.observe(record).map_err(cannot_write)?;
-        check_interrupt(request)
+        request.check_interrupt()
     })?;
     placer.finish().map_err(cannot_write)
 }
@@ -277,7 +290,7 @@ pub fn frames(request: &Reconstruction<'_>, plan: &FramePlan) -> Result<ScanRepo
             wait_until_due(pace, record, request.interrupt);
         }
         writer.observe(record)?;
-        check_interrupt(request)
+        request.check_interrupt()
     })?;
     let (written, stats, target) = writer.finish()?;
     if written.placed.points == 0 && written.without_utc > 0 {
@@ -350,6 +363,7 @@ fn report(
         incomplete_sweeps: incomplete,
         reception: None,
         truth: None,
+        live: None,
     })
 }
 

@@ -266,6 +266,20 @@ pub struct TruthErrors {
     pub worst_m: f64,
 }
 
+/// The points that the live view shows of a scan, against those of the cloud. One firing in eight
+/// is compared.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+pub struct LiveReport {
+    /// Points placed live.
+    pub points: u64,
+    /// Root mean square of their distances from the cloud's; null without common points.
+    pub rms_m: Option<f64>,
+    /// Largest distance.
+    pub worst_m: Option<f64>,
+    /// Largest delay, seconds: from the first firing not placed to the newest angle.
+    pub lag_s: f64,
+}
+
 /// Report of `replay` and `capture`.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct ScanReport {
@@ -301,6 +315,9 @@ pub struct ScanReport {
     /// Errors against the simulator's truth; absent for real scans.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub truth: Option<TruthErrors>,
+    /// The live view, if it was compared.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub live: Option<LiveReport>,
 }
 
 impl SweepReport {

@@ -37,6 +37,9 @@ pub(super) struct Ends {
     end_ns: f64,
 }
 
+/// Stages of delay at most, and the exponent above which there are several.
+const MOST_STAGES: f64 = 3.0;
+const SEVERAL_STAGES: f64 = 1.25;
 /// Grid nodes per side, and reach of the second, finer grid in standard deviations.
 const NODES: usize = 17;
 const REACH: f64 = 3.5;
@@ -66,7 +69,22 @@ impl Tail {
         });
         let exponent = if sum > 0.0 { count / sum } else { 2.0 };
         Self {
-            exponent: exponent.clamp(1.0, 3.0),
+            exponent: exponent.clamp(1.0, MOST_STAGES),
+            ..self
+        }
+    }
+
+    /// The tail with an exponent that is greater by one standard deviation: that of Hill's estimate
+    /// from `count` packets (Hill 1975), and of a delay of several stages half of the distance to
+    /// three, which are nearer the end than the packets that show them.
+    pub fn one_deviation_up(self, count: usize) -> Self {
+        let by_chance = self.exponent / (count.max(1) as f64).sqrt();
+        let by_depth = match self.exponent > SEVERAL_STAGES {
+            true => 0.5 * (MOST_STAGES - self.exponent),
+            false => 0.0,
+        };
+        Self {
+            exponent: self.exponent + by_chance.hypot(by_depth),
             ..self
         }
     }
@@ -79,6 +97,17 @@ impl Ends {
             begin_ns: ns,
             middle_ns: ns,
             end_ns: ns,
+        }
+    }
+
+    /// With a further error that is one standard deviation where `one` is from `other`, from `first`
+    /// to `last`.
+    pub fn and(self, one: &OffsetLine, other: &OffsetLine, [first, last]: [f64; 2]) -> Self {
+        let with = |ns: f64, at: f64| ns.hypot(one.at(at) - other.at(at));
+        Self {
+            begin_ns: with(self.begin_ns, first),
+            middle_ns: with(self.middle_ns, 0.5 * (first + last)),
+            end_ns: with(self.end_ns, last),
         }
     }
 

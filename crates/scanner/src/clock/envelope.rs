@@ -138,13 +138,24 @@ fn refine(blocks: &mut [EnvelopeBlock<'_>]) -> Option<LowDelays> {
     }
     let hulls: Vec<OffsetLine> = blocks.iter().map(|block| block.line).collect();
     let mut tail = Tail::of_two_stages(depth_ns);
-    for _ in 0..ROUNDS {
+    for round in 0..ROUNDS {
+        if round > 0 {
+            tail = tail.measured(blocks.iter().flat_map(EnvelopeBlock::lateness));
+        }
         for (block, hull) in blocks.iter_mut().zip(&hulls) {
             if let Some((line, ends)) = endpoint::line(block.points, *hull, tail) {
                 (block.line, block.ends) = (line, ends);
             }
         }
-        tail = tail.measured(blocks.iter().flat_map(EnvelopeBlock::lateness));
+    }
+    // The exponent has an error, too, which all blocks share.
+    let other = tail.one_deviation_up(count);
+    for (block, hull) in blocks.iter_mut().zip(&hulls) {
+        if let Some((line, _)) = endpoint::line(block.points, *hull, other)
+            && let (Some(first), Some(last)) = (block.points.first(), block.points.last())
+        {
+            block.ends = block.ends.and(&line, &block.line, [first.0, last.0]);
+        }
     }
     Some(spread)
 }

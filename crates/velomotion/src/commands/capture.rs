@@ -58,6 +58,7 @@ pub fn run(arguments: &cli::Capture, common: &Common) -> Result<CommandOutput, F
     let mut made = run::cloud(
         (&plan.log, plan.accuracy),
         truth.as_ref(),
+        false,
         outcome.lost_records,
         &interrupt,
         target,

@@ -47,6 +47,7 @@ pub fn run(arguments: &cli::Replay, common: &Common) -> Result<CommandOutput, Fa
         accuracy: arguments.accuracy.wanted(),
         pace: arguments.realtime,
         truth: None,
+        live: arguments.live,
         lost_records: 0,
         interrupt: &interrupt,
     };

@@ -265,6 +265,7 @@ fn of_log(path: &Path, interrupt: &AtomicBool) -> Result<Input, Failure> {
         accuracy: Accuracy::Best,
         pace: None,
         truth: None,
+        live: false,
         lost_records: 0,
         interrupt,
     };
