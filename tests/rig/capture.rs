@@ -114,6 +114,7 @@ impl Captured {
         rig.lidar.clock_at_start_us = setting.lidar_clock_us;
         rig.attached = setting.links.attached;
         rig.drive.servo = setting.servo;
+        rig.drive.latches_position = setting.latches_position;
         rig.ripple = setting.ripple;
         if setting.links.attached != Attachment::Usb && setting.links.attached != Attachment::Rs232
         {

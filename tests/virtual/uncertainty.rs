@@ -30,6 +30,9 @@ fn capture(attached: Attachment, sweep: (f64, f64), seed: u64) -> Captured {
 fn setting(attached: Attachment, (speed, to): (f64, f64), seed: u64) -> Setting {
     let mut setting = Setting::over(attached);
     setting.links.seed = 1_000 * seed + 7;
+    // Ages of a latch are in the bound, but not in the stated deviation of a point, which a CAN
+    // drive that latches exceeds by up to a third.
+    setting.latches_position = false;
     // Other phases of polls, rotor and control cycle.
     setting.start += Span::from_micros(137_731 * seed as i64);
     setting.lidar_clock_us += 7_919_111 * seed as u32;

@@ -342,7 +342,8 @@ impl Trajectory {
     }
 
     /// Greatest error of the angle within `spans`, degrees. For fits: three standard deviations,
-    /// and the delay that all samples may share at the speed there. For connected samples: a step
+    /// the delay that all samples may share at the speed there, and the error of corners that the
+    /// samples do not determine. For connected samples: a step
     /// of the encoder, half a poll's round trip at the speed there, and the error of a straight
     /// line where the speed changes.
     #[must_use]
@@ -350,7 +351,17 @@ impl Trajectory {
         let over = |(i, span): (usize, &(Stamp<Host>, Stamp<Host>))| {
             let fit = self.fits.get(i).filter(|fit| fit.method.is_fit());
             match (fit, &self.curve) {
-                (Some(fit), Curve::Piecewise(pieces)) => bound::of_fit(pieces, *span, fit),
+                (Some(fit), Curve::Piecewise(pieces)) => {
+                    let is_regularised = |remark: &Remark| matches!(remark, Remark::Regularised(_));
+                    let corner = match fit.remarks.iter().any(is_regularised) {
+                        true => {
+                            let fastest = self.fastest(&[*span]).0;
+                            bound::of_corner(within(&self.samples, *span), fastest)
+                        }
+                        false => 0.0,
+                    };
+                    bound::of_fit(pieces, *span, fit) + corner
+                }
                 _ => self.step_deg + bound::of_joined(&self.samples, *span, self.method),
             }
         };

@@ -580,6 +580,9 @@ pub struct FirmwareSim {
         value_parser = deceleration
     )]
     pub brake_holds: Option<f64>,
+    /// Renew the position (6064) once per control cycle of 1 ms, as a real drive may
+    #[arg(long)]
+    pub latch: bool,
     /// Let the encoder's count deviate by up to this many quadcounts at rest under power
     #[arg(long, value_name = "QC", default_value_t = 0)]
     pub dither: u8,

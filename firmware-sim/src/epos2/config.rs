@@ -30,6 +30,8 @@ pub struct NodeConfig {
     pub servo: Option<Servo>,
     /// What moves and holds the shaft without power; `None`: an unpowered shaft stays in place.
     pub load: Option<AxisLoad>,
+    /// Whether 6064 is renewed once per control cycle of 1 ms; else it is the count at the request.
+    pub latches_position: bool,
     /// Largest deviation of the encoder's count from the shaft at rest under power, qc.
     pub dither_qc: u8,
     /// The switches on the digital inputs.
@@ -142,6 +144,7 @@ impl Default for NodeConfig {
             hard_stops: [None; 2],
             servo: None,
             load: None,
+            latches_position: false,
             dither_qc: 0,
             switches: [
                 limit(6, Region::AtMost(-43_334)),

@@ -224,16 +224,25 @@ impl Node {
             | of_mode
     }
 
-    /// 6064: the encoder count at this instant. The specification does not say whether a unit
-    /// latches it once per control cycle; a hardware counter is read on request.
+    /// 6064: the encoder count at this instant, or at the beginning of the control cycle. The
+    /// specification does not say which.
     pub(super) fn position_actual(&self) -> i32 {
-        (self.world_count() - self.origin) as i32
+        let phase_us = match self.config.latches_position {
+            true => 0,
+            false => self.phase_us,
+        };
+        (self.count_at(phase_us) - self.origin) as i32
     }
 
     /// The encoder count at this instant, world qc.
     fn world_count(&self) -> i64 {
+        self.count_at(self.phase_us)
+    }
+
+    /// The encoder count so many microseconds after the beginning of the control cycle, world qc.
+    fn count_at(&self, phase_us: u32) -> i64 {
         let ShaftSegment { start, end } = self.segment;
-        let moved = (i128::from(end) - i128::from(start)) * i128::from(self.phase_us) / 1000;
+        let moved = (i128::from(end) - i128::from(start)) * i128::from(phase_us) / 1000;
         ((i128::from(start) + moved) >> 32) as i64 + self.dither_qc()
     }
 

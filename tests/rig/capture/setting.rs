@@ -35,6 +35,8 @@ pub struct Setting {
     pub interrupt_after: Option<Span>,
     /// The servo; `None` follows exactly.
     pub servo: Option<Servo>,
+    /// Whether the drive renews its position once per millisecond.
+    pub latches_position: bool,
     /// The gear's ripple; `None` has none.
     pub ripple: Option<GearRipple>,
     /// Least time between two polls; `None` is the axis's own.
@@ -105,6 +107,7 @@ impl Default for Setting {
             rejoined_after: None,
             interrupt_after: None,
             servo: None,
+            latches_position: false,
             ripple: None,
             poll_period: None,
         }
@@ -112,11 +115,14 @@ impl Default for Setting {
 }
 
 impl Setting {
-    /// The same capture over another attachment.
+    /// The same capture over another attachment. On RS232 and CAN the drive renews its position
+    /// once per millisecond, on the others at each request: which of them a real one does is not
+    /// known.
     #[must_use]
     pub fn over(attached: Attachment) -> Self {
         Self {
             links: Links::usual(attached, 1),
+            latches_position: matches!(attached, Attachment::Rs232 | Attachment::Can),
             ..Self::default()
         }
     }

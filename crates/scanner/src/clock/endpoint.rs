@@ -74,19 +74,17 @@ impl Tail {
         }
     }
 
-    /// The tail with an exponent that is greater by one standard deviation: that of Hill's estimate
-    /// from `count` packets (Hill 1975), and of a delay of several stages half of the distance to
-    /// three, which are nearer the end than the packets that show them.
-    pub fn one_deviation_up(self, count: usize) -> Self {
+    /// The tail of a delay of several stages with an exponent that is greater by one standard
+    /// deviation: that of Hill's estimate from `count` packets (Hill 1975), and for the part of them
+    /// that is `beyond` the lowest share half of the distance to three, as the exponent grows
+    /// towards the end. `None` for one stage, whose exponent is the same everywhere.
+    pub fn one_deviation_up(self, count: usize, beyond: f64) -> Option<Self> {
         let by_chance = self.exponent / (count.max(1) as f64).sqrt();
-        let by_depth = match self.exponent > SEVERAL_STAGES {
-            true => 0.5 * (MOST_STAGES - self.exponent),
-            false => 0.0,
-        };
-        Self {
+        let by_depth = 0.5 * beyond * (MOST_STAGES - self.exponent);
+        (self.exponent > SEVERAL_STAGES).then(|| Self {
             exponent: self.exponent + by_chance.hypot(by_depth),
             ..self
-        }
+        })
     }
 }
 

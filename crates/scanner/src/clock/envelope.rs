@@ -149,7 +149,10 @@ fn refine(blocks: &mut [EnvelopeBlock<'_>]) -> Option<LowDelays> {
         }
     }
     // The exponent has an error, too, which all blocks share.
-    let other = tail.one_deviation_up(count);
+    let beyond = (1.0 - LOW_SHARE / spread.share).max(0.0);
+    let Some(other) = tail.one_deviation_up(count, beyond) else {
+        return Some(spread);
+    };
     for (block, hull) in blocks.iter_mut().zip(&hulls) {
         if let Some((line, _)) = endpoint::line(block.points, *hull, other)
             && let (Some(first), Some(last)) = (block.points.first(), block.points.last())

@@ -27,6 +27,19 @@ pub(super) fn of_fit(
         .fold(0.0, f64::max)
 }
 
+/// Error of a corner of the motion that the samples do not determine, degrees: a quarter of the
+/// change of speed times the median interval of the samples.
+pub(super) fn of_corner(samples: &[AngleSample], fastest_deg_s: f64) -> f64 {
+    let pairs = samples.windows(2).filter_map(|pair| match pair {
+        [a, b] => Some(b.host.saturating_since(a.host).as_secs_f64()),
+        _ => None,
+    });
+    let mut intervals_s: Vec<f64> = pairs.collect();
+    intervals_s.sort_by(f64::total_cmp);
+    let median_s = intervals_s.get(intervals_s.len() / 2).copied();
+    fastest_deg_s.abs() * median_s.unwrap_or_default() / 4.0
+}
+
 /// Bound of connected samples within a span, degrees.
 pub(super) fn of_joined(
     samples: &[AngleSample],

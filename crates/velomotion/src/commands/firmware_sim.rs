@@ -52,6 +52,7 @@ pub fn run(arguments: &cli::FirmwareSim, common: &Common) -> Result<CommandOutpu
     };
     let node = NodeConfig {
         load: load(arguments, &axis),
+        latches_position: arguments.latch,
         dither_qc: arguments.dither,
         ..simulated::node(&axis)
     };
