@@ -46,6 +46,7 @@ fn software_drive(interface: &[String]) {
         friction: None,
         brake: None,
         brake_holds: None,
+        latch: false,
         dither: 0,
     };
     let common = Common {

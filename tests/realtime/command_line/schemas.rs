@@ -15,7 +15,7 @@ fn what_commands_print_follows_the_schemas() {
     let gps = gps.display();
     let lines = [
         "capture --speed 90 --from 0 --to -2 -o scan.ply --json".to_owned(),
-        "replay scan.pcapng --tolerance 200mm@20m -o again.ply --json".to_owned(),
+        "replay scan.pcapng --tolerance 200mm@20m --live -o again.ply --json".to_owned(),
         "replay scan.pcapng -o lidar.pcap --json".to_owned(),
         format!("replay {gps} --tilt none --frames 0 -o frames.ply --json"),
         "info scan.pcapng --json".to_owned(),

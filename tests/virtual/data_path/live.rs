@@ -67,3 +67,50 @@ fn the_live_cloud_is_nearly_as_accurate_as_a_replay() {
         );
     }
 }
+
+#[test]
+fn the_live_view_is_compared_with_the_cloud() {
+    for attached in [Attachment::Usb, Attachment::Rs232, Attachment::Can] {
+        let captured = Captured::new(Setting::over(attached));
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("cloud.ply");
+        let source = engine::reconstruct::source::Source::open(&captured.log(), None).unwrap();
+        let interrupt = std::sync::atomic::AtomicBool::new(false);
+        let request = engine::reconstruct::replay::Reconstruction {
+            live: true,
+            ..engine::reconstruct::replay::Reconstruction::of_log(
+                &source,
+                scanner::Accuracy::Best,
+                &interrupt,
+            )
+        };
+        let target = engine::output::Target::open(&path, cloud::Fields::FILE, false).unwrap();
+        let scan = engine::reconstruct::replay::make(&request, target).unwrap();
+        let live = scan.live.unwrap();
+        println!("{attached:?}: {live:?}");
+        let share = live.points as f64 / scan.points as f64;
+        assert!((share - 1.0).abs() < 0.01, "{attached:?}: {share}");
+        // Straight lines between polls, and ages of a latch up to 1 ms at 56.25 deg/s: 0.06 deg.
+        assert!(live.rms_m.unwrap() < 6e-3, "{attached:?}: {live:?}");
+        assert!(live.worst_m.unwrap() < 40e-3, "{attached:?}: {live:?}");
+        assert!(live.lag_s < 0.1, "{attached:?}: {live:?}");
+        // Bytes of the cloud do not depend on the comparison.
+        let plain = folder.path().join("plain.ply");
+        let target = engine::output::Target::open(&plain, cloud::Fields::FILE, false).unwrap();
+        let request = engine::reconstruct::replay::Reconstruction::of_log(
+            &source,
+            scanner::Accuracy::Best,
+            &interrupt,
+        );
+        assert_eq!(
+            engine::reconstruct::replay::make(&request, target)
+                .unwrap()
+                .live,
+            None
+        );
+        assert_eq!(
+            std::fs::read(&plain).unwrap(),
+            std::fs::read(&path).unwrap()
+        );
+    }
+}

@@ -245,10 +245,12 @@ impl Acceptor {
                     match tls {
                         None => serve(stream, &slot, router, waits, closing).await,
                         // A client without TLS, or with another's certificate, is disconnected.
-                        Some(tls) => match timeout(waits.headers, tls.accept(stream)).await {
-                            Ok(Ok(stream)) => serve(stream, &slot, router, waits, closing).await,
-                            Ok(Err(_)) | Err(_) => {}
-                        },
+                        Some(tls) => {
+                            if let Ok(Ok(stream)) = timeout(waits.headers, tls.accept(stream)).await
+                            {
+                                serve(stream, &slot, router, waits, closing).await;
+                            }
+                        }
                     }
                 };
                 tokio::select! {

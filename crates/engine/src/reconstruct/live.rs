@@ -76,7 +76,7 @@ impl LivePoints {
     }
 }
 
-/// The distance of a cloud from the live points, of a firing in [`STRIDE`].
+/// The distance of a cloud from the live points, of one firing in eight.
 pub struct LiveDifference {
     live: LivePoints,
     compared: u64,

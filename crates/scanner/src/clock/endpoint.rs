@@ -75,8 +75,8 @@ impl Tail {
     }
 
     /// The tail of a delay of several stages with an exponent that is greater by one standard
-    /// deviation: that of Hill's estimate from `count` packets (Hill 1975), and for the part of them
-    /// that is `beyond` the lowest share half of the distance to three, as the exponent grows
+    /// deviation: that of Hill's estimate from `count` packets (Hill 1975), and where they reach
+    /// `beyond` the lowest share (0 to 1) half of the distance to three, as the exponent grows
     /// towards the end. `None` for one stage, whose exponent is the same everywhere.
     pub fn one_deviation_up(self, count: usize, beyond: f64) -> Option<Self> {
         let by_chance = self.exponent / (count.max(1) as f64).sqrt();
@@ -98,8 +98,8 @@ impl Ends {
         }
     }
 
-    /// With a further error that is one standard deviation where `one` is from `other`, from `first`
-    /// to `last`.
+    /// With a further error: from `first` to `last` the distance of `one` from `other` is its
+    /// standard deviation.
     pub fn and(self, one: &OffsetLine, other: &OffsetLine, [first, last]: [f64; 2]) -> Self {
         let with = |ns: f64, at: f64| ns.hypot(one.at(at) - other.at(at));
         Self {

@@ -149,7 +149,7 @@ fn refine(blocks: &mut [EnvelopeBlock<'_>]) -> Option<LowDelays> {
         }
     }
     // The exponent has an error, too, which all blocks share.
-    let beyond = (1.0 - LOW_SHARE / spread.share).max(0.0);
+    let beyond = (spread.share / LOW_SHARE - 1.0).clamp(0.0, 1.0);
     let Some(other) = tail.one_deviation_up(count, beyond) else {
         return Some(spread);
     };
