@@ -1,5 +1,5 @@
 //! The daemon's HTTP: lists of routes, each answered by a function of a few lines.
-//! docs/src/daemon.md and [`openapi`] document them.
+//! docs/src/daemon.md and `openapi` document them.
 
 pub mod captures;
 pub mod connection_limits;
