@@ -2,7 +2,7 @@
 //!
 //! A [`Study`] measures every choice. [`StudyFindings`] are a table, the pairs of columns that are
 //! traded, and the choices on the Pareto front ([`front`]). [`text`], [`svg`], [`Book`], [`html`]
-//! and [`json()`] show them. [`K_FUNCTION`] and [`SCAN_SPEED`] are studies; others are in
+//! and [`TradeoffReport`] show them. [`K_FUNCTION`] and [`SCAN_SPEED`] are studies; others are in
 //! `velomotion` and in `studies`. The clock is an argument.
 
 pub mod front;
