@@ -111,7 +111,7 @@ fn reception_line(reception: &Reception) -> String {
     };
     format!(
         "{} lidar packets, {} dropped by the kernel{others}; {} records dropped by the log",
-        reception.packets, reception.dropped_by_kernel, reception.dropped_by_log
+        reception.received, reception.dropped_by_kernel, reception.dropped_by_log
     )
 }
 
@@ -243,7 +243,7 @@ mod tests {
     #[test]
     fn dropped_packets_are_in_the_summary() {
         let reception = Reception {
-            packets: 700,
+            received: 700,
             dropped_by_kernel: 3,
             dropped_by_log: 2,
             ..Reception::default()

@@ -148,7 +148,7 @@ async fn until_in_sight(page: &Page, css: &str) {
 /// Refuses every request as the daemon does when too many run, until `window.answer` is called.
 const TOO_MANY: &str = "
     const answered = window.fetch;
-    const refusal = JSON.stringify({ error: 'too many downloads at once', help: 'try again when others have ended' });
+    const refusal = JSON.stringify({ error: { message: 'too many downloads at once', help: 'try again when others have ended' } });
     window.fetch = async () => new Response(refusal, { status: 429, headers: { 'content-type': 'application/json' } });
     window.answer = () => { window.fetch = answered; };";
 
@@ -185,7 +185,7 @@ const ERROR_IN_MOTION: &str = "
           seen();
         }, 20);
       });
-      return new Response(JSON.stringify({ error: 'the drive reports an error' }), { status: 500 });
+      return new Response(JSON.stringify({ error: { message: 'the drive reports an error' } }), { status: 500 });
     };";
 
 /// Records whether the error is ever hidden again, and counts changes of the state's text.

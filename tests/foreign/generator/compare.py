@@ -100,9 +100,10 @@ def run(program, log, cloud, options=()):
     return done.returncode, report, done.stderr, took
 
 
-def measure(program, log, cloud_path, truths, tolerance=None):
+def measure(program, log, cloud_path, truths, tolerance=None, live=False):
     """One row of the table. `tolerance`: such as 3mm@20m, which the program shall keep."""
     options = ("--tolerance", tolerance) if tolerance else ()
+    options += ("--live",) if live else ()
     code, report, messages, took = run(program, log, cloud_path, options)
     row = {
         "exit": code,
@@ -112,6 +113,7 @@ def measure(program, log, cloud_path, truths, tolerance=None):
         "sync": report.get("sync"),
         "sweeps": report.get("sweeps"),
         "points": report.get("points", 0),
+        "live": report.get("live"),
     }
     due = sum(_moving(t).sum() for t in truths)
     row["due"] = int(due)

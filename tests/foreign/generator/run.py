@@ -124,6 +124,27 @@ def changes(before, after):
     return "\n".join(lines)
 
 
+def live_table(results):
+    """The live view against the cloud that replaces it: the worst of each condition."""
+    lines = [
+        "| condition | live RMS mm | worst mm | points, % of the cloud's | lag ms |",
+        "|" + "---|" * 5,
+    ]
+    for name in dict.fromkeys(r["condition"] for r in results):
+        rows = [r for r in results if r["condition"] == name and r.get("live") and r["points"]]
+        if not rows:
+            continue
+        live = [r["live"] for r in rows]
+        cells = [
+            name,
+            *(number(largest(live, key), 1, 1e3) for key in ("rms_m", "worst_m")),
+            number(min(r["live"]["points"] / r["points"] for r in rows), 1, 100),
+            number(largest(live, "lag_s"), 0, 1e3),
+        ]
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
 EDGES = (0.0, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, float("inf"))
 
 
@@ -175,6 +196,7 @@ def main():
     parser.add_argument("--seeds", type=int, default=1)
     parser.add_argument("--first-seed", type=int, default=0)
     parser.add_argument("--tolerance", help="LENGTH@DISTANCE, such as 3mm@20m, for the program")
+    parser.add_argument("--live", action="store_true", help="compare the live view, too")
     parser.add_argument("--json", type=Path)
     parser.add_argument("--against", type=Path, help="earlier result of --json to compare with")
     parser.add_argument("--keep", type=Path, help="keeps each log here")
@@ -203,7 +225,7 @@ def main():
                 cloud = folder / "cloud.csv"
                 cloud.unlink(missing_ok=True)
                 row = compare.measure(
-                    arguments.program, log, cloud, truths, arguments.tolerance
+                    arguments.program, log, cloud, truths, arguments.tolerance, arguments.live
                 )
                 row.update(condition=condition.name, group=condition.group, seed=seed)
                 row["share"], row["most"] = condition.share, condition.most
@@ -215,6 +237,8 @@ def main():
             results.extend(rows)
             print("| " + " | ".join(line(condition.name, rows)) + " |", flush=True)
     print("\n" + summary(results))
+    if arguments.live:
+        print("\n" + live_table(results))
     if arguments.against:
         print("\n" + changes(json.loads(arguments.against.read_text()), results))
     if arguments.json:

@@ -150,6 +150,9 @@ impl DriveListener {
                 None => {}
                 Some(SerialEvent::Noise) => emit(noise),
                 Some(SerialEvent::Request(frame)) => {
+                    // A reply that is cut before its end would be completed by the next one's first
+                    // byte, at a wrong time.
+                    self.from_device.reset();
                     self.handle_request(&frame, host, noise, emit);
                 }
                 Some(SerialEvent::Announced) => self.announced = host,

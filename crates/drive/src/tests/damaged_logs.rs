@@ -231,6 +231,25 @@ fn a_write_without_its_confirmation_is_reported() {
     }
 }
 
+/// A checksum ends with 90, which USB doubles. Without the second one the frame is complete with the
+/// first byte of the next reply, which is later than its own request.
+#[test]
+fn a_reply_without_its_last_byte_is_not_completed_by_the_next() {
+    let Recorded { log, samples, .. } = recorded(DriveLink::Usb);
+    let ends = |bytes: &[u8]| bytes.ends_with(&[0x90, 0x90]);
+    let at = log
+        .iter()
+        .position(|(way, bytes, _)| *way == Direction::FromDevice && ends(bytes));
+    let at = at.unwrap();
+    let mut log = log.clone();
+    log[at].1.pop();
+    let observed = listen(DriveLink::Usb, &log);
+    assert_eq!(observed.len(), samples.len() - 1);
+    for sample in &observed {
+        assert!(is_one_of(DriveLink::Usb, sample, samples), "{sample:?}");
+    }
+}
+
 /// Replies dropped throughout a log cost no more samples than replies.
 #[test]
 fn missing_replies_cost_their_own_samples() {

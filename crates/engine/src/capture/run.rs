@@ -357,7 +357,7 @@ fn add_help(failure: Failure, line: &str) -> Failure {
 fn reception(counts: &CaptureCounts) -> Reception {
     let CaptureCounts { lidar, log } = counts;
     Reception {
-        packets: lidar.data + lidar.position,
+        received: lidar.data + lidar.position,
         dropped_by_kernel: lidar.dropped,
         dropped_by_log: log.dropped + log.refused,
         without_kernel_time: lidar.without_kernel_time,

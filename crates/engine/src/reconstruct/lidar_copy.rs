@@ -23,7 +23,7 @@ pub struct LidarCopyReport {
     #[schema(value_type = String)]
     pub output: PathBuf,
     /// Datagrams in it, those with positions included.
-    pub packets: u64,
+    pub datagrams: u64,
     /// Its size, bytes.
     pub bytes: u64,
     /// Where and why the recording ends early.
@@ -72,7 +72,7 @@ pub fn copy(
     file.commit().map_err(|error| file_failure(&error))?;
     Ok(LidarCopyReport {
         output: output.to_owned(),
-        packets: counts.lidar,
+        datagrams: counts.lidar,
         bytes: counts.bytes,
         truncated: pass.truncated,
     })

@@ -246,7 +246,9 @@ pub struct SyncReport {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Reception {
     /// Packets received, position packets included.
-    pub packets: u64,
+    // Scans of earlier versions call them `packets`.
+    #[serde(alias = "packets")]
+    pub received: u64,
     /// Packets dropped by the kernel because this program was too slow.
     pub dropped_by_kernel: u64,
     /// Records of either device dropped because the disk was too slow or the log cannot hold them.

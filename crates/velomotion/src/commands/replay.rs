@@ -133,7 +133,7 @@ fn copy(
     });
     let text = format!(
         "{} packets of the lidar in {}",
-        report.packets,
+        report.datagrams,
         pcap.display()
     );
     Ok(CommandOutput {

@@ -30,6 +30,7 @@ use crate::terminal::Progress;
 use engine::document::Document;
 use engine::failure::{Failure, Kind};
 use engine::output::{self, Target};
+use engine::reconstruct::report::PacketCounts;
 use log::{Log, scan_config};
 
 /// Report on a simulation.
@@ -41,8 +42,8 @@ pub struct SimulationReport {
     pub seed: u64,
     /// Requested effects.
     pub effects: Vec<EffectLine>,
-    /// Data packets sent.
-    pub packets: u64,
+    /// Packets sent; those with positions are not counted.
+    pub packets: PacketCounts,
     /// Shots in the packets.
     pub shots: u64,
     /// Shots with a return.
@@ -292,7 +293,10 @@ pub fn make(
         scene: name,
         seed: scene.seed,
         effects: scene.effects.lines,
-        packets: summary.packets,
+        packets: PacketCounts {
+            data: summary.packets,
+            ..PacketCounts::default()
+        },
         shots: summary.shots,
         returned: summary.returned,
         share_returned: ratio(summary.returned as f64, summary.shots as f64),
@@ -329,7 +333,7 @@ impl SimulationReport {
             ("effects", effects),
             (
                 "packets",
-                format!("{} over {:.3} s", self.packets, self.duration_s),
+                format!("{} over {:.3} s", self.packets.data, self.duration_s),
             ),
             (
                 "returned",

@@ -25,12 +25,19 @@ pub(super) const TRAJECTORIES: Study = Study {
         ("worst_jitter_0_1_ms_deg", "worst, 0.1 ms jitter, deg"),
         ("worst_jitter_0_5_ms_deg", "worst, 0.5 ms jitter, deg"),
         ("worst_servo_deg", "worst, 0.1 ms and servo, deg"),
+        (
+            "worst_underdamped_deg",
+            "worst, 0.1 ms and underdamped servo, deg",
+        ),
+        ("worst_latch_deg", "worst, 0.1 ms and latch, deg"),
     ],
     trades: &[
         Trade::new(0, 1),
         Trade::new(0, 2),
         Trade::new(0, 3),
         Trade::new(0, 4),
+        Trade::new(0, 5),
+        Trade::new(0, 6),
     ],
     measure,
 };
@@ -58,8 +65,12 @@ const SETTLING_S: f64 = 0.1;
 const BLOCK_S: f64 = 110.592e-6;
 /// Step of the servo simulation.
 const STEP_S: f64 = 10e-6;
-/// Natural frequency (Hz) and damping of the servo.
-const SERVO: (f64, f64) = (15.0, 0.8);
+/// Natural frequency of the servo, Hz, and its damping, good and poor.
+const SERVO_HZ: f64 = 15.0;
+const DAMPED: f64 = 0.8;
+const UNDERDAMPED: f64 = 0.5;
+/// Control cycle of a drive that renews its position once in each.
+const CYCLE_S: f64 = 1e-3;
 /// Largest error of a stamp in standard deviations.
 const MOST_SD: f64 = 4.0;
 
@@ -75,22 +86,25 @@ struct PollingCase {
     jitter_s: f64,
     /// Step of the encoder, degrees; 0 for none.
     quantum_deg: f64,
-    /// Whether a servo follows the commanded motion, or the axis follows it exactly.
-    servo: bool,
+    /// Damping of the servo that follows the commanded motion; `None` if the axis follows exactly.
+    servo: Option<f64>,
+    /// Whether the drive renews its position once per [`CYCLE_S`].
+    latch: bool,
 }
 
 const IDEAL: PollingCase = PollingCase {
     jitter_s: 0.0,
     quantum_deg: 0.0,
-    servo: false,
+    servo: None,
+    latch: false,
 };
 /// The case that is timed.
 const USUAL: PollingCase = PollingCase {
     jitter_s: 0.1e-3,
     quantum_deg: QUANTUM_DEG,
-    servo: false,
+    ..IDEAL
 };
-const CIRCUMSTANCES: [PollingCase; 4] = [
+const CIRCUMSTANCES: [PollingCase; 6] = [
     IDEAL,
     USUAL,
     PollingCase {
@@ -98,7 +112,15 @@ const CIRCUMSTANCES: [PollingCase; 4] = [
         ..USUAL
     },
     PollingCase {
-        servo: true,
+        servo: Some(DAMPED),
+        ..USUAL
+    },
+    PollingCase {
+        servo: Some(UNDERDAMPED),
+        ..USUAL
+    },
+    PollingCase {
+        latch: true,
         ..USUAL
     },
 ];
@@ -106,14 +128,14 @@ const CIRCUMSTANCES: [PollingCase; 4] = [
 fn measure(bench: &mut Bench<'_>) -> Result<Measured, StudyError> {
     let seeds = bench.pick(1, 8);
     let plan = bench.plan(&format!("{seeds} runs of each"), 3, 15);
-    let [stiff, soft] = [false, true].map(shaft);
+    let stiff = shaft(None);
     let mut choices = Vec::new();
     for (hz, group) in RATES_HZ {
         for method in Method::ALL {
             let mut worst = Vec::new();
             for circumstance in CIRCUMSTANCES {
-                let shaft = if circumstance.servo { &soft } else { &stiff };
-                worst.push(worst_deg(shaft, hz, circumstance, method, seeds)?);
+                let shaft = shaft(circumstance.servo);
+                worst.push(worst_deg(&shaft, hz, circumstance, method, seeds)?);
             }
             let samples = polls(&stiff, hz, USUAL, 1);
             let name = format!("{hz} Hz, {}", method.name());
@@ -134,7 +156,6 @@ fn measure(bench: &mut Bench<'_>) -> Result<Measured, StudyError> {
 }
 
 fn about(seeds: u64) -> Vec<String> {
-    let (hz, damping) = SERVO;
     vec![
         format!(
             "A sweep of 45 degrees at 56.25 deg/s with ramps of 500 deg/s2, polled at three rates. The error is the largest difference to \
@@ -143,22 +164,23 @@ fn about(seeds: u64) -> Vec<String> {
         ),
         format!(
             "Ideal polls are exact; the others have the encoder's steps of {QUANTUM_DEG} degrees and times known to 0.1 or 0.5 ms (one standard deviation). \
-             The axis follows the commanded motion, in the last column with a second-order servo of {hz} Hz, damping {damping}."
+             The axis follows the commanded motion, or a second-order servo of {SERVO_HZ} Hz with a damping of {DAMPED} or {UNDERDAMPED} does. \
+             In the last column the drive renews its position once per millisecond; no poll shows the half of a millisecond that it is late \
+             on average."
         ),
     ]
 }
 
 /// The true angle, degrees, every [`STEP_S`].
-fn shaft(servo: bool) -> Vec<f64> {
-    let (hz, damping) = SERVO;
-    let pace = hz * std::f64::consts::TAU;
+fn shaft(servo: Option<f64>) -> Vec<f64> {
+    let pace = SERVO_HZ * std::f64::consts::TAU;
     let end_s = BEFORE_S + SWEEP.duration_s() + AFTER_S;
     let (mut at, mut rate) = (0.0, 0.0);
     let steps = 0..(end_s / STEP_S).ceil() as u32;
     steps
         .map(|k| {
             let asked = SWEEP.angle_deg(f64::from(k) * STEP_S - BEFORE_S);
-            if servo {
+            if let Some(damping) = servo {
                 rate += (pace * pace * (asked - at) - 2.0 * damping * pace * rate) * STEP_S;
                 at += rate * STEP_S;
             } else {
@@ -181,6 +203,7 @@ fn polls(shaft: &[f64], hz: f64, circumstance: PollingCase, seed: u64) -> Vec<An
     let PollingCase {
         jitter_s,
         quantum_deg,
+        latch,
         ..
     } = circumstance;
     let mut noise = SeededNoise(seed);
@@ -197,7 +220,11 @@ fn polls(shaft: &[f64], hz: f64, circumstance: PollingCase, seed: u64) -> Vec<An
                 0.0 => due_s,
                 _ => due_s + LATEST_POLL_S * noise.uniform(),
             };
-            let truth = truth_deg(shaft, t_s);
+            let taken_s = match latch {
+                true => (t_s / CYCLE_S).floor() * CYCLE_S,
+                false => t_s,
+            };
+            let truth = truth_deg(shaft, taken_s);
             let angle = match quantum_deg {
                 0.0 => truth,
                 quantum => (truth / quantum).floor() * quantum,
@@ -282,8 +309,8 @@ mod tests {
     /// and other phases of the polls, which affect the ramps.
     #[test]
     fn errors_are_those_of_an_independent_computation() {
-        let stiff = shaft(false);
-        let [ideal, tenth, half, _] = CIRCUMSTANCES;
+        let stiff = shaft(None);
+        let [ideal, tenth, half, ..] = CIRCUMSTANCES;
         for (hz, circumstance, method, expected_deg) in [
             (50.0, ideal, Method::Nearest, 0.56),
             (50.0, ideal, Method::Linear, 0.025),
@@ -310,11 +337,10 @@ mod tests {
 
     #[test]
     fn a_lagging_servo_arrives() {
-        let (stiff, soft) = (shaft(false), shaft(true));
-        let (hz, damping) = SERVO;
+        let (stiff, soft) = (shaft(None), shaft(Some(DAMPED)));
         // The lag in the cruise is 2 damping / w: 56.25 x 2 x 0.8 / 94.2 = 0.955 degrees.
         let lag = truth_deg(&soft, 0.7) - truth_deg(&stiff, 0.7);
-        let expected = 56.25 * 2.0 * damping / (hz * std::f64::consts::TAU);
+        let expected = 56.25 * 2.0 * DAMPED / (SERVO_HZ * std::f64::consts::TAU);
         assert!((lag - expected).abs() < 0.01, "{lag} {expected}");
         assert!((soft.last().unwrap() + 45.0).abs() < 1e-6);
     }
