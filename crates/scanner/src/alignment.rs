@@ -14,6 +14,7 @@ use lidar::SensorPoint;
 use units::{Degrees, Host, Lidar, Stamp};
 
 use crate::clock::{LidarClock, Moment};
+use crate::sample_gaps::SampleGaps;
 use crate::steps::ClockStep;
 use crate::sweeps::Sweep;
 use crate::tolerance::MethodChoice;
@@ -40,6 +41,8 @@ pub struct Alignment {
     pub mount: Mount,
     /// Shaft samples discarded as implausible.
     pub implausible: u64,
+    /// Gaps between the angle samples within the sweeps.
+    pub sample_gaps: SampleGaps,
     /// Standard deviation of a range, metres.
     pub range_sd_m: f64,
     /// Only firings within one of these spans become points.
@@ -62,7 +65,7 @@ const STAMP_SD_NS: f64 = 288.675_134_594_812_9;
 
 impl Alignment {
     /// An alignment without clock steps and sweeps, as the live cloud and tests make it.
-    pub(crate) const fn new(
+    pub(crate) fn new(
         clock: LidarClock,
         trajectory: Trajectory,
         mount: Mount,
@@ -78,6 +81,7 @@ impl Alignment {
             unseen_sweeps: Vec::new(),
             mount,
             implausible: 0,
+            sample_gaps: SampleGaps::default(),
             range_sd_m,
             spans,
         }

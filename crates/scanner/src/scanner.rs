@@ -67,6 +67,7 @@ impl Survey {
             unseen: unseen_sweeps,
         } = angles.sweeps(&shaft.moves, config.sweep.as_ref())?;
         let spans = angles.spans(&sweeps);
+        let sample_gaps = angles.gaps(&sweeps);
         // `trajectory`: the commanded profile or a spline, by least squares (Levenberg-Marquardt).
         let (trajectory, choice) = angles.trajectory(&sweeps, &spans, accuracy, clock.bound())?;
         Ok(Alignment {
@@ -78,6 +79,7 @@ impl Survey {
             unseen_sweeps,
             mount: angles.mount,
             implausible: angles.implausible,
+            sample_gaps,
             range_sd_m: config.lidar.range_sd_m,
             spans,
         })

@@ -7,6 +7,7 @@ use crate::angles::{self, AngleSample, AngleTable};
 use crate::clock::Arrival;
 use crate::config::{ScanConfig, SweepPlan};
 use crate::error::ScanError;
+use crate::sample_gaps::SampleGaps;
 use crate::survey::ShaftRecords;
 use crate::sweeps::{FoundSweeps, MoveWatch, Sweep};
 use crate::tolerance::{Accuracy, MethodChoice};
@@ -99,6 +100,11 @@ impl TiltAngles {
             ([], []) if !self.samples.is_empty() => Err(ScanError::NoSweep),
             _ => Ok(found),
         }
+    }
+
+    /// The gaps between the samples within `sweeps`.
+    pub(crate) fn gaps(&self, sweeps: &[Sweep]) -> SampleGaps {
+        SampleGaps::of(&self.samples, sweeps)
     }
 
     /// The spans of time within which firings become points.

@@ -172,6 +172,15 @@ pub fn scan_table(scan: &ScanReport) -> String {
         format!(", samples agree to {rms:.4} deg RMS")
     });
     rows.push(("angle", format!("{}{bound}{rms}", sync.angle_method)));
+    if sync.angle_gaps > 0 {
+        rows.push((
+            "",
+            format!(
+                "{} gaps between samples, the longest {:.2} s",
+                sync.angle_gaps, sync.longest_angle_gap_s
+            ),
+        ));
+    }
     if let Some(tolerance) = &sync.tolerance {
         for (line, why) in tolerance.why.split("; ").enumerate() {
             rows.push((if line == 0 { "tolerance" } else { "" }, why.to_owned()));

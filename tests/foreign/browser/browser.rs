@@ -237,13 +237,27 @@ impl Page {
         pixels.collect::<BTreeSet<_>>().len()
     }
 
-    /// Clicks an element, which must be reachable for a mouse or finger.
+    /// Clicks an element once it rests where a mouse or finger reaches it: a picture that loads moves
+    /// what is below it.
     pub async fn click(&self, css: &str) {
         // The driver scrolls only to the edge, where the buttons may be.
-        self.run(&format!(
-            "document.querySelector({css:?}).scrollIntoView({{ block: 'center' }})"
-        ))
-        .await;
+        let script = "const [css, done] = arguments;
+            let last = null;
+            const look = () => {
+                const element = document.querySelector(css);
+                element.scrollIntoView({ block: 'center' });
+                const { x, y, width, height } = element.getBoundingClientRect();
+                const place = [x + width / 2, y + height / 2];
+                const rests = last !== null && place.every((value, index) => value === last[index]);
+                last = place;
+                if (rests && element.contains(document.elementFromPoint(...place))) done();
+                else requestAnimationFrame(look);
+            };
+            look();";
+        self.client
+            .execute_async(script, vec![json!(css)])
+            .await
+            .unwrap();
         let element = self.client.find(Locator::Css(css)).await.unwrap();
         element.click().await.unwrap();
     }

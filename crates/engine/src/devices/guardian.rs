@@ -8,8 +8,8 @@
 //! On CAN the drive itself monitors the heartbeats of the host (1016): there is no guardian.
 
 use std::io::{self, Read, Write};
-use std::os::unix::ffi::OsStrExt;
 use std::os::unix::net::UnixStream;
+use std::os::unix::process::parent_id;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -33,10 +33,10 @@ const HEARTBEAT: Duration = Duration::from_millis(50);
 /// Silence of an armed axis after which the guardian stops it. A quick stop from the highest speed
 /// takes 200 ms more, standstill and brake 100 ms: together less than a second.
 pub const SILENCE_LIMIT: Duration = Duration::from_millis(500);
-/// The same while the drive loop waits for a processor: the program is neither stopped nor stuck,
-/// and the move goes on as through silence of the drive (`MAX_SILENCE` of the drive client).
+/// The same while the program waits for a processor: it is neither stopped nor stuck, and the move
+/// goes on as through silence of the drive (`silence_limit` of the drive client).
 const OVERLOAD_LIMIT: Duration = Duration::from_secs(1);
-/// Between two checks whether the drive loop still waits for a processor.
+/// Between two checks whether the program still waits for a processor.
 const OVERLOAD_CHECK: Duration = Duration::from_millis(20);
 /// Gap in the drive loop after which the parent asks before it uses the port.
 const ASK_AFTER: Duration = Duration::from_millis(200);
@@ -49,7 +49,6 @@ const SEND_TIMEOUT: Duration = Duration::from_millis(20);
 
 /// Messages of the parent.
 mod request {
-    /// The folder of the thread that sends heartbeats follows, as a line.
     pub const ARM: u8 = b'A';
     pub const DISARM: u8 = b'D';
     pub const HEARTBEAT: u8 = b'H';
@@ -168,12 +167,7 @@ impl Guardian {
     /// [`GuardianError::Lost`].
     pub fn arm(&mut self) -> Result<(), GuardianError> {
         self.inhibitor = SleepInhibitor::take();
-        // Without it the guardian takes every silence for a stuck program.
-        let thread = std::fs::read_link(THIS_THREAD).unwrap_or_default();
-        let mut message = vec![request::ARM];
-        message.extend_from_slice(thread.as_os_str().as_bytes());
-        message.push(b'\n');
-        self.send(&message)?;
+        self.send(request::ARM)?;
         self.armed = Some(Instant::now());
         self.ask()
     }
@@ -183,7 +177,7 @@ impl Guardian {
         self.inhibitor = None;
         if self.armed.take().is_some() {
             // A guardian that is gone is noticed when it is armed again.
-            let _ = self.send(&[request::DISARM]);
+            let _ = self.send(request::DISARM);
         }
     }
 
@@ -200,16 +194,16 @@ impl Guardian {
             return Ok(());
         }
         if gap < ASK_AFTER {
-            self.send(&[request::HEARTBEAT])?;
+            self.send(request::HEARTBEAT)?;
             self.armed = Some(Instant::now());
             return Ok(());
         }
         self.ask()
     }
 
-    fn send(&self, request: &[u8]) -> Result<(), GuardianError> {
+    fn send(&self, request: u8) -> Result<(), GuardianError> {
         (&self.child.socket)
-            .write_all(request)
+            .write_all(&[request])
             .map_err(|_| GuardianError::Lost)
     }
 
@@ -217,7 +211,7 @@ impl Guardian {
     fn ask(&mut self) -> Result<(), GuardianError> {
         let gap = self.armed.map_or(Duration::ZERO, |last| last.elapsed());
         // A guardian that acts no longer reads.
-        let sent = self.send(&[request::ASK]);
+        let sent = self.send(request::ASK);
         match self.receive(ANSWER_TIMEOUT) {
             Some(answer::IDLE) if sent.is_ok() => {
                 self.armed = self.armed.map(|_| Instant::now());
@@ -303,21 +297,22 @@ fn read_line(mut socket: &UnixStream) -> io::Result<String> {
 /// Waits for the end of the heartbeats while armed: true if the parent has died. `None` if it ends
 /// while not armed.
 fn wait_for_alarm(socket: &mut UnixStream) -> io::Result<Option<bool>> {
-    let mut armed: Option<DriveThread> = None;
+    let parent = Threads::of(parent_id());
+    let mut armed = false;
     let mut received = Instant::now();
     loop {
         let rest = SILENCE_LIMIT
             .saturating_sub(received.elapsed())
             .max(OVERLOAD_CHECK);
-        socket.set_read_timeout(armed.is_some().then_some(rest))?;
+        socket.set_read_timeout(armed.then_some(rest))?;
         let mut byte = [0];
         match socket.read(&mut byte) {
-            Ok(0) => return Ok(armed.map(|_| true)),
+            Ok(0) => return Ok(armed.then_some(true)),
             Ok(_) => {
                 received = Instant::now();
                 match byte {
-                    [request::ARM] => armed = Some(DriveThread::of(&read_line(socket)?)),
-                    [request::DISARM] => armed = None,
+                    [request::ARM] => armed = true,
+                    [request::DISARM] => armed = false,
                     [request::ASK] => socket.write_all(&[answer::IDLE])?,
                     // A heartbeat.
                     _ => {}
@@ -326,84 +321,83 @@ fn wait_for_alarm(socket: &mut UnixStream) -> io::Result<Option<bool>> {
             Err(error) => match error.kind() {
                 io::ErrorKind::Interrupted => {}
                 io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut => {
-                    let limit = armed.as_ref().map_or(Duration::MAX, DriveThread::limit);
-                    if received.elapsed() >= limit {
+                    if received.elapsed() >= parent.silence_limit() {
                         return Ok(Some(false));
                     }
                 }
                 // The parent died with unread answers.
-                _ => return Ok(armed.map(|_| true)),
+                _ => return Ok(armed.then_some(true)),
             },
         }
     }
 }
 
-/// Names the folder of the thread that reads it (proc(5)).
-const THIS_THREAD: &str = "/proc/thread-self";
-
-/// The thread that sends heartbeats.
-struct DriveThread {
-    stat: PathBuf,
+/// The threads of a process (proc(5)).
+struct Threads {
+    folder: PathBuf,
 }
 
-impl DriveThread {
-    fn of(folder: &str) -> Self {
+impl Threads {
+    fn of(process: u32) -> Self {
         Self {
-            stat: Path::new("/proc").join(folder).join("stat"),
+            folder: format!("/proc/{process}/task").into(),
         }
     }
 
-    /// Longest silence of the thread in its present state.
-    fn limit(&self) -> Duration {
-        match self.is_runnable() {
+    /// Longest silence of the process in its present state.
+    fn silence_limit(&self) -> Duration {
+        match self.is_any_runnable() {
             true => OVERLOAD_LIMIT,
             false => SILENCE_LIMIT,
         }
     }
 
-    /// Whether it runs or waits for a processor. A stopped program is in the state T, a stuck one
-    /// sleeps (S, D). The state follows the name in parentheses, which may contain any character.
-    fn is_runnable(&self) -> bool {
-        std::fs::read(&self.stat).is_ok_and(|stat| {
-            let name_end = stat.iter().rposition(|&byte| byte == b')');
-            name_end.is_some_and(|end| stat.get(end + 2) == Some(&b'R'))
+    /// Whether a thread runs or waits for a processor: the drive loop itself, or one that it waits
+    /// for. All threads of a stopped program are in the state T, those of a stuck one sleep (S, D).
+    fn is_any_runnable(&self) -> bool {
+        std::fs::read_dir(&self.folder).is_ok_and(|mut threads| {
+            threads.any(|thread| thread.is_ok_and(|thread| is_runnable(&thread.path())))
         })
     }
 }
 
+/// The state follows the name in parentheses, which may contain any character.
+fn is_runnable(thread: &Path) -> bool {
+    std::fs::read(thread.join("stat")).is_ok_and(|stat| {
+        let name_end = stat.iter().rposition(|&byte| byte == b')');
+        name_end.is_some_and(|end| stat.get(end + 2) == Some(&b'R'))
+    })
+}
+
 #[cfg(test)]
 mod tests {
-    use std::sync::mpsc;
+    use std::process::{Command, Stdio};
 
     use super::*;
-
-    fn this_thread() -> DriveThread {
-        let folder = std::fs::read_link(THIS_THREAD).unwrap();
-        DriveThread::of(folder.to_str().unwrap())
-    }
 
     #[test]
     fn an_overloaded_machine_differs_from_a_stuck_program() {
         // A running thread is in the state of one that waits for a processor.
-        assert_eq!(this_thread().limit(), OVERLOAD_LIMIT);
+        let this = Threads::of(std::process::id());
+        assert_eq!(this.silence_limit(), OVERLOAD_LIMIT);
 
-        let (started, start) = mpsc::channel();
-        let (end, wait) = mpsc::channel::<()>();
-        let stuck = std::thread::Builder::new()
-            .name(") R (".to_owned())
-            .spawn(move || {
-                started.send(this_thread()).unwrap();
-                let _ = wait.recv();
-            })
-            .unwrap();
-        let thread = start.recv().unwrap();
-        while thread.is_runnable() {
+        let mut stuck = Command::new("cat");
+        let mut stuck = stuck.stdin(Stdio::piped()).spawn().unwrap();
+        let threads = Threads::of(stuck.id());
+        while threads.is_any_runnable() {
             std::thread::yield_now();
         }
-        assert_eq!(thread.limit(), SILENCE_LIMIT);
-        drop(end);
-        stuck.join().unwrap();
-        // A thread that has ended.
-        assert_eq!(thread.limit(), SILENCE_LIMIT);
+        assert_eq!(threads.silence_limit(), SILENCE_LIMIT);
+        drop(stuck.stdin.take());
+        stuck.wait().unwrap();
+        // A process that has ended.
+        assert_eq!(threads.silence_limit(), SILENCE_LIMIT);
+    }
+
+    #[test]
+    fn the_name_of_a_thread_does_not_hide_its_state() {
+        let thread = std::thread::Builder::new().name(") S (".to_owned());
+        let is_found = || is_runnable(Path::new("/proc/thread-self"));
+        assert!(thread.spawn(is_found).unwrap().join().unwrap());
     }
 }

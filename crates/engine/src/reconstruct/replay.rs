@@ -435,6 +435,8 @@ fn sync(alignment: &Alignment, tilt: &TiltSource) -> SyncReport {
         tolerance: alignment.choice.as_ref().map(ToleranceReport::new),
         angle_rms_deg: alignment.angle_rms_deg(),
         angle_bound_deg: alignment.angle_bound_deg().filter(|_| !is_table),
+        angle_gaps: alignment.sample_gaps.count,
+        longest_angle_gap_s: alignment.sample_gaps.longest.as_secs_f64(),
     }
 }
 

@@ -240,6 +240,10 @@ pub struct SyncReport {
     pub angle_rms_deg: Option<f64>,
     /// Bound on the angle error.
     pub angle_bound_deg: Option<f64>,
+    /// Times of at least 0.1 s in the sweeps without an angle sample.
+    pub angle_gaps: u64,
+    /// Longest time between two angle samples in the sweeps.
+    pub longest_angle_gap_s: f64,
 }
 
 /// Packets received and lost during a capture.
