@@ -237,8 +237,8 @@ impl Page {
         pixels.collect::<BTreeSet<_>>().len()
     }
 
-    /// Clicks an element once it rests where a mouse or finger reaches it: a picture that loads moves
-    /// what is below it.
+    /// Clicks an element once it rests where a mouse or finger reaches it: a picture that loads
+    /// moves the elements below it.
     pub async fn click(&self, css: &str) {
         // The driver scrolls only to the edge, where the buttons may be.
         let script = "const [css, done] = arguments;
