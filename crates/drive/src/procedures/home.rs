@@ -103,13 +103,17 @@ async fn wait_until_attained(ops: &mut Ops) -> Result<(), DriveError> {
         }
         // An error here does not end homing. A lost link fails the next check.
         if let Ok((demand, reply)) = ops.read_timed(objects::POSITION_DEMAND).await {
-            travel.demand.add(&ops.config, demand, reply.answer);
-            let mut apart = Span::ZERO;
+            travel
+                .demand
+                .add(&ops.config, demand, reply.request, reply.answer);
             if let Ok((position, later)) = ops.read_timed(objects::POSITION_ACTUAL).await {
-                travel.position.add(&ops.config, position, later.answer);
-                apart = later.answer.saturating_since(reply.request);
+                travel.add_position(
+                    &ops.config,
+                    position,
+                    [reply.request, later.request, later.answer],
+                );
             }
-            travel.check(&ops.config, apart)?;
+            travel.check(&ops.config)?;
             ops.report(CommandProgress::Searching {
                 at: reply.answer,
                 demand: Quadcounts(demand),
@@ -134,6 +138,9 @@ async fn wait_until_attained(ops: &mut Ops) -> Result<(), DriveError> {
 struct HomingTravel {
     demand: Way,
     position: Way,
+    /// Longest time between the first readings of both, and between the latest.
+    first_apart: Span,
+    apart: Span,
     /// The previous position was too far from the demand.
     is_suspicious: bool,
 }
@@ -141,16 +148,24 @@ struct HomingTravel {
 /// A distance from the start, qc.
 #[derive(Default)]
 struct Way {
+    /// The latest reading, and when it was requested.
     last: Option<(i32, Stamp<Host>)>,
     travelled: i64,
 }
 
 impl Way {
-    fn add(&mut self, config: &AxisConfig, position: i32, at: Stamp<Host>) {
-        if let Some((last, since)) = self.last.replace((position, at)) {
+    /// Adds a reading that was requested and answered at these times.
+    fn add(
+        &mut self,
+        config: &AxisConfig,
+        position: i32,
+        request: Stamp<Host>,
+        answer: Stamp<Host>,
+    ) {
+        if let Some((last, since)) = self.last.replace((position, request)) {
             let moved = i64::from(position) - i64::from(last);
             // Where the drive sets its zero the position jumps, further than the axis can move.
-            let seconds = at.saturating_since(since).as_secs_f64();
+            let seconds = answer.saturating_since(since).as_secs_f64();
             let fastest = Degrees(2.0 * config.gearing.rate(config.max_speed).0 * seconds + 1.0);
             if moved.unsigned_abs() <= u64::from(config.tolerance_qc(fastest).0.unsigned_abs()) {
                 self.travelled += moved;
@@ -166,18 +181,38 @@ impl Way {
 }
 
 impl HomingTravel {
+    /// Adds a position. Times: request of the demand before it, its own request and answer.
+    fn add_position(
+        &mut self,
+        config: &AxisConfig,
+        position: i32,
+        [demand_request, request, answer]: [Stamp<Host>; 3],
+    ) {
+        self.apart = answer.saturating_since(demand_request);
+        let is_first = self.position.last.is_none();
+        self.position.add(config, position, request, answer);
+        // Both ways begin together. A host that was delayed between the two readings begins them
+        // again, so that the delay does not widen the tolerance for the rest of homing.
+        let is_closer = self.apart + self.apart < self.first_apart;
+        if is_first || is_closer && !self.is_suspicious {
+            self.first_apart = self.apart;
+            self.position.travelled = self.demand.travelled;
+        }
+    }
+
     /// Compares the distance from the start with the range of the axis, and the way of the position
-    /// with that of the demand, which were read up to `apart` after one another.
-    fn check(&mut self, config: &AxisConfig, apart: Span) -> Result<(), DriveError> {
+    /// with that of the demand.
+    fn check(&mut self, config: &AxisConfig) -> Result<(), DriveError> {
         let (demand, position) = (self.demand.angle(config), self.position.angle(config));
         let guard = &config.guard;
         let speed = config.gearing.rate(config.homing.switch_speed).0;
-        let late = guard.servo_lag.as_secs_f64() + apart.as_secs_f64();
+        let lag = guard.servo_lag.as_secs_f64();
         let tolerance = config.standstill_spread.0
+            + speed * (self.first_apart + self.apart).as_secs_f64()
             + match config.homing.detects_current() {
                 // The axis is at its mechanical stop, and the demand moves on.
                 true => config.max_following_error.0,
-                false => (guard.behind.0 + speed * late).min(config.max_following_error.0),
+                false => (guard.behind.0 + speed * lag).min(config.max_following_error.0),
             };
         let is_off = demand != 0.0 && (position - demand).abs() > tolerance;
         // The zero may be set between the two reads.
@@ -259,4 +294,51 @@ fn outside(ops: &Ops, position: Quadcounts) -> Result<i32, DriveError> {
 fn is_inside(ops: &Ops, position: Quadcounts) -> Result<bool, DriveError> {
     let tolerance = ops.config.tolerance_qc(ops.config.arrival_tolerance);
     Ok(outside(ops, position)? <= tolerance.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Reads demand and position of an axis that homes at 20 deg/s: every 20 ms, each reading
+    /// takes a millisecond, and after `delayed` demands the host does not run for 0.5 s.
+    fn homing(delayed: &[i64], angle: impl Fn(f64) -> f64) -> Result<(), DriveError> {
+        let config = AxisConfig::default();
+        let qc = |angle| config.gearing.position(Degrees(angle)).unwrap().0;
+        let at = |ms: i64| Stamp::from_nanos(ms * 1_000_000);
+        let demand = |ms: i64| 0.02 * ms as f64;
+        let mut travel = HomingTravel::default();
+        let mut now = 0;
+        for number in 0..60 {
+            let sampled = demand(now);
+            travel
+                .demand
+                .add(&config, qc(sampled), at(now), at(now + 1));
+            let delay = if delayed.contains(&number) { 500 } else { 1 };
+            let times = [at(now), at(now + delay), at(now + delay + 1)];
+            travel.add_position(&config, qc(angle(demand(now + delay))), times);
+            travel.check(&config)?;
+            now += delay + 20;
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn a_delayed_host_is_no_deviation() {
+        for delayed in [&[][..], &[0], &[7], &[0, 1, 7, 8]] {
+            assert!(homing(delayed, |demand| demand).is_ok(), "{delayed:?}");
+        }
+    }
+
+    /// Without delays, and after one that began the comparison.
+    #[test]
+    fn a_deviation_is_found_behind_a_delay() {
+        for delayed in [&[][..], &[0]] {
+            let stalled = homing(delayed, |demand| demand.min(11.0));
+            let Err(DriveError::OffPlan { expected, .. }) = stalled else {
+                panic!("{stalled:?}");
+            };
+            assert!(expected.0 < 16.0, "{expected:?}");
+        }
+    }
 }

@@ -33,10 +33,11 @@ const HEARTBEAT: Duration = Duration::from_millis(50);
 /// Silence of an armed axis after which the guardian stops it. A quick stop from the highest speed
 /// takes 200 ms more, standstill and brake 100 ms: together less than a second.
 pub const SILENCE_LIMIT: Duration = Duration::from_millis(500);
-/// The same while the program waits for a processor: it is neither stopped nor stuck, and the move
-/// goes on as through silence of the drive (`silence_limit` of the drive client).
+/// The same while the program waits for a processor or for the system: it is neither stopped nor
+/// stuck, and the move goes on as through silence of the drive (`silence_limit` of the drive
+/// client).
 const OVERLOAD_LIMIT: Duration = Duration::from_secs(1);
-/// Between two checks whether the program still waits for a processor.
+/// Between two checks whether the program still waits.
 const OVERLOAD_CHECK: Duration = Duration::from_millis(20);
 /// Gap in the drive loop after which the parent asks before it uses the port.
 const ASK_AFTER: Duration = Duration::from_millis(200);
@@ -346,26 +347,28 @@ impl Threads {
 
     /// Longest silence of the process in its present state.
     fn silence_limit(&self) -> Duration {
-        match self.is_any_runnable() {
+        match self.is_any_delayed() {
             true => OVERLOAD_LIMIT,
             false => SILENCE_LIMIT,
         }
     }
 
-    /// Whether a thread runs or waits for a processor: the drive loop itself, or one that it waits
-    /// for. All threads of a stopped program are in the state T, those of a stuck one sleep (S, D).
-    fn is_any_runnable(&self) -> bool {
+    /// Whether a thread, the drive loop or one that it waits for, runs or waits for a processor
+    /// (R), or for the system (D): on a loaded machine poll(2) of a terminal waits for the
+    /// kernel's own threads, for 0.7 s as measured. All threads of a stopped program are in the
+    /// state T, those of a stuck one sleep (S).
+    fn is_any_delayed(&self) -> bool {
         std::fs::read_dir(&self.folder).is_ok_and(|mut threads| {
-            threads.any(|thread| thread.is_ok_and(|thread| is_runnable(&thread.path())))
+            threads.any(|thread| thread.is_ok_and(|thread| is_delayed(&thread.path())))
         })
     }
 }
 
 /// The state follows the name in parentheses, which may contain any character.
-fn is_runnable(thread: &Path) -> bool {
+fn is_delayed(thread: &Path) -> bool {
     std::fs::read(thread.join("stat")).is_ok_and(|stat| {
         let name_end = stat.iter().rposition(|&byte| byte == b')');
-        name_end.is_some_and(|end| stat.get(end + 2) == Some(&b'R'))
+        name_end.is_some_and(|end| matches!(stat.get(end + 2), Some(b'R' | b'D')))
     })
 }
 
@@ -384,7 +387,7 @@ mod tests {
         let mut stuck = Command::new("cat");
         let mut stuck = stuck.stdin(Stdio::piped()).spawn().unwrap();
         let threads = Threads::of(stuck.id());
-        while threads.is_any_runnable() {
+        while threads.is_any_delayed() {
             std::thread::yield_now();
         }
         assert_eq!(threads.silence_limit(), SILENCE_LIMIT);
@@ -397,7 +400,7 @@ mod tests {
     #[test]
     fn the_name_of_a_thread_does_not_hide_its_state() {
         let thread = std::thread::Builder::new().name(") S (".to_owned());
-        let is_found = || is_runnable(Path::new("/proc/thread-self"));
+        let is_found = || is_delayed(Path::new("/proc/thread-self"));
         assert!(thread.spawn(is_found).unwrap().join().unwrap());
     }
 }
