@@ -5,7 +5,7 @@ use std::fmt;
 use protocol::epos2::cia402::DeviceState;
 use protocol::epos2::objects::Address;
 use protocol::epos2::{Bounded, DeviceError};
-use units::{Degrees, Host, Quadcounts, Stamp};
+use units::{Degrees, Host, Quadcounts, Span, Stamp};
 
 use crate::command::CommandKind;
 use crate::error::DriveError;
@@ -89,6 +89,9 @@ pub enum CommandProgress {
     /// An axis at rest moved by this after its power was switched off: its head fell, or the brake
     /// slipped.
     Dropped(Degrees),
+    /// The drive was silent for so long at the end of a move that the axis was stopped; it rests at
+    /// its target.
+    StoppedAtTarget(Span),
     /// A command failed and the axis was stopped; the failure follows.
     MadeSafe(StopReport),
 }

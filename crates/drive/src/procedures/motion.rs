@@ -63,13 +63,48 @@ async fn guarded_move(
     hold: Span,
 ) -> Result<CommandOutcome, DriveError> {
     ops.aborts_on_alarm = true;
-    match run(&mut ops, target, hold).await {
+    let mut begun = None;
+    match run(&mut ops, target, hold, &mut begun).await {
         Ok(report) => Ok(CommandOutcome::Arrived(report)),
-        Err(cause) => Err(make_safe(&mut ops, cause).await),
+        Err(cause) => {
+            let error = make_safe(&mut ops, cause).await;
+            let arrived = arrived_in_silence(&mut ops, &error, begun).await;
+            arrived.map(CommandOutcome::Arrived).ok_or(error)
+        }
     }
 }
 
-async fn run(ops: &mut Ops, target: ValidatedMove, hold: Span) -> Result<MoveReport, DriveError> {
+/// The completed move of an axis that was silent at its end: it has been stopped in time, and rests
+/// at its target all the same.
+async fn arrived_in_silence(
+    ops: &mut Ops,
+    error: &DriveError,
+    begun: Option<(MovePlan, Stamp<Host>)>,
+) -> Option<MoveReport> {
+    let (DriveError::LinkLost { silent, .. }, Some((plan, started))) = (error, begun) else {
+        return None;
+    };
+    let (position, reply) = ops.read_timed(objects::POSITION_ACTUAL).await.ok()?;
+    let angle = ops.config.gearing.angle(Quadcounts(position));
+    if (angle.0 - plan.to.0).abs() > ops.config.arrival_tolerance.0 {
+        return None;
+    }
+    ops.report(CommandProgress::StoppedAtTarget(*silent));
+    Some(MoveReport {
+        plan,
+        position: Quadcounts(position),
+        angle,
+        started,
+        arrived: reply.answer,
+    })
+}
+
+async fn run(
+    ops: &mut Ops,
+    target: ValidatedMove,
+    hold: Span,
+    begun: &mut Option<(MovePlan, Stamp<Host>)>,
+) -> Result<MoveReport, DriveError> {
     verify_safety(ops).await?;
     let got = ops.read(objects::STATUSWORD).await?;
     if !is_referenced(got) {
@@ -86,6 +121,7 @@ async fn run(ops: &mut Ops, target: ValidatedMove, hold: Span) -> Result<MoveRep
     let mut switches = SwitchWatch::of_move(&ops.config, from.0, target.target.0);
     switches.check(ops).await?;
     let (mut guard, started) = start(ops, plan).await?;
+    *begun = Some((plan, started));
     let (position, arrived) =
         sample_until_arrival(ops, target.target, &mut guard, &mut switches, started).await?;
     ops.is_moving = false;

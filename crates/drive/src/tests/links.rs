@@ -289,6 +289,41 @@ fn a_gap_of_most_of_a_second_does_not_end_a_move() {
     }
 }
 
+/// Near the end of a move an unseen axis is stopped soon, since it could leave its limits. It has
+/// arrived all the same, and its power is off.
+#[test]
+fn silence_at_the_end_of_a_move_does_not_fail_it() {
+    for link in [DriveLink::Usb, DriveLink::Can] {
+        let mut usual = Rig::homed_on(link);
+        let began = usual.now;
+        usual.run(DriveCommand::Sweep(to(-15.0))).unwrap();
+        let took = usual.now - began;
+        let stopped = (1..60).filter(|k| {
+            let mut rig = Rig::homed_on(link);
+            rig.client.start(DriveCommand::Sweep(to(-15.0))).unwrap();
+            let before = took - Span::from_millis(10 * k);
+            assert_eq!(rig.run_for(before), None, "{link:?} {k}");
+            let until = rig.now + Span::from_millis(190);
+            rig.unit.distort = Box::new(move |at, bytes| match at < until {
+                true => Vec::new(),
+                false => bytes,
+            });
+            let end = rig.finish();
+            if let Err(error) = end {
+                // The stop came before the target was reached.
+                let is_safe = !matches!(error, DriveError::NotStopped { .. });
+                assert!(is_safe, "{link:?} {k}: {error}");
+                return false;
+            }
+            let is_off = rig.unit.state() == DeviceState::SwitchOnDisabled;
+            assert!(rig.unit.is_at_rest(), "{link:?} {k}");
+            is_off
+        });
+        let stopped = stopped.count();
+        assert!(stopped > 0, "{link:?}: no stop at the target");
+    }
+}
+
 #[test]
 fn a_blocked_axis_fails_the_move() {
     for link in LINKS {

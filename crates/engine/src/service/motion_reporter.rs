@@ -82,6 +82,16 @@ impl<'a> MotionReporter<'a> {
                     Some(help.to_owned()),
                 );
             }
+            DriveEvent::Progress(CommandProgress::StoppedAtTarget(silent)) => {
+                self.service.events().message(
+                    MessageLevel::Warning,
+                    format!(
+                        "the drive was silent for {:.0} ms at the end of the move: the axis was stopped, and rests at its target",
+                        silent.as_secs_f64() * 1e3
+                    ),
+                    None,
+                );
+            }
             event => {
                 if matches!(event, DriveEvent::Progress(_)) {
                     self.service.heartbeat();
