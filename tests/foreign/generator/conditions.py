@@ -4,6 +4,7 @@ import numpy as np
 
 import clocks
 import drive
+import lidar
 import mechanism
 import scan
 from log import INBOUND, OUTBOUND
@@ -221,6 +222,15 @@ for _ms in (0.1, -0.1, 0.3, -0.3, 1.2, -1.2, 5.0, -5.0):
         f"lidar clock steps {_ms:+g} ms",
         lambda seed, ms=_ms: Setup(seed=seed, lidar_steps=((0.6, ms * 1e-3),)),
     )
+# Whole packets of 1.327104 ms, on which the spacing shows nothing, and near them.
+for _count, _us in ((1, 0), (-1, 0), (2, 15), (-2, -15), (3, 0), (-3, 0)):
+    condition(
+        "clock",
+        f"lidar clock steps by {_count:+d} packets {_us:+d} us",
+        lambda seed, count=_count, us=_us: Setup(
+            seed=seed, lidar_steps=((0.6, count * lidar.PACKET_S + us * 1e-6),)
+        ),
+    )
 for _network, _ms in (("coalescing", 1.2), ("busy", 1.2), ("busy", 5.0)):
     condition(
         "clock",
@@ -229,7 +239,7 @@ for _network, _ms in (("coalescing", 1.2), ("busy", 1.2), ("busy", 5.0)):
             seed=seed, network=network, lidar_steps=((0.6, ms * 1e-3),)
         ),
     )
-for _ms in (0.3, 1.2, 6.0, -6.0, 20.0, -20.0, 1500.0):
+for _ms in (0.1, -0.1, 0.3, -0.3, 0.5, -0.5, 1.2, 6.0, -6.0, 20.0, -20.0, 1500.0):
     condition(
         "clock",
         f"host clock steps {_ms:+g} ms",
@@ -266,6 +276,13 @@ condition(
     "host clock slewed by 500 ppm",
     lambda seed: Setup(
         seed=seed, moves=[Move(-40.0, 10.0)], host_slews=((1.0, 3.0, 500.0),), share=4
+    ),
+)
+condition(
+    "clock",
+    "host clock slewed by 500 ppm throughout",
+    lambda seed: Setup(
+        seed=seed, moves=[Move(-60.0, 5.0)], host_slews=((0.0, 60.0, 500.0),), share=2
     ),
 )
 condition(
@@ -339,6 +356,18 @@ def acknowledgement_missing(start):
         for i, r in enumerate(records):
             if r[1] == 1 and r[4] == OUTBOUND and r[3].hex().startswith(start):
                 return [_after(records, i, INBOUND)]
+        raise ValueError(start)
+
+    return without(choose)
+
+
+def request_missing(start):
+    """The first request of this kind, whose acknowledgement remains."""
+
+    def choose(records, rng):
+        for i, r in enumerate(records):
+            if r[1] == 1 and r[4] == OUTBOUND and r[3].hex().startswith(start):
+                return [i]
         raise ValueError(start)
 
     return without(choose)
@@ -423,6 +452,14 @@ for _name, _link in (("400 Hz", scan.usb_400), ("40 Hz", scan.usb_40)):
         link=_link(),
         status_s=float("inf"),
     )
+for _name, _link in (("20 Hz", scan.usb_20), ("10 Hz", scan.usb_10)):
+    for _status in (20e-3, float("inf")):
+        missing(
+            f"one answer missing, {_name}" + ("" if _status < 1 else ", nothing but polls"),
+            answers_missing([0.5]),
+            link=_link(),
+            status_s=_status,
+        )
 missing(
     "one answer missing, latency timer of 16 ms, nothing but polls",
     answers_missing([0.5]),
@@ -435,6 +472,8 @@ missing("drive answers 60 ms late", without(lambda records, rng: []), late=(0.5,
 missing("three answers missing", answers_missing([0.3, 0.55, 0.8]))
 missing("one request missing", requests_missing([0.5]))
 missing("2 % of the drive's answers missing", share_of_answers(0.02))
+missing("request of 607A missing", request_missing("900211047a60"))
+missing("request of the start missing", request_missing("9002110440600001" + "1f"))
 missing("acknowledgement of 607A missing", acknowledgement_missing("900211047a60"))
 missing("acknowledgement of the start missing", acknowledgement_missing("9002110440600001" + "1f"))
 missing("answer of a statusword missing", other_answer_missing("9002100241600001"))
