@@ -584,6 +584,19 @@ condition(
     join="mergecap",
 )
 
+condition(
+    "files",
+    "two logs by cat, the first cut off within a record",
+    lambda seed: [Setup(seed=seed), Setup(seed=seed + 1000, epoch_s=7.0)],
+    join="cut, cat",
+)
+condition(
+    "files",
+    "two logs merged without a comment",
+    lambda seed: [Setup(seed=seed), Setup(seed=seed + 1000, epoch_s=7.0)],
+    join="merged",
+)
+
 # Other things that happen.
 
 
