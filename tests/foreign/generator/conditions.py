@@ -245,6 +245,17 @@ for _ms in (0.1, -0.1, 0.3, -0.3, 0.5, -0.5, 1.2, 6.0, -6.0, 20.0, -20.0, 1500.0
         f"host clock steps {_ms:+g} ms",
         lambda seed, ms=_ms: Setup(seed=seed, host_steps=((0.62, ms * 1e-3),)),
     )
+# Recorded for longer, so that the spread of the least delays is known.
+for _name, _link in (("USB 400 Hz", scan.usb_400), ("USB 1000 Hz", scan.usb_1000),
+                     ("CAN", scan.can), ("RS232", scan.rs232)):  # fmt: skip
+    for _ms in (0.15, -0.15, 0.5, -0.5):
+        condition(
+            "clock",
+            f"host clock steps {_ms:+g} ms after 4 s, {_name}",
+            lambda seed, ms=_ms, link=_link: Setup(
+                seed=seed, link=link(), before_s=4.0, host_steps=((4.55, ms * 1e-3),)
+            ),
+        )
 condition(
     "clock",
     "lidar clock corrected by 17.3 s",
