@@ -176,20 +176,6 @@ impl RecordReader {
                     {
                         *is_homing = objects::MODE.decode(*value) == HOMING;
                     }
-                    // The client reads the target back: the log may lack the write.
-                    &mut Observation::Read {
-                        address,
-                        value,
-                        request,
-                        answer,
-                    } if address == objects::TARGET_POSITION.address => {
-                        seen = Observation::Wrote {
-                            address,
-                            value,
-                            request,
-                            answer: Some(answer),
-                        };
-                    }
                     _ => {}
                 }
                 emit(seen);
