@@ -10,11 +10,11 @@
 //! All host stamps after a step of the host's clock, including the drive's (`monotonic`), are
 //! converted to the clock before it. After a step of the lidar's clock, that clock has another
 //! piece. The spacing of packets shows steps of the lidar's clock down to 0.1 ms if the delays
-//! confirm them; where whole packets seem to be missing, the delays show that none are. Steps of the
-//! host's clock from 1 ms to 10 ms are found where neither device was recorded for half a second,
-//! as on a host that sleeps, and where the samples of a moving axis jump too (`motion`); on a quiet
-//! network the latter shows steps from 0.1 ms on. Others, and steps undone within six seconds, are not; the clock's bound
-//! contains them. `lidar` unwraps hours.
+//! confirm them; where whole packets seem to be missing, the delays show that none are. Steps of
+//! the host's clock from 1 ms to 10 ms are found where neither device was recorded for half a
+//! second, as on a host that sleeps, and where the samples of a moving axis jump too (`motion`); on
+//! a quiet network the latter shows steps from 0.1 ms on. Others, and steps undone within six
+//! seconds, are not; the clock's bound contains them. `lidar` unwraps hours.
 
 mod jumps;
 mod monotonic;
