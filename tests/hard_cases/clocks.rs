@@ -230,6 +230,26 @@ fn packets_out_of_order_do_not_affect_the_clock() {
     assert!(apart.as_nanos().abs() < 40_000, "{apart:?}");
 }
 
+/// Two crystals may differ by 200 ppm: the online clock follows the faster one.
+#[test]
+fn the_online_clock_follows_two_crystals_at_their_limits() {
+    for ppm in [-200, 200] {
+        let mut online = OnlineClock::default();
+        let mut worst = 0;
+        for i in 0..40_000i64 {
+            let device = i * 1_327_104;
+            let host = device + device / 1_000_000 * ppm;
+            online.observe(arrival(device, host + i * 7_919 % 60_000));
+            let moment = online.moment(Stamp::from_nanos(device)).unwrap();
+            // The first packets are late.
+            if i > 1_000 {
+                worst = worst.max((moment.host.as_nanos() - host).abs());
+            }
+        }
+        assert!(worst < 100_000, "{ppm} ppm: {worst} ns");
+    }
+}
+
 /// Online, a clock that was set is detected: at once if time runs back, within five seconds if it
 /// jumps forward.
 #[test]

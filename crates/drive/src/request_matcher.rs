@@ -106,6 +106,25 @@ impl RequestMatcher {
         }
     }
 
+    /// The two newest requests that a reply fits, the newer one second, if it fits several.
+    pub fn newest_fitting(&self, reply: &Reply) -> Option<[SentRequest; 2]> {
+        if self.find_probe(reply).is_some() {
+            return None;
+        }
+        let mut fitting = self.outstanding.iter().rev().filter(|request| {
+            probe_error(request).is_none() && reply.fits(request.address, request.access)
+        });
+        let newer = fitting.next()?;
+        fitting.next().map(|older| [*older, *newer])
+    }
+
+    /// Drops the request with this id and those before it, whose replies are lost.
+    pub fn retire_through(&mut self, id: u64) {
+        if let Some(index) = self.outstanding.iter().rposition(|old| old.id == id) {
+            self.retire(index + 1);
+        }
+    }
+
     /// Drops the oldest `count` requests, whose replies are lost.
     fn retire(&mut self, count: usize) {
         for request in self.outstanding.drain(..count) {

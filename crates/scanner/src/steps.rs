@@ -10,10 +10,11 @@
 //! All host stamps after a step of the host's clock, including the drive's (`monotonic`), are
 //! converted to the clock before it. After a step of the lidar's clock, that clock has another
 //! piece. The spacing of packets shows steps of the lidar's clock down to 0.1 ms if the delays
-//! confirm them. Steps of the host's clock from 1 ms to 10 ms are found where neither device was
-//! recorded for half a second, as on a host that sleeps, and where the samples of a moving axis
-//! jump too (`motion`). Others, and steps undone within six seconds, are not; the clock's bound
-//! contains them. `lidar` unwraps hours.
+//! confirm them; where whole packets seem to be missing, the delays show that none are. Steps of
+//! the host's clock from 1 ms to 10 ms are found where neither device was recorded for half a
+//! second, as on a host that sleeps, and where the samples of a moving axis jump too (`motion`); on
+//! a quiet network the latter shows steps from 0.1 ms on. Others, and steps undone within six
+//! seconds, are not; the clock's bound contains them. `lidar` unwraps hours.
 
 mod jumps;
 mod monotonic;
@@ -50,6 +51,8 @@ pub struct ClockStep {
     pub after: Span,
     /// Size of the step; negative if the clock was set back.
     pub by: Span,
+    /// Packets that seem to be missing, as the lidar's clock was set forward by whole packets.
+    pub phantom_packets: u64,
 }
 
 impl fmt::Display for ClockStep {
@@ -128,6 +131,10 @@ impl Timeline {
                 when,
                 after: when.saturating_since(begin),
                 by,
+                phantom_packets: match cut.clock {
+                    SetClock::Lidar => found.phantom_packets(by),
+                    SetClock::Host => 0,
+                },
             });
         }
         Some(Self {
@@ -169,7 +176,10 @@ fn attribute(
             return sleeps.then(|| cut(SetClock::Host));
         }
         // No delay puts the records of the drive back.
-        Evidence::Regular if jump.by < Span::ZERO && clock_steps.shows(jump.at, jump.by) => {
+        Evidence::Regular
+            if jump.by <= Span::from_nanos(-jumps::SMALLEST_OF_HOST_NS)
+                && clock_steps.shows(jump.at, jump.by) =>
+        {
             return Some(cut(SetClock::Host));
         }
         Evidence::Regular => {

@@ -4,6 +4,7 @@ import numpy as np
 
 import clocks
 import drive
+import lidar
 import mechanism
 import scan
 from log import INBOUND, OUTBOUND
@@ -221,6 +222,15 @@ for _ms in (0.1, -0.1, 0.3, -0.3, 1.2, -1.2, 5.0, -5.0):
         f"lidar clock steps {_ms:+g} ms",
         lambda seed, ms=_ms: Setup(seed=seed, lidar_steps=((0.6, ms * 1e-3),)),
     )
+# Whole packets of 1.327104 ms, on which the spacing shows nothing, and near them.
+for _count, _us in ((1, 0), (-1, 0), (2, 15), (-2, -15), (3, 0), (-3, 0)):
+    condition(
+        "clock",
+        f"lidar clock steps by {_count:+d} packets {_us:+d} us",
+        lambda seed, count=_count, us=_us: Setup(
+            seed=seed, lidar_steps=((0.6, count * lidar.PACKET_S + us * 1e-6),)
+        ),
+    )
 for _network, _ms in (("coalescing", 1.2), ("busy", 1.2), ("busy", 5.0)):
     condition(
         "clock",
@@ -229,12 +239,23 @@ for _network, _ms in (("coalescing", 1.2), ("busy", 1.2), ("busy", 5.0)):
             seed=seed, network=network, lidar_steps=((0.6, ms * 1e-3),)
         ),
     )
-for _ms in (0.3, 1.2, 6.0, -6.0, 20.0, -20.0, 1500.0):
+for _ms in (0.1, -0.1, 0.3, -0.3, 0.5, -0.5, 1.2, 6.0, -6.0, 20.0, -20.0, 1500.0):
     condition(
-        "clock",
+        "clock" if abs(_ms) > 0.2 else "more",
         f"host clock steps {_ms:+g} ms",
         lambda seed, ms=_ms: Setup(seed=seed, host_steps=((0.62, ms * 1e-3),)),
     )
+# Recorded for longer, so that the spread of the least delays is known.
+for _name, _link in (("USB 400 Hz", scan.usb_400), ("USB 1000 Hz", scan.usb_1000),
+                     ("CAN", scan.can), ("RS232", scan.rs232)):  # fmt: skip
+    for _ms in (0.15, -0.15, 0.5, -0.5):
+        condition(
+            "clock" if abs(_ms) > 0.2 else "more",
+            f"host clock steps {_ms:+g} ms after 4 s, {_name}",
+            lambda seed, ms=_ms, link=_link: Setup(
+                seed=seed, link=link(), before_s=4.0, host_steps=((4.55, ms * 1e-3),)
+            ),
+        )
 condition(
     "clock",
     "lidar clock corrected by 17.3 s",
@@ -266,6 +287,13 @@ condition(
     "host clock slewed by 500 ppm",
     lambda seed: Setup(
         seed=seed, moves=[Move(-40.0, 10.0)], host_slews=((1.0, 3.0, 500.0),), share=4
+    ),
+)
+condition(
+    "clock",
+    "host clock slewed by 500 ppm throughout",
+    lambda seed: Setup(
+        seed=seed, moves=[Move(-60.0, 5.0)], host_slews=((0.0, 60.0, 500.0),), share=2
     ),
 )
 condition(
@@ -339,6 +367,18 @@ def acknowledgement_missing(start):
         for i, r in enumerate(records):
             if r[1] == 1 and r[4] == OUTBOUND and r[3].hex().startswith(start):
                 return [_after(records, i, INBOUND)]
+        raise ValueError(start)
+
+    return without(choose)
+
+
+def request_missing(start):
+    """The first request of this kind, whose acknowledgement remains."""
+
+    def choose(records, rng):
+        for i, r in enumerate(records):
+            if r[1] == 1 and r[4] == OUTBOUND and r[3].hex().startswith(start):
+                return [i]
         raise ValueError(start)
 
     return without(choose)
@@ -423,6 +463,14 @@ for _name, _link in (("400 Hz", scan.usb_400), ("40 Hz", scan.usb_40)):
         link=_link(),
         status_s=float("inf"),
     )
+for _name, _link in (("20 Hz", scan.usb_20), ("10 Hz", scan.usb_10)):
+    for _status in (20e-3, float("inf")):
+        missing(
+            f"one answer missing, {_name}" + ("" if _status < 1 else ", nothing but polls"),
+            answers_missing([0.5]),
+            link=_link(),
+            status_s=_status,
+        )
 missing(
     "one answer missing, latency timer of 16 ms, nothing but polls",
     answers_missing([0.5]),
@@ -435,6 +483,12 @@ missing("drive answers 60 ms late", without(lambda records, rng: []), late=(0.5,
 missing("three answers missing", answers_missing([0.3, 0.55, 0.8]))
 missing("one request missing", requests_missing([0.5]))
 missing("2 % of the drive's answers missing", share_of_answers(0.02))
+for _name, _start in (("607A", "900211047a60"), ("the start", "90021104406000011f")):
+    condition(
+        "more",
+        f"request of {_name} missing",
+        lambda seed, start=_start: Setup(seed=seed, mangle=request_missing(start)),
+    )
 missing("acknowledgement of 607A missing", acknowledgement_missing("900211047a60"))
 missing("acknowledgement of the start missing", acknowledgement_missing("9002110440600001" + "1f"))
 missing("answer of a statusword missing", other_answer_missing("9002100241600001"))
@@ -543,6 +597,19 @@ condition(
     "two logs of one time by mergecap",
     lambda seed: [Setup(seed=seed), Setup(seed=seed + 1000, epoch_s=0.3)],
     join="mergecap",
+)
+
+condition(
+    "files",
+    "two logs by cat, the first cut off within a record",
+    lambda seed: [Setup(seed=seed), Setup(seed=seed + 1000, epoch_s=7.0)],
+    join="cut, cat",
+)
+condition(
+    "files",
+    "two logs merged without a comment",
+    lambda seed: [Setup(seed=seed), Setup(seed=seed + 1000, epoch_s=7.0)],
+    join="merged",
 )
 
 # Other things that happen.

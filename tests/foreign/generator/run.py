@@ -34,6 +34,8 @@ def largest(rows, name):
 
 
 RATIOS = ("angle_ratio", "clock_ratio", "total_ratio", "tolerance_ratio")
+# Type of an enhanced packet block of pcapng.
+RECORD = 6
 GOOD_DEG = 0.0109
 QUIET_US = 100.0
 
@@ -170,6 +172,14 @@ def summary(results):
     return "\n".join(lines)
 
 
+def without_header(content):
+    """The records of a log, to be read by another's section and interfaces."""
+    at = 0
+    while int.from_bytes(content[at : at + 4], "little") != RECORD:
+        at += int.from_bytes(content[at + 4 : at + 8], "little")
+    return content[at:]
+
+
 def log_of(condition, seed, folder):
     """The log of a condition and the truths of its parts."""
     parts, truths = [], []
@@ -183,7 +193,12 @@ def log_of(condition, seed, folder):
         subprocess.run(["mergecap", "-w", whole, *parts], check=True)
     else:
         times = 2 if condition.join == "cat twice" else 1
-        whole.write_bytes(b"".join(p.read_bytes() for p in parts * times))
+        contents = [p.read_bytes() for p in parts * times]
+        if condition.join == "cut, cat":
+            contents[0] = contents[0][: len(contents[0]) * 7 // 10 + 5]
+        if condition.join == "merged":
+            contents[1:] = [without_header(content) for content in contents[1:]]
+        whole.write_bytes(b"".join(contents))
     if condition.join == "cut":
         os.truncate(whole, whole.stat().st_size * 7 // 10 + 5)
     return whole, truths

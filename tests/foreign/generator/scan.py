@@ -96,6 +96,18 @@ def usb_40():
     return link
 
 
+def usb_20():
+    link = usb_400()
+    link.period = 50e-3
+    return link
+
+
+def usb_10():
+    link = usb_400()
+    link.period = 100e-3
+    return link
+
+
 def usb_latency_timer():
     """The adapter's factory setting: answers wait for the end of 16 ms."""
     link = usb_400()

@@ -7,6 +7,7 @@
 
 mod can;
 mod rs232;
+mod slow_polls;
 
 use protocol::canopen::sdo::Initiate;
 use protocol::epos2::objects::{self, Address};
@@ -21,6 +22,7 @@ use crate::exchange::{ObjectAccess, Reply, TransferRequest};
 use crate::request_matcher::{ReplyMatch, RequestMatcher, SentRequest};
 use can::{CanEvent, CanListener};
 use rs232::{Rs232Listener, SerialEvent};
+use slow_polls::SlowPolls;
 
 /// An event shown by the traffic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -107,6 +109,7 @@ pub struct DriveListener {
     last_id: u64,
     /// Shortest time between a request and its reply so far.
     shortest_reply: Option<Span>,
+    slow_polls: SlowPolls,
 }
 
 impl DriveListener {
@@ -124,6 +127,7 @@ impl DriveListener {
             matcher: RequestMatcher::default(),
             last_id: 0,
             shortest_reply: None,
+            slow_polls: SlowPolls::default(),
         }
     }
 
@@ -182,11 +186,10 @@ impl DriveListener {
             Some(CanEvent::Request(address, access)) => {
                 self.handle_sent(self.node, address, access, host, emit);
             }
-            Some(CanEvent::Response(reply)) => match self.matched(&reply, emit) {
+            Some(CanEvent::Response(reply)) => match self.matched(&reply, host, emit) {
                 ReplyMatch::Request(sent) => {
-                    self.learn_reply_time(sent.sent, host);
                     self.can.learn_mapping(&sent, &reply);
-                    observation(&sent, &reply, host).into_iter().for_each(emit);
+                    self.report(&sent, &reply, host, emit);
                 }
                 ReplyMatch::Probe(_) => {}
                 ReplyMatch::Unmatched => emit(noise),
@@ -212,7 +215,19 @@ impl DriveListener {
     }
 
     /// Matches a reply; reports the writes before it that have none.
-    fn matched(&mut self, reply: &Reply, emit: &mut impl FnMut(Observation)) -> ReplyMatch {
+    fn matched(
+        &mut self,
+        reply: &Reply,
+        host: Stamp<Host>,
+        emit: &mut impl FnMut(Observation),
+    ) -> ReplyMatch {
+        if let Some([older, newer]) = self.matcher.newest_fitting(reply) {
+            if self.slow_polls.is_of_newer([&older, &newer], reply, host) {
+                self.matcher.retire_through(older.id);
+            } else {
+                self.slow_polls.note_unmatched(&newer, host);
+            }
+        }
         let matched = self.matcher.handle_reply(reply);
         self.report_lost_writes(emit);
         matched
@@ -253,15 +268,28 @@ impl DriveListener {
             && address != objects::CONTROLWORD.address
         {
             self.matcher.retire_answered(&request, shortest);
+            if let Some(settled) = self.slow_polls.settled(sent) {
+                self.matcher.retire_through(settled);
+            }
             self.report_lost_writes(emit);
         }
         self.matcher.handle_sent(request);
     }
 
-    fn learn_reply_time(&mut self, sent: Stamp<Host>, answer: Stamp<Host>) {
-        let time = answer.saturating_since(sent);
+    /// Reports a request with its reply.
+    fn report(
+        &mut self,
+        sent: &SentRequest,
+        reply: &Reply,
+        answer: Stamp<Host>,
+        emit: &mut impl FnMut(Observation),
+    ) {
+        let time = answer.saturating_since(sent.sent);
         let shortest = self.shortest_reply.unwrap_or(time);
         self.shortest_reply = Some(shortest.min(time));
+        let seen = observation(sent, reply, answer);
+        self.slow_polls.learn(seen.as_ref(), time);
+        seen.into_iter().for_each(emit);
     }
 
     fn handle_answer(
@@ -275,11 +303,8 @@ impl DriveListener {
         let Ok(Ok(reply)) = frame.as_ref().map(Reply::parse) else {
             return emit(noise);
         };
-        match self.matched(&reply, emit) {
-            ReplyMatch::Request(sent) if sent.id != 0 => {
-                self.learn_reply_time(sent.sent, host);
-                observation(&sent, &reply, host).into_iter().for_each(emit);
-            }
+        match self.matched(&reply, host, emit) {
+            ReplyMatch::Request(sent) if sent.id != 0 => self.report(&sent, &reply, host, emit),
             ReplyMatch::Request(_) | ReplyMatch::Probe(_) => {}
             ReplyMatch::Unmatched => emit(noise),
         }

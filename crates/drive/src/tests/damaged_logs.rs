@@ -195,6 +195,77 @@ fn one_missing_reply_costs_one_sample() {
     }
 }
 
+/// The exchanges of positions on USB, one per `period`, and their samples.
+fn slow_polls(period: Span) -> (Vec<Vec<Record>>, Vec<ShaftSample>) {
+    let Recorded { log, samples, .. } = recorded(DriveLink::Usb);
+    let mut slow = (Vec::new(), Vec::new());
+    let mut begin = samples[0].request;
+    for sample in samples {
+        let delay = begin - sample.request;
+        let exchange = log.iter().filter(|(way, _, host)| match way {
+            Direction::ToDevice => *host == sample.request,
+            Direction::FromDevice => *host > sample.request && *host <= sample.answer,
+        });
+        let delayed = exchange.map(|(way, bytes, host)| (*way, bytes.clone(), *host + delay));
+        slow.0.push(delayed.collect());
+        slow.1.push(ShaftSample {
+            request: begin,
+            answer: sample.answer + delay,
+            ..*sample
+        });
+        begin += period;
+    }
+    slow
+}
+
+/// Between slow polls a master may have given up. Timing and position show which poll is answered.
+#[test]
+fn one_missing_reply_costs_at_most_two_slow_polls() {
+    for period_ms in [35, 50, 100] {
+        let (exchanges, samples) = slow_polls(Span::from_millis(period_ms));
+        let whole = listen(DriveLink::Usb, &exchanges.concat());
+        assert!(whole == samples, "{} of {}", whole.len(), samples.len());
+        let cases = 5..samples.len() - 3;
+        assert!(cases.len() > 100);
+        let mut twice = 0;
+        for missing in cases.clone() {
+            let mut exchanges = exchanges.clone();
+            exchanges[missing].retain(|(way, ..)| *way == Direction::ToDevice);
+            let observed = listen(DriveLink::Usb, &exchanges.concat());
+            let lost = samples.len() - observed.len();
+            assert!(
+                (1..=2).contains(&lost),
+                "{period_ms} ms: {lost} at {missing}"
+            );
+            twice += usize::from(lost == 2);
+            assert!(observed.iter().all(|sample| samples.contains(sample)));
+        }
+        // The next poll is lost too only where the speed changes.
+        assert!(4 * twice <= cases.len(), "{period_ms} ms: {twice}");
+    }
+}
+
+/// A reply so late that the master asks again is not taken for that to the next poll, unless the
+/// axis rests.
+#[test]
+fn a_late_reply_is_not_that_to_the_next_slow_poll() {
+    let (exchanges, samples) = slow_polls(Span::from_millis(35));
+    for late in 5..samples.len() - 3 {
+        let mut exchanges = exchanges.clone();
+        let delay = Span::from_millis(35) + Span::from_micros(500);
+        let mut replies = exchanges[late].split_off(1);
+        for reply in &mut replies {
+            reply.2 += delay;
+        }
+        exchanges[late + 1].splice(1..1, replies);
+        for sample in listen(DriveLink::Usb, &exchanges.concat()) {
+            let own = samples.iter().find(|own| own.request == sample.request);
+            let apart = own.unwrap().position.0 - sample.position.0;
+            assert!(apart.abs() <= 2, "{late}: {sample:?}");
+        }
+    }
+}
+
 /// A write whose confirmation is missing is reported all the same, before the samples after it.
 #[test]
 fn a_write_without_its_confirmation_is_reported() {

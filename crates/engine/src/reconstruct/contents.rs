@@ -307,7 +307,7 @@ pub fn contents(
         gps: None,
         sensors: Vec::new(),
         returns: stats.returns,
-        lost_packets: stats.lost_packets,
+        lost_packets: lost_packets(stats, steps),
         duration_s: stats.duration.as_secs_f64(),
         rpm: stats.rpm,
         tilt,
@@ -315,6 +315,12 @@ pub fn contents(
         simulated: config.simulated,
         warnings: warnings(stats, pass, steps),
     }
+}
+
+/// Packets that are missing, not those that a step of the lidar's clock pretends.
+fn lost_packets(stats: &Stats, steps: &[ClockStep]) -> u64 {
+    let phantoms = steps.iter().map(|step| step.phantom_packets);
+    phantoms.fold(stats.lost_packets, u64::saturating_sub)
 }
 
 fn warnings(stats: &Stats, pass: &Pass, steps: &[ClockStep]) -> Vec<String> {
@@ -334,7 +340,7 @@ fn warnings(stats: &Stats, pass: &Pass, steps: &[ClockStep]) -> Vec<String> {
         ));
     }
     let counts_with_text = [
-        (stats.lost_packets, "lidar packets are missing"),
+        (lost_packets(stats, steps), "lidar packets are missing"),
         (
             stats.duplicates + pass.doubled,
             "lidar packets arrived twice and were used once",

@@ -52,7 +52,7 @@ fn out_of_reach(path: &Path, out: &UnreachableTolerance) -> Failure {
         coarser.at.0
     ));
     Failure::new(Kind::Incomplete, format!("{}: {out}", path.display())).help(format!(
-        "no cloud was made; the recording is unchanged. Alternatives: {}",
+        "no cloud was made; the recording is unchanged. The bound is that of tilt angle and clock, without the error of the ranges. Alternatives: {}",
         would.join("; ")
     ))
 }

@@ -182,8 +182,7 @@ pub struct ToleranceReport {
     pub bound_m: f64,
     /// Every method tried, cheapest first.
     pub tried: Vec<TriedMethod>,
-    /// The choice in words.
-    #[serde(skip)]
+    /// The choice in words, with the errors that the bounds leave out.
     pub why: String,
 }
 

@@ -7,6 +7,8 @@ use units::Span;
 const WARNING_BOUND_DEG: f64 = 0.1;
 /// Clock bound above which a warning is due: the networks of the trials stay below half of it.
 const WARNING_CLOCK_BOUND: Span = Span::from_micros(500);
+/// Drift above which a warning is due: crystals stay within 100 ppm each.
+const WARNING_DRIFT_PPM: f64 = 200.0;
 /// Distance from the planned end above which a sweep counts as cut short.
 const CUT_SHORT_DEG: f64 = 0.1;
 
@@ -19,6 +21,12 @@ pub(super) fn alignment_warnings(alignment: &Alignment) -> Vec<String> {
         warnings.push(format!(
             "for a while all packets of the lidar came late, or the host's clock was slewed or set by a little: times may be wrong by {:.1} ms",
             clock_bound.as_secs_f64() * 1e3
+        ));
+    }
+    let drift_ppm = alignment.clock.drift_ppm();
+    if drift_ppm.abs() > WARNING_DRIFT_PPM {
+        warnings.push(format!(
+            "the clocks of host and lidar drift by {drift_ppm:.0} ppm, more than two crystals do: the host's clock was slewed, or one is faulty; times are those of the host's clock"
         ));
     }
     if let Some(bound) = alignment

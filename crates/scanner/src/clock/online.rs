@@ -17,8 +17,8 @@ use super::Arrival;
 use super::device::span;
 use super::segment::{ClockSegment, Moment, OffsetLine};
 
-/// Greatest growth of the offset: the greatest drift between the clocks.
-const MAX_DRIFT: f64 = 100e-6;
+/// Greatest growth of the offset: the greatest drift between two crystals, each within 100 ppm.
+const MAX_DRIFT: f64 = 200e-6;
 /// Rate at which the offset comes down.
 const CATCH_UP: f64 = 0.5;
 /// Reordered packets go back by at most this.

@@ -10,6 +10,8 @@
 //! spacing of packets, those of the host's clock by a silence, in which the host slept, or by the
 //! motion of the axis.
 
+mod whole_packets;
+
 use std::collections::VecDeque;
 
 use units::Span;
@@ -28,7 +30,12 @@ const SMALL_WINDOW: usize = 256;
 /// Shortest silence of a host that slept.
 const SILENCE: Span = Span::from_millis(500);
 /// The smallest jump of the host's clock to look for: the delays of most networks vary by less.
-const SMALLEST_OF_HOST_NS: i64 = 1_000_000;
+pub(super) const SMALLEST_OF_HOST_NS: i64 = 1_000_000;
+/// On a network whose least delays vary less, smaller ones count if the motion shows them too.
+const SMALLEST_ON_QUIET_NS: i64 = 100_000;
+const MIN_SPREADS: i64 = 3;
+/// Windows that show the spread of the least delays.
+const MIN_SPREAD_WINDOWS: usize = 8;
 /// Largest relative drift of two crystals, in ppm.
 const DRIFT_PPM: i64 = 200;
 /// Time for which a jump must last.
@@ -119,6 +126,8 @@ pub(crate) fn find(arrivals: &[Arrival]) -> JumpReport {
     }
     let small = found.small_device_jumps(arrivals, &offsets);
     found.jumps.extend(small);
+    let whole = found.jumps_of_whole_packets(arrivals, &offsets);
+    found.jumps.extend(whole);
     let across = found.jumps_across_silence(arrivals, &offsets);
     found.jumps.extend(across);
     let regular = found.jumps_of_regular_packets(arrivals, &offsets, window);
@@ -228,7 +237,7 @@ impl JumpReport {
             if off.abs() < MIN_IRREGULAR_NS + count * 10 || !self.is_apart(at) {
                 continue;
             }
-            let Some(rise) = self.rise_at(offsets, at) else {
+            let Some(rise) = self.rise_at(offsets, at, SMALL_WINDOW) else {
                 continue;
             };
             // The step that the spacing shows, up to whole packets, is the one nearest to the rise.
@@ -260,7 +269,7 @@ impl JumpReport {
                 let (device, _) = steps(arrivals, at).filter(|(device, _)| *device > SILENCE)?;
                 let off = (device.as_nanos() + spacing / 2).rem_euclid(spacing) - spacing / 2;
                 let count = device.as_nanos() / spacing;
-                let by = self.rise_at(offsets, at)?;
+                let by = self.rise_at(offsets, at, SMALL_WINDOW)?;
                 let drift = device.as_nanos() / 1_000_000 * DRIFT_PPM;
                 let is_regular = off.abs() < MIN_IRREGULAR_NS + count * 10;
                 (is_regular && by.abs() >= SMALLEST_OF_HOST_NS + drift).then(|| Jump {
@@ -279,8 +288,9 @@ impl JumpReport {
         offsets: &[i64],
         window: usize,
     ) -> Vec<Jump> {
-        let ahead = least_ahead(offsets, SMALL_WINDOW);
-        let lasting = least_ahead(offsets, window);
+        let (offsets, smallest) = without_drift(offsets);
+        let ahead = least_ahead(&offsets, SMALL_WINDOW);
+        let lasting = least_ahead(&offsets, window);
         let mut behind = SlidingMinimum::default();
         let mut long_behind = SlidingMinimum::default();
         let mut found: Vec<Jump> = Vec::new();
@@ -298,7 +308,7 @@ impl JumpReport {
             let is_lasting =
                 lasting.signum() == rise.signum() && lasting.abs() > rise.abs() * 7 / 10;
             let is_inside = at >= MIN_LEVEL_PACKETS && offsets.len() - at >= MIN_LEVEL_PACKETS;
-            if rise.abs() < SMALLEST_OF_HOST_NS || !is_lasting || !is_inside {
+            if rise.abs() < smallest || !is_lasting || !is_inside {
                 continue;
             }
             let jump = Jump {
@@ -329,13 +339,13 @@ impl JumpReport {
             && strays.all(|other| other.abs_diff(at) > SMALL_WINDOW)
     }
 
-    /// Rise of the least offset from the packets before `at` to those from it on, up to the next
-    /// jumps.
-    fn rise_at(&self, offsets: &[i64], at: usize) -> Option<i64> {
+    /// Rise of the least offset from the `window` of packets before `at` to that from it on, up to
+    /// the next jumps.
+    fn rise_at(&self, offsets: &[i64], at: usize, window: usize) -> Option<i64> {
         let before = self.jumps.iter().map(|jump| jump.at).filter(|j| *j <= at);
         let after = self.jumps.iter().map(|jump| jump.at).filter(|j| *j > at);
-        let begin = before.fold(at.saturating_sub(SMALL_WINDOW), usize::max);
-        let end = after.fold((at + SMALL_WINDOW).min(offsets.len()), usize::min);
+        let begin = before.fold(at.saturating_sub(window), usize::max);
+        let end = after.fold((at + window).min(offsets.len()), usize::min);
         let least = |from: usize, to: usize| offsets.get(from..to)?.iter().min().copied();
         Some(least(at, end)?.saturating_sub(least(begin, at)?))
     }
@@ -377,6 +387,36 @@ fn offsets(arrivals: &[Arrival]) -> Vec<i64> {
         .iter()
         .map(|arrival| offset(arrival).saturating_sub(first))
         .collect()
+}
+
+/// The offsets without the mean drift of the clocks, and the smallest jump that is no chance: the
+/// least delays of windows of packets vary by less.
+fn without_drift(offsets: &[i64]) -> (Vec<i64>, i64) {
+    let least: Vec<i64> = offsets
+        .chunks_exact(SMALL_WINDOW)
+        .filter_map(|window| window.iter().min().copied())
+        .collect();
+    let mut rises: Vec<i64> = least
+        .windows(2)
+        .filter_map(|pair| Some(pair.last()?.saturating_sub(*pair.first()?)))
+        .collect();
+    if rises.len() < MIN_SPREAD_WINDOWS {
+        return (offsets.to_vec(), SMALLEST_OF_HOST_NS);
+    }
+    let middle = rises.len() / 2;
+    let drift = *rises.select_nth_unstable(middle).1;
+    for rise in &mut rises {
+        *rise = rise.saturating_sub(drift).saturating_abs();
+    }
+    let spread = *rises.select_nth_unstable(middle).1;
+    let smallest =
+        (MIN_SPREADS.saturating_mul(spread)).clamp(SMALLEST_ON_QUIET_NS, SMALLEST_OF_HOST_NS);
+    let per_packet = drift as f64 / SMALL_WINDOW as f64;
+    let level = offsets
+        .iter()
+        .enumerate()
+        .map(|(at, offset)| offset.saturating_sub((at as f64 * per_packet) as i64));
+    (level.collect(), smallest)
 }
 
 /// Usual spacing of packets by the device's clock: the mean of those near the median.

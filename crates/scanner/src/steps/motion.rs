@@ -7,8 +7,11 @@ use drive::ShaftSample;
 use nalgebra::{Matrix4, Vector4};
 use units::{Host, Span, Stamp};
 
-/// Samples on either side of a step.
+/// Samples on either side of a step; more of them show a smaller one if the speed is even.
 const SIDE: usize = 24;
+const LONG_SIDE: usize = 96;
+/// Greatest variance about the parabola through many samples, relative to that through few.
+const MAX_VARIANCE_RATIO: f64 = 1.5;
 const MIN_SIDE: usize = 10;
 /// Samples by which the place of the step among them is uncertain.
 const NEAR: usize = 6;
@@ -21,11 +24,24 @@ const MIN_SDS: f64 = 4.0;
 /// near the index `at`.
 pub(super) fn step(samples: &[ShaftSample], at: usize, by: Span) -> Option<Stamp<Host>> {
     let places = at.saturating_sub(NEAR)..=at + NEAR;
-    let fits = places.filter_map(|first| Some((first, JumpFit::new(samples, first)?)));
-    let (first, fit) = fits.min_by(|a, b| a.1.squares.total_cmp(&b.1.squares))?;
+    let best = |side: usize| {
+        let fits = places
+            .clone()
+            .filter_map(|first| Some((first, JumpFit::new(samples, first, side)?)));
+        fits.min_by(|a, b| a.1.squares.total_cmp(&b.1.squares))
+    };
     let by_s = by.as_secs_f64();
-    let shows = (fit.by_s - by_s).abs() < DIFFERENCE * by_s.abs() && fit.sds > MIN_SDS;
-    shows.then(|| samples.get(first).map(|sample| sample.request))?
+    let shows =
+        |fit: &JumpFit| (fit.by_s - by_s).abs() < DIFFERENCE * by_s.abs() && fit.sds > MIN_SDS;
+    let (near, few) = best(SIDE)?;
+    let first = if shows(&few) {
+        near
+    } else {
+        let (far, many) = best(LONG_SIDE)?;
+        let is_even = many.variance <= MAX_VARIANCE_RATIO * few.variance;
+        (is_even && shows(&many)).then_some(far)?
+    };
+    samples.get(first).map(|sample| sample.request)
 }
 
 /// A parabola through the positions, with a jump.
@@ -36,13 +52,14 @@ struct JumpFit {
     sds: f64,
     /// Sum of the squared residuals.
     squares: f64,
+    variance: f64,
 }
 
 impl JumpFit {
     /// Least squares of `a + b t + c t^2 + d [i >= first]`.
-    fn new(samples: &[ShaftSample], first: usize) -> Option<Self> {
-        let from = first.saturating_sub(SIDE);
-        let to = (first + SIDE).min(samples.len());
+    fn new(samples: &[ShaftSample], first: usize, side: usize) -> Option<Self> {
+        let from = first.saturating_sub(side);
+        let to = (first + side).min(samples.len());
         if first - from < MIN_SIDE || to.checked_sub(first)? < MIN_SIDE {
             return None;
         }
@@ -71,12 +88,13 @@ impl JumpFit {
         let squares: f64 = rows()
             .map(|(row, position)| (position - row.dot(&found)).powi(2))
             .sum();
-        let variance = squares / ((to - from) as f64 - 4.0);
+        // Counts are whole.
+        let variance = (squares / ((to - from) as f64 - 4.0)).max(1.0 / 12.0);
         Some(Self {
             by_s: -found.w / found.y,
-            // Counts are whole.
-            sds: found.w.abs() / (variance.max(1.0 / 12.0) * inverse.m44).sqrt(),
+            sds: found.w.abs() / (variance * inverse.m44).sqrt(),
             squares,
+            variance,
         })
     }
 }

@@ -287,12 +287,15 @@ fn a_step_of_the_lidar_clock_is_found() {
     }
 }
 
-/// The first pulse per second after an outage of GPS sets the lidar's clock by a little.
+/// The first pulse per second after an outage of GPS sets the lidar's clock by a little, or by
+/// whole packets.
 #[test]
 fn a_small_step_of_the_lidar_clock_is_found() {
-    for by in [
+    let odd = [
         100_000, -150_000, 700_000, -1_200_000, 1_200_000, 5_000_000, -5_000_000, 9_000_000,
-    ] {
+    ];
+    let whole = [1, -1, 2, -2, 3, -3, 6, -6].map(|count| count * PACKET_NS + count * 3_000);
+    for by in odd.into_iter().chain(whole) {
         let mut recorded = Recorded::new(30, Some(2_500));
         let truth = Recorded::new(30, Some(2_500));
         let step = EPOCH + 18 * S;
@@ -312,11 +315,34 @@ fn a_small_step_of_the_lidar_clock_is_found() {
         let step = only(&timeline);
         assert_eq!(step.clock, SetClock::Lidar, "{by}");
         assert!((step.by.as_nanos() - by).abs() < 10_000, "{by}: {step:?}");
+        let is_forward = whole.contains(&by) && by > 0;
+        let phantoms = if is_forward { by / PACKET_NS } else { 0 };
+        assert_eq!(step.phantom_packets, phantoms as u64, "{by}");
         let (worst_us, polls_off) = seen.errors(&timeline, &truth);
         assert!(
             worst_us < 5.0 && polls_off == 0,
             "{by}: {worst_us} us, {polls_off}"
         );
+    }
+}
+
+/// Lost packets are no steps of the lidar's clock, even if a slower network before them is faster
+/// again after them.
+#[test]
+fn lost_packets_are_no_steps() {
+    for lost in [1, 2, 3, 5] {
+        for slower_ns in [0, PACKET_NS / 2, lost * PACKET_NS] {
+            let mut recorded = Recorded::new(30, Some(2_500));
+            let at = (18 * S / PACKET_NS) as usize;
+            let count = recorded.packets.len();
+            for packet in &mut recorded.packets[at - 200..at] {
+                packet.host += Span::from_nanos(slower_ns);
+            }
+            recorded.packets.drain(at..at + lost as usize);
+            assert_eq!(recorded.packets.len(), count - lost as usize);
+            let steps = recorded.stepped(&[]).timeline().steps;
+            assert_eq!(steps, [], "{lost} lost, {slower_ns} ns");
+        }
     }
 }
 
@@ -383,6 +409,27 @@ fn a_small_step_of_the_host_clock_while_the_axis_moves_is_found() {
     }
 }
 
+/// On a quiet network smaller ones are found where polls are quick: here to 0.1 ms.
+#[test]
+fn a_step_of_the_host_clock_by_a_tenth_of_a_millisecond_is_found() {
+    for by in [300_000, -300_000, 500_000, -500_000, 120_000, -120_000] {
+        let mut recorded = Recorded {
+            counts_per_s: 37_500,
+            ..Recorded::new(20, Some(1_000))
+        };
+        for (request, answer) in &mut recorded.polls {
+            *answer = *request + 200_000 + (*answer - *request) / 16;
+        }
+        let seen = recorded.stepped(&[(7 * S + 345_678, by)]);
+        let timeline = seen.timeline();
+        let step = only(&timeline);
+        assert_eq!(step.clock, SetClock::Host, "{by}");
+        assert!((step.by.as_nanos() - by).abs() < 10_000, "{by}: {step:?}");
+        let (worst_us, _) = seen.errors(&timeline, &recorded);
+        assert!(worst_us < 5.0, "{by}: {worst_us} us");
+    }
+}
+
 /// A clock set back puts the records of the drive back, too.
 #[test]
 fn a_small_step_back_of_the_host_clock_is_found_while_the_axis_rests() {
@@ -400,16 +447,19 @@ fn a_small_step_back_of_the_host_clock_is_found_while_the_axis_rests() {
 /// A network that becomes slower for good does not set the host's clock.
 #[test]
 fn a_slower_network_while_the_axis_moves_is_no_step() {
-    let mut recorded = Recorded {
-        counts_per_s: 37_500,
-        ..Recorded::new(20, Some(2_500))
-    };
-    for packet in &mut recorded.packets {
-        if packet.host.as_nanos() >= EPOCH + 7 * S {
-            packet.host += Span::from_millis(3);
+    for slower_us in [150, 300, 500, 800, 3_000] {
+        let mut recorded = Recorded {
+            counts_per_s: 37_500,
+            ..Recorded::new(20, Some(2_500))
+        };
+        for packet in &mut recorded.packets {
+            if packet.host.as_nanos() >= EPOCH + 7 * S {
+                packet.host += Span::from_micros(slower_us);
+            }
         }
+        let steps = recorded.stepped(&[]).timeline().steps;
+        assert_eq!(steps, [], "{slower_us} us");
     }
-    assert_eq!(recorded.stepped(&[]).timeline().steps, []);
 }
 
 /// A step below 10 ms is absorbed, and the bound contains it.

@@ -215,4 +215,25 @@ mod tests {
         assert_eq!(seen(Some(0.5e-3)), LatchEvidence::Unknown);
         assert_eq!(seen(None), LatchEvidence::Unknown);
     }
+
+    /// Samples whose instants exclude each other give wider limits than each of them does.
+    #[test]
+    fn conflicting_evidence_widens_the_limits() {
+        let mut samples = residuals(2.513e-3, 0.1e-3, None);
+        for sample in &mut samples {
+            sample.off_deg = 0.0;
+        }
+        let limits = |samples: &[Residual]| {
+            let (_, (low, high)) = delay(samples, LatchEvidence::Absent);
+            [low, high].map(Span::as_secs_f64)
+        };
+        let [low, high] = limits(&samples);
+        assert!((low + 0.2e-3).abs() < 1e-6 && (high - 0.2e-3).abs() < 1e-6);
+        // Every second one comes 1 ms later than the bounds of all allow.
+        for sample in samples.iter_mut().step_by(2) {
+            sample.off_deg = 50.0 * 1e-3;
+        }
+        let [low, high] = limits(&samples);
+        assert!(low <= -0.8e-3 && high >= 0.8e-3, "{low} to {high}");
+    }
 }
