@@ -5,6 +5,8 @@ use units::Span;
 
 /// Angle bound above which a warning is due: 17 mm at 10 m.
 const WARNING_BOUND_DEG: f64 = 0.1;
+/// Greatest age of a position: one control cycle of an EPOS2.
+const MAX_AGE_S: f64 = 1e-3;
 /// Clock bound above which a warning is due: the networks of the trials stay below half of it.
 const WARNING_CLOCK_BOUND: Span = Span::from_micros(500);
 /// Drift above which a warning is due: crystals stay within 100 ppm each.
@@ -29,15 +31,7 @@ pub(super) fn alignment_warnings(alignment: &Alignment) -> Vec<String> {
             "the clocks of host and lidar drift by {drift_ppm:.0} ppm, more than two crystals do: the host's clock was slewed, or one is faulty; times are those of the host's clock"
         ));
     }
-    if let Some(bound) = alignment
-        .angle_bound_deg()
-        .filter(|bound| *bound > WARNING_BOUND_DEG)
-    {
-        warnings.push(format!(
-            "drive answers were slow or missing: the angle error may reach {bound:.2} deg, {:.0} mm at 10 m",
-            bound.to_radians() * 10e3
-        ));
-    }
+    warnings.extend(angle_warning(alignment));
     if alignment.implausible > 0 {
         warnings.push(format!(
             "{} shaft positions contradict their neighbours and were omitted: the drive's link corrupts data",
@@ -49,6 +43,28 @@ pub(super) fn alignment_warnings(alignment: &Alignment) -> Vec<String> {
         warnings.extend(remarks.map(|remark| format!("sweep {}: {remark}", number + 1)));
     }
     warnings
+}
+
+/// A warning if the angles are less certain than those of a good scan. An age of the positions of up
+/// to [`MAX_AGE_S`], which samples cannot always show, is part of a good scan.
+fn angle_warning(alignment: &Alignment) -> Option<String> {
+    let speeds = alignment.sweeps.iter().map(|sweep| sweep.cruise.0.abs());
+    let age_deg = MAX_AGE_S * speeds.fold(0.0, f64::max);
+    let bound = alignment.angle_bound_deg()?;
+    let gaps = alignment.sample_gaps;
+    let cause = match gaps.count {
+        0 => "the drive's positions are few, late or scattered".to_owned(),
+        count => format!(
+            "the sweeps have {count} gap(s) of up to {:.2} s without a position of the drive",
+            gaps.longest.as_secs_f64()
+        ),
+    };
+    (bound > WARNING_BOUND_DEG + age_deg).then(|| {
+        format!(
+            "{cause}: the angle error may reach {bound:.2} deg, {:.0} mm at 10 m",
+            bound.to_radians() * 10e3
+        )
+    })
 }
 
 /// Planned sweeps that are cut short or absent. Empty for a log without a plan or
