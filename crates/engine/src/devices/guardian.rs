@@ -22,7 +22,6 @@ use units::Span;
 
 use super::drive_session::{Session, SessionError};
 use super::profile;
-use super::sleep_inhibitor::SleepInhibitor;
 use crate::config::AxisSettings;
 
 /// Argument of the hidden subcommand that runs [`run`].
@@ -39,6 +38,9 @@ const ASK_AFTER: Duration = Duration::from_millis(200);
 const ANSWER_TIMEOUT: Duration = Duration::from_secs(2);
 /// Longest wait until a guardian at work has stopped the axis.
 const STOP_TIMEOUT: Duration = Duration::from_secs(10);
+/// Time in which a guardian reads what is left on the line before it stops the axis: longer than a
+/// telegram takes to arrive, and short even if the line never falls silent.
+const DRAIN_LIMIT: Duration = Duration::from_millis(20);
 /// Longest wait for a guardian that reads nothing.
 const SEND_TIMEOUT: Duration = Duration::from_millis(20);
 
@@ -85,6 +87,14 @@ pub enum GuardianError {
         /// What the guardian did, if it has reported.
         report: Option<GuardianReport>,
     },
+    /// The guardian failed after such a gap; this process has stopped the axis since.
+    #[error("this program did not run for {:.1} s while the axis could move; {}; this program has stopped the axis since", gap.as_secs_f64(), outcome(report.as_ref()))]
+    Replaced {
+        /// Gap in the drive loop.
+        gap: Duration,
+        /// What the guardian did, if it has reported.
+        report: Option<GuardianReport>,
+    },
     /// The guardian has ended or does not answer.
     #[error(
         "the guardian process, which stops the axis if this program dies, has ended or does not answer; the axis is stopped"
@@ -113,7 +123,16 @@ impl GuardianError {
             Self::Acted { report, .. } => {
                 !matches!(report, Some(GuardianReport { failure: None, .. }))
             }
-            Self::Lost => false,
+            Self::Replaced { .. } | Self::Lost => false,
+        }
+    }
+
+    /// The same once this process has stopped the axis itself.
+    #[must_use]
+    pub(super) fn after_own_stop(self) -> Self {
+        match self {
+            Self::Acted { gap, report } => Self::Replaced { gap, report },
+            error => error,
         }
     }
 }
@@ -123,7 +142,6 @@ pub struct Guardian {
     child: PortChild,
     /// Time of the last heartbeat while armed.
     armed: Option<Instant>,
-    inhibitor: Option<SleepInhibitor>,
 }
 
 impl Guardian {
@@ -143,11 +161,7 @@ impl Guardian {
         };
         let child = port.spawn_child(program, ARGUMENT)?;
         child.socket.set_write_timeout(Some(SEND_TIMEOUT))?;
-        let mut guardian = Self {
-            child,
-            armed: None,
-            inhibitor: None,
-        };
+        let mut guardian = Self { child, armed: None };
         (&guardian.child.socket)
             .write_all(format!("{}\n", serde_json::to_string(&setup)?).as_bytes())?;
         match guardian.ask() {
@@ -161,7 +175,6 @@ impl Guardian {
     /// # Errors
     /// [`GuardianError::Lost`].
     pub fn arm(&mut self) -> Result<(), GuardianError> {
-        self.inhibitor = SleepInhibitor::take();
         self.send(request::ARM)?;
         self.armed = Some(Instant::now());
         self.ask()
@@ -169,7 +182,6 @@ impl Guardian {
 
     /// Disarms the guardian of an axis at rest.
     pub fn disarm(&mut self) {
-        self.inhibitor = None;
         if self.armed.take().is_some() {
             // A guardian that is gone is noticed when it is armed again.
             let _ = self.send(request::DISARM);
@@ -214,11 +226,12 @@ impl Guardian {
             }
             Some(answer::ACTS) => {
                 self.armed = None;
-                self.inhibitor = None;
-                Err(GuardianError::Acted {
-                    gap,
-                    report: self.report(),
-                })
+                let report = self.report();
+                if report.is_none() {
+                    // It must not use the port at the same time as this process.
+                    self.child.kill();
+                }
+                Err(GuardianError::Acted { gap, report })
             }
             _ => Err(GuardianError::Lost),
         }
@@ -269,11 +282,20 @@ pub fn run() -> io::Result<Option<GuardianReport>> {
 
 /// Stops the axis, whatever the parent has left on the line.
 fn stop(axis: drive::AxisConfig, link: DriveLink, mut port: impl Port) -> Result<(), SessionError> {
-    let mut buffer = [0; 512];
-    while port.read(&mut buffer, Span::ZERO)?.is_some() {}
+    drain(&mut port);
     let client = DriveClient::new(axis, link);
     let mut session = Session::new(client, port, Arc::default());
     session.run(DriveCommand::Stop, &mut |_| {}).map(drop)
+}
+
+/// Reads what is on the line, but not for longer than [`DRAIN_LIMIT`]. The stop is tried whatever
+/// comes of it.
+fn drain(port: &mut impl Port) {
+    let mut buffer = [0; 512];
+    let deadline = Instant::now() + DRAIN_LIMIT;
+    while let Ok(Some(_)) = port.read(&mut buffer, Span::ZERO)
+        && Instant::now() < deadline
+    {}
 }
 
 /// Reads a line, and nothing beyond it.
@@ -314,3 +336,6 @@ fn wait_for_alarm(socket: &mut UnixStream) -> io::Result<Option<bool>> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
