@@ -14,11 +14,23 @@ pub struct Bench {
 
 impl Bench {
     pub fn new(interface: &str) -> Self {
+        Self::with(interface, &[], "")
+    }
+
+    /// A drive with more `options`, and an axis configured by the TOML text `axis`.
+    pub fn with(interface: &str, options: &[&str], axis: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let link = folder.path().join("epos");
+        let config = format!(
+            "{axis}\n[device]\ndefault = 'soft'\n[device.soft]\nkind = '{}'\nport = '{}'\n",
+            interface.trim_start_matches('-'),
+            link.display()
+        );
+        std::fs::write(folder.path().join("velomotion.toml"), config).unwrap();
         let mut drive = velomotion()
             .args(["firmware-sim", interface, "--link"])
             .arg(&link)
+            .args(options)
             .current_dir(folder.path())
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
@@ -28,12 +40,6 @@ impl Bench {
         let mut printed = BufReader::new(drive.stdout.take().unwrap());
         printed.read_line(&mut port).unwrap();
         assert_eq!(link.canonicalize().unwrap(), PathBuf::from(port.trim()));
-        let config = format!(
-            "[device]\ndefault = 'soft'\n[device.soft]\nkind = '{}'\nport = '{}'\n",
-            interface.trim_start_matches('-'),
-            link.display()
-        );
-        std::fs::write(folder.path().join("velomotion.toml"), config).unwrap();
         Self { folder, drive }
     }
 
@@ -137,6 +143,20 @@ fn every_link_homes_and_moves_the_same_axis() {
         assert!((angle + 20.0).abs() < 0.001, "{interface}: {moved}");
         assert_eq!(moved["state"], "switch-on disabled", "{interface}: {moved}");
     }
+}
+
+/// 0.02 deg per count, and a servo that hunts by 8 counts either way.
+#[test]
+fn an_axis_with_a_coarse_encoder_comes_to_rest() {
+    let axis = "[axis]\nencoder_lines = 50\ngear = [90, 1]\n";
+    let bench = Bench::with("--usb", &["--dither", "8"], axis);
+    bench.json("tilt home");
+    let moved = bench.json("tilt goto -20 --speed 40");
+    assert!(
+        (moved["angle_deg"].as_f64().unwrap() + 20.0).abs() <= 0.2,
+        "{moved}"
+    );
+    assert_eq!(moved["state"], "switch-on disabled", "{moved}");
 }
 
 #[test]
