@@ -199,6 +199,41 @@ fn tilt_stop_stops_a_move_of_another_process() {
     assert_eq!(bench.json("tilt stop")["state"], "switch-on disabled");
 }
 
+/// A person's shell and a service have different environments.
+#[test]
+fn tilt_stop_finds_a_process_with_another_runtime_folder() {
+    let bench = Bench::new("--usb");
+    bench.json("tilt home");
+    let mut moving = bench.command("tilt goto -40 --speed 1");
+    let mut moving = moving.env_remove("XDG_RUNTIME_DIR").spawn().unwrap();
+    let begin = std::time::Instant::now();
+    let moves = |status: &Output| {
+        serde_json::from_slice::<serde_json::Value>(&status.stdout)
+            .is_ok_and(|status| status["activity"] == "moving")
+    };
+    while !moves(&bench.run("tilt status --json")) {
+        assert!(begin.elapsed().as_secs() < 20, "no motion");
+    }
+    assert_eq!(bench.json("tilt stop")["stopped"], true);
+    assert_eq!(moving.wait().unwrap().code(), Some(130));
+}
+
+#[test]
+fn a_wrong_node_id_is_reported_with_its_key_in_the_configuration() {
+    for interface in ["--usb", "--rs232", "--slcan"] {
+        let bench = Bench::new(interface);
+        let path = bench.folder.path().join("velomotion.toml");
+        let config = std::fs::read_to_string(&path).unwrap();
+        std::fs::write(path, format!("{config}[axis]\nnode = 5\n")).unwrap();
+        let output = bench.run("tilt home");
+        let printed = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(5), "{interface}: {printed}");
+        for part in ["node 5", "[axis] node"] {
+            assert!(printed.contains(part), "{interface}: {part}: {printed}");
+        }
+    }
+}
+
 /// This test listens at the socket of the drive's port, does not have the port, and answers that
 /// the axis is stopped.
 #[test]

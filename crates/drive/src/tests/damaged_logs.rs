@@ -231,8 +231,8 @@ fn a_write_without_its_confirmation_is_reported() {
     }
 }
 
-/// A checksum ends with 90, which USB doubles. Without the second one the frame is complete with the
-/// first byte of the next reply, which is later than its own request.
+/// A checksum ends with 90, which USB doubles. Without the second one the frame is complete with
+/// the first byte of the next reply, which is later than its own request.
 #[test]
 fn a_reply_without_its_last_byte_is_not_completed_by_the_next() {
     let Recorded { log, samples, .. } = recorded(DriveLink::Usb);

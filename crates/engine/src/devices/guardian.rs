@@ -338,4 +338,5 @@ fn wait_for_alarm(socket: &mut UnixStream) -> io::Result<Option<bool>> {
 }
 
 #[cfg(test)]
+#[path = "guardian_tests.rs"]
 mod tests;

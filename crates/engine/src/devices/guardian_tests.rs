@@ -20,8 +20,10 @@ struct BadLine {
     fails: bool,
     began: Instant,
     /// Bytes of the first write, and when it came.
-    first: Arc<Mutex<Option<(Duration, Vec<u8>)>>>,
+    first: Arc<Mutex<Option<FirstWrite>>>,
 }
+
+type FirstWrite = (Duration, Vec<u8>);
 
 impl Port for BadLine {
     fn write_frame(&mut self, frame: &[u8]) -> Result<Stamp<Host>, PortError> {
@@ -49,7 +51,7 @@ impl Port for BadLine {
 }
 
 /// What the guardian writes first, and when.
-fn first_write(fails: bool) -> (Duration, Vec<u8>) {
+fn first_write(fails: bool) -> FirstWrite {
     let first = Arc::default();
     let line = BadLine {
         fails,
