@@ -14,11 +14,23 @@ pub struct Bench {
 
 impl Bench {
     pub fn new(interface: &str) -> Self {
+        Self::with(interface, &[], "")
+    }
+
+    /// A drive with more `options`, and an axis configured by the TOML text `axis`.
+    pub fn with(interface: &str, options: &[&str], axis: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let link = folder.path().join("epos");
+        let config = format!(
+            "{axis}\n[device]\ndefault = 'soft'\n[device.soft]\nkind = '{}'\nport = '{}'\n",
+            interface.trim_start_matches('-'),
+            link.display()
+        );
+        std::fs::write(folder.path().join("velomotion.toml"), config).unwrap();
         let mut drive = velomotion()
             .args(["firmware-sim", interface, "--link"])
             .arg(&link)
+            .args(options)
             .current_dir(folder.path())
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
@@ -28,12 +40,6 @@ impl Bench {
         let mut printed = BufReader::new(drive.stdout.take().unwrap());
         printed.read_line(&mut port).unwrap();
         assert_eq!(link.canonicalize().unwrap(), PathBuf::from(port.trim()));
-        let config = format!(
-            "[device]\ndefault = 'soft'\n[device.soft]\nkind = '{}'\nport = '{}'\n",
-            interface.trim_start_matches('-'),
-            link.display()
-        );
-        std::fs::write(folder.path().join("velomotion.toml"), config).unwrap();
         Self { folder, drive }
     }
 
@@ -139,6 +145,20 @@ fn every_link_homes_and_moves_the_same_axis() {
     }
 }
 
+/// 0.02 deg per count, and a servo that hunts by 8 counts either way.
+#[test]
+fn an_axis_with_a_coarse_encoder_comes_to_rest() {
+    let axis = "[axis]\nencoder_lines = 50\ngear = [90, 1]\n";
+    let bench = Bench::with("--usb", &["--dither", "8"], axis);
+    bench.json("tilt home");
+    let moved = bench.json("tilt goto -20 --speed 40");
+    assert!(
+        (moved["angle_deg"].as_f64().unwrap() + 20.0).abs() <= 0.2,
+        "{moved}"
+    );
+    assert_eq!(moved["state"], "switch-on disabled", "{moved}");
+}
+
 #[test]
 fn tilt_stop_stops_a_move_of_another_process() {
     let bench = Bench::new("--usb");
@@ -177,6 +197,41 @@ fn tilt_stop_stops_a_move_of_another_process() {
     assert_eq!(status["state"], "switch-on disabled");
     // No process holds the drive: the stop goes to the drive itself.
     assert_eq!(bench.json("tilt stop")["state"], "switch-on disabled");
+}
+
+/// A person's shell and a service have different environments.
+#[test]
+fn tilt_stop_finds_a_process_with_another_runtime_folder() {
+    let bench = Bench::new("--usb");
+    bench.json("tilt home");
+    let mut moving = bench.command("tilt goto -40 --speed 1");
+    let mut moving = moving.env_remove("XDG_RUNTIME_DIR").spawn().unwrap();
+    let begin = std::time::Instant::now();
+    let moves = |status: &Output| {
+        serde_json::from_slice::<serde_json::Value>(&status.stdout)
+            .is_ok_and(|status| status["activity"] == "moving")
+    };
+    while !moves(&bench.run("tilt status --json")) {
+        assert!(begin.elapsed().as_secs() < 20, "no motion");
+    }
+    assert_eq!(bench.json("tilt stop")["stopped"], true);
+    assert_eq!(moving.wait().unwrap().code(), Some(130));
+}
+
+#[test]
+fn a_wrong_node_id_is_reported_with_its_key_in_the_configuration() {
+    for interface in ["--usb", "--rs232", "--slcan"] {
+        let bench = Bench::new(interface);
+        let path = bench.folder.path().join("velomotion.toml");
+        let config = std::fs::read_to_string(&path).unwrap();
+        std::fs::write(path, format!("{config}[axis]\nnode = 5\n")).unwrap();
+        let output = bench.run("tilt home");
+        let printed = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(5), "{interface}: {printed}");
+        for part in ["node 5", "[axis] node"] {
+            assert!(printed.contains(part), "{interface}: {part}: {printed}");
+        }
+    }
 }
 
 /// This test listens at the socket of the drive's port, does not have the port, and answers that

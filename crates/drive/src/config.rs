@@ -179,8 +179,8 @@ impl Default for AxisConfig {
             max_acceleration: RpmPerS(20_000),
             quick_stop: RpmPerS(20_000),
             max_following_error: Degrees(3.0),
-            arrival_tolerance: Degrees(0.03),
-            standstill_spread: Degrees(0.03),
+            arrival_tolerance: SMALLEST_TOLERANCE,
+            standstill_spread: SMALLEST_TOLERANCE,
             guard: MotionGuardConfig::default(),
             limit_switches: LimitSwitchConfig::default(),
             brake: Some(BrakeConfig::default()),
@@ -191,6 +191,11 @@ impl Default for AxisConfig {
         }
     }
 }
+
+/// Spread of the positions of a servo that hunts by 8 qc either way, with a margin, and the
+/// smallest tolerance at rest.
+const DITHER_QC: f64 = 20.0;
+const SMALLEST_TOLERANCE: Degrees = Degrees(0.03);
 
 /// 500 lines and 120:1.
 const DEFAULT_GEARING: Gearing = match Gearing::new(500, 120, 1) {
@@ -310,6 +315,14 @@ impl AxisConfig {
     #[must_use]
     pub const fn holds(&self) -> bool {
         self.hold_without_brake && self.brake.is_none()
+    }
+
+    /// Tolerance of arrival and standstill that suits an encoder and gear: 0.03 deg, or the spread
+    /// of a hunting servo where a count is more than 0.0015 deg.
+    #[must_use]
+    pub fn rest_tolerance(gearing: Gearing) -> Degrees {
+        let spread = DITHER_QC * gearing.degrees_per_qc();
+        Degrees(SMALLEST_TOLERANCE.0.max(spread))
     }
 
     /// Validates every field.

@@ -31,6 +31,7 @@ struct Arguments {
     first: u64,
     kills: Option<u64>,
     transport: Option<String>,
+    guardian_only: bool,
     bless: bool,
 }
 
@@ -60,13 +61,15 @@ fn main() {
             .is_none_or(|only| only == *name)
     };
     std::thread::scope(|scope| {
-        for transport in TRANSPORTS.into_iter().filter(chosen) {
+        let all = TRANSPORTS.into_iter().filter(|_| !arguments.guardian_only);
+        for transport in all.filter(chosen) {
             let (arguments, results) = (&arguments, &results);
             scope.spawn(move || on_transport(transport, arguments, results));
         }
     });
     if arguments.kills.is_none() {
-        for transport in ["usb", "rs232"] {
+        results.check("service", special::service_spares_the_guardian());
+        for transport in ["usb", "rs232"].into_iter().filter(chosen) {
             guardian(transport, &results);
         }
     }
@@ -135,8 +138,12 @@ fn guardian(transport: &str, results: &Results) {
     let bench = Bench::start(transport, BRAKE);
     results.check(transport, bench.run("tilt home"));
     type Check = fn(&Bench) -> Result<(), String>;
-    let checks: [(&str, Check); 3] = [
+    let checks: [(&str, Check); 4] = [
         ("the guardian is killed", special::guardian_killed),
+        (
+            "program and guardian are signalled together",
+            special::signalled_together,
+        ),
         (
             "the port is busy while the guardian acts",
             special::next_command_waits,
@@ -153,6 +160,7 @@ fn arguments() -> Arguments {
         first: 0,
         kills: None,
         transport: None,
+        guardian_only: false,
         bless: false,
     };
     let mut words = std::env::args().skip(1);
@@ -162,6 +170,7 @@ fn arguments() -> Arguments {
             "--first" => arguments.first = value().parse().expect("--first SEED"),
             "--kills" => arguments.kills = value().parse().ok(),
             "--transport" => arguments.transport = Some(value()),
+            "--guardian" => arguments.guardian_only = true,
             "--bless" => arguments.bless = true,
             // Other arguments of `cargo test`.
             _ => {}

@@ -1,6 +1,7 @@
-//! The guardian itself: killed, at work while another command comes, and on a loaded machine.
+//! The guardian itself: killed, signalled with its program, at work while another command comes,
+//! and on a loaded machine.
 
-use std::process::{Child, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use units::Span;
@@ -25,7 +26,7 @@ fn start(bench: &Bench, line: &str) -> Result<Child, String> {
 pub fn guardian_killed(bench: &Bench) -> Result<(), String> {
     bench.run("tilt goto 0 --speed 60")?;
     let moving = start(bench, "tilt goto -40 --speed 5")?;
-    send(child_of(moving.id())?, "KILL");
+    send(guardian_of(moving.id())?, "KILL");
     let output = moving
         .wait_with_output()
         .map_err(|error| error.to_string())?;
@@ -80,13 +81,62 @@ fn under_load(bench: &Bench) -> Result<(), String> {
     Ok(())
 }
 
-/// The only child of a process.
-fn child_of(parent: u32) -> Result<u32, String> {
+/// systemd's watchdog sends SIGABRT, and a stop SIGTERM, to every process of a service whose
+/// `KillMode` is that of a control group. The guardian outlives both, and ends once the axis is at
+/// rest.
+pub fn signalled_together(bench: &Bench) -> Result<(), String> {
+    for signal in ["ABRT", "TERM"] {
+        bench.run("tilt goto 0 --speed 60")?;
+        bench.forget();
+        let mut moving = start(bench, "tilt goto -40 --speed 5")?;
+        let guardian = guardian_of(moving.id())?;
+        let ids = [moving.id(), guardian].map(|id| id.to_string());
+        let sent = Command::new("kill")
+            .arg(format!("-{signal}"))
+            .args(ids)
+            .status();
+        let signalled = io::clock::now();
+        sent.map_err(|error| error.to_string())?;
+        let aftermath = bench.aftermath(signalled)?;
+        moving.wait().map_err(|error| error.to_string())?;
+        if aftermath.moves || aftermath.powered {
+            return Err(format!("{signal} to both: {aftermath:?}"));
+        }
+        wait("the guardian's end", || {
+            (!is_guardian(guardian)).then_some(())
+        })?;
+    }
+    Ok(())
+}
+
+/// The service leaves the guardian alone: see [`signalled_together`] and systemd.kill(5).
+pub fn service_spares_the_guardian() -> Result<(), String> {
+    let unit = include_str!("../../../packaging/velomotion.service");
+    match unit.lines().any(|line| line == "KillMode=process") {
+        true => Ok(()),
+        false => Err("packaging/velomotion.service lacks KillMode=process".to_owned()),
+    }
+}
+
+/// The child of a process that is its guardian; an inhibitor of sleep may be another.
+fn guardian_of(parent: u32) -> Result<u32, String> {
     wait("the guardian", || {
         let tasks = std::fs::read_dir(format!("/proc/{parent}/task")).ok()?;
         let lists = tasks.flatten().map(|task| task.path().join("children"));
-        lists
-            .filter_map(|list| std::fs::read_to_string(list).ok())
-            .find_map(|list| list.split_whitespace().next()?.parse().ok())
+        let texts = lists.filter_map(|list| std::fs::read_to_string(list).ok());
+        let ids: Vec<u32> = texts
+            .flat_map(|text| {
+                let words = text.split_whitespace().map(str::parse);
+                words.flatten().collect::<Vec<u32>>()
+            })
+            .collect();
+        ids.into_iter().find(|id| is_guardian(*id))
     })
+}
+
+/// Whether a process runs as a guardian. One that has ended has no command line.
+fn is_guardian(id: u32) -> bool {
+    let line = std::fs::read(format!("/proc/{id}/cmdline")).unwrap_or_default();
+    let argument = engine::devices::guardian::ARGUMENT.as_bytes();
+    line.split(|byte| *byte == 0).any(|word| word == argument)
 }

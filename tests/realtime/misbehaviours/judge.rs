@@ -90,6 +90,12 @@ impl Verdict {
         if row.expect == Expect::Unstoppable && hears && !outcome.is_guarded() {
             verdict.wrong.push("no stop by the guardian".to_owned());
         }
+        if row.expect == Expect::Unstoppable && drive.record.can {
+            // The drive misses the host's heartbeat, and reacts as its 6007 says.
+            if verdict.powered || verdict.moving {
+                verdict.wrong.push("6007 had no effect".to_owned());
+            }
+        }
         verdict.check(row.expect);
         let is_late = is_held_up && outcome.silence > MAX_SILENCE;
         verdict.is_disturbed |= is_late && !verdict.wrong.is_empty();
@@ -167,7 +173,12 @@ impl Verdict {
                 );
                 must(self.exit == Some(5), format!("exit {:?}", self.exit));
             }
-            Expect::Unstoppable | Expect::Falls | Expect::Safe => {}
+            Expect::Falls => {
+                must(self.exit == Some(5), format!("exit {:?}", self.exit));
+                let tells = self.printed.to_lowercase().contains("supply");
+                must(tells, "no word of the supply".to_owned());
+            }
+            Expect::Unstoppable | Expect::Safe => {}
         }
         self.wrong = [std::mem::take(&mut self.wrong), wrong].concat();
     }

@@ -45,7 +45,7 @@ pub const ROWS: &[Misbehaviour] = &[
     row("velocity notation differs (608B)", Start, Refused, |d| d.set(0x608B, 0, 0xFD)),
     row("mode of operation is displayed wrong", Start, Refused, |d| d.faults.mode_lies = true),
     row("writes have no effect", Start, Refused, |d| d.faults.ignores_writes = true),
-    row("segments of an upload are empty", Start, Safe, |d| d.faults.drops_segments = true),
+    row("segments of an upload are empty", Start, Refused, |d| d.faults.drops_segments = true),
     can("another node 1 sends heartbeats", Homing, Safe, |d| d.faults.second_node = true),
     // Homing.
     row("homing: the switch is dead", Start, HomingBound, |d| d.faults.switches = Switches::Dead),

@@ -1,6 +1,6 @@
 //! The drive on CAN behind an adapter that speaks SLCAN.
 
-use crate::drive::{Drive, State};
+use crate::drive::Drive;
 use crate::wire::{Link, Outbox, Upload, long_object};
 
 /// Seconds until an SDO response leaves, and until a PDO does.
@@ -225,7 +225,8 @@ impl Link for Slcan {
         }
         if self.host_lost_at.is_some_and(|at| drive.now > at) {
             self.host_lost_at = None;
-            if drive.value(0x1016, 1) & 0xFFFF != 0 && drive.state == State::Enabled {
+            // In quick stop active as well.
+            if drive.value(0x1016, 1) & 0xFFFF != 0 && drive.axis.powered {
                 drive.fail(0x8130, true);
             }
         }

@@ -64,9 +64,14 @@ async fn device_name(ops: &Ops) -> Result<DeviceName, DriveError> {
     match ops.read_bytes(objects::DEVICE_NAME).await {
         Ok(bytes) => Ok(DeviceName::new(&bytes)),
         Err(DriveError::Refused { .. }) => Ok(DeviceName::default()),
-        // An unusual name is no reason to fail, but a wrong toggle bit shows a lost segment.
+        // An unusual name is no reason to fail, but lost bytes are.
         Err(DriveError::Transfer { error, .. })
-            if !matches!(error, TransferError::Toggle { .. }) =>
+            if !matches!(
+                error,
+                TransferError::Toggle { .. }
+                    | TransferError::Size { .. }
+                    | TransferError::EmptySegment
+            ) =>
         {
             Ok(DeviceName::default())
         }

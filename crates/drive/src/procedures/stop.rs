@@ -330,11 +330,15 @@ impl StandstillWindow {
 mod tests {
     use super::*;
     use crate::event::SampleTrigger;
-    use units::{Quadcounts, Stamp};
+    use units::{Gearing, Quadcounts, Stamp};
 
     /// Milliseconds until rest is found in positions polled every `period_ms`.
     fn found_after(period_ms: i64, position: impl Fn(i64) -> f64) -> Option<i64> {
-        let mut window = StandstillWindow::new(&AxisConfig::default());
+        found_by(&AxisConfig::default(), period_ms, position)
+    }
+
+    fn found_by(config: &AxisConfig, period_ms: i64, position: impl Fn(i64) -> f64) -> Option<i64> {
+        let mut window = StandstillWindow::new(config);
         (0..2_000).step_by(period_ms as usize).find(|ms| {
             let at = Stamp::from_nanos(ms * 1_000_000);
             window.is_at_rest_with(&ShaftSample {
@@ -360,6 +364,25 @@ mod tests {
             let dither = |ms: i64| 8.0 * (ms as f64 * 0.7).sin();
             let found = found_after(period_ms, dither).unwrap();
             assert!(found <= 150, "{period_ms} ms: {found} ms");
+        }
+    }
+
+    /// 0.02 deg per count: 0.03 deg would be a single count.
+    #[test]
+    fn dither_of_a_coarse_encoder_is_rest() {
+        let gearing = Gearing::new(50, 90, 1).unwrap();
+        let config = AxisConfig {
+            gearing,
+            standstill_spread: AxisConfig::rest_tolerance(gearing),
+            ..AxisConfig::default()
+        };
+        for period_ms in [1, 2, 8, 15] {
+            let dither = |ms: i64| 8.0 * (ms as f64 * 0.7).sin();
+            let found = found_by(&config, period_ms, dither).unwrap();
+            assert!(found <= 150, "{period_ms} ms: {found} ms");
+            // 10 deg/s.
+            let moving = found_by(&config, period_ms, |ms| ms as f64 * 0.5);
+            assert_eq!(moving, None, "{period_ms} ms");
         }
     }
 

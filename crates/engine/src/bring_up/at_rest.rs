@@ -252,52 +252,109 @@ pub(super) fn inputs(bring_up: &mut BringUp<'_>) -> Result<u16, SessionError> {
 /// port again.
 const REST_LIMIT: Duration = Duration::from_secs(2);
 
-impl BringUp<'_> {
-    /// Looks whether the axis is at rest, and without power where nothing but a brake holds it,
-    /// after its process was killed.
-    pub fn rest_after(&mut self, killed: Instant) -> BringUpResult {
-        let (value, is_good) = match self.wait_for_rest(killed) {
-            Ok((state, is_at_rest)) => {
-                let seconds = killed.elapsed().as_secs_f64();
-                let motion = if is_at_rest { "at rest" } else { "MOVES" };
-                (
-                    format!("{motion}, {state}, {seconds:.2} s after the kill"),
-                    is_at_rest,
-                )
-            }
-            Err(error) => (error.to_string(), false),
+/// The axis of a killed process.
+#[derive(Clone, Copy, Debug)]
+struct KilledAxis {
+    is_still: bool,
+    has_power: bool,
+}
+
+impl KilledAxis {
+    /// Whether it is at rest as it is meant to be left: without power, or held where the
+    /// configuration says so.
+    const fn is_safe(self, holds: bool) -> bool {
+        self.is_still && (!self.has_power || holds)
+    }
+
+    /// The state as found, and the judgement.
+    fn judged(self, holds: bool, seconds: f64) -> BringUpResult {
+        let motion = if self.is_still { "at rest" } else { "MOVES" };
+        let power = if self.has_power {
+            "power on"
+        } else {
+            "power off"
         };
-        let advice = "cut the supply: the axis of a killed program is not at rest";
+        let is_safe = self.is_safe(holds);
+        let advice = match self.is_still {
+            false => "cut the supply: the axis of a killed program moves",
+            true => {
+                "cut the supply: the axis of a killed program stays powered, and its brake open; check that the guardian process runs (USB, RS232) or that 1016 and 6007 are honoured (CAN)"
+            }
+        };
         BringUpResult {
             name: "axis".to_owned(),
-            value,
-            judgement: if is_good {
+            value: format!("{motion}, {power}, {seconds:.2} s after the kill"),
+            judgement: if is_safe {
                 Judgement::Good
             } else {
                 Judgement::Problem
             },
-            advice: (!is_good).then(|| advice.to_owned()),
+            advice: (!is_safe).then(|| advice.to_owned()),
+        }
+    }
+}
+
+impl BringUp<'_> {
+    /// Looks whether the axis is at rest, and without power unless the drive is meant to hold it,
+    /// after its process was killed.
+    pub fn rest_after(&mut self, killed: Instant) -> BringUpResult {
+        match self.wait_for_rest(killed) {
+            Ok(axis) => axis.judged(self.axis.holds(), killed.elapsed().as_secs_f64()),
+            Err(error) => BringUpResult {
+                name: "axis".to_owned(),
+                value: error.to_string(),
+                judgement: Judgement::Problem,
+                advice: Some("cut the supply: the axis may move".to_owned()),
+            },
         }
     }
 
-    fn wait_for_rest(&mut self, killed: Instant) -> Result<(String, bool), SessionError> {
+    fn wait_for_rest(&mut self, killed: Instant) -> Result<KilledAxis, SessionError> {
         let mut before = None;
         loop {
             let recording = self.run(&[DriveCommand::Status])?;
+            // A drive whose state is unknown counts as powered and in motion.
             let Some(CommandOutcome::Status(status)) = recording.outcome else {
-                return Ok(("state unknown".to_owned(), false));
+                return Ok(KilledAxis {
+                    is_still: false,
+                    has_power: true,
+                });
             };
             let at = self.axis.gearing.angle(status.position).0;
-            let is_still = before
-                .replace(at)
-                .is_some_and(|before: f64| (before - at).abs() <= self.axis.standstill_spread.0);
-            let power = axis_report::has_power(status.statusword);
-            let is_at_rest = is_still && !power;
-            if is_at_rest || killed.elapsed() > REST_LIMIT {
-                let power = if power { "power on" } else { "power off" };
-                return Ok((power.to_owned(), is_still));
+            let axis = KilledAxis {
+                is_still: before.replace(at).is_some_and(|before: f64| {
+                    (before - at).abs() <= self.axis.standstill_spread.0
+                }),
+                has_power: axis_report::has_power(status.statusword),
+            };
+            if axis.is_safe(self.axis.holds()) || killed.elapsed() > REST_LIMIT {
+                return Ok(axis);
             }
             std::thread::sleep(Duration::from_millis(50));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The judgement of an axis with a brake, and of one that the drive is meant to hold.
+    fn judgements(is_still: bool, has_power: bool) -> [Judgement; 2] {
+        let axis = KilledAxis {
+            is_still,
+            has_power,
+        };
+        [false, true].map(|holds| axis.judged(holds, 1.0).judgement)
+    }
+
+    #[test]
+    fn a_killed_axis_is_good_only_at_rest_and_without_power() {
+        use Judgement::{Good, Problem};
+        assert_eq!(judgements(true, false), [Good, Good]);
+        // Power on: only where the configuration says hold.
+        assert_eq!(judgements(true, true), [Problem, Good]);
+        assert_eq!(judgements(false, false), [Problem, Problem]);
+        assert_eq!(judgements(false, true), [Problem, Problem]);
     }
 }

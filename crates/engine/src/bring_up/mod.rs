@@ -174,7 +174,8 @@ impl<'a> BringUp<'a> {
         let stop = Arc::new(AtomicBool::new(false));
         let opened = &mut *self.opened;
         let mut session = Session::new(client, &mut *opened.port, Arc::clone(&stop))
-            .guarded_by(opened.guardian.as_mut());
+            .guarded_by(opened.guardian.as_mut())
+            .keeping_awake(true);
         let mut recording = SessionRecord::default();
         for command in commands {
             let command = match *command {

@@ -46,6 +46,8 @@ pub struct CaptureJob<'a> {
     pub port: &'a mut dyn Port,
     /// Stops the axis if this process dies.
     pub guardian: Option<&'a mut Guardian>,
+    /// Whether the machine stays awake while the axis may move: it is no software device.
+    pub keeps_awake: bool,
     /// How the drive is attached.
     pub link: DriveLink,
     /// Speed of an RS232 line.
@@ -129,7 +131,9 @@ pub fn record(
         tap(record);
     });
     let client = DriveClient::new(plan.axis.clone(), job.link);
-    let mut session = Session::new(client, port, Arc::clone(interrupt)).guarded_by(job.guardian);
+    let mut session = Session::new(client, port, Arc::clone(interrupt))
+        .guarded_by(job.guardian)
+        .keeping_awake(job.keeps_awake);
     let mut watch = SilenceWatch::new(recorder.packets());
     let mut powered = false;
     let motion = moves::run(&mut session, &plan.steps, &mut |progress| {
@@ -401,7 +405,9 @@ fn motion_failure(error: &SessionError, log: Option<Failure>) -> Failure {
         SessionError::NotStopped(_)
         | SessionError::Drive(_)
         | SessionError::Port(_)
-        | SessionError::Guardian(GuardianError::Lost) => Kind::DeviceFault,
+        | SessionError::Guardian(GuardianError::Replaced { .. } | GuardianError::Lost) => {
+            Kind::DeviceFault
+        }
     };
     let also = log.map_or(String::new(), |failure| {
         format!("; and {}", failure.message)

@@ -84,10 +84,13 @@ pub struct GuardSettings {
     pub homing_margin_deg: f64,
     /// Largest difference between the drive's own demand and position (object 6065).
     pub following_error_deg: f64,
-    /// Largest distance from the target at which a move has arrived.
-    pub arrival_deg: f64,
-    /// Spread of the positions of an axis at rest.
-    pub standstill_deg: f64,
+    /// Largest distance from the target at which a move has arrived. Without it the larger of
+    /// 0.03 deg and 20 quadcounts.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub arrival_deg: Option<f64>,
+    /// Spread of the positions of an axis at rest. Without it the same.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub standstill_deg: Option<f64>,
 }
 
 /// Homing of the axis.
@@ -150,8 +153,8 @@ impl Default for GuardSettings {
             beyond_limits_deg: axis.guard.beyond_limits.0,
             homing_margin_deg: axis.guard.homing_margin.0,
             following_error_deg: axis.max_following_error.0,
-            arrival_deg: axis.arrival_tolerance.0,
-            standstill_deg: axis.standstill_spread.0,
+            arrival_deg: None,
+            standstill_deg: None,
         }
     }
 }

@@ -14,6 +14,7 @@ use thiserror::Error;
 use units::{Host, Span, Stamp};
 
 use super::guardian::{Guardian, GuardianError};
+use super::sleep_inhibitor::SleepInhibitor;
 
 /// Why a procedure ended early.
 #[derive(Debug, Error)]
@@ -80,6 +81,9 @@ pub struct Session<'g, P: Port> {
     port: P,
     /// Stops the axis if this process cannot.
     guardian: Option<&'g mut Guardian>,
+    /// Whether the machine stays awake while the axis may move or is powered.
+    keeps_awake: bool,
+    inhibitor: Option<SleepInhibitor>,
     interrupt: Arc<AtomicBool>,
     /// Whether a command that can move or power the axis has begun and no later command has
     /// disabled the axis.
@@ -102,6 +106,8 @@ impl<'g, P: Port> Session<'g, P> {
             port,
             interrupt,
             guardian: None,
+            keeps_awake: false,
+            inhibitor: None,
             unsafe_to_leave: false,
         }
     }
@@ -110,6 +116,14 @@ impl<'g, P: Port> Session<'g, P> {
     #[must_use]
     pub fn guarded_by(mut self, guardian: Option<&'g mut Guardian>) -> Self {
         self.guardian = guardian;
+        self
+    }
+
+    /// Keeps the machine awake while the axis may move or is powered, on every link. An axis of
+    /// software sleeps with its machine.
+    #[must_use]
+    pub fn keeping_awake(mut self, keeps_awake: bool) -> Self {
+        self.keeps_awake = keeps_awake;
         self
     }
 
@@ -127,6 +141,7 @@ impl<'g, P: Port> Session<'g, P> {
             self.guardian
                 .as_mut()
                 .map_or(Ok(()), |guardian| guardian.arm())?;
+            self.inhibitor = self.keeps_awake.then(SleepInhibitor::take).flatten();
         }
         if let Err(error) = self.client.start(command) {
             return Err(match self.stop(on_event)? {
@@ -156,8 +171,8 @@ impl<'g, P: Port> Session<'g, P> {
                 None => Err(SessionError::Interrupted),
                 Some(error) => Err(SessionError::NotStopped(error)),
             },
-            Ended::Unguarded => match self.stop(on_event)? {
-                None => Err(GuardianError::Lost.into()),
+            Ended::Unguarded(error) => match self.stop(on_event)? {
+                None => Err(error.after_own_stop().into()),
                 Some(error) => Err(SessionError::NotStopped(error)),
             },
         }
@@ -181,7 +196,7 @@ impl<'g, P: Port> Session<'g, P> {
                     Ended::Failed(error) => Some(error),
                     Ended::Done(_) | Ended::Interrupted => None,
                     // The next attempt has no guardian.
-                    Ended::Unguarded => continue,
+                    Ended::Unguarded(_) => continue,
                 },
             };
             if last.is_none() {
@@ -195,8 +210,11 @@ impl<'g, P: Port> Session<'g, P> {
     /// Records whether the axis is at rest as it may be left.
     fn set_safe(&mut self, safe: bool) {
         self.unsafe_to_leave = !safe;
-        if let (true, Some(guardian)) = (safe, &mut self.guardian) {
-            guardian.disarm();
+        if safe {
+            self.inhibitor = None;
+            if let Some(guardian) = &mut self.guardian {
+                guardian.disarm();
+            }
         }
     }
 
@@ -209,12 +227,12 @@ impl<'g, P: Port> Session<'g, P> {
         let mut buffer = [0; 512];
         loop {
             match self.guardian.as_mut().map(|guardian| guardian.heartbeat()) {
-                Some(Err(GuardianError::Lost)) => {
+                Some(Err(error)) if error.may_move() || matches!(error, GuardianError::Lost) => {
                     self.guardian = None;
-                    return Ok(Ended::Unguarded);
+                    return Ok(Ended::Unguarded(error));
                 }
                 Some(Err(error)) => {
-                    // The guardian has used the port since.
+                    // The guardian has used the port, and the axis is at rest.
                     self.unsafe_to_leave = false;
                     return Err(error.into());
                 }
@@ -266,12 +284,15 @@ impl<P: Port> Drop for Session<'_, P> {
     /// After a panic or an error of the port: sends the stop and waits for its end if the port
     /// still works.
     fn drop(&mut self) {
-        if self.unsafe_to_leave && self.client.start(DriveCommand::Stop).is_ok() {
-            let until = self.port.now().saturating_add(LAST_RESORT);
+        let until = self.port.now().saturating_add(LAST_RESORT);
+        while self.unsafe_to_leave && self.client.start(DriveCommand::Stop).is_ok() {
             // The error that dropped the session has been reported already. Without a confirmed
             // stop the guardian stays armed: it tries once more when it hears nothing from here.
-            if let Ok(Ended::Done(_)) = self.pump(&mut |_| {}, false, Some(until)) {
-                self.set_safe(true);
+            match self.pump(&mut |_| {}, false, Some(until)) {
+                Ok(Ended::Done(_)) => self.set_safe(true),
+                // The stop is this process's own now.
+                Ok(Ended::Unguarded(_)) => {}
+                _ => return,
             }
         }
     }
@@ -281,6 +302,6 @@ enum Ended {
     Done(CommandOutcome),
     Failed(DriveError),
     Interrupted,
-    /// The guardian is gone.
-    Unguarded,
+    /// The guardian is gone, or could not stop the axis.
+    Unguarded(GuardianError),
 }

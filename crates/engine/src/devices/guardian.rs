@@ -10,7 +10,7 @@
 use std::io::{self, Read, Write};
 use std::os::unix::net::UnixStream;
 use std::os::unix::process::parent_id;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -22,8 +22,8 @@ use thiserror::Error;
 use units::Span;
 
 use super::drive_session::{Session, SessionError};
+use super::process_threads::ProcessThreads;
 use super::profile;
-use super::sleep_inhibitor::SleepInhibitor;
 use crate::config::AxisSettings;
 
 /// Argument of the hidden subcommand that runs [`run`].
@@ -45,6 +45,9 @@ const ASK_AFTER: Duration = Duration::from_millis(200);
 const ANSWER_TIMEOUT: Duration = Duration::from_secs(2);
 /// Longest wait until a guardian at work has stopped the axis.
 const STOP_TIMEOUT: Duration = Duration::from_secs(10);
+/// Time in which a guardian reads what is left on the line before it stops the axis: longer than a
+/// telegram takes to arrive, and short even if the line never falls silent.
+const DRAIN_LIMIT: Duration = Duration::from_millis(20);
 /// Longest wait for a guardian that reads nothing.
 const SEND_TIMEOUT: Duration = Duration::from_millis(20);
 
@@ -91,6 +94,14 @@ pub enum GuardianError {
         /// What the guardian did, if it has reported.
         report: Option<GuardianReport>,
     },
+    /// The guardian failed after such a gap; this process has stopped the axis since.
+    #[error("this program did not run for {:.1} s while the axis could move; {}; this program has stopped the axis since", gap.as_secs_f64(), outcome(report.as_ref()))]
+    Replaced {
+        /// Gap in the drive loop.
+        gap: Duration,
+        /// What the guardian did, if it has reported.
+        report: Option<GuardianReport>,
+    },
     /// The guardian has ended or does not answer.
     #[error(
         "the guardian process, which stops the axis if this program dies, has ended or does not answer; the axis is stopped"
@@ -119,7 +130,16 @@ impl GuardianError {
             Self::Acted { report, .. } => {
                 !matches!(report, Some(GuardianReport { failure: None, .. }))
             }
-            Self::Lost => false,
+            Self::Replaced { .. } | Self::Lost => false,
+        }
+    }
+
+    /// The same once this process has stopped the axis itself.
+    #[must_use]
+    pub(super) fn after_own_stop(self) -> Self {
+        match self {
+            Self::Acted { gap, report } => Self::Replaced { gap, report },
+            error => error,
         }
     }
 }
@@ -129,7 +149,6 @@ pub struct Guardian {
     child: PortChild,
     /// Time of the last heartbeat while armed.
     armed: Option<Instant>,
-    inhibitor: Option<SleepInhibitor>,
 }
 
 impl Guardian {
@@ -149,11 +168,7 @@ impl Guardian {
         };
         let child = port.spawn_child(program, ARGUMENT)?;
         child.socket.set_write_timeout(Some(SEND_TIMEOUT))?;
-        let mut guardian = Self {
-            child,
-            armed: None,
-            inhibitor: None,
-        };
+        let mut guardian = Self { child, armed: None };
         (&guardian.child.socket)
             .write_all(format!("{}\n", serde_json::to_string(&setup)?).as_bytes())?;
         match guardian.ask() {
@@ -167,7 +182,6 @@ impl Guardian {
     /// # Errors
     /// [`GuardianError::Lost`].
     pub fn arm(&mut self) -> Result<(), GuardianError> {
-        self.inhibitor = SleepInhibitor::take();
         self.send(request::ARM)?;
         self.armed = Some(Instant::now());
         self.ask()
@@ -175,7 +189,6 @@ impl Guardian {
 
     /// Disarms the guardian of an axis at rest.
     pub fn disarm(&mut self) {
-        self.inhibitor = None;
         if self.armed.take().is_some() {
             // A guardian that is gone is noticed when it is armed again.
             let _ = self.send(request::DISARM);
@@ -220,11 +233,12 @@ impl Guardian {
             }
             Some(answer::ACTS) => {
                 self.armed = None;
-                self.inhibitor = None;
-                Err(GuardianError::Acted {
-                    gap,
-                    report: self.report(),
-                })
+                let report = self.report();
+                if report.is_none() {
+                    // It must not use the port at the same time as this process.
+                    self.child.kill();
+                }
+                Err(GuardianError::Acted { gap, report })
             }
             _ => Err(GuardianError::Lost),
         }
@@ -275,11 +289,20 @@ pub fn run() -> io::Result<Option<GuardianReport>> {
 
 /// Stops the axis, whatever the parent has left on the line.
 fn stop(axis: drive::AxisConfig, link: DriveLink, mut port: impl Port) -> Result<(), SessionError> {
-    let mut buffer = [0; 512];
-    while port.read(&mut buffer, Span::ZERO)?.is_some() {}
+    drain(&mut port);
     let client = DriveClient::new(axis, link);
     let mut session = Session::new(client, port, Arc::default());
     session.run(DriveCommand::Stop, &mut |_| {}).map(drop)
+}
+
+/// Reads what is on the line, but not for longer than [`DRAIN_LIMIT`]. The stop is tried whatever
+/// comes of it.
+fn drain(port: &mut impl Port) {
+    let mut buffer = [0; 512];
+    let deadline = Instant::now() + DRAIN_LIMIT;
+    while let Ok(Some(_)) = port.read(&mut buffer, Span::ZERO)
+        && Instant::now() < deadline
+    {}
 }
 
 /// Reads a line, and nothing beyond it.
@@ -298,7 +321,7 @@ fn read_line(mut socket: &UnixStream) -> io::Result<String> {
 /// Waits for the end of the heartbeats while armed: true if the parent has died. `None` if it ends
 /// while not armed.
 fn wait_for_alarm(socket: &mut UnixStream) -> io::Result<Option<bool>> {
-    let parent = Threads::of(parent_id());
+    let parent = ProcessThreads::of(parent_id());
     let mut armed = false;
     let mut received = Instant::now();
     loop {
@@ -322,7 +345,13 @@ fn wait_for_alarm(socket: &mut UnixStream) -> io::Result<Option<bool>> {
             Err(error) => match error.kind() {
                 io::ErrorKind::Interrupted => {}
                 io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut => {
-                    if received.elapsed() >= parent.silence_limit() {
+                    let is_delayed = parent.is_any_delayed();
+                    let limit = if is_delayed {
+                        OVERLOAD_LIMIT
+                    } else {
+                        SILENCE_LIMIT
+                    };
+                    if received.elapsed() >= limit {
                         return Ok(Some(false));
                     }
                 }
@@ -333,74 +362,6 @@ fn wait_for_alarm(socket: &mut UnixStream) -> io::Result<Option<bool>> {
     }
 }
 
-/// The threads of a process (proc(5)).
-struct Threads {
-    folder: PathBuf,
-}
-
-impl Threads {
-    fn of(process: u32) -> Self {
-        Self {
-            folder: format!("/proc/{process}/task").into(),
-        }
-    }
-
-    /// Longest silence of the process in its present state.
-    fn silence_limit(&self) -> Duration {
-        match self.is_any_delayed() {
-            true => OVERLOAD_LIMIT,
-            false => SILENCE_LIMIT,
-        }
-    }
-
-    /// Whether a thread, the drive loop or one that it waits for, runs or waits for a processor
-    /// (R), or for the system (D): on a loaded machine poll(2) of a terminal waits for the
-    /// kernel's own threads, for 0.7 s as measured. All threads of a stopped program are in the
-    /// state T, those of a stuck one sleep (S).
-    fn is_any_delayed(&self) -> bool {
-        std::fs::read_dir(&self.folder).is_ok_and(|mut threads| {
-            threads.any(|thread| thread.is_ok_and(|thread| is_delayed(&thread.path())))
-        })
-    }
-}
-
-/// The state follows the name in parentheses, which may contain any character.
-fn is_delayed(thread: &Path) -> bool {
-    std::fs::read(thread.join("stat")).is_ok_and(|stat| {
-        let name_end = stat.iter().rposition(|&byte| byte == b')');
-        name_end.is_some_and(|end| matches!(stat.get(end + 2), Some(b'R' | b'D')))
-    })
-}
-
 #[cfg(test)]
-mod tests {
-    use std::process::{Command, Stdio};
-
-    use super::*;
-
-    #[test]
-    fn an_overloaded_machine_differs_from_a_stuck_program() {
-        // A running thread is in the state of one that waits for a processor.
-        let this = Threads::of(std::process::id());
-        assert_eq!(this.silence_limit(), OVERLOAD_LIMIT);
-
-        let mut stuck = Command::new("cat");
-        let mut stuck = stuck.stdin(Stdio::piped()).spawn().unwrap();
-        let threads = Threads::of(stuck.id());
-        while threads.is_any_delayed() {
-            std::thread::yield_now();
-        }
-        assert_eq!(threads.silence_limit(), SILENCE_LIMIT);
-        drop(stuck.stdin.take());
-        stuck.wait().unwrap();
-        // A process that has ended.
-        assert_eq!(threads.silence_limit(), SILENCE_LIMIT);
-    }
-
-    #[test]
-    fn the_name_of_a_thread_does_not_hide_its_state() {
-        let thread = std::thread::Builder::new().name(") S (".to_owned());
-        let is_found = || is_delayed(Path::new("/proc/thread-self"));
-        assert!(thread.spawn(is_found).unwrap().join().unwrap());
-    }
-}
+#[path = "guardian_tests.rs"]
+mod tests;

@@ -5,6 +5,7 @@ pub mod drive_session;
 pub mod guardian;
 pub mod lidar_receiver;
 pub mod lidar_sockets;
+mod process_threads;
 pub mod profile;
 pub mod simulated;
 pub mod simulated_axis;

@@ -56,6 +56,7 @@ pub fn axis(axis: &AxisSettings) -> Result<drive::AxisConfig, Failure> {
     let gearing = axis.scan().gearing().map_err(|error| wrong(&error))?;
     let rpm = |deg_s: f64| gearing.rpm(DegPerS(deg_s));
     let (homing, guard) = (&axis.homing, &axis.guard);
+    let at_rest = drive::AxisConfig::rest_tolerance(gearing);
     let max_acceleration = gearing.rpm_per_s(DegPerS2(axis.max_accel_deg_s2));
     let config = drive::AxisConfig {
         node: axis.node,
@@ -90,8 +91,8 @@ pub fn axis(axis: &AxisSettings) -> Result<drive::AxisConfig, Failure> {
             ..HomingConfig::default()
         },
         max_following_error: Degrees(guard.following_error_deg),
-        arrival_tolerance: Degrees(guard.arrival_deg),
-        standstill_spread: Degrees(guard.standstill_deg),
+        arrival_tolerance: guard.arrival_deg.map_or(at_rest, Degrees),
+        standstill_spread: guard.standstill_deg.map_or(at_rest, Degrees),
         guard: MotionGuardConfig {
             behind: Degrees(guard.behind_deg),
             servo_lag: Span::from_millis(guard.servo_lag_ms.into()),
@@ -126,6 +127,25 @@ mod tests {
         assert_eq!(config.homing.acceleration, config.max_acceleration);
         let strong = axis(&AxisSettings::default()).unwrap();
         assert_eq!(strong.homing.acceleration, HOMING_ACCELERATION);
+    }
+
+    /// 200 counts per revolution behind 90:1 are 0.02 deg per count.
+    #[test]
+    fn tolerances_at_rest_grow_with_a_coarse_encoder() {
+        let coarse = AxisSettings {
+            encoder_lines: 50,
+            gear: [90, 1],
+            ..AxisSettings::default()
+        };
+        let config = axis(&coarse).unwrap();
+        for tolerance in [config.standstill_spread, config.arrival_tolerance] {
+            assert!((tolerance.0 - 0.4).abs() < 1e-9, "{tolerance:?}");
+        }
+        let fine = axis(&AxisSettings::default()).unwrap();
+        assert_eq!(fine.standstill_spread, Degrees(0.03));
+        let mut own = coarse;
+        own.guard.standstill_deg = Some(0.1);
+        assert_eq!(axis(&own).unwrap().standstill_spread, Degrees(0.1));
     }
 
     #[test]

@@ -47,8 +47,9 @@ impl Worker {
             ([] | [DriveCommand::Connect], Lifetime::Resident) => Arc::default(),
             _ => Arc::clone(stop.flag()),
         };
-        let mut session =
-            Session::new(client, &mut *opened.port, interrupt).guarded_by(opened.guardian.as_mut());
+        let mut session = Session::new(client, &mut *opened.port, interrupt)
+            .guarded_by(opened.guardian.as_mut())
+            .keeping_awake(!service.simulated());
         // A simulated drive starts with its service, and is not homed.
         let homing = match service.simulated() && !service.is_referenced() {
             true => Homing::First,
@@ -171,6 +172,7 @@ impl Worker {
                 lidar: &receiver,
                 port: &mut *opened.port,
                 guardian: opened.guardian.as_mut(),
+                keeps_awake: !self.service.simulated(),
                 link: opened.link,
                 rs232_baud: opened.rs232_baud,
                 tap: &|record| service.preview.record(record),

@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 
 use nix::errno::Errno;
 use nix::spawn::{PosixSpawnAttr, PosixSpawnFileActions, PosixSpawnFlags, posix_spawn};
-use nix::sys::signal::{SigSet, Signal};
+use nix::sys::signal::{SigSet, Signal, kill};
 use nix::sys::wait::{WaitPidFlag, WaitStatus, waitpid};
 use nix::unistd::Pid;
 
@@ -21,7 +21,9 @@ use super::descriptor::DescriptorPort;
 use super::serial::SerialPort;
 
 /// Signals of a terminal and of service managers that the child ignores.
-const BLOCKED: [Signal; 8] = [
+const BLOCKED: [Signal; 9] = [
+    // systemd's watchdog sends it to every process of a service.
+    Signal::SIGABRT,
     Signal::SIGINT,
     Signal::SIGTERM,
     Signal::SIGHUP,
@@ -80,6 +82,12 @@ impl PortChild {
     #[must_use]
     pub fn id(&self) -> i32 {
         self.pid.as_raw()
+    }
+
+    /// Ends the child whatever it does. Its id stays its own until this is dropped.
+    pub fn kill(&self) {
+        // One that has ended cannot be killed, and need not be.
+        let _ = kill(self.pid, Signal::SIGKILL);
     }
 }
 

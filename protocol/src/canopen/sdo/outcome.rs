@@ -60,8 +60,9 @@ pub enum TransferError {
         /// Bytes indicated, or received so far.
         got: usize,
     },
-    /// An empty segment that is not the last: such a transfer might never end.
-    #[error("SDO: empty segment, expected data or the last segment")]
+    /// An empty segment that is not the last, so that the transfer might never end, or whose
+    /// transfer has no size, so that missing bytes would not be noticed.
+    #[error("SDO: empty segment, expected data")]
     EmptySegment,
     /// The caller cancelled the transfer.
     #[error("SDO: cancelled")]

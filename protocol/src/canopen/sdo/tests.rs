@@ -136,7 +136,7 @@ fn segmented_reads_complete() {
     let answers = [sized(NAME, 5), part(false, true, b"EPOS2")];
     let (outcome, _) = play(NAME, &answers);
     assert_eq!(outcome.result.unwrap().bytes.as_slice(), b"EPOS2");
-    // Without a size, in three segments, the last empty.
+    // Without a size, in two segments.
     let unsized_ = SdoResponse::InitiateUpload {
         address: NAME,
         transfer: Initiate::Segmented { size: None },
@@ -144,11 +144,18 @@ fn segmented_reads_complete() {
     let answers = [
         unsized_,
         part(false, false, b"0123456"),
-        part(true, false, b"78"),
-        part(false, true, b""),
+        part(true, true, b"78"),
     ];
     let (outcome, _) = play(NAME, &answers);
     assert_eq!(outcome.result.unwrap().bytes.as_slice(), b"012345678");
+    // With a size the last may be empty.
+    let answers = [
+        sized(NAME, 7),
+        part(false, false, b"0123456"),
+        part(true, true, b""),
+    ];
+    let (outcome, _) = play(NAME, &answers);
+    assert_eq!(outcome.result.unwrap().bytes.as_slice(), b"0123456");
     // No data.
     let (outcome, _) = play(NAME, &[sized(NAME, 0), part(false, true, b"")]);
     assert!(outcome.result.unwrap().bytes.is_empty());
@@ -239,6 +246,26 @@ fn unexpected_responses_end_and_abort_the_transfer() {
         failure(NAME, &[sized(NAME, 5), part(false, false, b"")]),
         (EmptySegment, Some(AbortCode::COMMAND))
     );
+}
+
+/// Nothing shows that such a value is complete.
+#[test]
+fn an_empty_last_segment_without_a_size_aborts_the_transfer() {
+    let without_size = SdoResponse::InitiateUpload {
+        address: NAME,
+        transfer: Initiate::Segmented { size: None },
+    };
+    let expected = (TransferError::EmptySegment, Some(AbortCode::COMMAND));
+    assert_eq!(
+        failure(NAME, &[without_size, part(false, true, b"")]),
+        expected
+    );
+    let after_data = [
+        without_size,
+        part(false, false, b"0123456"),
+        part(true, true, b""),
+    ];
+    assert_eq!(failure(NAME, &after_data), expected);
 }
 
 #[test]

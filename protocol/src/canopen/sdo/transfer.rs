@@ -241,11 +241,14 @@ impl<const N: usize, const L: usize> SdoTransfer<N, L> {
         if got > N {
             return Err(TransferError::TooLong { max: N, got });
         }
+        // CiA 301 allows an empty last segment, but no object of a drive needs one. Without a size,
+        // a value whose bytes were lost would count as complete.
+        if segment.bytes.is_empty() && !(segment.last && size.is_some()) {
+            return Err(TransferError::EmptySegment);
+        }
         self.data.extend(segment.bytes.iter().copied());
         if segment.last {
             Ok(self.done(true))
-        } else if segment.bytes.is_empty() {
-            Err(TransferError::EmptySegment)
         } else {
             Ok(self.request_segment(!segment.toggle, size))
         }

@@ -35,7 +35,6 @@ const START_LIMIT: Duration = Duration::from_secs(90);
 /// Time that the axis moves before its process is killed.
 const MOVING: Duration = Duration::from_millis(500);
 
-/// Result of the command.
 /// Report of `doctor --bring-up`.
 #[derive(Serialize, ToSchema)]
 pub struct BringUpReport {

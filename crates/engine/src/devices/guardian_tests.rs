@@ -1,0 +1,165 @@
+//! The guardian on a bad line, and a parent whose guardian fails.
+
+use std::os::unix::fs::PermissionsExt;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use ::io::port::{PortError, Pty};
+use drive::{CommandProgress, DriveEvent, MoveCommand};
+use protocol::epos2::cia402::DeviceState;
+use sim::Attachment;
+use units::{Degrees, Host, Rpm, RpmPerS, Stamp};
+
+use super::*;
+use crate::devices::simulated;
+use crate::devices::simulated_drive::{SoftwarePort, run_observed};
+
+/// A line that a test writes on and reads from without a drive.
+struct BadLine {
+    /// Reads fail instead of returning noise.
+    fails: bool,
+    began: Instant,
+    /// Bytes of the first write, and when it came.
+    first: Arc<Mutex<Option<FirstWrite>>>,
+}
+
+type FirstWrite = (Duration, Vec<u8>);
+
+impl Port for BadLine {
+    fn write_frame(&mut self, frame: &[u8]) -> Result<Stamp<Host>, PortError> {
+        let mut first = self.first.lock().unwrap();
+        first.get_or_insert_with(|| (self.began.elapsed(), frame.to_vec()));
+        Ok(self.now())
+    }
+
+    fn read(
+        &mut self,
+        buffer: &mut [u8],
+        _: Span,
+    ) -> Result<Option<(usize, Stamp<Host>)>, PortError> {
+        // A machine reads noise at the rate of its line.
+        std::thread::sleep(Duration::from_micros(100));
+        if self.fails {
+            return Err(PortError::Disconnected {
+                port: "bad".to_owned(),
+                reason: "a loose contact".to_owned(),
+            });
+        }
+        buffer[..16].fill(0x55);
+        Ok(Some((16, self.now())))
+    }
+}
+
+/// What the guardian writes first, and when.
+fn first_write(fails: bool) -> FirstWrite {
+    let first = Arc::default();
+    let line = BadLine {
+        fails,
+        began: Instant::now(),
+        first: Arc::clone(&first),
+    };
+    let stop = std::thread::spawn(move || stop(drive::AxisConfig::default(), DriveLink::Usb, line));
+    let begin = Instant::now();
+    let written = loop {
+        if let Some(written) = first.lock().unwrap().clone() {
+            break written;
+        }
+        assert!(begin.elapsed() < Duration::from_secs(5), "nothing written");
+        std::thread::sleep(Duration::from_millis(1));
+    };
+    assert!(stop.join().unwrap().is_err(), "a stop without an answer");
+    written
+}
+
+#[test]
+fn the_guardian_sends_the_quick_stop_into_endless_noise() {
+    let (after, bytes) = first_write(false);
+    // 6040 = 0B to node 1.
+    assert_eq!(bytes[..10], [0x90, 2, 0x11, 4, 0x40, 0x60, 0, 1, 0x0B, 0]);
+    // The machine may be busy: the bound is 20 ms.
+    assert!(after < Duration::from_millis(500), "{after:?}");
+}
+
+#[test]
+fn the_guardian_sends_the_quick_stop_after_a_read_error() {
+    let (_, bytes) = first_write(true);
+    assert_eq!(bytes[..10], [0x90, 2, 0x11, 4, 0x40, 0x60, 0, 1, 0x0B, 0]);
+}
+
+/// A guardian that is asked a third time, in the move, answers with these words of a shell.
+fn script(answer: &str) -> String {
+    format!(
+        "#!/bin/sh\nread setup\nasked=0\nwhile :; do\n  byte=$(dd bs=1 count=1 2>/dev/null)\n  \
+         case \"$byte\" in\n  '') exit ;;\n  '?') asked=$((asked + 1))\n    \
+         [ $asked -lt 3 ] && printf . >&0 && continue\n    {answer}\n    exit ;;\n  esac\ndone\n"
+    )
+}
+
+/// A move in which this process is silent for 0.3 s, and whose guardian answers so. Returns the
+/// error and whether the axis has power in the end.
+fn move_with_guardian(answer: &str) -> (SessionError, bool) {
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join("guardian");
+    std::fs::write(&program, script(answer)).unwrap();
+    std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let settings = AxisSettings::default();
+    let axis = profile::axis(&settings).unwrap();
+    let pty = Pty::open().unwrap();
+    let port = SerialPort::open(pty.path(), 1_000_000).unwrap();
+    let (stop, powered) = (AtomicBool::new(false), AtomicBool::new(false));
+    let error = std::thread::scope(|scope| {
+        scope.spawn(|| {
+            let node = simulated::node(&axis);
+            let port = SoftwarePort::Serial(pty);
+            let mut observe = |_, node: &firmware_sim::epos2::Node| {
+                let is_on = node.state() == DeviceState::OperationEnabled;
+                powered.store(is_on, Ordering::Relaxed);
+            };
+            run_observed(node, Attachment::Usb, port, &stop, &mut observe).unwrap();
+        });
+        let mut guardian = Guardian::start(&program, &port, DriveLink::Usb, &settings).unwrap();
+        let client = DriveClient::new(axis.clone(), DriveLink::Usb);
+        let mut session =
+            Session::new(client, port, Arc::default()).guarded_by(Some(&mut guardian));
+        session.run(DriveCommand::Connect, &mut |_| {}).unwrap();
+        let homed = session.run(DriveCommand::Home, &mut |_| {});
+        let error = homed.and_then(|_| {
+            let across = MoveCommand {
+                to: Degrees(-40.0),
+                speed: Rpm(100),
+                acceleration: RpmPerS(2_000),
+            };
+            session.run(DriveCommand::Goto(across), &mut |event| {
+                if let DriveEvent::Progress(CommandProgress::Moving(_)) = event {
+                    std::thread::sleep(Duration::from_millis(300));
+                }
+            })
+        });
+        drop(session);
+        // The guardian's word counts in the next control cycles.
+        std::thread::sleep(Duration::from_millis(50));
+        stop.store(true, Ordering::Relaxed);
+        error.unwrap_err()
+    });
+    (error, powered.load(Ordering::Relaxed))
+}
+
+#[test]
+fn a_process_stops_the_axis_that_its_guardian_could_not_stop() {
+    let report = r#"{"parent_died":false,"failure":"the line is noisy"}"#;
+    let (error, powered) = move_with_guardian(&format!("printf '!%s\\n' '{report}' >&0"));
+    assert!(!error.may_move(), "{error}");
+    let text = error.to_string();
+    for part in ["the line is noisy", "this program has stopped the axis"] {
+        assert!(text.contains(part), "{text}");
+    }
+    assert!(!powered, "{text}");
+}
+
+#[test]
+fn a_process_stops_the_axis_whose_guardian_ends_without_a_report() {
+    let (error, powered) = move_with_guardian("printf '!' >&0");
+    assert!(!error.may_move(), "{error}");
+    assert!(error.to_string().contains("has not reported"), "{error}");
+    assert!(!powered, "{error}");
+}
