@@ -45,8 +45,8 @@ pub(super) fn alignment_warnings(alignment: &Alignment) -> Vec<String> {
     warnings
 }
 
-/// A warning if the angles are less certain than those of a good scan. An age of the positions of up
-/// to [`MAX_AGE_S`], which samples cannot always show, is part of a good scan.
+/// A warning if the angles are less certain than those of a good scan. An age of the positions of
+/// up to [`MAX_AGE_S`], which samples cannot always show, is part of a good scan.
 fn angle_warning(alignment: &Alignment) -> Option<String> {
     let speeds = alignment.sweeps.iter().map(|sweep| sweep.cruise.0.abs());
     let age_deg = MAX_AGE_S * speeds.fold(0.0, f64::max);

@@ -133,8 +133,8 @@ impl<'a> Candidates<'a> {
             None => {
                 let mut all = self.profiles();
                 let best = least(&all).and_then(|best| all.get(best));
-                // Ages of a latch are errors that neighbours share, up to the way of half a cycle: a
-                // spline would follow them. Greater errors are motion.
+                // Ages of a latch are errors that neighbours share, up to the way of half a cycle:
+                // a spline would follow them. Greater errors are motion.
                 let age_deg = 0.5 * latch::CYCLE_S * self.sweep.cruise.0.abs();
                 let is_aged = |best: &Candidate| {
                     best.latch == LatchEvidence::Present && best.systematic_residual_deg < age_deg
