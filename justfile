@@ -39,3 +39,7 @@ chaos *ARGS:
 # 200 kills at random moments on each transport; --bless for the table of docs/src/kills.md.
 kills *ARGS:
     cargo test -p velomotion --test kills --locked -- --kills 200 {{ARGS}}
+
+# Captures beside 8 busy loops, by the command and by a daemon: each must be complete; --captures N --loops N for others.
+load *ARGS:
+    cargo test -p velomotion --test load --locked -- --captures 10 {{ARGS}}

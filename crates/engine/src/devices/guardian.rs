@@ -34,9 +34,9 @@ const HEARTBEAT: Duration = Duration::from_millis(50);
 /// takes 200 ms more, standstill and brake 100 ms: together less than a second.
 pub const SILENCE_LIMIT: Duration = Duration::from_millis(500);
 /// The same while the program waits for a processor or for the system: it is neither stopped nor
-/// stuck, and the move goes on as through silence of the drive (`silence_limit` of the drive
-/// client).
-const OVERLOAD_LIMIT: Duration = Duration::from_secs(1);
+/// stuck. The drive client rides through a second of silence; the rest is for what the machine
+/// delays before and after it.
+const OVERLOAD_LIMIT: Duration = Duration::from_millis(1_500);
 /// Between two checks whether the program still waits.
 const OVERLOAD_CHECK: Duration = Duration::from_millis(20);
 /// Gap in the drive loop after which the parent asks before it uses the port.
