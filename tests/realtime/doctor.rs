@@ -110,10 +110,10 @@ fn the_bring_up_finds_nothing_wrong_with_a_healthy_drive() {
             "{problems:?}"
         );
         assert_eq!(report["problems"], problems.len());
-        assert!(text.contains("2 things nobody has checked"), "{text}");
+        assert!(text.contains("2 open checks"), "{text}");
         // A second report goes behind the first.
         let refused = bench.run("doctor --bring-up --report first.md");
-        assert_eq!(refused.status.code(), Some(2), "nobody can answer");
+        assert_eq!(refused.status.code(), Some(2), "stdin is not a terminal");
         let again = std::fs::read_to_string(bench.folder.path().join("first.md")).unwrap();
         assert_eq!(again, text);
     }

@@ -1,9 +1,11 @@
 //! `velomotion tilt` with the software drive in its own process.
 
 use std::io::{BufRead, BufReader, Write};
+use std::net::UdpSocket;
 use std::os::unix::fs::PermissionsExt;
 use std::path::PathBuf;
 use std::process::{Child, Command, Output, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 /// A software drive that runs until dropped, and a configuration that names it.
@@ -232,6 +234,70 @@ fn a_wrong_node_id_is_reported_with_its_key_in_the_configuration() {
             assert!(printed.contains(part), "{interface}: {part}: {printed}");
         }
     }
+}
+
+/// It would refuse the same command the next time.
+#[test]
+fn a_capture_without_an_answer_of_the_drive_leaves_no_log() {
+    let bench = Bench::new("--usb");
+    let free = [(); 2].map(|()| UdpSocket::bind("127.0.0.1:0").unwrap());
+    let [port, position] = free.map(|socket| socket.local_addr().unwrap().port());
+    let path = bench.folder.path().join("velomotion.toml");
+    let config = std::fs::read_to_string(&path).unwrap();
+    let lidar = format!("lidar = '127.0.0.1'\ndata_port = {port}\nposition_port = {position}\n");
+    std::fs::write(path, format!("{config}{lidar}[axis]\nnode = 5\n")).unwrap();
+    let stop = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            let lidar = UdpSocket::bind("127.0.0.1:0").unwrap();
+            while !stop.load(Ordering::Relaxed) {
+                // The program may not listen yet.
+                let _ = lidar.send_to(&[0xFF; 1206], ("127.0.0.1", port));
+                std::thread::sleep(Duration::from_millis(5));
+            }
+        });
+        let outputs = [(); 2].map(|()| bench.run("capture --speed 56.25 -o scan.ply"));
+        stop.store(true, Ordering::Relaxed);
+        for output in outputs {
+            let printed = String::from_utf8_lossy(&output.stderr).into_owned();
+            assert_eq!(output.status.code(), Some(5), "{printed}");
+            assert!(printed.contains("node 5"), "{printed}");
+        }
+    });
+    assert!(!bench.folder.path().join("scan.pcapng").exists());
+}
+
+/// The daemon's log goes to a full pipe, such as that of a viewer that was suspended.
+#[test]
+fn a_daemon_stops_its_axis_though_no_program_reads_its_log() {
+    let bench = Bench::new("--usb");
+    // A pipe of Linux holds 64 KiB (pipe(7)).
+    let script = "head -c 65536 /dev/zero >&2; exec \"$0\" daemon -vv --listen 127.0.0.1:0";
+    let mut daemon = Command::new("sh")
+        .args(["-c", script, env!("CARGO_BIN_EXE_velomotion")])
+        .current_dir(bench.folder.path())
+        .env("XDG_RUNTIME_DIR", bench.folder.path())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let begin = std::time::Instant::now();
+    while !bench.run("tilt home").status.success() {
+        assert!(begin.elapsed().as_secs() < 20, "no daemon");
+    }
+    let mut moving = bench.command("tilt goto -40 --speed 1");
+    let mut moving = moving.stderr(Stdio::null()).spawn().unwrap();
+    while bench.json("tilt status")["activity"] != "moving" {
+        assert!(begin.elapsed().as_secs() < 40, "no motion");
+    }
+    let pid = daemon.id().to_string();
+    let kill = Command::new("kill").args(["-TERM", &pid]).status();
+    assert!(kill.unwrap().success());
+    assert!(daemon.wait().unwrap().success());
+    assert_ne!(moving.wait().unwrap().code(), Some(0));
+    let status = bench.json("tilt status");
+    assert_eq!(status["state"], "switch-on disabled", "{status}");
+    assert!(status["angle_deg"].as_f64().unwrap() > -39.0, "{status}");
 }
 
 /// This test listens at the socket of the drive's port, does not have the port, and answers that

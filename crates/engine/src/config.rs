@@ -79,7 +79,13 @@ pub fn load(file: Option<&Path>) -> Result<Config, Failure> {
 pub fn load_mount(path: &Path) -> Result<MountConfig, Failure> {
     #[derive(Deserialize)]
     struct MountFile {
-        mount: MountConfig,
+        mount: Mount,
+    }
+    // A height that is not given is unknown, not the default.
+    #[derive(Deserialize)]
+    #[serde(deny_unknown_fields)]
+    struct Mount {
+        d_m: f64,
     }
     let wrong = |what: String| {
         Failure::new(
@@ -91,8 +97,9 @@ pub fn load_mount(path: &Path) -> Result<MountConfig, Failure> {
     let text = std::fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
     let file: MountFile =
         toml::from_str(&text).map_err(|error| wrong(error.to_string().trim_end().to_owned()))?;
-    between("mount.d_m", file.mount.d_m, -10.0, 10.0).map_err(wrong)?;
-    Ok(file.mount)
+    let d_m = file.mount.d_m;
+    between("mount.d_m", d_m, -10.0, 10.0).map_err(wrong)?;
+    Ok(MountConfig { d_m })
 }
 
 impl Config {

@@ -244,7 +244,7 @@ impl Decoder {
             return;
         };
         stats.reordered += 1;
-        let (lost, duration) = (stats.lost_packets, stats.duration);
+        let (lost, gaps, duration) = (stats.lost_packets, stats.gaps.len(), stats.duration);
         let next = Successor {
             azimuth_cdeg: first_azimuth(&after),
             after: pending.start.saturating_since(new.start),
@@ -253,7 +253,7 @@ impl Decoder {
         if self.emitted.replace(new.start).is_some() {
             // The packet before it counted this packet as lost, and its time.
             let stats = &mut self.packet_decoder.stats;
-            stats.lost_packets = lost.saturating_sub(1);
+            stats.take_back_lost(lost, gaps);
             stats.duration = duration;
         }
     }
@@ -369,14 +369,13 @@ impl PacketDecoder {
     ) {
         let stats = &mut self.stats;
         stats.model = Some(model);
+        let begin_ns = stats.duration.as_nanos();
         let length_ns = next.map_or(steps.fill_ns(), |next| next.after.as_nanos());
         stats.duration = Span::from_nanos(stats.duration.as_nanos().saturating_add(length_ns));
         if let Some(next) = next {
-            stats.lost_packets = stats.lost_packets.saturating_add(missing(
-                steps,
-                next,
-                steps.jump().or(self.blind_sector),
-            ));
+            let lost = missing(steps, next, steps.jump().or(self.blind_sector));
+            let packet_end = Span::from_nanos(begin_ns.saturating_add(steps.fill_ns()));
+            stats.add_lost(packet_end, lost);
         }
         let (rotation_cdeg, periods) = steps.rotation_and_periods(link);
         self.rotation_cdeg += rotation_cdeg;

@@ -57,6 +57,6 @@ pub use frames::{FrameCutter, LidarFrameError, RevolutionFrame};
 pub use identify::is_dual;
 pub use options::Options;
 pub use organised::{FiringColumn, OrganisedFrame};
-pub use stats::{ModelConflict, Stats};
+pub use stats::{ModelConflict, PacketGap, Stats};
 pub use timekeeper::{PacketTiming, Timekeeper};
 pub use utc::{NoUtc, Utc, UtcChange, UtcClock, UtcState};

@@ -33,6 +33,8 @@ pub struct Stats {
     pub clock_steps: u64,
     /// Data packets missing, by device time.
     pub lost_packets: u64,
+    /// Where packets are missing: the first [`Stats::MAX_GAPS`] places.
+    pub gaps: Vec<PacketGap>,
     /// Emitted firings of all lasers.
     pub firings: u64,
     /// Returns in the emitted packets.
@@ -58,6 +60,15 @@ pub struct Stats {
     pub corrections_refused: Option<usize>,
 }
 
+/// A place in a recording at which packets are missing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PacketGap {
+    /// Device time from the first firing to the gap, without clock steps.
+    pub at: Span,
+    /// Missing packets.
+    pub packets: u64,
+}
+
 /// Contradiction between the packet spacing and the factory byte or the user's model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -73,6 +84,32 @@ pub struct ModelConflict {
 }
 
 impl Stats {
+    /// Gaps that are kept.
+    pub const MAX_GAPS: usize = 100;
+
+    /// Counts packets that are missing after the packet that ends at `at`.
+    pub(crate) fn add_lost(&mut self, at: Span, packets: u64) {
+        self.lost_packets = self.lost_packets.saturating_add(packets);
+        if packets > 0 && self.gaps.len() < Self::MAX_GAPS {
+            self.gaps.push(PacketGap { at, packets });
+        }
+    }
+
+    /// Takes back one of `lost` packets, which arrived after its successor, and what was counted
+    /// after the first `gaps` gaps.
+    pub(crate) fn take_back_lost(&mut self, lost: u64, gaps: usize) {
+        self.lost_packets = lost.saturating_sub(1);
+        self.gaps.truncate(gaps);
+        // Beyond the kept gaps the last one is another.
+        let kept: u64 = self.gaps.iter().map(|gap| gap.packets).sum();
+        if kept > self.lost_packets
+            && let Some(last) = self.gaps.last_mut()
+        {
+            last.packets -= 1;
+            self.gaps.retain(|gap| gap.packets > 0);
+        }
+    }
+
     pub(crate) fn report(&mut self, conflict: ModelConflict) {
         let known = self
             .conflicts

@@ -1,6 +1,6 @@
 //! Times in a sweep from which no angle is known: a busy host or a drive that does not answer.
 
-use units::{Host, Span, Stamp};
+use units::Span;
 
 use crate::angles::AngleSample;
 use crate::sweeps::Sweep;
@@ -24,10 +24,11 @@ impl SampleGaps {
         let mut gaps = Self::default();
         for sweep in sweeps {
             let during = |s: &&AngleSample| (sweep.start..=sweep.end).contains(&s.host);
-            let mut last: Option<Stamp<Host>> = None;
-            for sample in samples.iter().filter(during) {
-                let gap = last.map_or(Span::ZERO, |last| sample.host.saturating_since(last));
-                last = Some(sample.host);
+            let times = samples.iter().filter(during).map(|sample| sample.host);
+            let mut last = sweep.start;
+            for time in times.chain([sweep.end]) {
+                let gap = time.saturating_since(last);
+                last = time;
                 gaps.longest = gaps.longest.max(gap);
                 gaps.count += u64::from(gap >= SHORTEST_GAP);
             }
@@ -38,7 +39,7 @@ impl SampleGaps {
 
 #[cfg(test)]
 mod tests {
-    use units::{DegPerS, Degrees};
+    use units::{DegPerS, Degrees, Stamp};
 
     use super::*;
     use crate::sweeps::Commanded;
@@ -63,6 +64,12 @@ mod tests {
         let of = |sweeps: &[Sweep]| SampleGaps::of(&samples, sweeps);
         let both = of(&[sweep(10, 605), sweep(605, 900)]);
         assert_eq!((both.count, both.longest), (3, Span::from_millis(489)));
+        // A sweep that is cut off ends between two samples.
+        let cut_off = of(&[sweep(10, 500)]);
+        assert_eq!(
+            (cut_off.count, cut_off.longest),
+            (2, Span::from_millis(389))
+        );
         // Between two sweeps the axis rests.
         let apart = of(&[sweep(0, 10), sweep(605, 610)]);
         assert_eq!((apart.count, apart.longest), (0, Span::from_millis(10)));

@@ -353,12 +353,10 @@ impl Trajectory {
             match (fit, &self.curve) {
                 (Some(fit), Curve::Piecewise(pieces)) => {
                     let is_regularised = |remark: &Remark| matches!(remark, Remark::Regularised(_));
-                    let corner = match fit.remarks.iter().any(is_regularised) {
-                        true => {
-                            let fastest = self.fastest(&[*span]).0;
-                            bound::of_corner(within(&self.samples, *span), fastest)
-                        }
-                        false => 0.0,
+                    let is_open = fit.remarks.iter().any(is_regularised);
+                    let corner = match fit.profile.as_ref().filter(|_| is_open) {
+                        Some(profile) => bound::of_corner(within(&self.samples, *span), profile),
+                        None => 0.0,
                     };
                     bound::of_fit(pieces, *span, fit) + corner
                 }

@@ -390,13 +390,7 @@ const WHOLE: f64 = 1e-9;
 fn check(name: &str, settings: &PatternSettings) -> Result<(), PatternError> {
     let tilt = settings.tilt;
     let rules = [
-        (
-            "rpm",
-            settings.rpm,
-            1.0,
-            100_000.0,
-            "1 to 100000 turns a minute",
-        ),
+        ("rpm", settings.rpm, 1.0, 100_000.0, "1 to 100000 rpm"),
         ("step", settings.step_deg, 1e-3, 90.0, "0.001 to 90 deg"),
         (
             "start",

@@ -204,10 +204,18 @@ def log_of(condition, seed, folder):
     return whole, truths
 
 
+GROUPS = {c.group for c in ALL}
+
+
+def is_wanted(text, condition):
+    """Whether `text` is the condition's group; a text that is no group is a part of its name."""
+    return text == condition.group or text not in GROUPS and text in condition.name
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--program", required=True)
-    parser.add_argument("--only", action="append", help="conditions or groups with this text")
+    parser.add_argument("--only", action="append", help="a group, or conditions with this text")
     parser.add_argument("--seeds", type=int, default=1)
     parser.add_argument("--first-seed", type=int, default=0)
     parser.add_argument("--tolerance", help="LENGTH@DISTANCE, such as 3mm@20m, for the program")
@@ -220,7 +228,7 @@ def main():
     chosen = [
         c
         for c in ALL
-        if not arguments.only or any(o in c.name or o == c.group for o in arguments.only)
+        if not arguments.only or any(is_wanted(o, c) for o in arguments.only)
     ]
     if not chosen:
         parser.error("no such condition; they are: " + "; ".join(c.name for c in ALL))

@@ -442,7 +442,7 @@ fn a_recording_with_missing_packets_is_incomplete() {
         let printed = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(6), "{printed}");
         assert!(
-            printed.contains("3 of 26 lidar packets are missing"),
+            printed.contains("3 of 26 lidar packets are missing at 0.01"),
             "{printed}"
         );
         assert!(place.path("cloud.ply").is_file());
@@ -467,6 +467,10 @@ fn angles_of_another_device_can_be_attached() {
     std::fs::rename(&own, place.path("other-name.toml")).unwrap();
     place.fails(&line, 2, &["--mount"]);
     std::fs::rename(place.path("other-name.toml"), &own).unwrap();
+    // This configuration has no mount, and an empty one does not say where the lidar is either.
+    place.fails(&line, 3, &["velomotion.toml", "mount"]);
+    std::fs::write(place.path("empty.toml"), "[mount]\n").unwrap();
+    place.fails(&format!("{line} --mount empty.toml"), 3, &["d_m"]);
     std::fs::write(place.path("other.toml"), "[mount]\nd_m = 0.25\n").unwrap();
     let output = place.run(&format!("{line} --mount other.toml"));
     assert!(

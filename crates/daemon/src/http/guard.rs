@@ -84,9 +84,10 @@ impl Sessions {
         if token.is(given) {
             return Ok(());
         }
-        if wrong.len() < MOST_WRONG {
-            wrong.push_back((host, now));
+        if wrong.len() >= MOST_WRONG {
+            wrong.pop_front();
         }
+        wrong.push_back((host, now));
         let from = host.map_or("this machine".to_owned(), |host| host.to_string());
         tracing::warn!("wrong token from {from}, {} in the last minute", tries + 1);
         Err(Refusal::new(

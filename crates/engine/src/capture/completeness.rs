@@ -78,11 +78,16 @@ pub fn missing(scan: &ScanReport) -> Option<Failure> {
     gaps.extend(scan.incomplete_sweeps.iter().cloned());
     if lost > 0 {
         let of = lost.saturating_add(scan.contents.packets.data);
-        gaps.push(format!("{lost} of {of} lidar packets are missing"));
+        let first = scan.contents.packet_gaps.first();
+        let place = first.map_or(String::new(), |gap| match gap.packets == lost {
+            true => format!(" at {:.3} s", gap.at_s),
+            false => format!(", the first at {:.3} s", gap.at_s),
+        });
+        gaps.push(format!("{lost} of {of} lidar packets are missing{place}"));
     }
     if scan.lidar_gap_s > MAX_LIDAR_GAP_S {
         gaps.push(format!(
-            "nothing was heard of the lidar in the last {:.2} s of the sweep",
+            "no lidar packet arrived in the last {:.2} s of the sweep",
             scan.lidar_gap_s
         ));
     }

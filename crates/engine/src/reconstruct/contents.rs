@@ -1,7 +1,7 @@
 //! What a log or recording holds.
 
 use io::recording::DatagramKind;
-use lidar::{Decoder, Options, Stats, UtcClock, UtcState};
+use lidar::{Decoder, Options, PacketGap, Stats, UtcClock, UtcState};
 use protocol::record::{DriveLink, Record, Wire};
 use protocol::vlp16::{GpsPosition, PositionPacket, Pps, ReturnMode};
 use scanner::steps::{ClockStep, SetClock};
@@ -10,7 +10,8 @@ use scanner::{Accuracy, ScanConfig, Survey, TiltSource};
 use super::failures::scan_failure;
 use crate::failure::Failure;
 use crate::reconstruct::report::{
-    Contents, Gps, GpsReport, InfoReport, PacketCounts, SensorReport, SweepReport, TiltReport,
+    Contents, Gps, GpsReport, InfoReport, MissingPackets, PacketCounts, SensorReport, SweepReport,
+    TiltReport,
 };
 use crate::reconstruct::source::{Pass, SensorAddress, Source};
 
@@ -308,6 +309,7 @@ pub fn contents(
         sensors: Vec::new(),
         returns: stats.returns,
         lost_packets: lost_packets(stats, steps),
+        packet_gaps: packet_gaps(stats, steps),
         duration_s: stats.duration.as_secs_f64(),
         rpm: stats.rpm,
         tilt,
@@ -321,6 +323,22 @@ pub fn contents(
 fn lost_packets(stats: &Stats, steps: &[ClockStep]) -> u64 {
     let phantoms = steps.iter().map(|step| step.phantom_packets);
     phantoms.fold(stats.lost_packets, u64::saturating_sub)
+}
+
+/// Where packets are missing, without the steps of the lidar's clock that look like it.
+fn packet_gaps(stats: &Stats, steps: &[ClockStep]) -> Vec<MissingPackets> {
+    let mut gaps = stats.gaps.clone();
+    for step in steps.iter().filter(|step| step.phantom_packets > 0) {
+        let is_step = |gap: &PacketGap| gap.packets == step.phantom_packets;
+        if let Some(place) = gaps.iter().position(is_step) {
+            gaps.remove(place);
+        }
+    }
+    let report = |gap: PacketGap| MissingPackets {
+        at_s: gap.at.as_secs_f64(),
+        packets: gap.packets,
+    };
+    gaps.into_iter().map(report).collect()
 }
 
 fn warnings(stats: &Stats, pass: &Pass, steps: &[ClockStep]) -> Vec<String> {

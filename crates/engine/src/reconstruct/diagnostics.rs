@@ -111,18 +111,18 @@ fn cloud(scan: &ScanReport) -> Diagnostic {
     let mut values = NamedValues::new()
         .with("points", scan.points)
         .with("returns_left_out", scan.left_out);
-    let doubts: Vec<&String> = contents
+    let warnings: Vec<&String> = contents
         .truncated
         .iter()
         .chain(&contents.warnings)
         .collect();
-    for (number, doubt) in doubts.iter().enumerate() {
-        values = values.with(&format!("warning {}", number + 1), doubt);
+    for (number, warning) in warnings.iter().enumerate() {
+        values = values.with(&format!("warning {}", number + 1), warning);
     }
-    let doubt = match doubts.as_slice() {
+    let summary = match warnings.as_slice() {
         [] => None,
         [one] => Some((*one).clone()),
         [first, rest @ ..] => Some(format!("{first}; and {} more", rest.len())),
     };
-    check("cloud", doubt, "nothing is doubtful", values)
+    check("cloud", summary, "no warnings", values)
 }

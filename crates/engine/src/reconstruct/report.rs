@@ -72,6 +72,15 @@ pub struct SensorReport {
     pub gps: Option<Gps>,
 }
 
+/// Data packets that are missing at one place.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+pub struct MissingPackets {
+    /// From the first firing, seconds of device time.
+    pub at_s: f64,
+    /// Their number.
+    pub packets: u64,
+}
+
 /// Contents of a file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, ToSchema)]
 pub struct Contents {
@@ -85,6 +94,9 @@ pub struct Contents {
     pub returns: u64,
     /// Data packets missing by device time.
     pub lost_packets: u64,
+    /// Where they are missing: at most the first 100 places.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub packet_gaps: Vec<MissingPackets>,
     /// From the first to the last firing, seconds of device time.
     pub duration_s: f64,
     /// Lidar speed, revolutions per minute.

@@ -1,5 +1,6 @@
 //! Warnings about a reconstructed scan: uncertain times and angles, and incomplete sweeps.
 
+use scanner::trajectory::Method;
 use scanner::{Alignment, ScanConfig};
 use units::Span;
 
@@ -46,10 +47,15 @@ pub(super) fn alignment_warnings(alignment: &Alignment) -> Vec<String> {
 }
 
 /// A warning if the angles are less certain than those of a good scan. An age of the positions of
-/// up to [`MAX_AGE_S`], which samples cannot always show, is part of a good scan.
+/// up to [`MAX_AGE_S`], which samples cannot always show, is part of a good scan, if its motion is
+/// the commanded one.
 fn angle_warning(alignment: &Alignment) -> Option<String> {
     let speeds = alignment.sweeps.iter().map(|sweep| sweep.cruise.0.abs());
-    let age_deg = MAX_AGE_S * speeds.fold(0.0, f64::max);
+    let fits = alignment.trajectory.fits();
+    let age_deg = match fits.iter().any(|fit| fit.method == Method::Spline) {
+        true => 0.0,
+        false => MAX_AGE_S * speeds.fold(0.0, f64::max),
+    };
     let bound = alignment.angle_bound_deg()?;
     let gaps = alignment.sample_gaps;
     let cause = match gaps.count {

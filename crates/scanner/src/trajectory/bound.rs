@@ -5,6 +5,7 @@ use units::{Host, Span, Stamp};
 
 use super::choose::SweepFit;
 use super::pieces::PiecewiseCubic;
+use super::profile::Profile;
 use super::{AngleSample, Method, latch, noise};
 
 /// Standard deviations within a bound.
@@ -27,17 +28,30 @@ pub(super) fn of_fit(
         .fold(0.0, f64::max)
 }
 
-/// Error of a corner of the motion that the samples do not determine, degrees: a quarter of the
-/// change of speed times the median interval of the samples.
-pub(super) fn of_corner(samples: &[AngleSample], fastest_deg_s: f64) -> f64 {
-    let pairs = samples.windows(2).filter_map(|pair| match pair {
-        [a, b] => Some(b.host.saturating_since(a.host).as_secs_f64()),
-        _ => None,
-    });
-    let mut intervals_s: Vec<f64> = pairs.collect();
-    intervals_s.sort_by(f64::total_cmp);
-    let median_s = intervals_s.get(intervals_s.len() / 2).copied();
-    fastest_deg_s.abs() * median_s.unwrap_or_default() / 4.0
+/// Error of a corner of the motion that the samples of a sweep do not determine, degrees: a quarter
+/// of the change of speed times the interval of the samples there. It is the longest interval
+/// within a ramp, and at least the median one.
+pub(super) fn of_corner(samples: &[AngleSample], profile: &Profile) -> f64 {
+    let (Some(first), Some(last)) = (samples.first(), samples.last()) else {
+        return 0.0;
+    };
+    let intervals_s = |pair: &[AngleSample]| match pair {
+        [a, b] => noise::seconds(a, b),
+        _ => 0.0,
+    };
+    let is_in_ramp = |pair: &&[AngleSample]| match pair {
+        [a, b] => {
+            noise::seconds(first, a) < profile.ramp_up_s
+                || noise::seconds(b, last) < profile.ramp_down_s
+        }
+        _ => false,
+    };
+    let ramps = samples.windows(2).filter(is_in_ramp).map(intervals_s);
+    let longest_s = ramps.fold(0.0, f64::max);
+    let mut all_s: Vec<f64> = samples.windows(2).map(intervals_s).collect();
+    all_s.sort_by(f64::total_cmp);
+    let median_s = all_s.get(all_s.len() / 2).copied().unwrap_or_default();
+    profile.speed_deg_s.abs() * longest_s.max(median_s) / 4.0
 }
 
 /// Bound of connected samples within a span, degrees.
@@ -99,4 +113,46 @@ fn of_lines(samples: &[AngleSample]) -> f64 {
             _ => 0.0,
         })
         .fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use units::Degrees;
+
+    use super::*;
+
+    /// Polls every 20 ms; those from 20 to 180 ms, in the first ramp, are missing.
+    #[test]
+    fn a_gap_in_a_ramp_bounds_its_corner() {
+        let sample = |ms: i64| AngleSample {
+            host: Stamp::from_nanos(ms * 1_000_000),
+            bound: Span::ZERO,
+            angle: Degrees(0.0),
+        };
+        let profile = Profile {
+            start_s: 0.0,
+            speed_deg_s: -50.0,
+            ramp_up_s: 0.1,
+            ramp_down_s: 0.1,
+            from_deg: 0.0,
+            way_deg: -45.0,
+            lag_s: 0.0,
+            inertia_s2: 0.0,
+        };
+        let bound = |times: &[i64]| {
+            let samples: Vec<AngleSample> = times.iter().map(|ms| sample(*ms)).collect();
+            of_corner(&samples, &profile)
+        };
+        let polls: Vec<i64> = (0..=50).map(|number| 20 * number).collect();
+        let without = |missing: std::ops::Range<i64>| -> Vec<i64> {
+            let is_kept = |ms: &i64| !missing.contains(ms);
+            polls.iter().copied().filter(is_kept).collect()
+        };
+        assert!((bound(&polls) - 0.25).abs() < 1e-9);
+        assert!((bound(&without(20..200)) - 2.5).abs() < 1e-9);
+        assert!((bound(&without(820..1000)) - 2.5).abs() < 1e-9);
+        // A gap in the cruise hides no corner.
+        assert!((bound(&without(420..600)) - 0.25).abs() < 1e-9);
+        assert_eq!(bound(&[]), 0.0);
+    }
 }

@@ -163,5 +163,5 @@ fn mount(
         )
         .help("name a file with [mount] d_m, the height of the lidar above the axis, with --mount or --config"));
     };
-    Ok(Some(config::load(Some(&file))?.mount))
+    config::load_mount(&file).map(Some)
 }

@@ -45,11 +45,11 @@ pub struct BringUpReport {
     steps: Vec<BringUpStepReport>,
     /// Values to be corrected.
     problems: usize,
-    /// What nobody has checked yet, skipped steps included.
+    /// Checks that are open, skipped steps included.
     unchecked: usize,
 }
 
-/// Asks at the terminal; with `--yes` nobody is there.
+/// Asks at the terminal; with `--yes` it asks nothing.
 struct Person {
     unattended: bool,
     has_ended: bool,
@@ -111,8 +111,8 @@ impl Operator for Person {
 /// Runs the command.
 ///
 /// # Errors
-/// The port cannot be opened, the report cannot be written, nobody answers, or a step found a
-/// problem.
+/// The port cannot be opened, the report cannot be written, the terminal is closed, or a step found
+/// a problem.
 pub(super) fn run(
     arguments: &Doctor,
     common: &Common,
@@ -127,10 +127,11 @@ pub(super) fn run(
         .help("name the drive with --device; velomotion firmware-sim is one to practise with"));
     }
     if !arguments.yes && !std::io::stdin().is_terminal() {
-        return Err(
-            Failure::new(Kind::Usage, "nobody can answer: stdin is no terminal")
-                .help("run it in a terminal, or with --yes, which runs every step unattended"),
-        );
+        return Err(Failure::new(
+            Kind::Usage,
+            "the questions need a terminal: stdin is not one",
+        )
+        .help("run it in a terminal, or with --yes, which runs every step unattended"));
     }
     let axis = profile::axis(&config.axis)?;
     let interrupt = signals::motion_interrupt_flag()?;
@@ -199,9 +200,9 @@ pub(super) fn run(
     let problems = count(Judgement::Problem);
     let unchecked = count(Judgement::Unchecked);
     let result = match (problems, unchecked) {
-        (0, 0) => "nothing is wrong, and everything was checked".to_owned(),
-        (0, _) => format!("INCOMPLETE: no problems, but {unchecked} things nobody has checked"),
-        _ => format!("{problems} problems, {unchecked} things nobody has checked"),
+        (0, 0) => "no problems, all checks made".to_owned(),
+        (0, _) => format!("INCOMPLETE: no problems, but {unchecked} open checks"),
+        _ => format!("{problems} problems, {unchecked} open checks"),
     };
     report.write(&format!("\n## Result\n\n{result}\n"))?;
     let failure = (problems > 0).then(|| {
