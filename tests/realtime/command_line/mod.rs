@@ -92,7 +92,15 @@ fn the_version_names_the_commit() {
 #[test]
 fn a_simulated_capture_gives_a_log_that_reproduces_its_cloud() {
     let place = Place::new();
-    let output = place.run("capture --speed 56.25 -o scan.ply --json");
+    let mut output = place.run("capture --speed 56.25 -o scan.ply --json");
+    // Software devices answer late while a busy machine does not schedule them, and the capture
+    // stops.
+    for _ in 0..3 {
+        if output.status.code() != Some(5) {
+            break;
+        }
+        output = place.run("capture --speed 56.25 -o scan.ply --json --force");
+    }
     let printed = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{printed}");
     let scan = json(&output);

@@ -31,11 +31,18 @@ fn call(router: &mut Peer, service: &str) -> (bool, String) {
 
 /// Starts a capture and waits until the axis sweeps. Returns the scan's id.
 fn begin(rig: &Rig, router: &mut Peer) -> String {
-    rig.ready();
-    let (done, id) = call(router, "start_capture");
-    assert!(done, "{id}");
-    assert!(sweeps(rig.address), "no sweep");
-    id
+    for _ in 0..4 {
+        rig.ready();
+        let (done, id) = call(router, "start_capture");
+        assert!(done, "{id}");
+        if sweeps(rig.address) {
+            return id;
+        }
+        // The software drive went silent on a busy machine.
+        let scan = rig.finished(&id);
+        assert!(scan["why"].to_string().contains("silence"), "{scan}");
+    }
+    panic!("the machine is too slow");
 }
 
 #[test]
