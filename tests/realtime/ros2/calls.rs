@@ -40,7 +40,8 @@ fn begin(rig: &Rig, router: &mut Peer) -> String {
         }
         // The software drive went silent on a busy machine.
         let scan = rig.finished(&id);
-        assert!(scan["why"].to_string().contains("silence"), "{scan}");
+        let why = scan["why"].to_string();
+        assert!(why.contains("silence") || why.contains("in time"), "{scan}");
     }
     panic!("the machine is too slow");
 }
