@@ -79,12 +79,12 @@ pub fn load(file: Option<&Path>) -> Result<Config, Failure> {
 pub fn load_mount(path: &Path) -> Result<MountConfig, Failure> {
     #[derive(Deserialize)]
     struct MountFile {
-        mount: Mount,
+        mount: MountHeight,
     }
     // A height that is not given is unknown, not the default.
     #[derive(Deserialize)]
     #[serde(deny_unknown_fields)]
-    struct Mount {
+    struct MountHeight {
         d_m: f64,
     }
     let wrong = |what: String| {
