@@ -3,6 +3,7 @@
 use std::io::{BufRead, BufReader, Write};
 use std::net::UdpSocket;
 use std::os::unix::fs::PermissionsExt;
+use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::PathBuf;
 use std::process::{Child, Command, Output, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -43,6 +44,17 @@ impl Bench {
         printed.read_line(&mut port).unwrap();
         assert_eq!(link.canonicalize().unwrap(), PathBuf::from(port.trim()));
         Self { folder, drive }
+    }
+
+    /// Path of the socket of a daemon with this configuration.
+    fn daemon_socket(&self) -> PathBuf {
+        let link = self.folder.path().join("epos");
+        let name = link
+            .to_string_lossy()
+            .replace(|c: char| !c.is_ascii_alphanumeric(), "-");
+        self.folder
+            .path()
+            .join(format!("velomotion{name}.daemon.sock"))
     }
 
     fn command(&self, line: &str) -> Command {
@@ -282,13 +294,17 @@ fn a_daemon_stops_its_axis_though_no_program_reads_its_log() {
         .spawn()
         .unwrap();
     let begin = std::time::Instant::now();
-    while !bench.run("tilt home").status.success() {
+    // Until the daemon listens, a command uses the drive itself.
+    while UnixStream::connect(bench.daemon_socket()).is_err() {
         assert!(begin.elapsed().as_secs() < 20, "no daemon");
+    }
+    while !bench.run("tilt home").status.success() {
+        assert!(begin.elapsed().as_secs() < 40, "no drive");
     }
     let mut moving = bench.command("tilt goto -40 --speed 1");
     let mut moving = moving.stderr(Stdio::null()).spawn().unwrap();
     while bench.json("tilt status")["activity"] != "moving" {
-        assert!(begin.elapsed().as_secs() < 40, "no motion");
+        assert!(begin.elapsed().as_secs() < 60, "no motion");
     }
     let pid = daemon.id().to_string();
     let kill = Command::new("kill").args(["-TERM", &pid]).status();
@@ -305,17 +321,7 @@ fn a_daemon_stops_its_axis_though_no_program_reads_its_log() {
 #[test]
 fn a_program_without_the_port_cannot_confirm_a_stop() {
     let bench = Bench::new("--usb");
-    let link = bench.folder.path().join("epos");
-    let name: String = link
-        .to_string_lossy()
-        .chars()
-        .map(|c| if c.is_ascii_alphanumeric() { c } else { '-' })
-        .collect();
-    let socket = bench
-        .folder
-        .path()
-        .join(format!("velomotion{name}.daemon.sock"));
-    let listener = std::os::unix::net::UnixListener::bind(&socket).unwrap();
+    let listener = UnixListener::bind(bench.daemon_socket()).unwrap();
     std::thread::spawn(move || {
         for mut stream in listener.incoming().flatten() {
             let body = r#"{"device":"soft","stopped":true,"state":"","power":false}"#;

@@ -7,6 +7,7 @@
 
 use std::io::{BufRead, BufReader};
 use std::net::{Ipv4Addr, UdpSocket};
+use std::os::unix::net::UnixStream;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -126,14 +127,19 @@ fn packet(number: u32) -> Vec<u8> {
     packet
 }
 
-/// Waits until the daemon serves captures: until then it refuses `tilt status`.
+/// Waits until the daemon listens, since a command would use the drive itself before, and until it
+/// has the drive.
 fn wait_for_devices(folder: &Path) {
     let begin = Instant::now();
-    while !command(folder, "tilt home")
-        .output()
+    let is_socket = |name: &Path| UnixStream::connect(name).is_ok();
+    while !std::fs::read_dir(folder)
         .unwrap()
-        .status
-        .success()
+        .any(|entry| is_socket(&entry.unwrap().path()))
+        || !command(folder, "tilt home")
+            .output()
+            .unwrap()
+            .status
+            .success()
     {
         assert!(begin.elapsed() < START, "the daemon has no devices");
     }
