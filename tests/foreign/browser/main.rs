@@ -167,6 +167,10 @@ fn refusals_are_visible_at_their_control() {
             page.until_has("#control-error", "Home: too many downloads at once")
                 .await;
             until_in_sight(&page, "#control-error").await;
+            page.click("#start").await;
+            page.until_has("#control-error", "Start: too many downloads at once")
+                .await;
+            until_in_sight(&page, "#control-error").await;
         });
     }
     daemon.stop(|| true).unwrap();
@@ -434,6 +438,7 @@ fn a_fault_is_shown_with_advice_and_cleared() {
             .run("return document.querySelector('#start').disabled")
             .await;
         assert_eq!(start_is_off, true);
+        clear_is_refused(&page).await;
     });
     driver.test(PHONE.light(), async |page| {
         page.goto(&url).await;
@@ -444,6 +449,7 @@ fn a_fault_is_shown_with_advice_and_cleared() {
         page.run(TO_THE_TOP).await;
         page.picture("fault").await;
         page.audit("a fault").await;
+        clear_is_refused(&page).await;
         bench.hold(false);
         page.click("#clear").await;
         page.until_gone(".problem").await;
@@ -457,6 +463,16 @@ fn a_fault_is_shown_with_advice_and_cleared() {
         page.until_has("#chip-lidar", "Lidar absent").await;
     });
     daemon.stop(|| true).unwrap();
+}
+
+/// A refused request to clear the fault is reported beside its button.
+async fn clear_is_refused(page: &Page) {
+    page.run(TOO_MANY).await;
+    page.click("#clear").await;
+    page.until_has("#clear-error", "Clear: too many downloads at once")
+        .await;
+    until_in_sight(page, "#clear-error").await;
+    page.run("window.answer()").await;
 }
 
 #[test]
@@ -499,38 +515,40 @@ fn the_page_asks_for_a_token_once() {
     };
     let daemon = daemon(config, Some("sim"), folder.path(), 0);
     let url = url(&daemon);
-    driver.test(PHONE.light(), async |page| {
-        page.goto(&url).await;
-        page.until_has("h1", "velomotion").await;
-        assert_eq!(page.text("#stop").await, "");
-        page.audit("signing in").await;
-        page.picture("sign-in").await;
-        page.fill("[name=token]", "not-the-token-of-this-test")
-            .await;
-        page.click("button").await;
-        page.until_has("p", "the token was wrong").await;
-        page.fill("[name=token]", "a-token-of-this-test").await;
-        page.click("button").await;
-        page.until_has("#chip-link", "Connected").await;
-        // Without its cookie the page asks for the token.
-        page.run("return fetch('/api/v1/status').then((answer) => answer.status)")
-            .await;
-        page.forget_cookies().await;
-        page.goto(&url).await;
-        page.until_has("button", "Sign in").await;
-        page.fill("[name=token]", "a-token-of-this-test").await;
-        page.click("button").await;
-        page.until_has("#sign-out", "Sign out").await;
-        // A sign-out without an answer is reported beside its button.
-        page.run(TOO_MANY).await;
-        page.click("#sign-out").await;
-        page.until_has("#sign-out-error", "Sign out: too many")
-            .await;
-        until_in_sight(&page, "#sign-out-error").await;
-        page.run("window.answer()").await;
-        page.click("#sign-out").await;
-        page.until_has("button", "Sign in").await;
-    });
+    for screen in [DESKTOP, PHONE.light()] {
+        driver.test(screen, async |page| {
+            page.goto(&url).await;
+            page.until_has("h1", "velomotion").await;
+            assert_eq!(page.text("#stop").await, "");
+            page.audit("signing in").await;
+            page.picture("sign-in").await;
+            page.fill("[name=token]", "not-the-token-of-this-test")
+                .await;
+            page.click("button").await;
+            page.until_has("p", "the token was wrong").await;
+            page.fill("[name=token]", "a-token-of-this-test").await;
+            page.click("button").await;
+            page.until_has("#chip-link", "Connected").await;
+            // Without its cookie the page asks for the token.
+            page.run("return fetch('/api/v1/status').then((answer) => answer.status)")
+                .await;
+            page.forget_cookies().await;
+            page.goto(&url).await;
+            page.until_has("button", "Sign in").await;
+            page.fill("[name=token]", "a-token-of-this-test").await;
+            page.click("button").await;
+            page.until_has("#sign-out", "Sign out").await;
+            // A sign-out without an answer is reported beside its button.
+            page.run(TOO_MANY).await;
+            page.click("#sign-out").await;
+            page.until_has("#sign-out-error", "Sign out: too many")
+                .await;
+            until_in_sight(&page, "#sign-out-error").await;
+            page.run("window.answer()").await;
+            page.click("#sign-out").await;
+            page.until_has("button", "Sign in").await;
+        });
+    }
     daemon.stop(|| true).unwrap();
 }
 
@@ -541,28 +559,37 @@ fn a_scan_is_deleted_only_after_confirmation() {
     let folder = tempfile::tempdir().unwrap();
     let daemon = simulator(folder.path());
     let url = url(&daemon);
-    driver.test(PHONE, async |page| {
-        ready(&page, &url).await;
-        start(&page, "short", "56.25", "-5").await;
-        page.until_has(".scan .badge[data-state]", "complete").await;
-        page.click(".scan [data-role=delete]").await;
-        page.until_has("#delete-what", "short").await;
-        page.audit("a question").await;
-        page.click("#delete [value=keep]").await;
-        page.until_gone("#delete").await;
-        page.until_has(".scan", "short").await;
-        page.click(".scan [data-role=delete]").await;
-        page.click("#delete .danger").await;
-        page.until_gone(".scan").await;
-        page.until_has("#view-empty", "No scan in view").await;
-        let left = page.api("scans").await;
-        assert!(
-            left.as_array()
-                .or(left["scans"].as_array())
-                .unwrap()
-                .is_empty(),
-            "{left}"
-        );
-    });
+    for screen in [DESKTOP, PHONE] {
+        driver.test(screen, async |page| {
+            ready(&page, &url).await;
+            start(&page, "short", "56.25", "-5").await;
+            page.until_has(".scan .badge[data-state]", "complete").await;
+            page.click(".scan [data-role=delete]").await;
+            page.until_has("#delete-what", "short").await;
+            page.audit("a question").await;
+            page.click("#delete [value=keep]").await;
+            page.until_gone("#delete").await;
+            page.until_has(".scan", "short").await;
+            page.run(TOO_MANY).await;
+            page.click(".scan [data-role=delete]").await;
+            page.click("#delete .danger").await;
+            page.until_has(".scan .wrong", "Delete: too many downloads at once")
+                .await;
+            until_in_sight(&page, ".scan .wrong").await;
+            page.run("window.answer()").await;
+            page.click(".scan [data-role=delete]").await;
+            page.click("#delete .danger").await;
+            page.until_gone(".scan").await;
+            page.until_has("#view-empty", "No scan in view").await;
+            let left = page.api("scans").await;
+            assert!(
+                left.as_array()
+                    .or(left["scans"].as_array())
+                    .unwrap()
+                    .is_empty(),
+                "{left}"
+            );
+        });
+    }
     daemon.stop(|| true).unwrap();
 }

@@ -82,6 +82,8 @@ function faultWords(fault: Fault): string {
 }
 
 let shown = "";
+/** The error of clearing a fault. It outlives the problem's text, which may change at any time. */
+const clear_error = h("p", { class: "wrong", id: "clear-error", hidden: true });
 
 /** Shows problems of the devices with their remedies, above everything else. */
 function problems(status: Status): void {
@@ -93,13 +95,14 @@ function problems(status: Status): void {
   const now = JSON.stringify([found, status.activity.doing === "connecting"]);
   if (now === shown) return;
   shown = now;
+  if (status.drive.state !== "fault") show(clear_error, false);
   const list = id("problems");
   list.replaceChildren(...found.map(({ device, state, problem }) => h("section", { class: "problem", "aria-label": `Problem: ${device}`, "data-device": device.toLowerCase(), "data-state": state },
     h("h2", {}, `${device} ${STATES[state] ?? state}`),
     h("p", {}, sentence(problem.message)),
     problem.help ? h("p", { class: "todo" }, `What to do: ${problem.help}`) : null,
-    device === "Drive" && state === "fault" ? h("div", { class: "row" }, h("button", { type: "button", id: "clear", click: () => void command("Clear", () => api.clear(), id("clear-error")) }, "Clear the fault")) : null,
-    h("p", { class: "wrong", id: device === "Drive" ? "clear-error" : "", hidden: true }),
+    device === "Drive" && state === "fault" ? h("div", { class: "row" }, h("button", { type: "button", id: "clear", click: () => void command("Clear", () => api.clear(), clear_error) }, "Clear the fault")) : null,
+    device === "Drive" && state === "fault" ? clear_error : null,
   )));
   if (found.length > 0) alarm(found.map(({ device, state, problem }) => `${device} ${STATES[state] ?? state}: ${sentence(problem.message)} ${problem.help ?? ""}`).join(" "));
 }
