@@ -144,7 +144,7 @@ fn one(state: &DaemonState, log: &Captured, records: &[OwnedRecord]) -> String {
                 angle_deg: 0.0,
                 speed_deg_s: 56.25,
                 left_s: None,
-                packets: number as u64,
+                received: number as u64,
                 at: record.host,
             });
             state.scans.say(&id, "warning: a message");

@@ -9,12 +9,13 @@ import sys
 import numpy as np
 import pye57
 
+# As users read it, with pye57 as it is.
+plain = pye57.E57(sys.argv[1]).read_scan(0)
 # libE57Format reads any attribute; pye57 asks for those that it knows.
 pye57.e57.SUPPORTED_POINT_FIELDS.update({"timeStamp": "d", "velomotion:tilt": "d"})
 file = pye57.E57(sys.argv[1])
 header = file.get_header(0)
 scan = file.read_scan_raw(0)
-plain = file.read_scan(0)
 placed = file.read_scan(0, intensity=True)
 assert all((plain[name] == placed[name]).all() for name in plain)
 xyz = np.vstack([placed[f"cartesian{axis}"] for axis in "XYZ"])

@@ -23,6 +23,12 @@ print(
             "scales": list(las.header.scales),
             "crs_records": [v.record_id for v in las.header.vlrs if v.user_id == "LASF_Projection"],
             "dimensions": list(las.point_format.dimension_names),
+            "returns": [
+                [int(number), int(of), int(count)]
+                for (number, of), count in zip(
+                    *np.unique(np.vstack([las.return_number, las.number_of_returns]).T, axis=0, return_counts=True)
+                )
+            ],
             "system_identifier": las.header.system_identifier,
         }
     )

@@ -57,7 +57,7 @@ pub struct RemoteActivity {
     /// Number of the move, from 1.
     pub step: usize,
     /// Lidar packets of the capture so far.
-    pub packets: u64,
+    pub received: u64,
 }
 
 /// The drive.

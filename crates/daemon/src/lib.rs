@@ -48,6 +48,8 @@ pub struct Options {
     pub device: Option<String>,
     /// The address, where it is not the configuration's.
     pub listen: Option<SocketAddr>,
+    /// Commit of the program; empty if unknown.
+    pub commit: &'static str,
     /// Folder of the Unix socket, where it is not the default.
     pub runtime: Option<PathBuf>,
     /// Time limits.
@@ -64,6 +66,7 @@ impl Default for Options {
             config: Config::default(),
             device: None,
             listen: None,
+            commit: "",
             runtime: None,
             waits: Waits::default(),
             environment: Environment::default(),
@@ -118,7 +121,8 @@ impl Daemon {
             environment: options.environment,
         })?;
         let (jobs, queue) = channel();
-        let state = DaemonState::new(service, scans, options.free_bytes, jobs.clone());
+        let mut state = DaemonState::new(service, scans, options.free_bytes, jobs.clone());
+        state.commit = options.commit;
         let state = Arc::new(state);
         state.refresh_disk();
         let stop_ros2 = ros2_bridge::start(&state)?;

@@ -51,6 +51,8 @@ pub struct DaemonState {
     pub scans: Scans,
     /// Counters.
     pub counters: Counters,
+    /// Commit of the program; empty if unknown.
+    pub commit: &'static str,
     /// Counters of the ROS 2 bridge.
     #[cfg(feature = "ros2")]
     pub ros2: Arc<ros2::Counts>,
@@ -75,6 +77,7 @@ impl DaemonState {
             service,
             scans,
             counters: Counters::default(),
+            commit: "",
             #[cfg(feature = "ros2")]
             ros2: Arc::default(),
             free_bytes,

@@ -77,15 +77,15 @@ pub fn load(file: Option<&Path>) -> Result<Config, Failure> {
 /// # Errors
 /// [`Kind::BadInput`] for an unreadable file, or one without a valid mount.
 pub fn load_mount(path: &Path) -> Result<MountConfig, Failure> {
+    // A height that is not given is unknown, not the default.
     #[derive(Deserialize)]
     struct MountFile {
-        mount: MountHeight,
+        mount: Option<MountHeight>,
     }
-    // A height that is not given is unknown, not the default.
     #[derive(Deserialize)]
     #[serde(deny_unknown_fields)]
     struct MountHeight {
-        d_m: f64,
+        d_m: Option<f64>,
     }
     let wrong = |what: String| {
         Failure::new(
@@ -97,7 +97,8 @@ pub fn load_mount(path: &Path) -> Result<MountConfig, Failure> {
     let text = std::fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
     let file: MountFile =
         toml::from_str(&text).map_err(|error| wrong(error.to_string().trim_end().to_owned()))?;
-    let d_m = file.mount.d_m;
+    let d_m = file.mount.and_then(|mount| mount.d_m);
+    let d_m = d_m.ok_or_else(|| wrong("expected [mount] with d_m, found none".to_owned()))?;
     between("mount.d_m", d_m, -10.0, 10.0).map_err(wrong)?;
     Ok(MountConfig { d_m })
 }

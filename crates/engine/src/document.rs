@@ -1,9 +1,11 @@
 //! The JSON objects that commands print, and their schemas (docs/src/schema).
 
 use analysis::tradeoff::TradeoffReport;
+use scanner::trajectory::Method;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use utoipa::ToSchema;
+use utoipa::openapi::schema::{ObjectBuilder, SchemaType, Type};
 use utoipa::openapi::{RefOr, Schema};
 
 use crate::failure::Failure;
@@ -67,6 +69,44 @@ impl Document for ErrorReport {
     const SCHEMA: &'static str = "error-1";
 }
 
+/// Schema of a text that is one of these names, or null where it is unknown.
+fn names(names: &[&str], may_be_unknown: bool) -> Schema {
+    let known = names.iter().map(|&name| Value::from(name));
+    let unknown = may_be_unknown.then_some(Value::Null);
+    let mut types = vec![Type::String];
+    types.extend(may_be_unknown.then_some(Type::Null));
+    ObjectBuilder::new()
+        .schema_type(SchemaType::from_iter(types))
+        .enum_values(Some(known.chain(unknown)))
+        .build()
+        .into()
+}
+
+pub(crate) fn return_modes() -> Schema {
+    names(&["strongest", "last", "dual"], true)
+}
+
+pub(crate) fn links() -> Schema {
+    names(&["usb", "rs232", "can"], true)
+}
+
+pub(crate) fn transports() -> Schema {
+    names(&["usb", "rs232", "can"], false)
+}
+
+pub(crate) fn pps_states() -> Schema {
+    names(&["absent", "synchronising", "locked", "error"], false)
+}
+
+pub(crate) fn angle_methods() -> Schema {
+    let with_samples = Method::ALL.iter().map(|method| method.name());
+    let all: Vec<_> = [Method::None.name()]
+        .into_iter()
+        .chain(with_samples)
+        .collect();
+    names(&all, false)
+}
+
 /// The schema of a document, in JSON Schema 2020-12. A command that fails with a result adds
 /// `error` to it. Objects may have keys that the schema does not list.
 #[must_use]
@@ -96,7 +136,23 @@ pub fn schema<T: Document>() -> Value {
         "$defs": definitions,
     });
     refer_to_definitions(&mut schema);
+    open(&mut schema);
     schema
+}
+
+/// Lets the objects of a schema have new keys. Some are also read from files, where an unknown key
+/// is an error.
+pub fn open(schema: &mut Value) {
+    match schema {
+        Value::Object(object) => {
+            if object.get("additionalProperties") == Some(&Value::Bool(false)) {
+                object.remove("additionalProperties");
+            }
+            object.values_mut().for_each(open);
+        }
+        Value::Array(array) => array.iter_mut().for_each(open),
+        _ => {}
+    }
 }
 
 /// Rewrites the references of OpenAPI.

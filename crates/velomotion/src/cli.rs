@@ -21,6 +21,13 @@ use engine::reconstruct::source::SensorAddress;
 /// Version, and the commit of the build.
 pub const VERSION: &str = env!("VELOMOTION_VERSION");
 
+/// Commit and its date in [`VERSION`]; empty if unknown.
+#[must_use]
+pub fn commit() -> &'static str {
+    let commit = VERSION.split_once(" (");
+    commit.map_or("", |(_, commit)| commit.trim_end_matches(')'))
+}
+
 /// Dense point clouds from a multi-beam lidar on a tilting platform.
 #[derive(Debug, Parser)]
 #[command(version = VERSION, about, max_term_width = 100, disable_help_subcommand = true)]

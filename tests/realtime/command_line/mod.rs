@@ -92,15 +92,7 @@ fn the_version_names_the_commit() {
 #[test]
 fn a_simulated_capture_gives_a_log_that_reproduces_its_cloud() {
     let place = Place::new();
-    let mut output = place.run("capture --speed 56.25 -o scan.ply --json");
-    // Software devices answer late while a busy machine does not schedule them, and the capture
-    // stops.
-    for _ in 0..3 {
-        if output.status.code() != Some(5) {
-            break;
-        }
-        output = place.run("capture --speed 56.25 -o scan.ply --json --force");
-    }
+    let output = place.run("capture --speed 56.25 -o scan.ply --json");
     let printed = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{printed}");
     let scan = json(&output);
@@ -109,14 +101,13 @@ fn a_simulated_capture_gives_a_log_that_reproduces_its_cloud() {
     assert_eq!(scan["sweeps"].as_array().unwrap().len(), 1);
     let cruise = scan["sweeps"][0]["cruise_deg_s"].as_f64().unwrap();
     assert!((cruise.abs() - 56.25).abs() < 0.5, "{scan}");
-    // On a busy machine polls may stall. Then the report has a warning; otherwise the cloud is
-    // correct.
-    let doubted = scan["warnings"]
-        .to_string()
-        .contains("angle error may reach");
+    // On a busy machine polls may stall, which the bound says. The hall's far corners are 20 m
+    // away.
     let of = |name: &str| scan["truth"][name].as_f64().unwrap();
+    let bound_deg = scan["sync"]["angle_bound_deg"].as_f64().unwrap();
+    let bound_m = 20.0 * bound_deg.to_radians();
     assert!(
-        doubted || (of("rms_m") < 10e-3 && of("worst_m") < 0.1),
+        of("rms_m") < 10e-3 + bound_m && of("worst_m") < 0.1 + bound_m,
         "{scan}"
     );
     assert_eq!(scan["lost_records"], 0);
@@ -319,7 +310,22 @@ fn missing_devices_are_named() {
         4,
         &["/dev/nothing-here"],
     );
-    place.fails("capture --speed 10 --config none.toml", 3, &["none.toml"]);
+    for command in [
+        "capture --speed 10",
+        "replay log.pcapng",
+        "info log.pcapng",
+        "simulate hall",
+        "analyze vlp16",
+        "tradeoff",
+        "tilt status",
+        "tilt stop",
+        "daemon",
+        "doctor",
+        "firmware-sim --usb",
+        "help",
+    ] {
+        place.fails(&format!("{command} --config none.toml"), 3, &["none.toml"]);
+    }
     std::fs::write(place.path("typo.toml"), "[axis]\nmin_degg = 1\n").unwrap();
     place.fails(
         "capture --speed 10 --config typo.toml",
@@ -458,6 +464,46 @@ fn a_recording_with_missing_packets_is_incomplete() {
 }
 
 #[test]
+fn info_names_file_start_sensor_sweeps_configuration_and_position() {
+    let place = Place::new();
+    std::fs::write(
+        place.path("rig.toml"),
+        "device = \"sim\"\n[mount]\nd_m = 0.11\n",
+    )
+    .unwrap();
+    let line = "capture --speed 90 --from 0 --to -5 --config rig.toml -o scan.ply --json";
+    let scan = json(&place.run(line));
+    let info = json(&place.run("info scan.pcapng --json"));
+    assert_eq!(info["file"], "scan.pcapng");
+    assert_eq!(info["configuration"]["mount"]["d_m"], 0.11);
+    assert_eq!(info["sweeps"], scan["sweeps"]);
+    assert_eq!(info["sweeps"].as_array().unwrap().len(), 1);
+    let since_s = std::time::SystemTime::now()
+        .duration_since(std::time::UNIX_EPOCH)
+        .unwrap()
+        .as_secs_f64()
+        - info["start_s"].as_f64().unwrap();
+    assert!((0.0..600.0).contains(&since_s), "{info}");
+
+    let gps = recording("vlp16-strongest-gps.pcap");
+    let info = json(&place.run(&format!("info {} --json", gps.display())));
+    assert_eq!(info["configuration"], serde_json::Value::Null);
+    assert_eq!(info["sweeps"], serde_json::json!([]));
+    assert!(
+        info["sensor"].as_str().unwrap().ends_with(":2368"),
+        "{info}"
+    );
+    assert_eq!(info["gps"]["pps"], "locked");
+    for (key, range) in [
+        ("latitude_deg", -90.0..90.0),
+        ("longitude_deg", -180.0..180.0),
+    ] {
+        let value = info["gps"]["position"][key].as_f64().unwrap();
+        assert!(range.contains(&value) && value != 0.0, "{info}");
+    }
+}
+
+#[test]
 fn angles_of_another_device_can_be_attached() {
     let path = recording("vlp16-strongest-gps.pcap");
     let place = Place::new();
@@ -476,7 +522,7 @@ fn angles_of_another_device_can_be_attached() {
     place.fails(&line, 2, &["--mount"]);
     std::fs::rename(place.path("other-name.toml"), &own).unwrap();
     // This configuration has no mount, and an empty one does not say where the lidar is either.
-    place.fails(&line, 3, &["velomotion.toml", "mount"]);
+    place.fails(&line, 3, &["velomotion.toml: expected [mount] with d_m"]);
     std::fs::write(place.path("empty.toml"), "[mount]\n").unwrap();
     place.fails(&format!("{line} --mount empty.toml"), 3, &["d_m"]);
     std::fs::write(place.path("other.toml"), "[mount]\nd_m = 0.25\n").unwrap();
@@ -485,6 +531,11 @@ fn angles_of_another_device_can_be_attached() {
         output.status.success(),
         "{}",
         String::from_utf8_lossy(&output.stderr)
+    );
+    let printed = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(
+        printed.contains("mount of other.toml: the lidar is 0.25 m above"),
+        "{printed}"
     );
     let scan = json(&output);
     assert_eq!(scan["sync"]["angle_bound_deg"], serde_json::Value::Null);
@@ -632,6 +683,25 @@ fn invalid_options_and_files_are_one_line_that_names_them() {
     }
     let refused = place.run("simulate hall --threads 0 --json");
     assert_eq!(json(&refused)["error"]["exit_code"], 2);
-    let page = place.run("help formats");
-    assert!(page.status.success() && page.stdout.starts_with(b"# Formats"));
+    for (page, title) in [("formats", "# Formats"), ("json", "# JSON")] {
+        let page = place.run(&format!("help {page}"));
+        assert!(page.status.success() && page.stdout.starts_with(title.as_bytes()));
+    }
+    let line = format!("simulate hall --seed {}", "9".repeat(100_000));
+    let printed = String::from_utf8(place.run(&line).stderr).unwrap();
+    assert!(printed.len() < 600, "{} bytes", printed.len());
+    for option in [
+        "--tilt none",
+        "--mount mount.toml",
+        "--time utc",
+        "--tolerance 2mm@20m",
+        "--live",
+        "--uncertainty",
+        "--frames 0",
+        "--realtime",
+    ] {
+        let line = format!("replay {} -o lidar.pcap {option}", input.display());
+        let name = option.split(' ').next().unwrap();
+        place.fails(&line, 2, &["error:", ".pcap", name]);
+    }
 }

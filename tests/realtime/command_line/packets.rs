@@ -87,6 +87,25 @@ fn packets_out_of_order_keep_utc() {
     assert_eq!(points(&input), all);
 }
 
+/// A packet that comes after its successor is put before it, and is no gap.
+#[test]
+fn packets_that_overtake_each_other_are_not_missing() {
+    let whole = recording("vlp16-strongest-gps.pcap");
+    let place = Place::new();
+    let input = changed(&place, &whole, |records| records.swap(9, 10));
+    let line = format!("replay {} --tilt none -o cloud.ply --json", input.display());
+    let output = place.run(&line);
+    let scan = json(&output);
+    assert_eq!(
+        (output.status.code(), &scan["points"]),
+        (Some(0), &7_747.into())
+    );
+    assert_eq!(
+        (&scan["lost_packets"], &scan["packet_gaps"]),
+        (&0.into(), &serde_json::Value::Null)
+    );
+}
+
 #[test]
 fn dual_returns_are_labelled() {
     let path = recording("vlp16-dual.pcap");
@@ -130,4 +149,25 @@ fn one_origin_omits_the_laser_offsets() {
         .sum();
     // The sum of z by independent decoders.
     assert!((z / 544.269 - 1.0).abs() < 1e-4, "{z}");
+}
+
+/// Of the pulses of `dual_returns_are_labelled` two have two returns with a distance.
+#[test]
+#[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
+fn laspy_reads_the_return_numbers_of_dual_mode() {
+    let path = recording("vlp16-dual.pcap");
+    let place = Place::new();
+    let line = format!("replay {} --tilt none -o cloud.las", path.display());
+    assert!(place.run(&line).status.success());
+    let python = std::env::var_os("VELOMOTION_PYTHON").unwrap_or_else(|| "python3".into());
+    let script = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../tests/foreign/laspy_reads.py"
+    );
+    let mut read = Command::new(python);
+    let read = read.arg(script).arg(place.path("cloud.las"));
+    let read = json(&read.output().unwrap());
+    // Number, of how many, points.
+    let expected = serde_json::json!([[1, 1, 1_510], [1, 2, 2], [2, 2, 2]]);
+    assert_eq!(read["returns"], expected);
 }

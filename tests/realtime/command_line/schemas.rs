@@ -1,11 +1,36 @@
 //! What commands print with `--json` follows the schemas in docs/src/schema.
 
 use std::collections::BTreeSet;
-use std::io::Write;
+use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
 use super::{Place, json, recording};
+
+/// Commands that print their object once they serve, and run on.
+const SERVICES: [&str; 2] = [
+    "daemon --listen 127.0.0.1:0 --json",
+    "firmware-sim --usb --json",
+];
+
+/// The line that such a command prints.
+fn announced(place: &Place, line: &str) -> String {
+    let mut service = Command::new(env!("CARGO_BIN_EXE_velomotion"))
+        .args(line.split_whitespace())
+        .current_dir(place.0.path())
+        .env("XDG_RUNTIME_DIR", place.0.path())
+        .env("XDG_DATA_HOME", place.0.path())
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut printed = String::new();
+    let output = service.stdout.take().unwrap();
+    BufReader::new(output).read_line(&mut printed).unwrap();
+    service.kill().unwrap();
+    service.wait().unwrap();
+    printed
+}
 
 #[test]
 #[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
@@ -27,15 +52,23 @@ fn what_commands_print_follows_the_schemas() {
         "tilt status --json".to_owned(),
         "doctor --json".to_owned(),
         "help formats --json".to_owned(),
+        "replay cut.pcapng -o cut.ply --json".to_owned(),
         "info absent.pcap --json".to_owned(),
         "replay --json".to_owned(),
     ];
     let mut input = String::new();
     for line in &lines {
+        if line.contains("cut.pcapng") {
+            let log = std::fs::read(place.path("scan.pcapng")).unwrap();
+            std::fs::write(place.path("cut.pcapng"), &log[..log.len() - 100]).unwrap();
+        }
         let object = json(&place.run(line));
         let fails = line.contains("absent") || line == "replay --json";
         assert_eq!(object["schema"] == "error-1", fails, "{line}: {object}");
         input.push_str(&format!("{object}\n"));
+    }
+    for line in SERVICES {
+        input.push_str(&announced(&place, line));
     }
     let python = std::env::var_os("VELOMOTION_PYTHON").unwrap_or_else(|| "python3".into());
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
@@ -52,14 +85,16 @@ fn what_commands_print_follows_the_schemas() {
     let output = validator.wait_with_output().unwrap();
     assert!(output.status.success());
     let printed = String::from_utf8(output.stdout).unwrap();
-    assert_eq!(printed.lines().count(), lines.len());
+    assert_eq!(printed.lines().count(), lines.len() + SERVICES.len());
     let schemas: BTreeSet<&str> = printed.lines().collect();
     let expected = [
         "analyze-1",
         "analyze-sweep-1",
         "axis-1",
+        "daemon-1",
         "doctor-1",
         "error-1",
+        "firmware-sim-1",
         "help-1",
         "info-1",
         "pcap-1",

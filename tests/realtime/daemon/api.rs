@@ -210,7 +210,9 @@ fn only_one_motion_runs_at_a_time_and_a_stop_takes_over() {
     super::rig::wait("homing", || {
         (rig.status()["activity"]["doing"] == "homing").then_some(())
     });
+    assert_eq!(rig.get("/health").status, 503);
     let busy = rig.post("/api/v1/captures", &json!({"speed_deg_s": 10.0}));
+    assert!(busy.head.contains("\nretry-after: 5"), "{}", busy.head);
     assert_eq!(busy.refused(409, "busy")["kind"], "busy");
     rig.post("/api/v1/tilt/goto", &json!({"to_deg": -5.0}))
         .refused(409, "busy");
@@ -289,6 +291,8 @@ fn monitors_read_health_and_metrics_in_the_format_they_accept() {
     let open = rig.get("/metrics").text();
     for line in [
         "velomotion_build_info{version=",
+        "commit=\"",
+        "process_start_time_seconds ",
         "process_cpu_seconds_total ",
         "process_resident_memory_bytes ",
         "process_open_fds ",
@@ -319,6 +323,7 @@ fn monitors_read_health_and_metrics_in_the_format_they_accept() {
         (health.status, &health.json()["ready"]),
         (503, &json!(false))
     );
+    assert!(health.head.contains("\nretry-after: 5"), "{}", health.head);
 }
 
 #[test]

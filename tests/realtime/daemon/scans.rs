@@ -251,6 +251,7 @@ fn a_nearly_full_disk_ends_a_scan_and_prevents_new_ones() {
         "{scan}"
     );
     assert!(scan["points"].as_u64().unwrap() > 0);
+    assert_eq!(rig.get("/health").json()["ready"], false);
     let refused = rig.post("/api/v1/captures", &json!({"speed_deg_s": 56.25}));
     assert!(
         refused
@@ -367,8 +368,13 @@ fn a_cloud_is_built_once_the_disk_has_space() {
         (written(&rig, &id)["state"] == "failed").then_some(())
     });
     waits(&written(&rig, &id));
-    rig.get(&format!("/api/v1/scans/{id}/cloud"))
-        .refused(507, "full");
+    let refused = rig.get(&format!("/api/v1/scans/{id}/cloud"));
+    refused.refused(507, "full");
+    assert!(
+        refused.head.contains("\nretry-after: 5"),
+        "{}",
+        refused.head
+    );
     // One byte less than it may need above the reserve.
     let needs = daemon::plan::most_cloud_bytes(scan["log_bytes"].as_u64().unwrap());
     free.store(1_000 + needs - 1, Ordering::SeqCst);

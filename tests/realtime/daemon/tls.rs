@@ -70,15 +70,22 @@ fn tls_serves_the_page_and_its_cookie_is_secure() {
         format!("GET /api/v1/status HTTP/1.1\r\n{host}authorization: Bearer {TOKEN}\r\n\r\n");
     assert!(request(&rig, &status).starts_with("HTTP/1.1 200"));
     let sign_in = |origin: &str| {
+        let origin = match origin {
+            "" => String::new(),
+            origin => format!("origin: {origin}\r\n"),
+        };
         let body = format!("{{\"token\": \"{TOKEN}\"}}");
         let text = format!(
-            "POST /login HTTP/1.1\r\n{host}origin: {origin}\r\ncontent-type: application/json\r\ncontent-length: {}\r\n\r\n{body}",
+            "POST /login HTTP/1.1\r\n{host}{origin}content-type: application/json\r\ncontent-length: {}\r\n\r\n{body}",
             body.len()
         );
         request(&rig, &text)
     };
     let answer = sign_in(&format!("https://localhost:{}", rig.address.port()));
     assert!(answer.starts_with("HTTP/1.1 204"), "{answer}");
+    assert!(answer.contains("; Secure"), "{answer}");
+    // A client that names no origin came over TLS, too.
+    let answer = sign_in("");
     assert!(answer.contains("; Secure"), "{answer}");
     // The same name without TLS is another server's page.
     let answer = sign_in(&format!("http://localhost:{}", rig.address.port()));

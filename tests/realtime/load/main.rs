@@ -1,15 +1,17 @@
 //! Captures on a loaded machine: busy loops take the processors from the program, its simulated
 //! drive (a process of its own) and its lidar. Every capture must be complete.
 //!
-//! `cargo test -p velomotion --test load -- [--captures N] [--loops N]`: as many captures by the
-//! command, and as many by a daemon. Without arguments 2 of each, and 8 loops.
+//! `cargo test -p velomotion --test load -- [--captures N] [--loops N] [--link LINK]`: as many
+//! captures by the command, and as many by a daemon. Without arguments 2 of each, 8 loops, and usb.
 #![allow(clippy::unwrap_used, clippy::panic, clippy::expect_used)] // a test
 
+use std::fmt::Debug;
 use std::io::{BufRead, BufReader};
 use std::net::{Ipv4Addr, UdpSocket};
 use std::os::unix::net::UnixStream;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
+use std::str::FromStr;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -25,10 +27,11 @@ fn main() {
     let folder = tempfile::tempdir().unwrap();
     let free = |_| UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
     let [data, position] = [0, 1].map(free).map(|s| s.local_addr().unwrap().port());
-    let mut drive = spawn(folder.path(), "firmware-sim --usb", &[]);
+    let link: String = value_of("--link", "usb".to_owned());
+    let mut drive = spawn(folder.path(), &format!("firmware-sim --{link}"), &[]);
     let port = first_line(&mut drive);
     let config = format!(
-        "[device]\ndefault = 'separate'\n[device.separate]\nkind = 'usb'\nport = '{port}'\nlidar = '127.0.0.1'\n\
+        "[device]\ndefault = 'separate'\n[device.separate]\nkind = '{link}'\nport = '{port}'\nlidar = '127.0.0.1'\n\
          data_port = {data}\nposition_port = {position}\n[daemon]\nscans = 'scans'\nreserve_bytes = 1000\n"
     );
     std::fs::write(folder.path().join("velomotion.toml"), config).unwrap();
@@ -58,14 +61,14 @@ fn main() {
     drop(drive.stdin.take());
     let _ = drive.wait();
     println!(
-        "{lost} of {} captures incomplete with {loops} busy loops",
+        "{lost} of {} captures over {link} incomplete with {loops} busy loops",
         2 * captures
     );
     assert_eq!(lost, 0);
 }
 
 /// Value of an option of this test.
-fn value_of(option: &str, default: usize) -> usize {
+fn value_of<T: FromStr<Err: Debug>>(option: &str, default: T) -> T {
     let mut words = std::env::args().skip_while(|word| word != option).skip(1);
     words.next().map_or(default, |word| word.parse().unwrap())
 }

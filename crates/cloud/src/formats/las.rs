@@ -125,6 +125,24 @@ impl<W: Write + Seek + Send + Sync + 'static> LasEncoder<W> {
     }
 }
 
+/// Return number and number of returns in dual mode: the last return (2) is followed by the nearer
+/// one of its pulse (4). One whose partner has no distance is the only one.
+fn return_numbers(batch: &Points, row: usize) -> u8 {
+    let of = |row: usize| Some((*batch.echo().get(row)?, batch.time().get(row)?));
+    let is_pair = |last: Option<usize>, nearer: usize| {
+        let (last, nearer) = (last.and_then(of), of(nearer));
+        last.zip(nearer)
+            .is_some_and(|(last, nearer)| (last.0, nearer.0) == (2, 4) && last.1 == nearer.1)
+    };
+    if is_pair(Some(row), row + 1) {
+        TWO_OF_TWO
+    } else if is_pair(row.checked_sub(1), row) {
+        ONE_OF_TWO
+    } else {
+        ONE_OF_ONE
+    }
+}
+
 /// Encodes a batch as records of format 6 into `rows`.
 fn encode(
     batch: &Points,
@@ -133,12 +151,9 @@ fn encode(
     rows: &mut [u8],
     row_bytes: usize,
 ) {
-    // Without echoes each return counts as the only one.
-    let echoes = batch.echo().iter().chain(std::iter::repeat(&0));
-    let returns = echoes.take(batch.len()).map(|echo| match echo {
-        1 | 4 if dual_return => [ONE_OF_TWO],
-        2 if dual_return => [TWO_OF_TWO],
-        _ => [ONE_OF_ONE],
+    let returns = (0..batch.len()).map(|row| match dual_return {
+        true => [return_numbers(batch, row)],
+        false => [ONE_OF_ONE],
     });
     fill(rows, row_bytes, at::RETURNS, returns);
     fill(rows, row_bytes, at::FLAGS, std::iter::repeat([flags]));

@@ -3,6 +3,7 @@
 
 use std::fs::{File, Metadata};
 use std::io::{Seek, SeekFrom};
+use std::os::fd::AsRawFd;
 use std::path::{Path as FilePath, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -142,8 +143,10 @@ fn make(
         )
         .help("free some space on that disk")
     };
-    io::files::open_regular(log).map_err(|_| Refusal::no_file(LOG))?;
-    let source = Source::open(log, None)?;
+    let log = io::files::open_regular(log).map_err(|_| Refusal::no_file(LOG))?;
+    // The name may belong to another file by now; this one leads to the open file (proc(5)).
+    let log_path = format!("/proc/self/fd/{}", log.as_raw_fd());
+    let source = Source::open(FilePath::new(&log_path), None)?;
     let request = Reconstruction::of_log(&source, accuracy, interrupt);
     let mut file = io::files::scratch_in(folder).map_err(cannot)?;
     let out = QuotaFile::new(file.try_clone().map_err(cannot)?, Arc::clone(quota));

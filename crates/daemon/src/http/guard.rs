@@ -106,11 +106,12 @@ impl Sessions {
         }
     }
 
-    /// Signs a browser in: the cookie to set, for TLS only if the browser came over TLS.
+    /// Signs a browser in: the cookie to set, for TLS only if the browser came over TLS, that of
+    /// the daemon (`secure`) or of a proxy.
     ///
     /// # Errors
     /// Where the system provides no random bytes.
-    pub fn begin(&self, headers: &HeaderMap) -> std::io::Result<String> {
+    pub fn begin(&self, headers: &HeaderMap, secure: bool) -> std::io::Result<String> {
         let mut random = [0; SECRET_BYTES];
         std::fs::File::open("/dev/urandom")?.read_exact(&mut random)?;
         let secret: String = random.iter().map(|byte| format!("{byte:02x}")).collect();
@@ -119,9 +120,9 @@ impl Sessions {
             secrets.pop_front();
         }
         secrets.push_back(secret.clone());
-        // Browsers name the origin: that of the daemon with TLS, or of a configured proxy.
+        // Browsers name the origin.
         let origin = text(headers, header::ORIGIN).unwrap_or_default();
-        let secure = if origin.starts_with("https://") {
+        let secure = if secure || origin.starts_with("https://") {
             "; Secure"
         } else {
             ""
@@ -371,10 +372,10 @@ mod tests {
         let sessions = Sessions::default();
         let secret = |cookie: &str| cookie.split(['=', ';']).nth(1).unwrap().to_owned();
         let headers = HeaderMap::new();
-        let first = secret(&sessions.begin(&headers).unwrap());
+        let first = secret(&sessions.begin(&headers, false).unwrap());
         assert!(sessions.has(&first) && !sessions.has("") && !sessions.has(&first[1..]));
         for _ in 0..SIGNED_IN {
-            sessions.begin(&headers).unwrap();
+            sessions.begin(&headers, false).unwrap();
         }
         assert!(!sessions.has(&first));
     }

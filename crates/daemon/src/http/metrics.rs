@@ -102,6 +102,18 @@ impl Collector for ProcessFigures {
             let cpu_s = ConstCounter::new((user + system) / TICKS_PER_S);
             put(&mut encoder, "process_cpu_seconds", "CPU time", &cpu_s)?;
         }
+        let boot = std::fs::read_to_string("/proc/stat").unwrap_or_default();
+        let boot = boot.lines().find_map(|line| line.strip_prefix("btime "));
+        let boot_s = boot.and_then(|text| text.trim().parse::<f64>().ok());
+        if let (Some(boot_s), Some(start)) = (boot_s, ticks(19)) {
+            let start_s = ConstGauge::new(boot_s + start / TICKS_PER_S);
+            put(
+                &mut encoder,
+                "process_start_time_seconds",
+                "Start of the process, Unix time",
+                &start_s,
+            )?;
+        }
         let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
         let resident = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
         let kib = resident.and_then(|rest| rest.split_whitespace().next()?.parse::<f64>().ok());
@@ -189,7 +201,10 @@ impl Collector for Figures {
                 status.clients.events as f64,
             ),
         ];
-        let build = Info::new([("version", env!("CARGO_PKG_VERSION"))]);
+        let build = Info::new([
+            ("version", env!("CARGO_PKG_VERSION")),
+            ("commit", self.0.commit),
+        ]);
         put(&mut encoder, "build", "Build of the daemon", &build)?;
         let started = ConstGauge::new(status.started_s);
         put(
@@ -204,7 +219,7 @@ impl Collector for Figures {
         let counters = &self.0.counters;
         let of = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
         let counts = [
-            ("lidar_packets", "Data and position packets", lidar.packets),
+            ("lidar_packets", "Data and position packets", lidar.received),
             (
                 "lidar_lost_packets",
                 "Data packets missing by the lidar's own time",

@@ -21,13 +21,13 @@ use std::sync::Arc;
 
 use axum::Router;
 use axum::extract::{Request, State};
-use axum::http::StatusCode;
+use axum::http::{StatusCode, header};
 use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{MethodRouter, delete, get, post};
 use engine::failure::{Failure, Kind};
 use engine::service::DeviceService;
-use engine::service::status::{DeviceHealth, ServiceStatus};
+use engine::service::status::{AxisTask, DeviceHealth, ServiceStatus};
 use serde::Serialize;
 use tokio::sync::{Semaphore, watch};
 use tokio_rustls::TlsAcceptor;
@@ -187,10 +187,12 @@ async fn status(State(service): State<Arc<DeviceService>>) -> Response {
 
 /// Body of `GET /health`.
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
+#[schema(example = json!({"live": true, "ready": true, "drive": "connected", "lidar": "connected"}))]
 pub struct HealthReport {
     /// Whether the daemon answers: always true.
     live: bool,
-    /// Whether it could capture now.
+    /// Whether it could capture now: both devices are connected, no motion is under way, and the
+    /// disk has room.
     ready: bool,
     /// The drive.
     drive: DeviceHealth,
@@ -206,18 +208,25 @@ pub struct HealthReport {
 async fn health(State(api): State<Arc<Api>>) -> Response {
     let status = api.state.service.status();
     let (drive, lidar) = (status.drive.state, status.lidar.state);
-    let ready = [drive, lidar] == [DeviceHealth::Connected; 2];
-    let code = match ready {
-        true => StatusCode::OK,
-        false => StatusCode::SERVICE_UNAVAILABLE,
-    };
+    let disk = &status.disk;
+    let ready = [drive, lidar] == [DeviceHealth::Connected; 2]
+        && status.activity.doing == AxisTask::Idle
+        && disk
+            .free_bytes
+            .is_none_or(|free| free >= disk.reserve_bytes);
     let body = HealthReport {
         live: true,
         ready,
         drive,
         lidar,
     };
-    json(code, &body)
+    if ready {
+        return json(StatusCode::OK, &body);
+    }
+    let mut response = json(StatusCode::SERVICE_UNAVAILABLE, &body);
+    let headers = response.headers_mut();
+    headers.insert(header::RETRY_AFTER, refusal::RETRY_S.into());
+    response
 }
 
 /// Runs what may wait for a disk on a thread that answers no requests: a stop is answered whatever

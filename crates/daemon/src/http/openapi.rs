@@ -6,8 +6,10 @@ use std::sync::LazyLock;
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
 use cloud::formats::Format;
-use engine::document::ErrorReport;
+use engine::document::{self, Document, ErrorReport};
+use engine::failure::{Failure, Kind};
 use engine::service::events::Event;
+use serde_json::Value;
 use utoipa::openapi::path::PathItem;
 use utoipa::openapi::response::{Response as Answer, ResponseBuilder};
 use utoipa::openapi::schema::{ObjectBuilder, Type};
@@ -45,11 +47,16 @@ refusals! {
 
 fn refusal(meaning: &str) -> Answer {
     let body = RefOr::<Schema>::Ref(Ref::from_schema_name("ErrorReport"));
+    let failure = Failure::new(Kind::Busy, "the axis is busy: it is homing").help("wait");
+    let example = ErrorReport { error: failure }.to_json();
     ResponseBuilder::new()
         .description(meaning)
         .content(
             "application/json",
-            ContentBuilder::new().schema(Some(body)).build(),
+            ContentBuilder::new()
+                .schema(Some(body))
+                .example(Some(example))
+                .build(),
         )
         .build()
 }
@@ -165,8 +172,21 @@ impl Modify for SharedParts {
     }
 }
 
-static JSON: LazyLock<String> =
-    LazyLock::new(|| Description::openapi().to_json().unwrap_or_default());
+/// Objects that clients send: the daemon refuses unknown keys. Those of its answers may get new
+/// ones.
+const REQUESTS: [&str; 3] = ["CaptureRequest", "GotoRequest", "Login"];
+
+static JSON: LazyLock<String> = LazyLock::new(|| {
+    let mut api = serde_json::to_value(Description::openapi()).unwrap_or_default();
+    let schemas = api.pointer_mut("/components/schemas");
+    if let Some(schemas) = schemas.and_then(Value::as_object_mut) {
+        let answers = schemas
+            .iter_mut()
+            .filter(|(name, _)| !REQUESTS.contains(&name.as_str()));
+        answers.for_each(|(_, schema)| document::open(schema));
+    }
+    api.to_string()
+});
 
 /// This description.
 #[utoipa::path(get, path = "/api/v1/openapi.json", tag = "daemon", responses(
@@ -196,7 +216,7 @@ mod tests {
 
     #[test]
     fn the_description_lists_exactly_the_routes() {
-        let described: serde_json::Value = serde_json::from_str(&JSON).unwrap();
+        let described: Value = serde_json::from_str(&JSON).unwrap();
         let paths = described["paths"].as_object().unwrap();
         let devices = device_routes();
         let devices = devices
@@ -221,7 +241,7 @@ mod tests {
 
     #[test]
     fn the_description_lists_every_format() {
-        let described: serde_json::Value = serde_json::from_str(&JSON).unwrap();
+        let described: Value = serde_json::from_str(&JSON).unwrap();
         let parameters = &described["paths"]["/api/v1/scans/{id}/cloud"]["get"]["parameters"];
         let format = parameters
             .as_array()
@@ -242,9 +262,42 @@ mod tests {
         );
     }
 
+    /// Clients that validate answers accept those of later versions.
+    #[test]
+    fn only_requests_are_closed_to_new_keys() {
+        let described: Value = serde_json::from_str(&JSON).unwrap();
+        let schemas = described["components"]["schemas"].as_object().unwrap();
+        for (name, schema) in schemas {
+            let is_closed = schema
+                .to_string()
+                .contains("\"additionalProperties\":false");
+            assert_eq!(is_closed, REQUESTS.contains(&name.as_str()), "{name}");
+        }
+    }
+
+    /// An example has exactly the keys of its schema, or, of a request, some of them.
+    #[test]
+    fn examples_have_the_keys_of_their_schemas() {
+        let described: Value = serde_json::from_str(&JSON).unwrap();
+        let schemas = described["components"]["schemas"].as_object().unwrap();
+        let mut checked = 0;
+        for (name, schema) in schemas {
+            let Some(example) = schema["example"].as_object() else {
+                continue;
+            };
+            let keys: BTreeSet<&String> = example.keys().collect();
+            let known: BTreeSet<&String> =
+                schema["properties"].as_object().unwrap().keys().collect();
+            assert!(keys.is_subset(&known), "{name}");
+            assert!(REQUESTS.contains(&name.as_str()) || keys == known, "{name}");
+            checked += 1;
+        }
+        assert!(checked >= 6, "{checked}");
+    }
+
     #[test]
     fn every_reference_in_the_description_resolves() {
-        let described: serde_json::Value = serde_json::from_str(&JSON).unwrap();
+        let described: Value = serde_json::from_str(&JSON).unwrap();
         let mut references = Vec::new();
         collect(&described, &mut references);
         assert!(references.len() > 20);
@@ -254,9 +307,9 @@ mod tests {
         }
     }
 
-    fn collect(value: &serde_json::Value, into: &mut Vec<String>) {
+    fn collect(value: &Value, into: &mut Vec<String>) {
         match value {
-            serde_json::Value::Object(object) => {
+            Value::Object(object) => {
                 for (key, value) in object {
                     match value.as_str() {
                         Some(text) if key == "$ref" => into.push(text.to_owned()),
@@ -264,7 +317,7 @@ mod tests {
                     }
                 }
             }
-            serde_json::Value::Array(array) => array.iter().for_each(|v| collect(v, into)),
+            Value::Array(array) => array.iter().for_each(|v| collect(v, into)),
             _ => {}
         }
     }

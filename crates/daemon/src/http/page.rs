@@ -214,7 +214,7 @@ pub async fn login(
             });
         }
     }
-    let cookie = api.sessions.begin(&headers).map_err(|error| {
+    let cookie = api.sessions.begin(&headers, api.secure).map_err(|error| {
         Refusal::new(
             StatusCode::CONFLICT,
             Kind::Incomplete,

@@ -12,8 +12,8 @@ use engine::service::LeaseError;
 
 use crate::limits::BODY_BYTES;
 
-/// Seconds until another download or client may have ended.
-const RETRY_S: u32 = 5;
+/// Seconds until another download, client or motion may have ended, or a device returned.
+pub const RETRY_S: u32 = 5;
 
 /// A refused request.
 #[derive(Clone, Debug)]
@@ -98,6 +98,7 @@ impl Refusal {
     pub fn no_room(failure: Failure) -> Self {
         Self {
             status: StatusCode::INSUFFICIENT_STORAGE,
+            retry_after_s: Some(RETRY_S),
             ..failure.into()
         }
     }
@@ -178,7 +179,8 @@ impl From<LeaseError> for Refusal {
                 Kind::Busy,
                 format!("the axis is busy: {}", task.description()),
                 "wait until it is done, or stop it (POST /api/v1/tilt/stop, tilt stop)",
-            ),
+            )
+            .retry_after(RETRY_S),
         }
     }
 }

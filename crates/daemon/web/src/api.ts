@@ -37,7 +37,7 @@ export interface Status {
     to_deg?: number | null;
     left_s?: number | null;
     /** Lidar packets in this capture. */
-    packets?: number | null;
+    received?: number | null;
   };
   drive: {
     state: DeviceState;
@@ -56,7 +56,7 @@ export interface Status {
     model?: string | null;
     return_mode?: string | null;
     rpm?: number | null;
-    packets?: number | null;
+    received?: number | null;
     packets_per_s?: number | null;
     lost_packets?: number | null;
     dropped_by_kernel?: number | null;

@@ -7,7 +7,7 @@ export interface Motion {
   angle_deg: number;
   speed_deg_s: number;
   left_s?: number | null;
-  packets?: number | null;
+  received?: number | null;
 }
 
 export interface Message {

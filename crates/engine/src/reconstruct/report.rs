@@ -24,6 +24,7 @@ pub struct TiltReport {
     /// Shaft samples.
     pub samples: u64,
     /// `usb`, `rs232` or `can`.
+    #[schema(schema_with = crate::document::transports)]
     pub transport: String,
 }
 
@@ -31,6 +32,7 @@ pub struct TiltReport {
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Gps {
     /// State of the pulse per second: `absent`, `synchronising`, `locked` or `error`.
+    #[schema(schema_with = crate::document::pps_states)]
     pub pps: String,
     /// Whether the lidar's time is UTC: pulse and fix are valid.
     pub locked: bool,
@@ -58,6 +60,7 @@ pub struct SensorReport {
     /// Model.
     pub model: Option<String>,
     /// `strongest`, `last` or `dual`.
+    #[schema(schema_with = crate::document::return_modes)]
     pub return_mode: Option<String>,
     /// Data packets.
     pub data: u64,
@@ -87,6 +90,7 @@ pub struct Contents {
     /// Sensor model.
     pub model: Option<String>,
     /// `strongest`, `last` or `dual`.
+    #[schema(schema_with = crate::document::return_modes)]
     pub return_mode: Option<String>,
     /// Packet counts.
     pub packets: PacketCounts,
@@ -243,6 +247,7 @@ pub struct SyncReport {
     /// Clock steps during the recording.
     pub steps: Vec<StepReport>,
     /// Method of the trajectory.
+    #[schema(schema_with = crate::document::angle_methods)]
     pub angle_method: &'static str,
     /// Choice of the method, if a tolerance was requested.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -9,6 +9,12 @@ use super::status::AxisTask;
 
 /// State of the drive.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[schema(example = json!({
+    "device": "epos2", "unit": "EPOS2 24/5", "state": "operation enabled", "statusword": 1_591,
+    "mode": 1, "referenced": true, "angle_deg": -12.5, "position_qc": -8_333, "velocity_rpm": 0,
+    "negative_limit": false, "positive_limit": false, "home_switch": false, "faults": [],
+    "simulated": false, "power": true, "activity": "moving", "age_s": 0.02, "switches_age_s": 1.4,
+}))]
 pub struct AxisReport {
     /// Name of the device's profile.
     pub device: String,

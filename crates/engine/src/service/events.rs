@@ -41,7 +41,7 @@ pub enum Event {
         /// Time left of the move, seconds.
         left_s: Option<f64>,
         /// Lidar packets of the capture so far.
-        packets: u64,
+        received: u64,
         /// Time of the angle.
         #[serde(skip)]
         at: Stamp<Host>,

@@ -127,7 +127,7 @@ impl LidarStats {
             model: self.model,
             return_mode: self.mode.clone(),
             rpm,
-            packets: self.packets,
+            received: self.packets,
             packets_per_s: (self.packets - packets_before) as f64 / passed,
             lost_packets: self.lost,
             ..LidarStatus::default()

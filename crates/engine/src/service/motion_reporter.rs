@@ -48,7 +48,7 @@ impl<'a> MotionReporter<'a> {
             }
             // The demand counts from the old zero, which must be known.
             DriveEvent::Progress(CommandProgress::Searching { at, demand }) if self.referenced => {
-                let packets = self.service.activity().packets;
+                let packets = self.service.activity().received;
                 self.moved(*at, gearing.angle(*demand), packets);
             }
             DriveEvent::Progress(CommandProgress::Statusword(word)) => self.statusword(*word),
@@ -160,7 +160,7 @@ impl<'a> MotionReporter<'a> {
         });
         self.service.state.send_modify(|state| {
             state.activity.left_s = left_s;
-            state.activity.packets = packets;
+            state.activity.received = packets;
             state.live_at = Some(Instant::now());
             state.drive.angle_deg = Some(angle.0);
             state.drive.speed_deg_s = speed_deg_s;
@@ -169,7 +169,7 @@ impl<'a> MotionReporter<'a> {
             angle_deg: angle.0,
             speed_deg_s,
             left_s,
-            packets,
+            received: packets,
             at,
         });
     }
@@ -178,7 +178,7 @@ impl<'a> MotionReporter<'a> {
     pub(super) fn end(&mut self) {
         self.until = None;
         if let Some((_, at, angle)) = self.last.take() {
-            self.report(at, angle, 0.0, self.service.activity().packets);
+            self.report(at, angle, 0.0, self.service.activity().received);
         }
     }
 }

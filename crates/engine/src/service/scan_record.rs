@@ -60,6 +60,7 @@ pub struct ScanHead {
     pub simulated: bool,
     /// The request; absent where it is lost, or was written by a later version.
     #[serde(default, deserialize_with = "if_understood")]
+    #[schema(inline)]
     pub asked: Option<CaptureRequest>,
     /// Points of the cloud.
     pub points: Option<u64>,

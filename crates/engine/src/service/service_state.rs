@@ -229,7 +229,7 @@ impl DeviceService {
                     Some(run::silence(&config, LIDAR_SILENCE)),
                 )
             }
-            Ok(_) if status.packets > 0 => (DeviceHealth::Connected, None),
+            Ok(_) if status.received > 0 => (DeviceHealth::Connected, None),
             Ok(_) => (DeviceHealth::Absent, None),
         };
         self.update_lidar(|lidar| {

@@ -41,6 +41,10 @@ impl AxisTask {
 
 /// The task of the axis and its progress.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, ToSchema)]
+#[schema(example = json!({
+    "doing": "capturing", "scan": "2026-05-04-101500", "homes": false, "step": 1, "steps": 1,
+    "from_deg": 0.0, "to_deg": -45.0, "left_s": 0.4, "received": 377,
+}))]
 pub struct Activity {
     /// The task.
     pub doing: AxisTask,
@@ -62,7 +66,7 @@ pub struct Activity {
     /// Time left of the move, seconds.
     pub left_s: Option<f64>,
     /// Lidar packets of this capture so far.
-    pub packets: u64,
+    pub received: u64,
 }
 
 /// State of a device.
@@ -88,6 +92,7 @@ pub struct DriveSnapshot {
     /// Port.
     pub port: Option<String>,
     /// usb, rs232 or can.
+    #[schema(schema_with = crate::document::links)]
     pub link: Option<&'static str>,
     /// State of the CiA 402 state machine.
     pub cia402: Option<String>,
@@ -103,6 +108,10 @@ pub struct DriveSnapshot {
 
 /// The lidar.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, ToSchema)]
+#[schema(example = json!({
+    "state": "connected", "problem": null, "model": "VLP-16", "return_mode": "strongest",
+    "rpm": 600.0, "received": 90_512, "packets_per_s": 905.0, "lost_packets": 0, "dropped_by_kernel": 0,
+}))]
 pub struct LidarStatus {
     /// State.
     pub state: DeviceHealth,
@@ -111,11 +120,12 @@ pub struct LidarStatus {
     /// Model.
     pub model: Option<&'static str>,
     /// strongest, last or dual.
+    #[schema(schema_with = crate::document::return_modes)]
     pub return_mode: Option<String>,
     /// Revolutions per minute.
     pub rpm: Option<f64>,
     /// Data and position packets so far.
-    pub packets: u64,
+    pub received: u64,
     /// Packets in the last second.
     pub packets_per_s: f64,
     /// Data packets missing by the lidar's own time.

@@ -31,6 +31,7 @@ pub fn run(arguments: &cli::DaemonArguments, common: &Common) -> Result<CommandO
         config: load(common)?,
         device: arguments.device.name.clone(),
         listen: arguments.listen,
+        commit: cli::commit(),
         environment: environment(),
         ..Options::default()
     })?;

@@ -162,7 +162,7 @@ impl CaptureBackend for LocalCapture<'_> {
         Ok(CaptureProgress {
             axis: Some(AxisProgress {
                 step: activity.step,
-                packets: activity.packets,
+                packets: activity.received,
                 angle_deg: service.angle_deg(),
             }),
             ..CaptureProgress::default()
@@ -236,7 +236,7 @@ impl CaptureBackend for DaemonCapture<'_> {
                 messages: details.messages,
                 axis: Some(AxisProgress {
                     step: status.activity.step,
-                    packets: status.activity.packets,
+                    packets: status.activity.received,
                     angle_deg: status.drive.angle_deg,
                 }),
                 end: None,

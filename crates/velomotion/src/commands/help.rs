@@ -93,7 +93,7 @@ macro_rules! pages {
 }
 
 /// The pages of the book for users, in its order.
-const PAGES: [(&str, &str); 21] = pages!(
+const PAGES: [(&str, &str); 22] = pages!(
     "quick-start",
     "install",
     "capture",
@@ -106,6 +106,7 @@ const PAGES: [(&str, &str); 21] = pages!(
     "bring-up",
     "glossary",
     "formats",
+    "json",
     "links",
     "simulator",
     "scenes",
@@ -159,7 +160,12 @@ fn parse_from(words: impl IntoIterator<Item = OsString>) -> Result<Cli, Failure>
 /// The failure of an invalid command line. Its help is the parser's tip, or the usage.
 fn usage(error: &clap::Error) -> Failure {
     let text = error.render().to_string();
-    let flat = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let flat = |text: &str| {
+        text.split_whitespace()
+            .map(brief)
+            .collect::<Vec<_>>()
+            .join(" ")
+    };
     let mut paragraphs = text.split("\n\n").map(flat);
     let message = paragraphs.next().unwrap_or_default();
     let message = message.strip_prefix("error: ").unwrap_or(&message);
@@ -171,6 +177,18 @@ fn usage(error: &clap::Error) -> Failure {
         })
         .chain(["--help lists all options".to_owned()]);
     Failure::new(Kind::Usage, message).help(help.collect::<Vec<_>>().join("\n"))
+}
+
+/// A word of a message; the middle of a long one, such as a file given for a number, is omitted.
+fn brief(word: &str) -> String {
+    const LONGEST: usize = 60;
+    let length = word.chars().count();
+    if length <= LONGEST {
+        return word.to_owned();
+    }
+    let first: String = word.chars().take(LONGEST / 2).collect();
+    let last: String = word.chars().skip(length - LONGEST / 3).collect();
+    format!("{first}...{last}")
 }
 
 /// Runs the command.

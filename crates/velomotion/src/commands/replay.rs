@@ -1,7 +1,7 @@
 //! `velomotion replay`: a cloud from a log, or from a plain lidar recording; or the lidar's packets
 //! of a log.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use engine::capture::completeness;
@@ -36,8 +36,9 @@ pub fn run(arguments: &cli::Replay, common: &Common) -> Result<CommandOutput, Fa
         return copy(arguments, &source, pcap, &interrupt);
     }
     let tilt = tilt_source(&arguments.tilt)?;
-    if let Some(mount) = mount(arguments, common, &tilt, &source)? {
-        source.set_mount(mount);
+    let mount = mount(arguments, common, &tilt, &source)?;
+    if let Some((mount, _)) = &mount {
+        source.set_mount(*mount);
     }
     let request = Reconstruction {
         recording: &source,
@@ -52,6 +53,13 @@ pub fn run(arguments: &cli::Replay, common: &Common) -> Result<CommandOutput, Fa
         interrupt: &interrupt,
     };
     let progress = Progress::new(common);
+    if let Some((mount, file)) = &mount {
+        progress.say(&format!(
+            "mount of {}: the lidar is {} m above the tilt axis",
+            file.display(),
+            mount.d_m
+        ));
+    }
     if let TiltSource::Table(table) = &request.tilt {
         progress.say(match table.time() {
             TableTime::Unix => "tilt angles: times are Unix seconds",
@@ -108,6 +116,28 @@ fn is_pcap(output: &&Path) -> bool {
     extension.eq_ignore_ascii_case("pcap")
 }
 
+/// The given options that only a cloud needs.
+fn cloud_options(arguments: &cli::Replay) -> impl Iterator<Item = &'static str> {
+    let lidar = &arguments.lidar;
+    [
+        ("--tilt", arguments.tilt != "log"),
+        ("--mount", arguments.mount.is_some()),
+        ("--realtime", arguments.realtime.is_some()),
+        ("--time", arguments.time != cli::TimeArgument::Host),
+        ("--frames", arguments.frames.is_some()),
+        ("--live", arguments.live),
+        ("--model", lidar.model.is_some()),
+        ("--calibration", lidar.calibration.is_some()),
+        ("--equal-returns", lidar.equal_returns != cli::Equal::Once),
+        ("--one-origin", lidar.one_origin),
+        ("--tolerance", arguments.accuracy.tolerance.is_some()),
+        ("--uncertainty", arguments.output.uncertainty),
+        ("--echo", arguments.output.echo),
+    ]
+    .into_iter()
+    .filter_map(|(option, is_given)| is_given.then_some(option))
+}
+
 /// The lidar's datagrams alone.
 fn copy(
     arguments: &cli::Replay,
@@ -115,12 +145,9 @@ fn copy(
     pcap: &Path,
     interrupt: &AtomicBool,
 ) -> Result<CommandOutput, Failure> {
-    if arguments.frames.is_some() || arguments.realtime.is_some() {
-        return Err(Failure::new(
-            Kind::Usage,
-            "a .pcap takes the lidar's packets as they are: --frames and --realtime make clouds",
-        )
-        .help("leave them out, or name a cloud with -o"));
+    if let Some(option) = cloud_options(arguments).next() {
+        let what = format!("a .pcap takes the lidar's packets as they are: {option} is for clouds");
+        return Err(Failure::new(Kind::Usage, what).help("omit it, or name a cloud with -o"));
     }
     output::refuse_overwrite(&arguments.input, pcap)?;
     let report = lidar_copy::copy(source, pcap, arguments.output.force, interrupt)?;
@@ -142,26 +169,33 @@ fn copy(
     })
 }
 
-/// The mount that replaces the recording's: that of `--mount`, or the configuration's for a
-/// recording of another rig with a table of angles.
+/// The mount that replaces the recording's, and its file: that of `--mount`; with a table of angles
+/// that of `--config`, or of the usual configuration if the recording has none.
 fn mount(
     arguments: &cli::Replay,
     common: &Common,
     tilt: &TiltSource,
     source: &Source,
-) -> Result<Option<MountConfig>, Failure> {
+) -> Result<Option<(MountConfig, PathBuf)>, Failure> {
+    let load = |file: PathBuf| config::load_mount(&file).map(|mount| Some((mount, file)));
     if let Some(file) = &arguments.mount {
-        return config::load_mount(file).map(Some);
+        return load(file.clone());
     }
-    if !matches!(tilt, TiltSource::Table(_)) || source.has_config()? {
+    if !matches!(tilt, TiltSource::Table(_)) {
         return Ok(None);
     }
-    let Some(file) = common.config.clone().or_else(config::usual_place) else {
+    if let Some(file) = &common.config {
+        return load(file.clone());
+    }
+    if source.has_config()? {
+        return Ok(None);
+    }
+    let Some(file) = config::usual_place() else {
         return Err(Failure::new(
             Kind::Usage,
             "a recording without a configuration, and angles of another rig: where is the lidar on its tilt axis?",
         )
         .help("name a file with [mount] d_m, the height of the lidar above the axis, with --mount or --config"));
     };
-    config::load_mount(&file).map(Some)
+    load(file)
 }

@@ -1,6 +1,7 @@
 use std::io::Cursor;
 
 use las::{Reader, Version};
+use units::Stamp;
 
 use super::*;
 use crate::Point;
@@ -118,23 +119,37 @@ fn returns_of_dual_mode_are_numbered_by_distance() {
         dual_return: true,
         ..metadata()
     };
-    for (metadata, numbers) in [
-        (dual, [(1, 1), (1, 2), (2, 2), (1, 1), (1, 2)]),
-        (metadata(), [(1, 1); 5]),
-    ] {
+    // Kinds of returns, each with the number of its pulse. The packets have the last return of a
+    // pulse first.
+    let given = [
+        (0, 0),
+        (3, 1),
+        (2, 2),
+        (4, 2),
+        (2, 3),
+        (4, 4),
+        (2, 5),
+        (4, 5),
+    ];
+    let mut points = Points::new(Fields::ALL);
+    for (echo, pulse) in given {
+        points.push(Point {
+            echo,
+            time: Stamp::from_nanos(2_304 * pulse),
+            ..Point::default()
+        });
+    }
+    let (one, pair) = ((1, 1), [(2, 2), (1, 2)]);
+    let numbered = [one, one, pair[0], pair[1], one, one, pair[0], pair[1]];
+    for (metadata, expected) in [(dual, numbered), (metadata(), [one; 8])] {
         let writer = LasWriter::las(Cursor::new(vec![]), Fields::NONE);
-        let bytes = written(writer, &metadata, &[cloud(20)]);
+        let bytes = written(writer, &metadata, std::slice::from_ref(&points));
         let mut reader = Reader::new(Cursor::new(bytes)).unwrap();
-        for (point, given) in points_of(&mut reader).zip(cloud(20).iter()) {
-            let point = point.unwrap();
-            let found = (point.return_number, point.number_of_returns);
-            assert_eq!(
-                found,
-                numbers[usize::from(given.echo)],
-                "echo {}",
-                given.echo
-            );
-        }
+        let found = points_of(&mut reader).map(Result::unwrap);
+        let found: Vec<_> = found
+            .map(|point| (point.return_number, point.number_of_returns))
+            .collect();
+        assert_eq!(found, expected);
     }
 }
 

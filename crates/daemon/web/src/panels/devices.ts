@@ -52,14 +52,14 @@ export function setStatus(status: Status): void {
   marks(status.axis.min_deg, status.axis.max_deg);
 
   const lost = (lidar.lost_packets ?? 0) + (lidar.dropped_by_kernel ?? 0);
-  const share = lidar.packets ? lost / (lidar.packets + lost) : 0;
+  const share = lidar.received ? lost / (lidar.received + lost) : 0;
   const lidar_facts: Fact[] = [
     ["Model", [lidar.model, lidar.return_mode].filter(Boolean).join(", ") || "\u2013"],
     ["Revolutions", lidar.rpm ? `${count(lidar.rpm)} rpm` : "\u2013"],
     ["Packets", typeof lidar.packets_per_s === "number" ? `${count(lidar.packets_per_s)} /s` : "\u2013", silent ? "warn" : "off"],
     ["Lost", lost === 0 ? "none" : `${count(lidar.lost_packets ?? 0)} in the network, ${count(lidar.dropped_by_kernel ?? 0)} in this host (${digits(100 * share, 2)} %)`, lost === 0 ? "off" : "warn"],
   ];
-  if (status.activity.doing === "capturing") lidar_facts.push(["In this scan", `${count(status.activity.packets ?? 0)} packets`]);
+  if (status.activity.doing === "capturing") lidar_facts.push(["In this scan", `${count(status.activity.received ?? 0)} packets`]);
   facts(id("lidar-facts"), lidar_facts);
   spark(lidar.packets_per_s ?? 0);
   const faults = drive.faults.map(faultWords);

@@ -57,7 +57,7 @@ pub(super) fn check(config: &Config, (name, device): (String, Device)) -> Vec<Fi
             vec![
                 drive(&name, report(config, own)),
                 match listening {
-                    Ok(status) if status.packets == 0 => {
+                    Ok(status) if status.received == 0 => {
                         problem(lidar, run::silence(&listen_config(&device), LISTENING))
                     }
                     Ok(status) => finding(lidar, Verdict::Ok, summary(&status)),
