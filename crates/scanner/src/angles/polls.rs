@@ -200,6 +200,18 @@ mod tests {
         assert!(kept(0.06) && !kept(0.15), "{samples:?}");
     }
 
+    /// Of 40 minutes at 400 Hz, in which a tenth of the polls are slow. The time grows with their
+    /// number; with its square this test would take minutes.
+    #[test]
+    fn a_million_polls_are_filtered() {
+        let slow = |i: i64| i % 11 == 5;
+        let polls: Vec<_> = (0..1_000_000)
+            .map(|i| poll(i * 2_500, if slow(i) { 2_000 } else { 500 }))
+            .collect();
+        let (samples, _) = with_shared_sd(&polls, gearing());
+        assert_eq!(samples.len(), (0..1_000_000).filter(|i| !slow(*i)).count());
+    }
+
     #[test]
     fn polls_of_equal_round_trip_are_all_kept() {
         let polls: Vec<_> = (0..10).map(|i| poll(i * 1_000, 500)).collect();

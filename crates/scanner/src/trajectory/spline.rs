@@ -377,6 +377,34 @@ mod tests {
             .fold(0.0, f64::max)
     }
 
+    /// Cross-validation takes the parameters for the trace of the hat matrix: how much each fitted
+    /// angle follows its own sample, over all samples.
+    #[test]
+    fn parameters_are_the_trace_of_the_hat_matrix() {
+        let motion = |t: f64| (8.0 * t).sin();
+        // Evenly, and with a gap of a third of the time.
+        for is_used in [|_: f64| true, |t: f64| !(0.4..1.0).contains(&t)] {
+            let mut samples = observed(120, 2.0, motion);
+            samples.retain(|sample| is_used(sample.at_s));
+            let knots = || vec![0.0, 0.25, 0.5, 1.0, 1.5, 2.0];
+            let before = Spline::fit(&samples, knots()).unwrap();
+            let mut trace = 0.0;
+            for i in 0..samples.len() {
+                let (sd_deg, by) = (samples[i].sd_deg, 1e-3);
+                samples[i].angle_deg += by;
+                let after = Spline::fit(&samples, knots()).unwrap();
+                samples[i].angle_deg -= by;
+                let fitted = by - sd_deg * (after.residuals[i] - before.residuals[i]);
+                trace += fitted / by;
+            }
+            let parameters = before.coefficients.len() as f64;
+            assert!(
+                (trace / parameters - 1.0).abs() < 1e-3,
+                "{trace} of {parameters}"
+            );
+        }
+    }
+
     #[test]
     fn a_cubic_is_recovered() {
         let motion = |t: f64| 1.0 - 3.0 * t + 2.0 * t * t - 0.7 * t * t * t;
