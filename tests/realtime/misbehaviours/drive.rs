@@ -7,7 +7,7 @@ use crate::faults::{Faults, Report};
 use crate::homing::Homing;
 use crate::motion::{Axis, DEG_S_PER_RPM, Profile, QC_PER_DEG, SWITCHES};
 use crate::objects::OBJECTS;
-use crate::record::{Event, Record};
+use crate::record::{self, Event, Record};
 
 /// Travel after which homing without a switch must end: the range, the home offset and 10 deg.
 const HOMING_BOUND: f64 = 45.0 + 1.0 + 10.0;
@@ -67,6 +67,8 @@ pub struct Drive {
     pub(crate) power_since: f64,
     /// Positions of the last half second.
     pub(crate) past: VecDeque<(f64, i32)>,
+    /// Shown position minus demand before the misbehaviour of homing.
+    homing_lag: f64,
 }
 
 impl Drive {
@@ -95,6 +97,7 @@ impl Drive {
             power_off_at: None,
             power_since: 0.0,
             past: VecDeque::new(),
+            homing_lag: 0.0,
         };
         drive.forget();
         drive
@@ -184,6 +187,7 @@ impl Drive {
                 };
                 let deg = f64::from(shown) / QC_PER_DEG;
                 self.record.sample(self.now, deg, self.referenced);
+                self.sample_homing(deg);
                 signed(shown)
             }
             (0x6062, 0) => signed((self.demand.0 * QC_PER_DEG) as i32),
@@ -200,6 +204,19 @@ impl Drive {
             Some((width, ..)) => Ok((value, *width)),
             None if self.objects.keys().any(|key| key.0 == index) => Err(0x0609_0011),
             None => Err(0x0602_0000),
+        }
+    }
+
+    /// The client is shown a position while the axis homes: judges it by the demand.
+    fn sample_homing(&mut self, deg: f64) {
+        let lag = deg - self.demand.0;
+        if self.homing.seconds(self.now) == 0.0 || !self.record.has_begun() {
+            self.homing_lag = lag;
+            return;
+        }
+        let speed = f64::from(self.value(0x6099, 1)) * DEG_S_PER_RPM;
+        if (lag - self.homing_lag).abs() > record::SHARE * (0.53 + speed * 0.05) {
+            self.show();
         }
     }
 

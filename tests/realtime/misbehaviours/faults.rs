@@ -41,6 +41,8 @@ pub enum Expect {
     Braked,
     /// Homing ends within its bound of travel.
     HomingBound,
+    /// Homing stops within 50 ms of the sample that shows that the axis does not follow.
+    HomingStopped,
     /// The drive obeys nothing, or hears nothing: the message tells to cut the supply.
     Unstoppable,
     /// The power is off and the command failed; only weight moves the axis.

@@ -64,7 +64,7 @@ impl Verdict {
         // A client asks for a sample every few milliseconds. One that never does fails every try.
         let is_shown = matches!(
             row.expect,
-            Expect::Stopped | Expect::Unseen | Expect::Braked
+            Expect::Stopped | Expect::Unseen | Expect::Braked | Expect::HomingStopped
         );
         let is_held_up = is_shown && !row.name.contains("nobody reads");
         let speed = drive.record.highest_speed().max(56.25);
@@ -123,7 +123,8 @@ impl Verdict {
         let beyond = self.ramp
             + delay_deg
             + match expect {
-                Expect::Unstoppable | Expect::Falls | Expect::HomingBound => f64::INFINITY,
+                Expect::Unstoppable | Expect::Falls => f64::INFINITY,
+                Expect::HomingBound | Expect::HomingStopped => f64::INFINITY,
                 Expect::Unseen => UNSEEN,
                 Expect::Braked => BRAKED,
                 _ => BEYOND,
@@ -166,7 +167,11 @@ impl Verdict {
                     format!("exit {:?}", self.exit),
                 );
             }
-            Expect::HomingBound => {
+            Expect::HomingBound | Expect::HomingStopped => {
+                must(
+                    expect == Expect::HomingBound || stop <= STOP_MS + delay_ms,
+                    format!("stop after {stop:.0} ms"),
+                );
                 must(
                     self.travel <= HOMING + delay_deg,
                     format!("travel {:.1} deg", self.travel),

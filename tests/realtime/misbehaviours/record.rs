@@ -6,7 +6,7 @@ use crate::motion::{Axis, Profile};
 pub const LIMITS: (f64, f64) = (-45.0, 0.0);
 /// Share of the documented tolerances that shows a misbehaviour: the client's plan starts a little
 /// later or earlier than the drive's.
-const SHARE: f64 = 0.95;
+pub const SHARE: f64 = 0.95;
 
 /// Something that happened.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,8 +2,8 @@
 
 use crate::drive::Drive;
 use crate::faults::Expect::{
-    self, Braked, Completes, Falls, HomingBound, Refused, Safe, Silent, Stopped, Unseen,
-    Unstoppable,
+    self, Braked, Completes, Falls, HomingBound, HomingStopped, Refused, Safe, Silent, Stopped,
+    Unseen, Unstoppable,
 };
 use crate::faults::When::{
     self, Braking, Homed, Homing, MidSweep, Start, Stopping, SweepStart, Waiting,
@@ -53,15 +53,15 @@ pub const ROWS: &[Misbehaviour] = &[
         d.faults.switches = Switches::PositiveOn;
     }),
     row("homing: the switch bounces", Start, Safe, |d| d.faults.switches = Switches::Bounce),
-    row("homing: the motor runs backwards", Homing, HomingBound, |d| {
+    row("homing: the motor runs backwards", Homing, HomingStopped, |d| {
         unguarded(d);
         d.faults.motor = Motor::Backwards;
     }),
-    row("homing: the motor stalls", Homing, HomingBound, |d| {
+    row("homing: the motor stalls", Homing, HomingStopped, |d| {
         unguarded(d);
         d.faults.motor = Motor::RunsAt(0.0);
     }),
-    row("homing: it runs away at 60 deg/s", Homing, HomingBound, |d| {
+    row("homing: it runs away at 60 deg/s", Homing, HomingStopped, |d| {
         unguarded(d);
         d.faults.motor = Motor::RunsAt(-60.0);
     }),

@@ -89,7 +89,10 @@ async fn wait_until_attained(ops: &mut Ops) -> Result<(), DriveError> {
     let mut switches = SwitchWatch::of_homing(&ops.config);
     let mut switch_check = PeriodicCheck::new(ops, SWITCH_CHECKS);
     loop {
-        ops.sleep(ops.config.timing.status_period).await;
+        // A deviation is confirmed at once.
+        if !travel.is_suspicious {
+            ops.sleep(ops.config.timing.status_period).await;
+        }
         let requested = ops.now();
         let got = check_enabled(ops).await?;
         if got & status::HOMING_ERROR != 0 {
