@@ -64,6 +64,19 @@ pub struct Misbehaviour {
     pub expect: Expect,
     /// Only on CAN.
     pub only_can: bool,
+    /// Who moves the axis.
+    pub by: By,
+}
+
+/// Who moves the axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum By {
+    /// `velomotion capture`.
+    Capture,
+    /// `velomotion tilt home`, then `velomotion tilt goto`.
+    Goto,
+    /// A daemon, for `velomotion capture`.
+    Daemon,
 }
 
 /// What the motor does while the power stage is enabled.

@@ -8,7 +8,7 @@ use crate::faults::Expect::{
 use crate::faults::When::{
     self, Braking, Homed, Homing, MidSweep, Start, Stopping, SweepStart, Waiting,
 };
-use crate::faults::{Damage, Misbehaviour, Motor, Report, Switches};
+use crate::faults::{By, Damage, Misbehaviour, Motor, Report, Switches};
 
 const fn row(name: &'static str, when: When, expect: Expect, act: fn(&mut Drive)) -> Misbehaviour {
     Misbehaviour {
@@ -17,7 +17,12 @@ const fn row(name: &'static str, when: When, expect: Expect, act: fn(&mut Drive)
         act,
         expect,
         only_can: false,
+        by: By::Capture,
     }
+}
+
+const fn by(by: By, row: Misbehaviour) -> Misbehaviour {
+    Misbehaviour { by, ..row }
 }
 
 const fn can(name: &'static str, when: When, expect: Expect, act: fn(&mut Drive)) -> Misbehaviour {
@@ -177,6 +182,45 @@ pub const ROWS: &[Misbehaviour] = &[
     can("EMCY a thousand times a second", MidSweep, Stopped, |d| d.faults.emcy_storm = true),
     can("it leaves the NMT state operational", MidSweep, Silent, |d| d.operational = false),
     row("the port vanishes", MidSweep, Unstoppable, |d| d.faults.is_unplugged = true),
+    // Other commands.
+    by(By::Goto, row("tilt home: the motor runs backwards", Homing, HomingStopped, |d| {
+        unguarded(d);
+        d.faults.motor = Motor::Backwards;
+    })),
+    by(By::Goto, row("tilt goto: stall", MidSweep, Stopped, |d| {
+        unguarded(d);
+        d.faults.motor = Motor::RunsAt(0.0);
+    })),
+    by(By::Goto, row("tilt goto: it moves on and ignores quick stop", Braking, Braked, |d| {
+        unguarded(d);
+        d.faults.motor = Motor::KeepsOn;
+        d.faults.ignores_quick_stop = true;
+    })),
+    by(By::Goto, row("tilt goto: no answers", MidSweep, Silent, |d| {
+        d.faults.damage = Damage::Silence;
+    })),
+    by(By::Goto, row("tilt goto: SIGTERM, quick stop is ignored", Stopping, Braked, |d| {
+        d.faults.ignores_quick_stop = true;
+    })),
+    by(By::Daemon, row("daemon: homing: the motor stalls", Homing, HomingStopped, |d| {
+        unguarded(d);
+        d.faults.motor = Motor::RunsAt(0.0);
+    })),
+    by(By::Daemon, row("daemon: the motor turns round", MidSweep, Stopped, |d| {
+        unguarded(d);
+        d.faults.motor = Motor::RunsAt(56.25);
+    })),
+    by(By::Daemon, row("daemon: it moves on and ignores quick stop", Braking, Braked, |d| {
+        unguarded(d);
+        d.faults.motor = Motor::KeepsOn;
+        d.faults.ignores_quick_stop = true;
+    })),
+    by(By::Daemon, row("daemon: no answers", MidSweep, Silent, |d| {
+        d.faults.damage = Damage::Silence;
+    })),
+    by(By::Daemon, row("daemon: SIGTERM of the client", Stopping, Braked, |d| {
+        d.faults.ignores_quick_stop = true;
+    })),
     // SIGTERM in mid-sweep.
     row("SIGTERM, nobody reads the output", Stopping, Stopped, |d| d.faults.unread = true),
     row("SIGTERM, quick stop is ignored", Stopping, Braked, |d| d.faults.ignores_quick_stop = true),

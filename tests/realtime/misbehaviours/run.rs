@@ -2,6 +2,7 @@
 
 use std::fs::File;
 use std::net::{Ipv4Addr, UdpSocket};
+use std::os::unix::net::UnixStream;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -11,7 +12,7 @@ use io::port::{Port, Pty};
 use units::Span;
 
 use crate::drive::Drive;
-use crate::faults::{Expect, Misbehaviour, When};
+use crate::faults::{By, Expect, Misbehaviour, When};
 use crate::lidar;
 use crate::rs232::Rs232;
 use crate::slcan::Slcan;
@@ -117,7 +118,7 @@ pub fn run(row: &'static Misbehaviour, transport: Transport) -> Result<Outcome, 
     std::thread::scope(|scope| {
         let device = scope.spawn(|| be_drive(pty, row, transport, &shared));
         scope.spawn(|| lidar::run(port, &shared.end));
-        let exit = capture(folder.path(), row, &shared);
+        let exit = move_axis(folder.path(), row, &shared);
         let ended = shared.begin.elapsed().as_secs_f64();
         std::thread::sleep(match row.expect {
             Expect::Unstoppable => TRIED,
@@ -141,14 +142,74 @@ pub fn run(row: &'static Misbehaviour, transport: Transport) -> Result<Outcome, 
     })
 }
 
-/// Runs the client; returns its exit code.
-fn capture(folder: &Path, row: &Misbehaviour, shared: &Shared) -> Result<Option<i32>, String> {
-    let mut client = Command::new(env!("CARGO_BIN_EXE_velomotion"));
-    client
-        .args("capture --speed 56.25 --accel 500 -o scan.ply --log scan.pcapng".split(' '))
+/// Moves the axis; returns the exit code of the command that fails, or of the last.
+fn move_axis(folder: &Path, row: &Misbehaviour, shared: &Shared) -> Result<Option<i32>, String> {
+    const CAPTURE: &str = "capture --speed 56.25 --accel 500 -o scan.ply --log scan.pcapng";
+    match row.by {
+        By::Capture => client(folder, CAPTURE, row, shared),
+        By::Goto => match client(folder, "tilt home", row, shared)? {
+            Some(0) => client(
+                folder,
+                "tilt goto -45 --speed 56.25 --accel 500",
+                row,
+                shared,
+            ),
+            exit => Ok(exit),
+        },
+        By::Daemon => {
+            let mut daemon = velomotion(folder, "daemon --listen 127.0.0.1:0");
+            let file =
+                File::create(folder.join("daemon.log")).map_err(|error| error.to_string())?;
+            let daemon = daemon.stdout(Stdio::null()).stderr(file).spawn();
+            let mut daemon = daemon.map_err(|error| error.to_string())?;
+            let exit = when_ready(folder).and_then(|()| client(folder, CAPTURE, row, shared));
+            let ended = terminate(&daemon).and_then(|()| {
+                let status = daemon.wait().map_err(|error| error.to_string())?;
+                status
+                    .success()
+                    .then_some(())
+                    .ok_or(format!("the daemon: {status}"))
+            });
+            exit.and_then(|exit| ended.map(|()| exit))
+        }
+    }
+}
+
+/// Waits until the daemon answers and has the drive.
+fn when_ready(folder: &Path) -> Result<(), String> {
+    let begin = Instant::now();
+    let is_socket = |entry: std::io::Result<std::fs::DirEntry>| {
+        entry.is_ok_and(|entry| UnixStream::connect(entry.path()).is_ok())
+    };
+    while begin.elapsed() < LIMIT {
+        let mut entries = std::fs::read_dir(folder).map_err(|error| error.to_string())?;
+        let status = || velomotion(folder, "tilt status").output();
+        if entries.any(is_socket) && status().is_ok_and(|status| status.status.success()) {
+            return Ok(());
+        }
+    }
+    Err("the daemon has no drive".to_owned())
+}
+
+fn velomotion(folder: &Path, line: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_velomotion"));
+    command
+        .args(line.split(' '))
         .current_dir(folder)
         .env("XDG_RUNTIME_DIR", folder)
+        .env("XDG_STATE_HOME", folder)
         .stdin(Stdio::null());
+    command
+}
+
+/// Runs a command; returns its exit code.
+fn client(
+    folder: &Path,
+    line: &str,
+    row: &Misbehaviour,
+    shared: &Shared,
+) -> Result<Option<i32>, String> {
+    let mut client = velomotion(folder, line);
     // A pipe that nobody reads is full after a moment of -vv.
     let is_unread = row.name.contains("nobody reads");
     if is_unread {
@@ -173,15 +234,15 @@ fn capture(folder: &Path, row: &Misbehaviour, shared: &Shared) -> Result<Option<
         }
         let is_due = row.when == When::Stopping && shared.half.load(Ordering::Acquire);
         if is_due && shared.signalled.load(Ordering::Acquire) == 0 {
-            terminate(&child, shared)?;
+            let now = shared.begin.elapsed().as_nanos() as u64;
+            shared.signalled.store(now, Ordering::Release);
+            terminate(&child)?;
         }
         std::thread::sleep(Duration::from_millis(1));
     }
 }
 
-fn terminate(child: &Child, shared: &Shared) -> Result<(), String> {
-    let now = shared.begin.elapsed().as_nanos() as u64;
-    shared.signalled.store(now, Ordering::Release);
+fn terminate(child: &Child) -> Result<(), String> {
     let id = child.id().to_string();
     let sent = Command::new("kill").args(["-TERM", &id]).status();
     sent.map(drop).map_err(|error| error.to_string())

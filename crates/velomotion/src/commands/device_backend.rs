@@ -110,7 +110,10 @@ pub fn record(
             progress.end_move();
             return Ok(end);
         }
-        std::thread::sleep(PROGRESS_POLL);
+        let next = Instant::now() + PROGRESS_POLL;
+        while Instant::now() < next && (stopped || !interrupt.load(Ordering::Relaxed)) {
+            std::thread::sleep(INTERRUPT_POLL);
+        }
     }
 }
 
