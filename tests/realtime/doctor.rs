@@ -66,55 +66,67 @@ fn doctor_asks_the_drive_and_listens_to_the_lidar() {
     );
 }
 
-/// Every step of the bring-up against the simulated drive, in which nothing is wrong.
+#[test]
+fn doctor_names_the_program_that_has_the_port() {
+    let bench = Bench::new("--usb");
+    let port = io::port::SerialPort::open(bench.folder.path().join("epos"), 115_200).unwrap();
+    let (code, findings) = doctor(&bench);
+    drop(port);
+    let (verdict, found) = finding(&findings, "drive of soft");
+    let own = format!("(pid {})", std::process::id());
+    assert!(verdict == "problem" && found.contains(&own), "{found}");
+    assert_eq!(code, Some(4));
+}
+
+/// Every step of the bring-up against the simulated drive, in which nothing is wrong. Other links
+/// and defects are tested in virtual time.
 #[test]
 fn the_bring_up_finds_nothing_wrong_with_a_healthy_drive() {
-    for interface in ["--usb", "--slcan"] {
-        let bench = Bench::new(interface);
-        let output = bench.run("doctor --bring-up --yes --report first.md --json");
-        let report: Value = serde_json::from_slice(&output.stdout).unwrap();
-        let steps = report["steps"].as_array().unwrap();
-        assert_eq!(steps.len(), 11, "{interface}");
-        for step in steps {
-            let measurements = step["measurements"].as_array().unwrap();
-            assert!(!measurements.is_empty(), "{interface}: {step}");
-        }
-        let value = |name: &str| {
-            let all = steps
-                .iter()
-                .flat_map(|step| step["measurements"].as_array().unwrap());
-            let found = all.clone().find(|measurement| measurement["name"] == name);
-            found.unwrap_or_else(|| panic!("no {name}"))["value"]
-                .as_str()
-                .unwrap()
-                .to_owned()
-        };
-        assert!(value("unit").starts_with("EPOS2"));
-        assert!(value("onto the other switch").starts_with("method 17"));
-        assert!(value("in a move").starts_with("at rest after 0."));
-        let text = std::fs::read_to_string(bench.folder.path().join("first.md")).unwrap();
-        assert_eq!(text.matches("\n## ").count(), 12);
-        // Nobody presses the switches or turns the axis. The machine may be too busy to poll.
-        assert_eq!(report["unchecked"], 2);
-        let judged = steps
+    let interface = "--usb";
+    let bench = Bench::new(interface);
+    let output = bench.run("doctor --bring-up --yes --report first.md --json");
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let steps = report["steps"].as_array().unwrap();
+    assert_eq!(steps.len(), 11, "{interface}");
+    for step in steps {
+        let measurements = step["measurements"].as_array().unwrap();
+        assert!(!measurements.is_empty(), "{interface}: {step}");
+    }
+    let value = |name: &str| {
+        let all = steps
             .iter()
             .flat_map(|step| step["measurements"].as_array().unwrap());
-        let problems: Vec<&Value> = judged
-            .filter(|found| found["judgement"] == "problem")
-            .map(|found| &found["name"])
-            .collect();
-        assert!(
-            problems
-                .iter()
-                .all(|name| **name == "time between positions"),
-            "{problems:?}"
-        );
-        assert_eq!(report["problems"], problems.len());
-        assert!(text.contains("2 open checks"), "{text}");
-        // A second report goes behind the first.
-        let refused = bench.run("doctor --bring-up --report first.md");
-        assert_eq!(refused.status.code(), Some(2), "stdin is not a terminal");
-        let again = std::fs::read_to_string(bench.folder.path().join("first.md")).unwrap();
-        assert_eq!(again, text);
-    }
+        let found = all.clone().find(|measurement| measurement["name"] == name);
+        found.unwrap_or_else(|| panic!("no {name}"))["value"]
+            .as_str()
+            .unwrap()
+            .to_owned()
+    };
+    assert!(value("unit").starts_with("EPOS2"));
+    assert!(value("onto the other switch").starts_with("method 17"));
+    assert!(value("in a move").starts_with("at rest after 0."));
+    let text = std::fs::read_to_string(bench.folder.path().join("first.md")).unwrap();
+    assert_eq!(text.matches("\n## ").count(), 12);
+    // Nobody presses the switches or turns the axis. The machine may be too busy to poll.
+    assert_eq!(report["unchecked"], 2);
+    let judged = steps
+        .iter()
+        .flat_map(|step| step["measurements"].as_array().unwrap());
+    let problems: Vec<&Value> = judged
+        .filter(|found| found["judgement"] == "problem")
+        .map(|found| &found["name"])
+        .collect();
+    assert!(
+        problems
+            .iter()
+            .all(|name| name.as_str().unwrap().starts_with("time between positions")),
+        "{problems:?}"
+    );
+    assert_eq!(report["problems"], problems.len());
+    assert!(text.contains("2 open checks"), "{text}");
+    // A second report goes behind the first.
+    let refused = bench.run("doctor --bring-up --report first.md");
+    assert_eq!(refused.status.code(), Some(2), "stdin is not a terminal");
+    let again = std::fs::read_to_string(bench.folder.path().join("first.md")).unwrap();
+    assert_eq!(again, text);
 }

@@ -418,29 +418,32 @@ fn the_software_drive_runs_on_without_a_stdin() {
 /// pipe with a name.
 #[test]
 fn the_machine_does_not_sleep_while_the_axis_can_move() {
-    let bench = Bench::new("--usb");
-    let folder = bench.folder.path();
-    let pipe = folder.join("asked");
-    let made = Command::new("mkfifo").arg(&pipe).status().unwrap();
-    assert!(made.success());
-    let program = folder.join("systemd-inhibit");
-    let script = "#!/bin/sh\nexec >\"${0%/*}/asked\"\necho \"$@\"\ncat\necho end\n";
-    std::fs::write(&program, script).unwrap();
-    std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
-    let (send, asked) = std::sync::mpsc::channel();
-    std::thread::spawn(move || send.send(std::fs::read_to_string(pipe)));
-    let path = std::env::var("PATH").unwrap();
-    let mut home = bench.command("tilt home");
-    let output = home
-        .env("PATH", format!("{}:{path}", folder.display()))
-        .output()
-        .unwrap();
-    assert!(output.status.success(), "{output:?}");
-    let asked = asked.recv_timeout(Duration::from_secs(60)).unwrap();
-    let asked = asked.unwrap();
-    assert!(
-        asked.starts_with("--what=sleep:handle-lid-switch --who=velomotion"),
-        "{asked}"
-    );
-    assert!(asked.ends_with("--mode=block cat\nend\n"), "{asked}");
+    // On USB a guardian process is armed at the same time; on CAN there is none.
+    for interface in ["--usb", "--slcan"] {
+        let bench = Bench::new(interface);
+        let folder = bench.folder.path();
+        let pipe = folder.join("asked");
+        let made = Command::new("mkfifo").arg(&pipe).status().unwrap();
+        assert!(made.success());
+        let program = folder.join("systemd-inhibit");
+        let script = "#!/bin/sh\nexec >\"${0%/*}/asked\"\necho \"$@\"\ncat\necho end\n";
+        std::fs::write(&program, script).unwrap();
+        std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
+        let (send, asked) = std::sync::mpsc::channel();
+        std::thread::spawn(move || send.send(std::fs::read_to_string(pipe)));
+        let path = std::env::var("PATH").unwrap();
+        let mut home = bench.command("tilt home");
+        let output = home
+            .env("PATH", format!("{}:{path}", folder.display()))
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{output:?}");
+        let asked = asked.recv_timeout(Duration::from_secs(60)).unwrap();
+        let asked = asked.unwrap();
+        assert!(
+            asked.starts_with("--what=sleep:handle-lid-switch --who=velomotion"),
+            "{asked}"
+        );
+        assert!(asked.ends_with("--mode=block cat\nend\n"), "{asked}");
+    }
 }

@@ -47,7 +47,8 @@ pub use rejoin::Rejoined;
 pub use setting::{PacketLoss, Setting};
 
 /// The log's name of an attachment.
-fn link(attached: Attachment) -> DriveLink {
+#[must_use]
+pub fn link(attached: Attachment) -> DriveLink {
     match attached {
         Attachment::Usb => DriveLink::Usb,
         Attachment::Rs232 => DriveLink::Rs232,

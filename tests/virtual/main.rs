@@ -1,5 +1,6 @@
 //! Tests across crates in virtual time: devices, clocks and links are simulated.
 
+mod bring_up;
 mod clocks;
 mod data_path;
 mod faults;

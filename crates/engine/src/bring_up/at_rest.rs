@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use drive::{AngleSource, CommandOutcome, DriveCommand, SampleTrigger};
+use drive::{AngleSource, CommandOutcome, DriveCommand, SampleTrigger, ShaftSample};
 use protocol::epos2::objects::{self, input};
 use units::Stamp;
 
@@ -102,7 +102,8 @@ fn connect(bring_up: &mut BringUp<'_>, _: &mut dyn Operator) -> Result<(), Sessi
     let Some(CommandOutcome::Connected(report)) = recording.outcome else {
         return Ok(());
     };
-    bring_up.judge("settings", "written, read back, equal", true, "");
+    // A difference is an error of the connection.
+    bring_up.note("settings", "written, read back, equal");
     bring_up.note(
         "source of the angle",
         format!("{:?}", report.angle).to_lowercase(),
@@ -131,34 +132,18 @@ fn link(bring_up: &mut BringUp<'_>, _: &mut dyn Operator) -> Result<(), SessionE
     let recording = bring_up.run(&[DriveCommand::Connect, hold])?;
     let samples = &recording.samples;
     let ms = |span: units::Span| span.as_secs_f64() * 1e3;
-    let mut gaps: Vec<f64> = samples
-        .windows(2)
-        .map(|pair| ms(pair[1].answer.saturating_since(pair[0].answer)))
-        .collect();
     let polled = samples
         .iter()
         .filter(|sample| sample.trigger == SampleTrigger::Request);
     let mut delays: Vec<f64> = polled
         .map(|sample| ms(sample.answer.saturating_since(sample.request)))
         .collect();
-    let rate = samples.len() as f64 / (REST_NS as f64 * 1e-9);
-    let what = match delays.is_empty() {
-        true => "positions by SYNC",
-        false => "positions by polls",
-    };
-    bring_up.note(what, format!("{rate:.0} per second"));
+    positions(bring_up, "at rest", std::slice::from_ref(samples));
     if !delays.is_empty() {
         bring_up.note("time of a poll", spread(&mut delays));
     }
-    let worst = gaps.iter().copied().fold(0.0, f64::max);
-    bring_up.judge(
-        "time between positions",
-        spread(&mut gaps),
-        worst <= LONGEST_GAP_MS,
-        "see links.md: latency timer of the adapter, cable, load of this machine",
-    );
-    let positions = || samples.iter().map(|sample| sample.position.0);
-    let range = positions().max().unwrap_or(0) - positions().min().unwrap_or(0);
+    let counts = || samples.iter().map(|sample| sample.position.0);
+    let range = counts().max().unwrap_or(0) - counts().min().unwrap_or(0);
     let degrees = f64::from(range) * bring_up.axis.gearing.degrees_per_qc();
     let limit = bring_up.axis.standstill_spread.0;
     bring_up.judge(
@@ -168,6 +153,34 @@ fn link(bring_up: &mut BringUp<'_>, _: &mut dyn Operator) -> Result<(), SessionE
         "check the encoder's cable and shield, or raise [axis.guard] standstill_deg",
     );
     Ok(())
+}
+
+/// Notes the rate of positions in some periods, and judges the time between them: on a CAN bus SYNCs
+/// or positions may be lost.
+pub(super) fn positions(bring_up: &mut BringUp<'_>, when: &str, periods: &[Vec<ShaftSample>]) {
+    let ms = |pair: &[ShaftSample]| match pair {
+        [before, after] => after.answer.saturating_since(before.answer).as_secs_f64() * 1e3,
+        _ => 0.0,
+    };
+    let pairs = periods.iter().flat_map(|samples| samples.windows(2));
+    let mut gaps: Vec<f64> = pairs.map(ms).collect();
+    let rate = 1e3 * gaps.len() as f64 / gaps.iter().sum::<f64>();
+    let is_polled = |sample: &ShaftSample| sample.trigger == SampleTrigger::Request;
+    let by = match periods.iter().flatten().all(is_polled) {
+        true => "polls",
+        false => "SYNC",
+    };
+    bring_up.note(
+        &format!("positions by {by} {when}"),
+        format!("{rate:.0} per second"),
+    );
+    let worst = gaps.iter().copied().fold(0.0, f64::max);
+    bring_up.judge(
+        &format!("time between positions {when}"),
+        spread(&mut gaps),
+        worst <= LONGEST_GAP_MS,
+        "see links.md: latency timer of the adapter, cable, termination, load of this machine",
+    );
 }
 
 /// Median, 99th percentile and worst of some times, ms.

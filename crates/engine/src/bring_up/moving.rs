@@ -1,11 +1,15 @@
 //! Steps with power: homing, stops, brake, following error.
 
+use drive::cia402::DeviceState;
 use drive::config::AxisConfig;
-use drive::{CommandKind, CommandOutcome, CommandProgress, DriveCommand, DriveEvent, MoveCommand};
+use drive::{
+    CommandKind, CommandOutcome, CommandProgress, DriveCommand, DriveEvent, MoveCommand,
+    MoveReport, ShaftSample,
+};
 use protocol::epos2::objects::input;
 use units::{DegPerS, Degrees, Rpm, Span, Stamp};
 
-use super::at_rest::{REST_NS, inputs};
+use super::at_rest::{REST_NS, inputs, positions};
 use super::{BringUp, BringUpStep, Operator, SessionRecord};
 use crate::devices::drive_session::SessionError;
 
@@ -98,8 +102,14 @@ fn home_as(bring_up: &mut BringUp<'_>, axis: AxisConfig, name: &str) -> Result<f
     });
     let travel = f64::from(high.saturating_sub(low).max(0));
     let travel = travel * bring_up.axis.gearing.degrees_per_qc();
-    let value = format!("method {method}, {took:.1} s, {travel:.1} deg travelled");
-    bring_up.judge(name, value, true, "");
+    let limits = bring_up.axis.limits;
+    let expected = limits.max.0 - limits.min.0 + bring_up.axis.homing.offset.0.abs();
+    bring_up.judge(
+        name,
+        format!("method {method}, {took:.1} s, {travel:.1} deg travelled (range {expected:.1} deg)"),
+        travel <= expected + bring_up.axis.guard.homing_margin.0,
+        "the switch is further away than the range of the axis: check gear, encoder lines and limits",
+    );
     let homed = recording.events.iter().find_map(|event| match event {
         DriveEvent::Done(CommandOutcome::Homed { angle, .. }) => Some(angle.0),
         _ => None,
@@ -136,8 +146,16 @@ fn other_switch(bring_up: &mut BringUp<'_>, _: &mut dyn Operator) -> Result<(), 
 }
 
 fn stops(bring_up: &mut BringUp<'_>, _: &mut dyn Operator) -> Result<(), SessionError> {
-    bring_up.run(&[DriveCommand::Stop])?;
-    bring_up.judge("with the power off", "at rest", true, "");
+    let recording = bring_up.run(&[DriveCommand::Stop, DriveCommand::Status])?;
+    if let Some(CommandOutcome::Status(status)) = recording.outcome {
+        let state = status.state;
+        bring_up.judge(
+            "with the power off",
+            state.map_or("unknown".to_owned(), |state| state.to_string()),
+            state == Some(DeviceState::SwitchOnDisabled),
+            "the drive does not obey disable voltage: check its firmware with its own tool",
+        );
+    }
     let axis = bring_up.axis.clone();
     let prepare = [DriveCommand::Connect, DriveCommand::Home];
     let across = across(bring_up, STOP_SPEED);
@@ -240,21 +258,29 @@ fn brake(bring_up: &mut BringUp<'_>, operator: &mut dyn Operator) -> Result<(), 
         DriveCommand::Home,
         DriveCommand::Goto(to_middle),
     ];
-    bring_up.run(&[moves[0], moves[1], moves[2], DriveCommand::Brake])?;
-    let recording = bring_up.run(&[DriveCommand::Connect, hold])?;
+    let before = bring_up.run(&[moves[0], moves[1], moves[2], DriveCommand::Brake])?;
+    let after = bring_up.run(&[DriveCommand::Connect, hold])?;
     let gearing = bring_up.axis.gearing;
-    let angles = || {
-        recording
-            .samples
-            .iter()
-            .map(|sample| gearing.angle(sample.position).0)
-    };
-    let drop = angles().fold(f64::NEG_INFINITY, f64::max) - angles().fold(f64::INFINITY, f64::min);
+    // Power off ends where the axis rests, after its fall. It fell from where the move ended.
+    let arrived = before.events.iter().find_map(|event| match event {
+        DriveEvent::Done(CommandOutcome::Arrived(report)) => Some(report.position),
+        _ => None,
+    });
+    let positions = after.samples.iter().map(|sample| sample.position);
+    let angles = positions
+        .chain(arrived)
+        .map(|position| gearing.angle(position).0);
+    let (low, high) = angles.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), angle| {
+        (low.min(angle), high.max(angle))
+    });
+    let drop = high - low;
+    // The axis may still settle where the move ends.
+    let limit = bring_up.axis.standstill_spread.0 + bring_up.axis.arrival_tolerance.0;
     let has_brake = bring_up.axis.brake.is_some();
     bring_up.judge(
         "drop in 2 s with the power off",
-        format!("{drop:.3} deg"),
-        drop <= bring_up.axis.standstill_spread.0,
+        format!("{drop:.3} deg (limit {limit:.3} deg)"),
+        drop <= limit,
         match has_brake {
             true => "the brake does not hold: check its output (2079), polarity (2078:3) and supply",
             false => "the head falls without power: fit a brake, or set without_brake = \"hold\" in [axis]",
@@ -294,22 +320,34 @@ fn following(bring_up: &mut BringUp<'_>, _: &mut dyn Operator) -> Result<(), Ses
             worst <= limit / 2.0,
             "tune the drive's position controller, or lower the speed; [axis.guard] servo_lag_ms sets the limit",
         );
+        let moves = moves(&recording).map(|report| {
+            let all = recording.samples.iter().copied();
+            all.filter(|sample| is_within(sample, report)).collect()
+        });
+        let moves: Vec<Vec<ShaftSample>> = moves.collect();
+        positions(bring_up, &format!("at {speed:.2} deg/s"), &moves);
     }
     Ok(())
 }
 
-/// The largest distance between samples and plan of the recorded moves, degrees.
-fn largest_deviation(recording: &SessionRecord, axis: &AxisConfig) -> f64 {
-    let moves = recording.events.iter().filter_map(|event| match event {
+/// The recorded moves.
+fn moves(recording: &SessionRecord) -> impl Iterator<Item = &MoveReport> {
+    recording.events.iter().filter_map(|event| match event {
         DriveEvent::Done(CommandOutcome::Arrived(report)) => Some(report),
         _ => None,
-    });
+    })
+}
+
+fn is_within(sample: &ShaftSample, report: &MoveReport) -> bool {
+    sample.request >= report.started && sample.answer <= report.arrived
+}
+
+/// The largest distance between samples and plan of the recorded moves, degrees.
+fn largest_deviation(recording: &SessionRecord, axis: &AxisConfig) -> f64 {
     let mut worst: f64 = 0.0;
-    for report in moves {
-        for sample in &recording.samples {
-            if sample.request < report.started || sample.answer > report.arrived {
-                continue;
-            }
+    for report in moves(recording) {
+        let samples = recording.samples.iter();
+        for sample in samples.filter(|sample| is_within(sample, report)) {
             let angle = axis.gearing.angle(sample.position).0;
             let direction = (report.plan.to.0 - report.plan.from.0).signum();
             let at = |stamp: Stamp<units::Host>| {

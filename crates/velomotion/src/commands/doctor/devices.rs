@@ -103,7 +103,11 @@ fn drive(name: &str, report: Result<AxisReport, Failure>) -> Finding {
             } else {
                 "not homed"
             };
-            let found = format!("{}; {}, {homed}", report.unit, report.state);
+            let found = match report.unit.as_str() {
+                // Another program has the drive and is moving it.
+                "" => format!("{}, {homed}; in use by another program", report.state),
+                unit => format!("{unit}; {}, {homed}", report.state),
+            };
             match report.faults.first().filter(|_| report.state == "fault") {
                 None => finding(what, Verdict::Ok, found),
                 Some(fault) => {
