@@ -155,8 +155,8 @@ fn link(bring_up: &mut BringUp<'_>, _: &mut dyn Operator) -> Result<(), SessionE
     Ok(())
 }
 
-/// Notes the rate of positions in some periods, and judges the time between them: on a CAN bus SYNCs
-/// or positions may be lost.
+/// Notes the rate of positions in some periods, and judges the time between them: on a CAN bus
+/// SYNCs or positions may be lost.
 pub(super) fn positions(bring_up: &mut BringUp<'_>, when: &str, periods: &[Vec<ShaftSample>]) {
     let ms = |pair: &[ShaftSample]| match pair {
         [before, after] => after.answer.saturating_since(before.answer).as_secs_f64() * 1e3,
