@@ -371,7 +371,7 @@ impl<'a> Candidates<'a> {
         } else {
             latch::evidence(&off, self.noise.angle_sd_deg)
         };
-        let (shift, delay) = latch::delay(&off, latch);
+        let (shift, delay) = latch::delay(&off, latch, self.noise.angle_sd_deg);
         let fit = SweepFit {
             method,
             rms_deg,

@@ -142,9 +142,15 @@ fn resultant(residuals: &[Residual], instant: impl Fn(&Residual) -> f64) -> f64 
 }
 
 /// A shift of the curve, and limits of the delay that remains common to all samples. Each was taken
-/// within its bound and is at most a cycle old; its residual shows when the axis was at its angle.
-pub(super) fn delay(residuals: &[Residual], latch: LatchEvidence) -> (Span, (Span, Span)) {
+/// within its bound and is at most a cycle old; its residual shows when the axis was at its angle,
+/// within half an encoder count.
+pub(super) fn delay(
+    residuals: &[Residual],
+    latch: LatchEvidence,
+    angle_sd_deg: f64,
+) -> (Span, (Span, Span)) {
     let quick = quick(residuals);
+    let half_count_deg = angle_sd_deg * f64::sqrt(3.0);
     // Samples without a bound are the truth.
     let is_bounded = quick.iter().any(|r| r.bound_s > 0.0);
     let age_s = if is_bounded && latch != LatchEvidence::Absent {
@@ -154,8 +160,9 @@ pub(super) fn delay(residuals: &[Residual], latch: LatchEvidence) -> (Span, (Spa
     };
     let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
     for residual in &quick {
-        low = low.max(-residual.bound_s - age_s - residual.late_s());
-        high = high.min(residual.bound_s - residual.late_s());
+        let reach_s = residual.bound_s + half_count_deg / residual.rate_deg_s.abs();
+        low = low.max(-reach_s - age_s - residual.late_s());
+        high = high.min(reach_s - residual.late_s());
     }
     if !low.is_finite() || !high.is_finite() {
         return (Span::ZERO, (Span::ZERO, Span::ZERO));
@@ -224,7 +231,7 @@ mod tests {
             sample.off_deg = 0.0;
         }
         let limits = |samples: &[Residual]| {
-            let (_, (low, high)) = delay(samples, LatchEvidence::Absent);
+            let (_, (low, high)) = delay(samples, LatchEvidence::Absent, 0.0);
             [low, high].map(Span::as_secs_f64)
         };
         let [low, high] = limits(&samples);
