@@ -372,14 +372,46 @@ def acknowledgement_missing(start):
     return without(choose)
 
 
-def request_missing(start):
-    """The first request of this kind, whose acknowledgement remains."""
+def _is_write(record, index, value=None):
+    """Whether a record requests a write of an object, and of this value. The frame is a link's."""
+    if record[1] != 1 or record[4] != OUTBOUND:
+        return False
+    data, object_ = record[3], index.to_bytes(2, "little") + b"\0"
+    if data[:2] == b"\x90\x02":
+        begin, is_write = 4, data[2] == drive.WRITE
+    elif len(data) == 16:
+        begin, is_write = 9, data[8] in (0x23, 0x2B, 0x2F)
+    else:
+        begin, is_write = 1, data[:1] == b"\x03"
+    content = data[begin + 4 :] if len(data) != 16 else data[begin + 3 :]
+    fits = value is None or content[: len(value)] == value
+    return is_write and data[begin : begin + 3] == object_ and fits
+
+
+START = b"\x1f\x00"
+MOVE_REQUESTS = {
+    "607A": (0x607A, None),
+    "the start": (0x6040, START),
+    "6081": (0x6081, None),
+    "6060": (0x6060, None),
+}
+
+
+def move_requests_missing(names, move=0, read_back=True):
+    """Requests of writes of a move, whose acknowledgements remain. Without `read_back` no read of
+    the same object is in the log either."""
 
     def choose(records, rng):
-        for i, r in enumerate(records):
-            if r[1] == 1 and r[4] == OUTBOUND and r[3].hex().startswith(start):
-                return [i]
-        raise ValueError(start)
+        gone = []
+        for name in names:
+            index, value = MOVE_REQUESTS[name]
+            found = [i for i, r in enumerate(records) if _is_write(r, index, value)]
+            gone.append(found[move])
+            if not read_back and name != "the start":
+                after = [i for i in range(found[move] + 1, len(records)) if records[i][1] == 1]
+                # The acknowledgement, and the whole read that follows.
+                gone += after[:3]
+        return gone
 
     return without(choose)
 
@@ -483,11 +515,34 @@ missing("drive answers 60 ms late", without(lambda records, rng: []), late=(0.5,
 missing("three answers missing", answers_missing([0.3, 0.55, 0.8]))
 missing("one request missing", requests_missing([0.5]))
 missing("2 % of the drive's answers missing", share_of_answers(0.02))
-for _name, _start in (("607A", "900211047a60"), ("the start", "90021104406000011f")):
-    condition(
-        "more",
-        f"request of {_name} missing",
-        lambda seed, start=_start: Setup(seed=seed, mangle=request_missing(start)),
+for _name in MOVE_REQUESTS:
+    missing(f"request of {_name} missing", move_requests_missing([_name]))
+missing("requests of 607A and the start missing", move_requests_missing(["607A", "the start"]))
+missing(
+    "607A neither written nor read back",
+    move_requests_missing(["607A"], read_back=False),
+)
+missing(
+    "607A neither written nor read back, no start",
+    move_requests_missing(["607A", "the start"], read_back=False),
+)
+for _name, _link in (("RS232", scan.rs232), ("CAN", scan.can)):
+    for _request in ("607A", "the start"):
+        missing(
+            f"request of {_request} missing, {_name}",
+            move_requests_missing([_request]),
+            link=_link(),
+        )
+missing(
+    "request of the start missing, 0.5 deg/s",
+    move_requests_missing(["the start"]),
+    moves=[Move(-0.6, 0.5)],
+)
+for _name in ("607A", "the start"):
+    missing(
+        f"request of {_name} missing in the second of two sweeps",
+        move_requests_missing([_name], move=1),
+        moves=[Move(-30.0, 56.25), Move(0.0, 56.25)],
     )
 missing("acknowledgement of 607A missing", acknowledgement_missing("900211047a60"))
 missing("acknowledgement of the start missing", acknowledgement_missing("9002110440600001" + "1f"))

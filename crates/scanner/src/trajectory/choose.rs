@@ -146,6 +146,24 @@ impl<'a> Candidates<'a> {
                 all
             }
         };
+        if std::env::var_os("DBG").is_some() {
+            for c in &candidates {
+                eprintln!(
+                    "DBG {:?} gcv {:.4} n {} par {} sys {:.5} rms {:.5} sd {:.5} latch {:?} delay {:?} noise {:?} {:?}",
+                    c.fit.method,
+                    c.prediction_error,
+                    self.observed.len(),
+                    c.parameters,
+                    c.systematic_residual_deg,
+                    c.fit.rms_deg,
+                    c.fit.sd_deg,
+                    c.latch,
+                    c.fit.delay,
+                    self.noise,
+                    c.fit.profile
+                );
+            }
+        }
         let least_autocorrelation = candidates
             .iter()
             .filter(|c| c.fit.method != Method::Spline)

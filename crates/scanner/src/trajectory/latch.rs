@@ -21,6 +21,8 @@ const DECISIVE: f64 = 3.0;
 const UNCERTAINTY_S: f64 = 20e-6;
 /// Samples whose bound exceeds the median by this factor are left out: their instant is unknown.
 const MAX_BOUND: f64 = 1.5;
+/// Greatest bound of samples at which a jump by a cycle is not their error.
+const MAX_JUMP_BOUND_S: f64 = 0.3e-3;
 /// Greatest duration of an encoder count at which a grid is visible.
 const MAX_COUNT_S: f64 = 0.3e-3;
 
@@ -85,13 +87,24 @@ pub(super) fn evidence(residuals: &[Residual], angle_sd_deg: f64) -> LatchEviden
 }
 
 /// What residuals show if the instants of sampling are known to less than a cycle: those of a latch
-/// are the ages of the samples, up to the phase of the cycle.
+/// are the ages of the samples, up to the phase of the cycle. Polls that scatter about the end of a
+/// cycle are assigned to the wrong one as often as not, but they jump by a whole cycle, which
+/// neither motion nor the samples' errors do.
 fn evidence_of_ages(residuals: &[Residual], count_s: f64) -> LatchEvidence {
     let unseen = (count_s * count_s / 12.0 + UNCERTAINTY_S * UNCERTAINTY_S) * WINDOW as f64;
     let (mut plain, mut aged) = (0.0, 0.0);
+    let (mut jumping, mut folded) = (0.0, 0.0);
     for window in residuals.chunks_exact(WINDOW) {
         let bound_s = MAX_BOUND * median_bound_s(window);
         let sharp: Vec<&Residual> = window.iter().filter(|r| r.bound_s <= bound_s).collect();
+        jumping += unseen;
+        folded += unseen;
+        for pair in sharp.windows(2) {
+            let [a, b] = pair else { continue };
+            let cycles = (b.late_s() - a.late_s()) / CYCLE_S;
+            jumping += 0.5 * (cycles * CYCLE_S).powi(2);
+            folded += 0.5 * ((cycles - cycles.round()) * CYCLE_S).powi(2);
+        }
         plain += unseen + square_deviations(sharp.iter().map(|r| r.late_s()));
         // Between two samples every phase is alike.
         let beginning_at = |phase: &&Residual| {
@@ -103,7 +116,8 @@ fn evidence_of_ages(residuals: &[Residual], count_s: f64) -> LatchEvidence {
         };
         aged += unseen + sharp.iter().map(beginning_at).fold(f64::INFINITY, f64::min);
     }
-    if aged * DECISIVE < plain {
+    let are_sharp = MAX_BOUND * median_bound_s(residuals) <= MAX_JUMP_BOUND_S;
+    if aged * DECISIVE < plain || (are_sharp && folded * DECISIVE < jumping) {
         LatchEvidence::Present
     } else if plain * DECISIVE < aged {
         LatchEvidence::Absent
@@ -221,6 +235,51 @@ mod tests {
         assert_eq!(seen(Some(0.05e-3)), LatchEvidence::Present);
         assert_eq!(seen(Some(0.5e-3)), LatchEvidence::Unknown);
         assert_eq!(seen(None), LatchEvidence::Unknown);
+    }
+
+    /// The midpoint of a poll is as uncertain as the polls scatter about the end of the cycle.
+    #[test]
+    fn ages_that_jump_by_a_cycle_show_a_latch_though_their_order_is_unknown() {
+        let seen = |jump_s: f64| {
+            let mut samples = residuals(1e-3, 0.0, None);
+            for (i, sample) in (0..).zip(&mut samples) {
+                let drawn = |factor: f64| (f64::from(i) * factor).fract() - 0.5;
+                let (taken, midpoint) = (drawn(0.618_033_99), drawn(0.414_213_56));
+                let age_s = if taken < 0.0 { jump_s } else { 0.0 };
+                sample.at_s += 0.1e-3 * midpoint;
+                sample.off_deg = 50.0 * (0.1e-3 * (taken - midpoint) - age_s);
+                sample.bound_s = 0.15e-3;
+            }
+            evidence(&samples, 0.0004)
+        };
+        assert_eq!(seen(1e-3), LatchEvidence::Present);
+        assert_ne!(seen(0.4e-3), LatchEvidence::Present);
+        assert_ne!(seen(0.0), LatchEvidence::Present);
+    }
+
+    /// A quantised position says when the axis passed it only to within a count.
+    #[test]
+    fn the_limits_contain_a_delay_at_their_end_however_slow_the_axis_is() {
+        let count_deg = 0.0015;
+        for rate_deg_s in [0.5, 7.0, 50.0] {
+            for delay_s in [-0.2e-3, 0.2e-3] {
+                let mut samples = residuals(2.5e-3, 0.0, None);
+                for (i, sample) in (0..).zip(&mut samples) {
+                    let drawn = (f64::from(i) * 0.618_033_99).fract() - 0.5;
+                    sample.off_deg = count_deg * drawn;
+                    sample.rate_deg_s = rate_deg_s;
+                    // All were taken as early, or as late, as their bounds allow.
+                    sample.bound_s = 0.2e-3;
+                }
+                let sd = count_deg / f64::sqrt(12.0);
+                let (_, (low, high)) = delay(&samples, LatchEvidence::Absent, sd);
+                let (low, high) = (low.as_secs_f64(), high.as_secs_f64());
+                let what = format!("{rate_deg_s} deg/s: {low} to {high}");
+                assert!((low - 1e-6..=high + 1e-6).contains(&delay_s), "{what}");
+                // Quantisation is no conflict: it does not widen them.
+                assert!(low > -0.3e-3 && high < 0.3e-3, "{what}");
+            }
+        }
     }
 
     /// Samples whose instants exclude each other give wider limits than each of them does.
