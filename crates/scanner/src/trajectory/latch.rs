@@ -2,8 +2,8 @@
 //! control cycle. No manual says whether it does.
 //!
 //! Then the instants at which the fitted curve has the samples' angles lie on a grid of the cycle,
-//! while the polls do not. Where the polls lie on such a grid too, ages that jump by a cycle still
-//! show it. Where none does, or where a cycle is less than an encoder count, the samples cannot
+//! while the polls do not. Where the polls lie near such a grid too, positions that lack the jitter
+//! of the polls, or ages that jump by a cycle, still show it. Where none does, or where a cycle is less than an encoder count, the samples cannot
 //! show it, and the age is unknown from zero to a cycle.
 
 use units::Span;
@@ -21,8 +21,9 @@ const DECISIVE: f64 = 3.0;
 const UNCERTAINTY_S: f64 = 20e-6;
 /// Samples whose bound exceeds the median by this factor are left out: their instant is unknown.
 const MAX_BOUND: f64 = 1.5;
-/// Greatest bound of samples at which a jump by a cycle is not their error.
-const MAX_JUMP_BOUND_S: f64 = 0.3e-3;
+/// Instants lie on a grid about which polls scatter, if the circular variance of polls is greater by
+/// this ratio.
+const SHARPER: f64 = 8.0;
 /// Greatest duration of an encoder count at which a grid is visible.
 const MAX_COUNT_S: f64 = 0.3e-3;
 
@@ -75,7 +76,9 @@ pub(super) fn evidence(residuals: &[Residual], angle_sd_deg: f64) -> LatchEviden
         .into_iter()
         .fold(0.0, f64::max);
     let instants = resultant(&quick, |r| r.at_s + r.late_s());
-    if polls > OFF_GRID {
+    if instants > ON_GRID && (1.0 - instants) * SHARPER < 1.0 - polls {
+        LatchEvidence::Present
+    } else if polls > OFF_GRID {
         evidence_of_ages(&quick, count_s)
     } else if instants > ON_GRID {
         LatchEvidence::Present
@@ -87,24 +90,13 @@ pub(super) fn evidence(residuals: &[Residual], angle_sd_deg: f64) -> LatchEviden
 }
 
 /// What residuals show if the instants of sampling are known to less than a cycle: those of a latch
-/// are the ages of the samples, up to the phase of the cycle. Polls that scatter about the end of a
-/// cycle are assigned to the wrong one as often as not, but they jump by a whole cycle, which
-/// neither motion nor the samples' errors do.
+/// are the ages of the samples, up to the phase of the cycle.
 fn evidence_of_ages(residuals: &[Residual], count_s: f64) -> LatchEvidence {
     let unseen = (count_s * count_s / 12.0 + UNCERTAINTY_S * UNCERTAINTY_S) * WINDOW as f64;
     let (mut plain, mut aged) = (0.0, 0.0);
-    let (mut jumping, mut folded) = (0.0, 0.0);
     for window in residuals.chunks_exact(WINDOW) {
         let bound_s = MAX_BOUND * median_bound_s(window);
         let sharp: Vec<&Residual> = window.iter().filter(|r| r.bound_s <= bound_s).collect();
-        jumping += unseen;
-        folded += unseen;
-        for pair in sharp.windows(2) {
-            let [a, b] = pair else { continue };
-            let cycles = (b.late_s() - a.late_s()) / CYCLE_S;
-            jumping += 0.5 * (cycles * CYCLE_S).powi(2);
-            folded += 0.5 * ((cycles - cycles.round()) * CYCLE_S).powi(2);
-        }
         plain += unseen + square_deviations(sharp.iter().map(|r| r.late_s()));
         // Between two samples every phase is alike.
         let beginning_at = |phase: &&Residual| {
@@ -116,8 +108,7 @@ fn evidence_of_ages(residuals: &[Residual], count_s: f64) -> LatchEvidence {
         };
         aged += unseen + sharp.iter().map(beginning_at).fold(f64::INFINITY, f64::min);
     }
-    let are_sharp = MAX_BOUND * median_bound_s(residuals) <= MAX_JUMP_BOUND_S;
-    if aged * DECISIVE < plain || (are_sharp && folded * DECISIVE < jumping) {
+    if aged * DECISIVE < plain {
         LatchEvidence::Present
     } else if plain * DECISIVE < aged {
         LatchEvidence::Absent
@@ -228,33 +219,42 @@ mod tests {
         assert_eq!(seen(None), LatchEvidence::Absent);
     }
 
-    /// As by SYNCs of 1 kHz: their ages jump by a cycle if their jitter crosses its end.
+    /// As by SYNCs of 1 kHz: their ages jump by a cycle if their jitter crosses its end, and where it
+    /// does not, positions lack their jitter.
     #[test]
-    fn polls_in_step_with_the_cycle_show_a_latch_only_where_their_ages_jump() {
+    fn polls_in_step_with_the_cycle_show_a_latch_by_their_jitter() {
         let seen = |latch| evidence(&residuals(1e-3, 0.1e-3, latch), 0.0004);
         assert_eq!(seen(Some(0.05e-3)), LatchEvidence::Present);
-        assert_eq!(seen(Some(0.5e-3)), LatchEvidence::Unknown);
+        assert_eq!(seen(Some(0.5e-3)), LatchEvidence::Present);
         assert_eq!(seen(None), LatchEvidence::Unknown);
+        // Without jitter nothing shows it.
+        let regular = residuals(1e-3, 0.0, Some(0.5e-3));
+        assert_eq!(evidence(&regular, 0.0004), LatchEvidence::Unknown);
     }
 
-    /// The midpoint of a poll is as uncertain as the polls scatter about the end of the cycle.
+    /// Polls that scatter about the end of a cycle, and whose midpoints are as uncertain: the order
+    /// of their ages is unknown, but the instants of the positions are a cycle apart.
     #[test]
-    fn ages_that_jump_by_a_cycle_show_a_latch_though_their_order_is_unknown() {
-        let seen = |jump_s: f64| {
+    fn instants_on_a_grid_about_which_polls_scatter_show_a_latch() {
+        let seen = |is_latched: bool| {
             let mut samples = residuals(1e-3, 0.0, None);
             for (i, sample) in (0..).zip(&mut samples) {
                 let drawn = |factor: f64| (f64::from(i) * factor).fract() - 0.5;
                 let (taken, midpoint) = (drawn(0.618_033_99), drawn(0.414_213_56));
-                let age_s = if taken < 0.0 { jump_s } else { 0.0 };
-                sample.at_s += 0.1e-3 * midpoint;
-                sample.off_deg = 50.0 * (0.1e-3 * (taken - midpoint) - age_s);
+                let taken_s = 0.2e-3 * taken;
+                let age_s = match is_latched {
+                    true => taken_s.rem_euclid(CYCLE_S),
+                    false => 0.0,
+                };
+                let midpoint_s = taken_s + 0.1e-3 * midpoint;
+                sample.at_s += midpoint_s;
+                sample.off_deg = 50.0 * (taken_s - age_s - midpoint_s);
                 sample.bound_s = 0.15e-3;
             }
             evidence(&samples, 0.0004)
         };
-        assert_eq!(seen(1e-3), LatchEvidence::Present);
-        assert_ne!(seen(0.4e-3), LatchEvidence::Present);
-        assert_ne!(seen(0.0), LatchEvidence::Present);
+        assert_eq!(seen(true), LatchEvidence::Present);
+        assert_ne!(seen(false), LatchEvidence::Present);
     }
 
     /// A quantised position says when the axis passed it only to within a count.
