@@ -117,9 +117,11 @@ const NEW_SETPOINT: u16 = 0x0010;
 const RELATIVE: u16 = 0x0040;
 /// Greatest distance of a sweep's start and target from the ends of the plan.
 const END_TOLERANCE_DEG: f64 = 0.1;
-/// A jump exceeds this, and the way at three times the commanded speed.
+/// A jump exceeds this, and the way at three times the commanded speed or at the greatest speed.
 const JUMP_DEG: f64 = 0.1;
 const JUMP_SPEEDS: f64 = 3.0;
+/// Twice the speed of the fastest sweep, 100 deg/s.
+const MAX_SPEED_DEG_S: f64 = 200.0;
 /// A sweep is not seen if so much of its way is between two samples.
 const UNSEEN_SHARE: f64 = 0.75;
 /// Range of an axis at rest: an encoder at an edge flickers by one count.
@@ -318,7 +320,7 @@ impl MoveWatch {
 
 /// The motion in `window` after `command`; `None` if the axis did not move.
 fn motion(command: &Move, window: &[AngleSample], is_cut_off: bool, rest: f64) -> Option<Motion> {
-    let window = window.get(..unbroken(window, command.motion.speed))?;
+    let window = window.get(..unbroken(window, command.motion.speed, rest))?;
     let (from, to) = (window.first()?.angle, window.last()?.angle);
     let leaves = window
         .iter()
@@ -363,20 +365,22 @@ fn motion(command: &Move, window: &[AngleSample], is_cut_off: bool, rest: f64) -
 }
 
 /// Number of samples before the angle jumps farther than the axis can move. A drive that loses its
-/// supply restarts at zero, and the samples after that are no angles of this axis.
-fn unbroken(window: &[AngleSample], speed: DegPerS) -> usize {
-    if speed.0 == 0.0 {
-        // The log lacks the speed.
-        return window.len();
-    }
-    let jump = window.windows(2).position(|pair| match pair {
-        [a, b] => {
-            let time = b.host.saturating_since(a.host) + a.bound + b.bound;
-            (b.angle.0 - a.angle.0).abs() > JUMP_DEG + JUMP_SPEEDS * speed.0 * time.as_secs_f64()
-        }
-        _ => false,
+/// supply restarts at zero and stays there, and the samples after that are no angles of this axis.
+fn unbroken(window: &[AngleSample], speed: DegPerS, rest: f64) -> usize {
+    // Restarted samples, from the end on.
+    let zeros = window.iter().rev().take_while(|s| s.angle.0.abs() <= rest);
+    let restart = window.len() - zeros.count();
+    let broken = window.windows(2).enumerate().position(|(before, pair)| {
+        let &[a, b] = pair else { return false };
+        let time_s = (b.host.saturating_since(a.host) + a.bound + b.bound).as_secs_f64();
+        // A head that was held or pushed returns faster than it was commanded to move.
+        let speed = match before + 1 == restart {
+            true => JUMP_SPEEDS * speed.0,
+            false => (JUMP_SPEEDS * speed.0).max(MAX_SPEED_DEG_S),
+        };
+        (b.angle.0 - a.angle.0).abs() > JUMP_DEG + speed * time_s
     });
-    jump.map_or(window.len(), |before| before + 1)
+    broken.map_or(window.len(), |before| before + 1)
 }
 
 /// Measured speed over the middle half of the way, by least squares; it excludes ramps of up to

@@ -743,3 +743,69 @@ def drawn(seed):
 
 
 condition("drawn", "drawn at random", drawn)
+
+
+def _disturbance(rng, duration):
+    """What may happen to the head between the ramps of a move, or nothing."""
+    when = float(rng.uniform(0.15, 0.75)) * duration
+    kinds = {
+        "hold": lambda: {"hold": (when, float(rng.uniform(0.05, 0.3)))},
+        "pause": lambda: {"pause": (when, float(rng.uniform(0.05, 0.3)))},
+        "slip": lambda: {
+            "extra": (mechanism.slip, when, float(rng.uniform(-2, 2)), float(rng.uniform(0.02, 0.06)))
+        },
+        "swing": lambda: {
+            "extra": (
+                mechanism.swing, when, float(rng.uniform(0.02, 0.6)),
+                float(rng.uniform(5, 20)), float(rng.uniform(0.04, 0.2)),
+            )
+        },
+        "bump": lambda: {
+            "extra": (mechanism.bump, when, float(rng.uniform(-2, 2)), float(rng.uniform(0.03, 0.1)))
+        },
+    }  # fmt: skip
+    return kinds[str(rng.choice(list(kinds)))]()
+
+
+def _missing_records(rng, duration):
+    """Records that the recorder drops."""
+    when = 0.15 + float(rng.uniform(0.1, 0.9)) * duration
+    kinds = (
+        lambda: share_of_answers(float(rng.uniform(0.002, 0.05))),
+        lambda: part_missing(when, when + float(rng.uniform(0.01, 0.1))),
+        lambda: silent_between(when, when + float(rng.uniform(0.01, 0.15))),
+        lambda: share_of_packets(float(rng.uniform(0.002, 0.05))),
+        lambda: move_requests_missing([str(rng.choice(list(MOVE_REQUESTS)))]),
+        lambda: move_requests_missing(["607A"], read_back=False),
+    )
+    return kinds[rng.integers(len(kinds))]()
+
+
+def drawn_with_faults(seed):
+    """A scanner as in `drawn`, to which one or two things happen."""
+    rng = np.random.default_rng(2_000_000 + seed)
+    setup = drawn(500_000 + seed)
+    setup.seed = seed
+    move = setup.moves[0]
+    duration = abs(move.to) / move.speed + move.speed / move.accel
+    sweeps = int(rng.choice([1, 1, 2, 3]))
+    setup.moves = [Move((move.to, 0.0)[i % 2], move.speed, move.accel) for i in range(sweeps)]
+    faults = ["head", "host", "lidar", "records"]
+    for fault in rng.choice(faults, size=int(rng.integers(1, 3)), replace=False):
+        when = 0.15 + float(rng.uniform(0.1, 0.9)) * duration
+        size = float(np.exp(rng.uniform(np.log(1e-3), np.log(2.0)))) * float(rng.choice([-1, 1]))
+        if fault == "head":
+            # A head that is held needs a servo that catches up.
+            if setup.servo.hz is None and setup.servo.lag_s is None:
+                setup.servo = CATCHES_UP
+            setup.disturb = {int(rng.integers(sweeps)): _disturbance(rng, duration)}
+        elif fault == "host":
+            setup.host_steps = ((when, size),)
+        elif fault == "lidar":
+            setup.lidar_steps = ((when, size / 10),)
+        else:
+            setup.mangle = _missing_records(rng, duration)
+    return setup
+
+
+condition("faults", "drawn at random, with faults", drawn_with_faults, share=0.85)

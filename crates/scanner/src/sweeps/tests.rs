@@ -168,6 +168,22 @@ fn a_drive_that_lost_its_position_ends_the_sweep() {
     assert!(sweeps[0].end < ms(known), "{sweeps:?}");
 }
 
+/// Held for a quarter of a second, the axis catches up at many times the speed of its sweep.
+#[test]
+fn a_slow_sweep_goes_on_after_its_head_was_held() {
+    let mut axis = Axis::new();
+    axis.command_partly(&Written {
+        speed: Some(20),
+        ..WHOLE
+    });
+    axis.travel(-20.0, 1.0);
+    axis.stay(250);
+    axis.travel(-0.5, 120.0);
+    axis.travel(-24.5, 1.0);
+    let sweeps = axis.watch.sweeps(&axis.samples, Some(&PLAN)).seen;
+    assert!((sweeps[0].to.0 + 45.0).abs() < 1e-6, "{sweeps:?}");
+}
+
 #[test]
 fn an_axis_at_rest_has_no_sweep() {
     let mut axis = Axis::new();

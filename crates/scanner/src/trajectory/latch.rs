@@ -3,8 +3,9 @@
 //!
 //! Then the instants at which the fitted curve has the samples' angles lie on a grid of the cycle,
 //! while the polls do not. Where the polls lie near such a grid too, positions that lack the jitter
-//! of the polls, or ages that jump by a cycle, still show it. Where none does, or where a cycle is less than an encoder count, the samples cannot
-//! show it, and the age is unknown from zero to a cycle.
+//! of the polls, or ages that jump by a cycle, still show it. Where none does, or where a cycle is
+//! less than an encoder count, the samples cannot show it, and the age is unknown from zero to a
+//! cycle.
 
 use units::Span;
 
@@ -24,6 +25,8 @@ const MAX_BOUND: f64 = 1.5;
 /// Instants lie on a grid about which polls scatter, if the circular variance of polls is greater by
 /// this ratio.
 const SHARPER: f64 = 8.0;
+/// Least circular variance of polls that scatter: by 7 us.
+const MIN_SCATTER: f64 = 1e-3;
 /// Greatest duration of an encoder count at which a grid is visible.
 const MAX_COUNT_S: f64 = 0.3e-3;
 
@@ -76,7 +79,7 @@ pub(super) fn evidence(residuals: &[Residual], angle_sd_deg: f64) -> LatchEviden
         .into_iter()
         .fold(0.0, f64::max);
     let instants = resultant(&quick, |r| r.at_s + r.late_s());
-    if instants > ON_GRID && (1.0 - instants) * SHARPER < 1.0 - polls {
+    if instants > ON_GRID && (1.0 - instants).max(MIN_SCATTER) * SHARPER < 1.0 - polls {
         LatchEvidence::Present
     } else if polls > OFF_GRID {
         evidence_of_ages(&quick, count_s)
