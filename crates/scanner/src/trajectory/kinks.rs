@@ -12,6 +12,8 @@ const SIDE: usize = 6;
 /// By how much the sum of squares of the lines is below the cubic's, in variances of the samples.
 /// That of errors alone differs by less in a whole scan.
 const MIN_GAIN: f64 = 25.0;
+/// Greatest sum of squares of both lines, in variances: twice its expectation.
+const MAX_SQUARES: f64 = 2.0 * (2 * SIDE - 4) as f64;
 /// Greatest number of kinks: more are a motion that splines follow as well.
 const MAX_KINKS: usize = 12;
 
@@ -56,7 +58,9 @@ fn kink(window: &[Observed], index: usize) -> Option<Kink> {
     }
     let (_, cubic_squares) = polynomial::<4>(window, origin)?;
     let gain = cubic_squares - left_squares - right_squares;
-    (gain > MIN_GAIN).then_some(Kink { at_s, gain, index })
+    // A quick ramp is no kink: the samples within it are off both lines.
+    let is_straight = left_squares + right_squares < MAX_SQUARES;
+    (is_straight && gain > MIN_GAIN).then_some(Kink { at_s, gain, index })
 }
 
 /// A polynomial of `N` coefficients through samples by least squares, and the sum of the squares of
