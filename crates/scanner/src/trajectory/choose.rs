@@ -404,7 +404,7 @@ impl<'a> Candidates<'a> {
         } else {
             latch::evidence(&off, self.noise.angle_sd_deg)
         };
-        let (shift, delay) = latch::delay(&off, latch, self.noise.angle_sd_deg);
+        let (shift, delay) = latch::delay(&off, latch, self.noise.angle_sd_deg, scatter.sqrt());
         let fit = SweepFit {
             method,
             rms_deg,

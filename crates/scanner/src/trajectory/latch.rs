@@ -9,6 +9,8 @@
 
 use units::Span;
 
+use super::bound::BOUND_SDS;
+
 /// Control cycle of an EPOS2, and greatest age of a position.
 pub(super) const CYCLE_S: f64 = 1e-3;
 /// Samples per window: short, as the drive's clock drifts.
@@ -151,14 +153,16 @@ fn resultant(residuals: &[Residual], instant: impl Fn(&Residual) -> f64) -> f64 
 
 /// A shift of the curve, and limits of the delay that remains common to all samples. Each was taken
 /// within its bound and is at most a cycle old; its residual shows when the axis was at its angle,
-/// within half an encoder count.
+/// within half an encoder count and the error of the curve.
 pub(super) fn delay(
     residuals: &[Residual],
     latch: LatchEvidence,
     angle_sd_deg: f64,
+    curve_sd_deg: f64,
 ) -> (Span, (Span, Span)) {
     let quick = quick(residuals);
     let half_count_deg = angle_sd_deg * f64::sqrt(3.0);
+    let slack_deg = half_count_deg + BOUND_SDS * curve_sd_deg;
     // Samples without a bound are the truth.
     let is_bounded = quick.iter().any(|r| r.bound_s > 0.0);
     let age_s = if is_bounded && latch != LatchEvidence::Absent {
@@ -168,7 +172,7 @@ pub(super) fn delay(
     };
     let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
     for residual in &quick {
-        let reach_s = residual.bound_s + half_count_deg / residual.rate_deg_s.abs();
+        let reach_s = residual.bound_s + slack_deg / residual.rate_deg_s.abs();
         low = low.max(-reach_s - age_s - residual.late_s());
         high = high.min(reach_s - residual.late_s());
     }
@@ -275,7 +279,7 @@ mod tests {
                     sample.bound_s = 0.2e-3;
                 }
                 let sd = count_deg / f64::sqrt(12.0);
-                let (_, (low, high)) = delay(&samples, LatchEvidence::Absent, sd);
+                let (_, (low, high)) = delay(&samples, LatchEvidence::Absent, sd, 0.0);
                 let (low, high) = (low.as_secs_f64(), high.as_secs_f64());
                 let what = format!("{rate_deg_s} deg/s: {low} to {high}");
                 assert!((low - 1e-6..=high + 1e-6).contains(&delay_s), "{what}");
@@ -293,7 +297,7 @@ mod tests {
             sample.off_deg = 0.0;
         }
         let limits = |samples: &[Residual]| {
-            let (_, (low, high)) = delay(samples, LatchEvidence::Absent, 0.0);
+            let (_, (low, high)) = delay(samples, LatchEvidence::Absent, 0.0, 0.0);
             [low, high].map(Span::as_secs_f64)
         };
         let [low, high] = limits(&samples);
