@@ -72,13 +72,19 @@ def bound(truth):
     off = (degrees - truth.motion(middle))[cruise]
     of_count = COUNT_DEG / np.sqrt(12)
     of_time = np.sqrt(max(np.var(off) - of_count**2, 0.0)) / profile.speed
+    # Errors of instants are as large as the trips: the program knows these.
+    trip = np.maximum(trip[good], 1e-9)
+    of_time = of_time * trip / np.sqrt(np.mean(trip[cruise] ** 2))
     sd = np.hypot(of_count, of_time * rate)
     # At rest equal samples are one.
     resting = np.abs(rate) < 1e-6
     sd[resting] *= np.sqrt(max(resting.sum() / 2, 1))
     rows = derivatives(parameters, middle) / sd[:, None]
     covariance = np.linalg.pinv(rows.T @ rows)
-    along = derivatives(parameters, np.linspace(begin, end, 2000))
+    instants = np.linspace(begin, end, 2000)
+    along = derivatives(parameters, instants)
+    rate = truth.motion.rate(instants)
+    along -= np.outer(rate, rate @ along) / (rate @ rate)
     variance = np.einsum("ij,jk,ik->i", along, covariance, along)
     return np.sqrt(variance.mean()), np.sqrt(variance.max())
 

@@ -27,7 +27,7 @@ pub(super) fn alignment_warnings(alignment: &Alignment) -> Vec<String> {
         ));
     }
     let drift_ppm = alignment.clock.drift_ppm();
-    if drift_ppm.abs() > WARNING_DRIFT_PPM {
+    if drift_ppm.abs() > WARNING_DRIFT_PPM + alignment.clock.drift_bound_ppm() {
         warnings.push(format!(
             "the clocks of host and lidar drift by {drift_ppm:.0} ppm, more than two crystals do: the host's clock was slewed, or one is faulty; times are those of the host's clock"
         ));

@@ -24,8 +24,8 @@ const DECISIVE: f64 = 3.0;
 const UNCERTAINTY_S: f64 = 20e-6;
 /// Samples whose bound exceeds the median by this factor are left out: their instant is unknown.
 const MAX_BOUND: f64 = 1.5;
-/// Instants lie on a grid about which polls scatter, if the circular variance of polls is greater by
-/// this ratio.
+/// Instants lie on a grid about which polls scatter, if the circular variance of polls is greater
+/// by this ratio.
 const SHARPER: f64 = 8.0;
 /// Least circular variance of polls that scatter: by 7 us.
 const MIN_SCATTER: f64 = 1e-3;
@@ -226,8 +226,8 @@ mod tests {
         assert_eq!(seen(None), LatchEvidence::Absent);
     }
 
-    /// As by SYNCs of 1 kHz: their ages jump by a cycle if their jitter crosses its end, and where it
-    /// does not, positions lack their jitter.
+    /// As by SYNCs of 1 kHz: their ages jump by a cycle if their jitter crosses its end, and where
+    /// it does not, positions lack their jitter.
     #[test]
     fn polls_in_step_with_the_cycle_show_a_latch_by_their_jitter() {
         let seen = |latch| evidence(&residuals(1e-3, 0.1e-3, latch), 0.0004);

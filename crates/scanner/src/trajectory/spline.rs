@@ -2,10 +2,10 @@
 //!
 //! Its pieces are cubics with a common angle and speed where they meet, so that the acceleration
 //! may change at once, as it does at corners of the commanded motion. Where an obstacle stops the
-//! head the speed changes at once, too: at kinks (`kinks`) pieces share the angle only. An interval is halved while residuals in it have a common sign over more samples than
-//! chance explains (a scan statistic over windows of all sizes): knots are far apart on straight
-//! lines and close where the motion changes. The normal equations have bandwidth four and are
-//! solved as such.
+//! head the speed changes at once, too: at kinks (`kinks`) pieces share the angle only. An interval
+//! is halved while residuals in it have a common sign over more samples than chance explains (a
+//! scan statistic over windows of all sizes): knots are far apart on straight lines and close where
+//! the motion changes. The normal equations have bandwidth four and are solved as such.
 
 use units::{Host, Span, Stamp};
 
