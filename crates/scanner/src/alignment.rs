@@ -37,6 +37,10 @@ pub struct Alignment {
     /// Beginnings and ends of sweeps of which the log holds no positions; there are no points of
     /// them.
     pub unseen_sweeps: Vec<(Degrees, Degrees)>,
+    /// Indices of sweeps whose command is not complete in the log.
+    pub inferred_sweeps: Vec<usize>,
+    /// Beginnings and ends of motions that may be sweeps, but the log lacks their target.
+    pub ambiguous_motions: Vec<(Degrees, Degrees)>,
     /// Mount of the lidar on the axis.
     pub mount: Mount,
     /// Shaft samples discarded as implausible.
@@ -79,6 +83,8 @@ impl Alignment {
             choice: None,
             sweeps: Vec::new(),
             unseen_sweeps: Vec::new(),
+            inferred_sweeps: Vec::new(),
+            ambiguous_motions: Vec::new(),
             mount,
             implausible: 0,
             sample_gaps: SampleGaps::default(),

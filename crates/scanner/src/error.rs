@@ -30,6 +30,16 @@ pub enum ScanError {
         /// Where it ended.
         to: Degrees,
     },
+    /// The axis moved, but the log lacks the target.
+    #[error(
+        "no sweep: the axis moved from {:.3} to {:.3} deg, not to the end of the plan, and the log lacks the target of the move", from.0, to.0
+    )]
+    AmbiguousMotion {
+        /// Where it began.
+        from: Degrees,
+        /// Where it ended.
+        to: Degrees,
+    },
     /// The table of angles is unusable.
     #[error(transparent)]
     Table(#[from] AngleTableError),

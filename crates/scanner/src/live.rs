@@ -113,6 +113,12 @@ impl<'a> Live<'a> {
                         request,
                         ..
                     } => moves.wrote(address, value, request),
+                    Observation::Read {
+                        address,
+                        value,
+                        request,
+                        ..
+                    } => moves.read(address, value, request),
                     _ => {}
                 });
                 for sample in samples {

@@ -65,6 +65,8 @@ impl Survey {
         let FoundSweeps {
             seen: sweeps,
             unseen: unseen_sweeps,
+            inferred: inferred_sweeps,
+            ambiguous: ambiguous_motions,
         } = angles.sweeps(&shaft.moves, config.sweep.as_ref())?;
         let spans = angles.spans(&sweeps);
         let sample_gaps = angles.gaps(&sweeps);
@@ -77,6 +79,8 @@ impl Survey {
             choice,
             sweeps,
             unseen_sweeps,
+            inferred_sweeps,
+            ambiguous_motions,
             mount: angles.mount,
             implausible: angles.implausible,
             sample_gaps,

@@ -19,10 +19,18 @@ pub struct Survey {
     reader: RecordReader,
     arrivals: Vec<Arrival>,
     samples: Vec<ShaftSample>,
-    /// Objects written to the drive: address, value, time of the request.
-    writes: Vec<(Address, u32, Stamp<Host>)>,
+    /// Objects of moves that were written to the drive or read back.
+    accesses: Vec<SettingAccess>,
     clock_steps: ClockSteps,
     link: Option<DriveLink>,
+}
+
+/// An access to an object of the drive.
+struct SettingAccess {
+    address: Address,
+    value: u32,
+    request: Stamp<Host>,
+    is_write: bool,
 }
 
 /// The contents of the drive's records, with all stamps on one host clock.
@@ -43,7 +51,7 @@ impl Survey {
             reader: RecordReader::new(config, options),
             arrivals: Vec::new(),
             samples: Vec::new(),
-            writes: Vec::new(),
+            accesses: Vec::new(),
             clock_steps: ClockSteps::default(),
             link: None,
         })
@@ -73,7 +81,23 @@ impl Survey {
                             value,
                             request,
                             ..
-                        } => self.writes.push((address, value, request)),
+                        } => self.accesses.push(SettingAccess {
+                            address,
+                            value,
+                            request,
+                            is_write: true,
+                        }),
+                        Observation::Read {
+                            address,
+                            value,
+                            request,
+                            ..
+                        } if MoveWatch::reads(address) => self.accesses.push(SettingAccess {
+                            address,
+                            value,
+                            request,
+                            is_write: false,
+                        }),
                         _ => {}
                     });
             }
@@ -104,8 +128,12 @@ impl Survey {
             sample.answer = timeline.host(sample.answer);
         }
         let mut moves = MoveWatch::new(self.gearing);
-        for (address, value, request) in self.writes {
-            moves.wrote(address, value, timeline.host(request));
+        for access in self.accesses {
+            let host = timeline.host(access.request);
+            match access.is_write {
+                true => moves.wrote(access.address, access.value, host),
+                false => moves.read(access.address, access.value, host),
+            }
         }
         ShaftRecords {
             gearing: self.gearing,
@@ -175,6 +203,12 @@ impl RecordReader {
                         if *address == objects::MODE.address =>
                     {
                         *is_homing = objects::MODE.decode(*value) == HOMING;
+                    }
+                    // The log may lack the write.
+                    Observation::Read { address, value, .. }
+                        if *address == objects::MODE_DISPLAY.address =>
+                    {
+                        *is_homing = objects::MODE_DISPLAY.decode(*value) == HOMING;
                     }
                     _ => {}
                 }

@@ -6,8 +6,13 @@
 //! excluded without marks in the log. A sweep that was cut short counts, with the angle it reached,
 //! and so does one whose beginning no sample shows. One that happens between two samples does not:
 //! only the command would place its points.
+//!
+//! A recorder may drop the requests of a command. A target that the log lacks is read back by the
+//! client, or is the place where the axis comes to rest; a move whose start the log lacks begins
+//! where the axis leaves its place (`uncommanded`).
 
 mod streaming;
+mod uncommanded;
 
 use drive::objects::{self, Address};
 use units::{DegPerS, DegPerS2, Degrees, Gearing, Host, Quadcounts, Rpm, RpmPerS, Stamp};
@@ -51,12 +56,23 @@ pub struct FoundSweeps {
     pub seen: Vec<Sweep>,
     /// Beginnings and ends of those that happened between two samples.
     pub unseen: Vec<(Degrees, Degrees)>,
+    /// Indices, among those seen, of sweeps whose command is not complete in the log: they follow
+    /// from the samples.
+    pub inferred: Vec<usize>,
+    /// Beginnings and ends of motions that begin like a sweep of the plan, but neither the log has
+    /// their target nor do they end like one.
+    pub ambiguous: Vec<(Degrees, Degrees)>,
 }
 
 /// The motion after a command.
 struct Motion {
     sweep: Sweep,
+    /// Target; the place where it ended if the log lacks the target.
     target: Degrees,
+    /// The log lacks the target.
+    has_no_target: bool,
+    /// The log lacks the start.
+    has_no_start: bool,
     /// No sample shows where it began.
     is_cut_off: bool,
     is_seen: bool,
@@ -66,8 +82,11 @@ struct Motion {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Move {
     commanded: Stamp<Host>,
-    target: Degrees,
+    /// `None` if the log lacks it.
+    target: Option<Degrees>,
     motion: Commanded,
+    /// The log lacks the command that starts it.
+    has_no_start: bool,
 }
 
 /// Follows the writes that start profile moves.
@@ -80,6 +99,17 @@ pub struct MoveWatch {
     controlword: u16,
     mode: u32,
     moves: Vec<Move>,
+    /// What a move would do that starts at these times: target and motion.
+    settings: Vec<Setting>,
+}
+
+/// Target and motion of a move that starts from this time on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Setting {
+    from: Stamp<Host>,
+    is_position_mode: bool,
+    target: Option<Degrees>,
+    motion: Commanded,
 }
 
 const PROFILE_POSITION: u32 = 1;
@@ -87,9 +117,11 @@ const NEW_SETPOINT: u16 = 0x0010;
 const RELATIVE: u16 = 0x0040;
 /// Greatest distance of a sweep's start and target from the ends of the plan.
 const END_TOLERANCE_DEG: f64 = 0.1;
-/// A jump exceeds this, and the way at three times the commanded speed.
+/// A jump exceeds this, and the way at three times the commanded speed or at the greatest speed.
 const JUMP_DEG: f64 = 0.1;
 const JUMP_SPEEDS: f64 = 3.0;
+/// Twice the speed of the fastest sweep, 100 deg/s.
+const MAX_SPEED_DEG_S: f64 = 200.0;
 /// A sweep is not seen if so much of its way is between two samples.
 const UNSEEN_SHARE: f64 = 0.75;
 /// Range of an axis at rest: an encoder at an edge flickers by one count.
@@ -107,12 +139,41 @@ impl MoveWatch {
             controlword: 0,
             mode: PROFILE_POSITION,
             moves: Vec::new(),
+            settings: Vec::new(),
         }
     }
 
     /// Takes a write of `value` to `address`, requested at `host`. The log may lack its
     /// confirmation: the samples show whether the axis moved.
     pub fn wrote(&mut self, address: Address, value: u32, host: Stamp<Host>) {
+        if address == objects::CONTROLWORD.address {
+            self.control(value as u16, host);
+        } else if address == objects::MODE.address {
+            self.set(objects::MODE_DISPLAY.address, value, host);
+        } else {
+            self.set(address, value, host);
+        }
+    }
+
+    /// Whether reads of `address` show what a move will do.
+    pub(crate) fn reads(address: Address) -> bool {
+        [
+            objects::TARGET_POSITION.address,
+            objects::PROFILE_VELOCITY.address,
+            objects::PROFILE_ACCELERATION.address,
+            objects::PROFILE_DECELERATION.address,
+            objects::MODE_DISPLAY.address,
+        ]
+        .contains(&address)
+    }
+
+    /// Takes a read of `address` that returned `value`, requested at `host`: the client reads back
+    /// what it wrote, and the log may lack the write.
+    pub fn read(&mut self, address: Address, value: u32, host: Stamp<Host>) {
+        self.set(address, value, host);
+    }
+
+    fn set(&mut self, address: Address, value: u32, host: Stamp<Host>) {
         if address == objects::TARGET_POSITION.address {
             self.target = Some(Quadcounts(value as i32));
         } else if address == objects::PROFILE_VELOCITY.address {
@@ -121,79 +182,145 @@ impl MoveWatch {
             self.ramps[0] = RpmPerS(value);
         } else if address == objects::PROFILE_DECELERATION.address {
             self.ramps[1] = RpmPerS(value);
-        } else if address == objects::MODE.address {
+        } else if address == objects::MODE_DISPLAY.address {
             self.mode = value & 0xFF;
-        } else if address == objects::CONTROLWORD.address {
-            self.control(value as u16, host);
+        } else {
+            return;
+        }
+        let setting = self.setting(host);
+        let is_same = |last: &Setting| {
+            Setting {
+                from: host,
+                ..*last
+            } == setting
+        };
+        if !self.settings.last().is_some_and(is_same) {
+            self.settings.push(setting);
+        }
+    }
+
+    fn setting(&self, from: Stamp<Host>) -> Setting {
+        Setting {
+            from,
+            is_position_mode: self.mode == PROFILE_POSITION,
+            target: self.target.map(|target| self.gearing.angle(target)),
+            motion: Commanded {
+                speed: self.gearing.rate(self.speed),
+                acceleration: self.gearing.acceleration(self.ramps[0]),
+                deceleration: self.gearing.acceleration(self.ramps[1]),
+            },
         }
     }
 
     fn control(&mut self, word: u16, host: Stamp<Host>) {
         let rising = word & !self.controlword & NEW_SETPOINT != 0;
         self.controlword = word;
-        if let (true, PROFILE_POSITION, 0, Some(target)) =
-            (rising, self.mode, word & RELATIVE, self.target)
-        {
+        let Setting {
+            is_position_mode,
+            target,
+            motion,
+            ..
+        } = self.setting(host);
+        if rising && is_position_mode && word & RELATIVE == 0 {
             self.moves.push(Move {
                 commanded: host,
-                target: self.gearing.angle(target),
-                motion: Commanded {
-                    speed: self.gearing.rate(self.speed),
-                    acceleration: self.gearing.acceleration(self.ramps[0]),
-                    deceleration: self.gearing.acceleration(self.ramps[1]),
-                },
+                target,
+                motion,
+                has_no_start: false,
             });
         }
     }
 
-    /// Number of moves so far, and target of the newest.
+    /// Number of moves so far, and target of the newest if the log has it.
     fn newest(&self) -> Option<(usize, Degrees)> {
-        Some((self.moves.len(), self.moves.last()?.target))
+        Some((self.moves.len(), self.moves.last()?.target?))
     }
 
-    /// The sweeps among the moves, from samples in order of time. Without a plan every move is one.
+    /// The sweeps among the moves, from samples in order of time. Without a plan every commanded
+    /// move is one.
     #[must_use]
     pub fn sweeps(&self, samples: &[AngleSample], plan: Option<&SweepPlan>) -> FoundSweeps {
         let rest = REST_QC * self.gearing.degrees_per_qc();
-        let ends = self
-            .moves
-            .iter()
-            .skip(1)
-            .map(|next| next.commanded)
-            .chain([Stamp::from_nanos(i64::MAX)]);
-        let moved = self
-            .moves
-            .iter()
-            .zip(ends)
-            .filter_map(|(command, end)| motion(command, end, samples, rest));
         let mut found = FoundSweeps::default();
-        for moved in moved {
+        for moved in self.motions(samples, rest, plan) {
             let done = found.seen.len() + found.unseen.len();
             let sweep = moved.sweep;
-            let is_wanted = |plan: &SweepPlan| {
-                let from = match moved.is_cut_off && plan.is_between(sweep.from) {
-                    true => plan.ends(done).0,
-                    false => sweep.from,
-                };
-                plan.is_next_sweep(done, from, moved.target, END_TOLERANCE_DEG)
+            let from = match plan {
+                Some(plan) if moved.is_cut_off && plan.is_between(sweep.from) => plan.ends(done).0,
+                _ => sweep.from,
             };
-            match moved.is_seen {
-                _ if !plan.is_none_or(is_wanted) => {}
-                true => found.seen.push(sweep),
-                false => found.unseen.push((sweep.from, sweep.to)),
+            let is_next = |target| {
+                plan.is_none_or(|plan| plan.is_next_sweep(done, from, target, END_TOLERANCE_DEG))
+            };
+            // Where it would have to go.
+            let due = plan.map_or(moved.target, |plan| plan.ends(done).1);
+            let way = (sweep.to.0 - from.0) * (due.0 - from.0).signum();
+            match (is_next(moved.target), moved.is_seen) {
+                // Positions that jump without a command are no motion.
+                (true, false) if moved.has_no_start => {}
+                (true, true) => {
+                    let number = found.seen.len();
+                    let is_inferred = moved.has_no_target || moved.has_no_start;
+                    found.inferred.extend(is_inferred.then_some(number));
+                    found.seen.push(sweep);
+                }
+                (true, false) => found.unseen.push((sweep.from, sweep.to)),
+                (false, true) if moved.has_no_target && is_next(due) && way > END_TOLERANCE_DEG => {
+                    found.ambiguous.push((sweep.from, sweep.to));
+                }
+                (false, _) => {}
             }
         }
         found
     }
+
+    /// What the axis did after each command, and where it moved without one.
+    fn motions(&self, samples: &[AngleSample], rest: f64, plan: Option<&SweepPlan>) -> Vec<Motion> {
+        let mut motions = Vec::new();
+        let mut next = 0;
+        let mut from = 0;
+        loop {
+            let command = self.moves.get(next);
+            let until = command.map_or(samples.len(), |command| {
+                samples.partition_point(|s| s.host < command.commanded)
+            });
+            // Without a plan nothing distinguishes a move from a push.
+            let before = plan.and_then(|plan| self.uncommanded(samples, from..until, rest, plan));
+            let Some(mut command) = before.or(command.copied()) else {
+                return motions;
+            };
+            if let (0.0, Some(plan)) = (command.motion.speed.0, plan) {
+                command.motion.speed = DegPerS(plan.cruise_deg_s);
+            }
+            next += usize::from(!command.has_no_start);
+            let end = match self.moves.get(next) {
+                Some(next) => samples.partition_point(|s| s.host < next.commanded),
+                None => samples.len(),
+            };
+            // One sample before the command, for the place at rest.
+            let start = samples.partition_point(|s| s.host < command.commanded);
+            // It is over where the axis leaves its target again.
+            let pause = command
+                .target
+                .filter(|_| plan.is_some())
+                .and_then(|target| {
+                    uncommanded::rest_before_departure(samples, start..end, target, rest)
+                });
+            let (next_from, end) = pause.map_or((end, end), |pause| {
+                (pause.start, uncommanded::middle(&pause))
+            });
+            let window = samples
+                .get(start.saturating_sub(1)..end)
+                .unwrap_or_default();
+            motions.extend(motion(&command, window, start == 0, rest));
+            from = next_from.max(start);
+        }
+    }
 }
 
-/// The motion between `command` and `end`; `None` if the axis did not move.
-fn motion(command: &Move, end: Stamp<Host>, samples: &[AngleSample], rest: f64) -> Option<Motion> {
-    // One sample before the command, for the place at rest.
-    let after = samples.partition_point(|s| s.host < command.commanded);
-    let last = samples.partition_point(|s| s.host < end);
-    let window = samples.get(after.saturating_sub(1)..last)?;
-    let window = window.get(..unbroken(window, command.motion.speed))?;
+/// The motion in `window` after `command`; `None` if the axis did not move.
+fn motion(command: &Move, window: &[AngleSample], is_cut_off: bool, rest: f64) -> Option<Motion> {
+    let window = window.get(..unbroken(window, command.motion.speed, rest))?;
     let (from, to) = (window.first()?.angle, window.last()?.angle);
     let leaves = window
         .iter()
@@ -214,6 +341,12 @@ fn motion(command: &Move, end: Stamp<Host>, samples: &[AngleSample], rest: f64) 
     let moving = window
         .get(leaves..=moving_last.max(leaves))
         .unwrap_or_default();
+    // A target in another direction, or where the axis was, is that of an earlier move.
+    let way = to.0 - from.0;
+    let is_headed = |target: &Degrees| {
+        (target.0 - from.0) * way.signum() > END_TOLERANCE_DEG.min(way.abs() / 2.0)
+    };
+    let target = command.target.filter(is_headed);
     Some(Motion {
         sweep: Sweep {
             from,
@@ -223,23 +356,31 @@ fn motion(command: &Move, end: Stamp<Host>, samples: &[AngleSample], rest: f64) 
             end: stop,
             commanded: command.motion,
         },
-        target: command.target,
-        is_cut_off: after == 0,
+        target: target.unwrap_or(to),
+        has_no_target: target.is_none(),
+        has_no_start: command.has_no_start,
+        is_cut_off,
         is_seen: longest <= END_TOLERANCE_DEG.max(UNSEEN_SHARE * (to.0 - from.0).abs()),
     })
 }
 
 /// Number of samples before the angle jumps farther than the axis can move. A drive that loses its
-/// supply restarts at zero, and the samples after that are no angles of this axis.
-fn unbroken(window: &[AngleSample], speed: DegPerS) -> usize {
-    let jump = window.windows(2).position(|pair| match pair {
-        [a, b] => {
-            let time = b.host.saturating_since(a.host) + a.bound + b.bound;
-            (b.angle.0 - a.angle.0).abs() > JUMP_DEG + JUMP_SPEEDS * speed.0 * time.as_secs_f64()
-        }
-        _ => false,
+/// supply restarts at zero and stays there, and the samples after that are no angles of this axis.
+fn unbroken(window: &[AngleSample], speed: DegPerS, rest: f64) -> usize {
+    // Restarted samples, from the end on.
+    let zeros = window.iter().rev().take_while(|s| s.angle.0.abs() <= rest);
+    let restart = window.len() - zeros.count();
+    let broken = window.windows(2).enumerate().position(|(before, pair)| {
+        let &[a, b] = pair else { return false };
+        let time_s = (b.host.saturating_since(a.host) + a.bound + b.bound).as_secs_f64();
+        // A head that was held or pushed returns faster than it was commanded to move.
+        let speed = match before + 1 == restart {
+            true => JUMP_SPEEDS * speed.0,
+            false => (JUMP_SPEEDS * speed.0).max(MAX_SPEED_DEG_S),
+        };
+        (b.angle.0 - a.angle.0).abs() > JUMP_DEG + speed * time_s
     });
-    jump.map_or(window.len(), |before| before + 1)
+    broken.map_or(window.len(), |before| before + 1)
 }
 
 /// Measured speed over the middle half of the way, by least squares; it excludes ramps of up to

@@ -95,9 +95,10 @@ impl TiltAngles {
             return Ok(FoundSweeps::default());
         }
         let found = moves.sweeps(&self.samples, plan);
-        match (&*found.seen, &*found.unseen) {
-            ([], &[(from, to), ..]) => Err(ScanError::UnseenSweep { from, to }),
-            ([], []) if !self.samples.is_empty() => Err(ScanError::NoSweep),
+        match (&*found.seen, &*found.unseen, &*found.ambiguous) {
+            ([], &[(from, to), ..], _) => Err(ScanError::UnseenSweep { from, to }),
+            ([], [], &[(from, to), ..]) => Err(ScanError::AmbiguousMotion { from, to }),
+            ([], [], []) if !self.samples.is_empty() => Err(ScanError::NoSweep),
             _ => Ok(found),
         }
     }

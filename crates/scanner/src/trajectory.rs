@@ -15,6 +15,7 @@ use crate::sweeps::Sweep;
 mod bound;
 mod choose;
 mod interpolate;
+mod kinks;
 mod latch;
 mod noise;
 mod pieces;

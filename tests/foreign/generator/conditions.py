@@ -372,14 +372,46 @@ def acknowledgement_missing(start):
     return without(choose)
 
 
-def request_missing(start):
-    """The first request of this kind, whose acknowledgement remains."""
+def _is_write(record, index, value=None):
+    """Whether a record requests a write of an object, and of this value. The frame is a link's."""
+    if record[1] != 1 or record[4] != OUTBOUND:
+        return False
+    data, object_ = record[3], index.to_bytes(2, "little") + b"\0"
+    if data[:2] == b"\x90\x02":
+        begin, is_write = 4, data[2] == drive.WRITE
+    elif len(data) == 16:
+        begin, is_write = 9, data[8] in (0x23, 0x2B, 0x2F)
+    else:
+        begin, is_write = 1, data[:1] == b"\x03"
+    content = data[begin + 4 :] if len(data) != 16 else data[begin + 3 :]
+    fits = value is None or content[: len(value)] == value
+    return is_write and data[begin : begin + 3] == object_ and fits
+
+
+START = b"\x1f\x00"
+MOVE_REQUESTS = {
+    "607A": (0x607A, None),
+    "the start": (0x6040, START),
+    "6081": (0x6081, None),
+    "6060": (0x6060, None),
+}
+
+
+def move_requests_missing(names, move=0, read_back=True):
+    """Requests of writes of a move, whose acknowledgements remain. Without `read_back` no read of
+    the same object is in the log either."""
 
     def choose(records, rng):
-        for i, r in enumerate(records):
-            if r[1] == 1 and r[4] == OUTBOUND and r[3].hex().startswith(start):
-                return [i]
-        raise ValueError(start)
+        gone = []
+        for name in names:
+            index, value = MOVE_REQUESTS[name]
+            found = [i for i, r in enumerate(records) if _is_write(r, index, value)]
+            gone.append(found[move])
+            if not read_back and name != "the start":
+                after = [i for i in range(found[move] + 1, len(records)) if records[i][1] == 1]
+                # The acknowledgement, and the whole read that follows.
+                gone += after[:3]
+        return gone
 
     return without(choose)
 
@@ -483,11 +515,34 @@ missing("drive answers 60 ms late", without(lambda records, rng: []), late=(0.5,
 missing("three answers missing", answers_missing([0.3, 0.55, 0.8]))
 missing("one request missing", requests_missing([0.5]))
 missing("2 % of the drive's answers missing", share_of_answers(0.02))
-for _name, _start in (("607A", "900211047a60"), ("the start", "90021104406000011f")):
-    condition(
-        "more",
-        f"request of {_name} missing",
-        lambda seed, start=_start: Setup(seed=seed, mangle=request_missing(start)),
+for _name in MOVE_REQUESTS:
+    missing(f"request of {_name} missing", move_requests_missing([_name]))
+missing("requests of 607A and the start missing", move_requests_missing(["607A", "the start"]))
+missing(
+    "607A neither written nor read back",
+    move_requests_missing(["607A"], read_back=False),
+)
+missing(
+    "607A neither written nor read back, no start",
+    move_requests_missing(["607A", "the start"], read_back=False),
+)
+for _name, _link in (("RS232", scan.rs232), ("CAN", scan.can)):
+    for _request in ("607A", "the start"):
+        missing(
+            f"request of {_request} missing, {_name}",
+            move_requests_missing([_request]),
+            link=_link(),
+        )
+missing(
+    "request of the start missing, 0.5 deg/s",
+    move_requests_missing(["the start"]),
+    moves=[Move(-0.6, 0.5)],
+)
+for _name in ("607A", "the start"):
+    missing(
+        f"request of {_name} missing in the second of two sweeps",
+        move_requests_missing([_name], move=1),
+        moves=[Move(-30.0, 56.25), Move(0.0, 56.25)],
     )
 missing("acknowledgement of 607A missing", acknowledgement_missing("900211047a60"))
 missing("acknowledgement of the start missing", acknowledgement_missing("9002110440600001" + "1f"))
@@ -688,3 +743,69 @@ def drawn(seed):
 
 
 condition("drawn", "drawn at random", drawn)
+
+
+def _disturbance(rng, duration):
+    """What may happen to the head between the ramps of a move, or nothing."""
+    when = float(rng.uniform(0.15, 0.75)) * duration
+    kinds = {
+        "hold": lambda: {"hold": (when, float(rng.uniform(0.05, 0.3)))},
+        "pause": lambda: {"pause": (when, float(rng.uniform(0.05, 0.3)))},
+        "slip": lambda: {
+            "extra": (mechanism.slip, when, float(rng.uniform(-2, 2)), float(rng.uniform(0.02, 0.06)))
+        },
+        "swing": lambda: {
+            "extra": (
+                mechanism.swing, when, float(rng.uniform(0.02, 0.6)),
+                float(rng.uniform(5, 20)), float(rng.uniform(0.04, 0.2)),
+            )
+        },
+        "bump": lambda: {
+            "extra": (mechanism.bump, when, float(rng.uniform(-2, 2)), float(rng.uniform(0.03, 0.1)))
+        },
+    }  # fmt: skip
+    return kinds[str(rng.choice(list(kinds)))]()
+
+
+def _missing_records(rng, duration):
+    """Records that the recorder drops."""
+    when = 0.15 + float(rng.uniform(0.1, 0.9)) * duration
+    kinds = (
+        lambda: share_of_answers(float(rng.uniform(0.002, 0.05))),
+        lambda: part_missing(when, when + float(rng.uniform(0.01, 0.1))),
+        lambda: silent_between(when, when + float(rng.uniform(0.01, 0.15))),
+        lambda: share_of_packets(float(rng.uniform(0.002, 0.05))),
+        lambda: move_requests_missing([str(rng.choice(list(MOVE_REQUESTS)))]),
+        lambda: move_requests_missing(["607A"], read_back=False),
+    )
+    return kinds[rng.integers(len(kinds))]()
+
+
+def drawn_with_faults(seed):
+    """A scanner as in `drawn`, to which one or two things happen."""
+    rng = np.random.default_rng(2_000_000 + seed)
+    setup = drawn(500_000 + seed)
+    setup.seed = seed
+    move = setup.moves[0]
+    duration = abs(move.to) / move.speed + move.speed / move.accel
+    sweeps = int(rng.choice([1, 1, 2, 3]))
+    setup.moves = [Move((move.to, 0.0)[i % 2], move.speed, move.accel) for i in range(sweeps)]
+    faults = ["head", "host", "lidar", "records"]
+    for fault in rng.choice(faults, size=int(rng.integers(1, 3)), replace=False):
+        when = 0.15 + float(rng.uniform(0.1, 0.9)) * duration
+        size = float(np.exp(rng.uniform(np.log(1e-3), np.log(2.0)))) * float(rng.choice([-1, 1]))
+        if fault == "head":
+            # A head that is held needs a servo that catches up.
+            if setup.servo.hz is None and setup.servo.lag_s is None:
+                setup.servo = CATCHES_UP
+            setup.disturb = {int(rng.integers(sweeps)): _disturbance(rng, duration)}
+        elif fault == "host":
+            setup.host_steps = ((when, size),)
+        elif fault == "lidar":
+            setup.lidar_steps = ((when, size / 10),)
+        else:
+            setup.mangle = _missing_records(rng, duration)
+    return setup
+
+
+condition("faults", "drawn at random, with faults", drawn_with_faults, share=0.85)

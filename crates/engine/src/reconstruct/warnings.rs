@@ -27,7 +27,7 @@ pub(super) fn alignment_warnings(alignment: &Alignment) -> Vec<String> {
         ));
     }
     let drift_ppm = alignment.clock.drift_ppm();
-    if drift_ppm.abs() > WARNING_DRIFT_PPM {
+    if drift_ppm.abs() > WARNING_DRIFT_PPM + alignment.clock.drift_bound_ppm() {
         warnings.push(format!(
             "the clocks of host and lidar drift by {drift_ppm:.0} ppm, more than two crystals do: the host's clock was slewed, or one is faulty; times are those of the host's clock"
         ));
@@ -39,6 +39,12 @@ pub(super) fn alignment_warnings(alignment: &Alignment) -> Vec<String> {
             alignment.implausible
         ));
     }
+    warnings.extend(alignment.inferred_sweeps.iter().map(|index| {
+        format!(
+            "the log lacks a command of sweep {}: it was found by the positions",
+            index + 1
+        )
+    }));
     for (number, fit) in alignment.trajectory.fits().iter().enumerate() {
         let remarks = fit.remarks.iter();
         warnings.extend(remarks.map(|remark| format!("sweep {}: {remark}", number + 1)));
@@ -109,6 +115,12 @@ pub(super) fn incomplete_sweeps(config: &ScanConfig, alignment: &Alignment) -> V
     }));
     let made = alignment.sweeps.len() + alignment.unseen_sweeps.len();
     if (made as u64) < u64::from(plan.sweeps) {
+        incomplete.extend(alignment.ambiguous_motions.iter().map(|(from, to)| {
+            format!(
+                "the axis moved from {:.3} to {:.3} deg, but the log lacks the target: no cloud of it",
+                from.0, to.0
+            )
+        }));
         incomplete.push(format!(
             "{made} of {} planned sweeps are in the log",
             plan.sweeps

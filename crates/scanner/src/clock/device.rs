@@ -250,6 +250,15 @@ impl<C: Copy> DeviceClock<C> {
         line.map_or(0.0, |line| line.slope * 1e6)
     }
 
+    /// Greatest error of [`DeviceClock::drift_ppm`]: both ends of the longest piece may be off.
+    #[must_use]
+    pub fn drift_bound_ppm(&self) -> f64 {
+        let lengths_ns = self.pieces.iter().map(ClockPiece::length_ns);
+        let longest_ns = lengths_ns.fold(0.0, f64::max);
+        let bound_ns = self.bound().as_secs_f64() * 1e9;
+        2.0 * bound_ns / longest_ns.max(1.0) * 1e6
+    }
+
     /// Whether the clock has several pieces.
     #[must_use]
     pub fn is_cut(&self) -> bool {

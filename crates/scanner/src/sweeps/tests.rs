@@ -168,6 +168,22 @@ fn a_drive_that_lost_its_position_ends_the_sweep() {
     assert!(sweeps[0].end < ms(known), "{sweeps:?}");
 }
 
+/// Held for a quarter of a second, the axis catches up at many times the speed of its sweep.
+#[test]
+fn a_slow_sweep_goes_on_after_its_head_was_held() {
+    let mut axis = Axis::new();
+    axis.command_partly(&Written {
+        speed: Some(20),
+        ..WHOLE
+    });
+    axis.travel(-20.0, 1.0);
+    axis.stay(250);
+    axis.travel(-0.5, 120.0);
+    axis.travel(-24.5, 1.0);
+    let sweeps = axis.watch.sweeps(&axis.samples, Some(&PLAN)).seen;
+    assert!((sweeps[0].to.0 + 45.0).abs() < 1e-6, "{sweeps:?}");
+}
+
 #[test]
 fn an_axis_at_rest_has_no_sweep() {
     let mut axis = Axis::new();
@@ -230,4 +246,234 @@ fn a_sweep_whose_beginning_was_not_recorded_begins_with_the_samples() {
     };
     assert!((sweep.from.0 + 4.5).abs() < 0.1, "{sweep:?}");
     assert_eq!(sweep.start, ms(121));
+}
+
+/// Settings of a move; `None` leaves its write out of the log.
+struct Written {
+    target: Option<f64>,
+    is_read_back: bool,
+    speed: Option<u32>,
+    word: Option<u16>,
+}
+
+const WHOLE: Written = Written {
+    target: Some(-45.0),
+    is_read_back: false,
+    speed: Some(1_125),
+    word: Some(0x1F),
+};
+
+impl Axis {
+    fn write(&mut self, address: Address, value: u32) {
+        self.watch.wrote(address, value, ms(self.now));
+    }
+
+    fn command_partly(&mut self, written: &Written) {
+        let qc = |target: f64| (target / 0.0015).round() as i32 as u32;
+        self.write(objects::MODE.address, 1);
+        if let Some(speed) = written.speed {
+            self.write(objects::PROFILE_VELOCITY.address, speed);
+        }
+        if let Some(target) = written.target {
+            self.write(objects::TARGET_POSITION.address, qc(target));
+        }
+        if written.is_read_back {
+            let now = ms(self.now);
+            self.watch
+                .read(objects::TARGET_POSITION.address, qc(-45.0), now);
+        }
+        self.write(objects::CONTROLWORD.address, 0x0F);
+        if let Some(word) = written.word {
+            self.write(objects::CONTROLWORD.address, u32::from(word));
+        }
+    }
+}
+
+/// A recorder that falls behind drops requests.
+#[test]
+fn a_sweep_whose_command_lacks_a_request_is_found_by_its_samples() {
+    let partly = [
+        (
+            "start",
+            Written {
+                word: None,
+                ..WHOLE
+            },
+        ),
+        (
+            "target",
+            Written {
+                target: None,
+                ..WHOLE
+            },
+        ),
+        (
+            "speed",
+            Written {
+                speed: None,
+                ..WHOLE
+            },
+        ),
+        (
+            "target and start",
+            Written {
+                target: None,
+                word: None,
+                ..WHOLE
+            },
+        ),
+    ];
+    let mut whole = Axis::new();
+    whole.stay(60);
+    whole.command_partly(&WHOLE);
+    whole.travel(-45.0, 45.0);
+    let expected = whole.watch.sweeps(&whole.samples, Some(&PLAN));
+    assert!(expected.inferred.is_empty() && expected.seen.len() == 1);
+    for (missing, written) in partly {
+        let mut axis = Axis::new();
+        axis.stay(60);
+        axis.command_partly(&written);
+        axis.travel(-45.0, 45.0);
+        let found = axis.watch.sweeps(&axis.samples, Some(&PLAN));
+        let (&[sweep], &[known]) = (&found.seen[..], &expected.seen[..]) else {
+            panic!("{missing}: {found:?}");
+        };
+        assert_eq!(
+            (sweep.start, sweep.end),
+            (known.start, known.end),
+            "{missing}"
+        );
+        assert_eq!((sweep.from, sweep.to), (known.from, known.to), "{missing}");
+        assert_eq!(sweep.commanded.speed, DegPerS(56.25), "{missing}");
+        let is_complete = written.word.is_some() && written.target.is_some();
+        assert_eq!(found.inferred.is_empty(), is_complete, "{missing}");
+    }
+}
+
+#[test]
+fn second_sweeps_without_a_start_or_a_target_are_found() {
+    let plan = SweepPlan {
+        sweeps: 2,
+        both_ways: true,
+        ..PLAN
+    };
+    for second in [
+        Written {
+            target: Some(0.0),
+            word: None,
+            ..WHOLE
+        },
+        Written {
+            target: None,
+            ..WHOLE
+        },
+        Written {
+            target: None,
+            word: None,
+            ..WHOLE
+        },
+    ] {
+        let mut axis = Axis::new();
+        axis.command_partly(&WHOLE);
+        axis.travel(-45.0, 45.0);
+        let turn = axis.now;
+        axis.command_partly(&second);
+        axis.travel(45.0, 45.0);
+        let found = axis.watch.sweeps(&axis.samples, Some(&plan));
+        let [first, back] = found.seen[..] else {
+            panic!("{found:?}");
+        };
+        assert!(
+            first.end < ms(turn) && back.start >= ms(turn - 1),
+            "{found:?}"
+        );
+        assert!(back.to.0.abs() < 0.01, "{found:?}");
+        assert_eq!(found.inferred, [1]);
+    }
+}
+
+/// The axis stopped on its way, and the log does not show where it was going.
+#[test]
+fn a_motion_of_unknown_target_that_ends_elsewhere_is_ambiguous() {
+    let mut axis = Axis::new();
+    axis.command_partly(&Written {
+        target: None,
+        ..WHOLE
+    });
+    axis.travel(-12.0, 45.0);
+    let found = axis.watch.sweeps(&axis.samples, Some(&PLAN));
+    let [(from, to)] = found.ambiguous[..] else {
+        panic!("{found:?}");
+    };
+    assert!(found.seen.is_empty() && from.0 == 0.0 && (to.0 + 12.0).abs() < 1e-9);
+    // The client read the target back: a sweep cut short.
+    let mut axis = Axis::new();
+    axis.command_partly(&Written {
+        target: None,
+        is_read_back: true,
+        ..WHOLE
+    });
+    axis.travel(-12.0, 45.0);
+    let found = axis.watch.sweeps(&axis.samples, Some(&PLAN));
+    assert!(
+        found.ambiguous.is_empty() && found.seen.len() == 1,
+        "{found:?}"
+    );
+    assert!(found.inferred.is_empty(), "{found:?}");
+}
+
+/// Homing and jogging move the axis without a profile move; a restarted drive counts from zero.
+#[test]
+fn motions_in_other_modes_and_jumps_are_no_sweeps() {
+    let mut axis = Axis::new();
+    axis.write(objects::MODE.address, 6);
+    axis.travel(-45.0, 45.0);
+    let found = axis.watch.sweeps(&axis.samples, Some(&PLAN));
+    assert_eq!(found, FoundSweeps::default());
+    let mut axis = Axis::new();
+    axis.command_partly(&Written {
+        word: None,
+        ..WHOLE
+    });
+    axis.angle = -45.0;
+    axis.stay(100);
+    let found = axis.watch.sweeps(&axis.samples, Some(&PLAN));
+    assert_eq!(found, FoundSweeps::default());
+}
+
+/// At the least speed the axis is in its place for longer than many a pause.
+#[test]
+fn a_slow_sweep_of_which_the_start_is_missing_keeps_its_ends() {
+    let plan = SweepPlan {
+        to_deg: -0.3,
+        sweeps: 2,
+        both_ways: true,
+        ..PLAN
+    };
+    let mut axis = Axis::new();
+    for _ in 0..100 {
+        axis.stay(1);
+    }
+    for target in [-0.3, 0.0] {
+        axis.command_partly(&Written {
+            target: Some(target),
+            word: None,
+            speed: Some(1),
+            ..WHOLE
+        });
+        axis.stay(60);
+        axis.travel(target - axis.angle, 0.05);
+    }
+    let found = axis.watch.sweeps(&axis.samples, Some(&plan));
+    let [first, back] = found.seen[..] else {
+        panic!("{found:?}");
+    };
+    // The speed is measured over the middle half of the way.
+    assert!((first.cruise.0 + 0.05).abs() < 1e-6 && (back.cruise.0 - 0.05).abs() < 1e-6);
+    assert!(
+        (first.to.0 + 0.3).abs() < 0.003 && back.to.0.abs() < 0.003,
+        "{found:?}"
+    );
+    let length = |sweep: &Sweep| (sweep.end - sweep.start).as_secs_f64();
+    assert!((length(&first) - 6.0).abs() < 0.1 && (length(&back) - 6.0).abs() < 0.1);
 }

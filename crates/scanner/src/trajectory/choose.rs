@@ -17,7 +17,7 @@ use super::noise::{Noise, rates, seconds};
 use super::pieces::{CubicPiece, PiecewiseCubic};
 use super::profile::Profile;
 use super::profile_fit::{self, Observed, ProfileFit, ServoModel};
-use super::{AngleSample, Method, Remark, spline};
+use super::{AngleSample, Method, Remark, kinks, spline};
 use crate::clock::Moment;
 use crate::sweeps::Sweep;
 
@@ -128,7 +128,7 @@ impl<'a> Candidates<'a> {
             _ => None,
         };
         let mut candidates: Vec<Candidate> = match method {
-            Some(Method::Spline) => self.spline().into_iter().collect(),
+            Some(Method::Spline) => self.splines(None),
             Some(method) => self.profile(servo(method)?, method).into_iter().collect(),
             None => {
                 let mut all = self.profiles();
@@ -140,12 +140,30 @@ impl<'a> Candidates<'a> {
                     best.latch == LatchEvidence::Present && best.systematic_residual_deg < age_deg
                 };
                 if best.is_none_or(|best| !is_aged(best)) {
-                    let corrected = best.and_then(|best| self.corrected(best));
-                    all.extend(corrected.into_iter().chain(self.spline()));
+                    let splines = self.splines(best);
+                    all.extend(splines);
                 }
                 all
             }
         };
+        if std::env::var_os("DBG").is_some() {
+            for c in &candidates {
+                eprintln!(
+                    "DBG {:?} gcv {:.4} n {} par {} sys {:.5} rms {:.5} sd {:.5} latch {:?} delay {:?} noise {:?} {:?}",
+                    c.fit.method,
+                    c.prediction_error,
+                    self.observed.len(),
+                    c.parameters,
+                    c.systematic_residual_deg,
+                    c.fit.rms_deg,
+                    c.fit.sd_deg,
+                    c.latch,
+                    c.fit.delay,
+                    self.noise,
+                    c.fit.profile
+                );
+            }
+        }
         let least_autocorrelation = candidates
             .iter()
             .filter(|c| c.fit.method != Method::Spline)
@@ -209,17 +227,32 @@ impl<'a> Candidates<'a> {
         Some(candidate)
     }
 
-    fn spline(&self) -> Option<Candidate> {
+    /// Splines through the samples and through the residuals of `profile`, with and without the
+    /// kinks of the motion.
+    fn splines(&self, profile: Option<&Candidate>) -> Vec<Candidate> {
+        let found = kinks::find(&self.observed);
+        let mut all: Vec<Candidate> = self.spline(&[]).into_iter().collect();
+        all.extend(profile.and_then(|profile| self.corrected(profile, &[])));
+        if !found.is_empty() {
+            all.extend(self.spline(&found));
+            all.extend(profile.and_then(|profile| self.corrected(profile, &found)));
+        }
+        all
+    }
+
+    fn spline(&self, kinks_s: &[f64]) -> Option<Candidate> {
         let end_s = self.observed.last()?.at_s;
-        let fit = spline::fit(&self.observed, self.origin, 0.0, end_s)?;
-        let mut candidate = self.evaluated(Method::Spline, fit.pieces, fit.parameters)?;
+        let fit = spline::fit(&self.observed, self.origin, (0.0, end_s), kinks_s)?;
+        // The instant of a kink is a parameter too.
+        let parameters = fit.parameters + kinks_s.len();
+        let mut candidate = self.evaluated(Method::Spline, fit.pieces, parameters)?;
         candidate.fit.sd_deg *= SPLINE_BIAS;
         Some(candidate)
     }
 
     /// A profile and a spline through its residuals: the commanded motion with a disturbance in
     /// part of it.
-    fn corrected(&self, profile: &Candidate) -> Option<Candidate> {
+    fn corrected(&self, profile: &Candidate, kinks_s: &[f64]) -> Option<Candidate> {
         let residuals = self.samples.iter().zip(&self.observed).map(|(sample, o)| {
             let at = Moment {
                 host: sample.host,
@@ -232,9 +265,9 @@ impl<'a> Candidates<'a> {
         });
         let residuals: Vec<Observed> = residuals.collect::<Option<_>>()?;
         let end_s = residuals.last()?.at_s;
-        let fit = spline::fit(&residuals, self.origin, 0.0, end_s)?;
+        let fit = spline::fit(&residuals, self.origin, (0.0, end_s), kinks_s)?;
         let pieces = profile.pieces.corrected(&fit.pieces)?;
-        let parameters = profile.parameters + fit.parameters;
+        let parameters = profile.parameters + fit.parameters + kinks_s.len();
         self.evaluated(Method::Spline, pieces, parameters)
     }
 
@@ -371,7 +404,7 @@ impl<'a> Candidates<'a> {
         } else {
             latch::evidence(&off, self.noise.angle_sd_deg)
         };
-        let (shift, delay) = latch::delay(&off, latch);
+        let (shift, delay) = latch::delay(&off, latch, self.noise.angle_sd_deg, scatter.sqrt());
         let fit = SweepFit {
             method,
             rms_deg,

@@ -2,11 +2,14 @@
 //! control cycle. No manual says whether it does.
 //!
 //! Then the instants at which the fitted curve has the samples' angles lie on a grid of the cycle,
-//! while the polls do not. Where the polls lie on such a grid too, ages that jump by a cycle still
-//! show it. Where none does, or where a cycle is less than an encoder count, the samples cannot
-//! show it, and the age is unknown from zero to a cycle.
+//! while the polls do not. Where the polls lie near such a grid too, positions that lack the jitter
+//! of the polls, or ages that jump by a cycle, still show it. Where none does, or where a cycle is
+//! less than an encoder count, the samples cannot show it, and the age is unknown from zero to a
+//! cycle.
 
 use units::Span;
+
+use super::bound::BOUND_SDS;
 
 /// Control cycle of an EPOS2, and greatest age of a position.
 pub(super) const CYCLE_S: f64 = 1e-3;
@@ -21,6 +24,11 @@ const DECISIVE: f64 = 3.0;
 const UNCERTAINTY_S: f64 = 20e-6;
 /// Samples whose bound exceeds the median by this factor are left out: their instant is unknown.
 const MAX_BOUND: f64 = 1.5;
+/// Instants lie on a grid about which polls scatter, if the circular variance of polls is greater
+/// by this ratio.
+const SHARPER: f64 = 8.0;
+/// Least circular variance of polls that scatter: by 7 us.
+const MIN_SCATTER: f64 = 1e-3;
 /// Greatest duration of an encoder count at which a grid is visible.
 const MAX_COUNT_S: f64 = 0.3e-3;
 
@@ -73,7 +81,9 @@ pub(super) fn evidence(residuals: &[Residual], angle_sd_deg: f64) -> LatchEviden
         .into_iter()
         .fold(0.0, f64::max);
     let instants = resultant(&quick, |r| r.at_s + r.late_s());
-    if polls > OFF_GRID {
+    if instants > ON_GRID && (1.0 - instants).max(MIN_SCATTER) * SHARPER < 1.0 - polls {
+        LatchEvidence::Present
+    } else if polls > OFF_GRID {
         evidence_of_ages(&quick, count_s)
     } else if instants > ON_GRID {
         LatchEvidence::Present
@@ -142,9 +152,17 @@ fn resultant(residuals: &[Residual], instant: impl Fn(&Residual) -> f64) -> f64 
 }
 
 /// A shift of the curve, and limits of the delay that remains common to all samples. Each was taken
-/// within its bound and is at most a cycle old; its residual shows when the axis was at its angle.
-pub(super) fn delay(residuals: &[Residual], latch: LatchEvidence) -> (Span, (Span, Span)) {
+/// within its bound and is at most a cycle old; its residual shows when the axis was at its angle,
+/// within half an encoder count and the error of the curve.
+pub(super) fn delay(
+    residuals: &[Residual],
+    latch: LatchEvidence,
+    angle_sd_deg: f64,
+    curve_sd_deg: f64,
+) -> (Span, (Span, Span)) {
     let quick = quick(residuals);
+    let half_count_deg = angle_sd_deg * f64::sqrt(3.0);
+    let slack_deg = half_count_deg + BOUND_SDS * curve_sd_deg;
     // Samples without a bound are the truth.
     let is_bounded = quick.iter().any(|r| r.bound_s > 0.0);
     let age_s = if is_bounded && latch != LatchEvidence::Absent {
@@ -154,8 +172,9 @@ pub(super) fn delay(residuals: &[Residual], latch: LatchEvidence) -> (Span, (Spa
     };
     let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
     for residual in &quick {
-        low = low.max(-residual.bound_s - age_s - residual.late_s());
-        high = high.min(residual.bound_s - residual.late_s());
+        let reach_s = residual.bound_s + slack_deg / residual.rate_deg_s.abs();
+        low = low.max(-reach_s - age_s - residual.late_s());
+        high = high.min(reach_s - residual.late_s());
     }
     if !low.is_finite() || !high.is_finite() {
         return (Span::ZERO, (Span::ZERO, Span::ZERO));
@@ -207,13 +226,67 @@ mod tests {
         assert_eq!(seen(None), LatchEvidence::Absent);
     }
 
-    /// As by SYNCs of 1 kHz: their ages jump by a cycle if their jitter crosses its end.
+    /// As by SYNCs of 1 kHz: their ages jump by a cycle if their jitter crosses its end, and where
+    /// it does not, positions lack their jitter.
     #[test]
-    fn polls_in_step_with_the_cycle_show_a_latch_only_where_their_ages_jump() {
+    fn polls_in_step_with_the_cycle_show_a_latch_by_their_jitter() {
         let seen = |latch| evidence(&residuals(1e-3, 0.1e-3, latch), 0.0004);
         assert_eq!(seen(Some(0.05e-3)), LatchEvidence::Present);
-        assert_eq!(seen(Some(0.5e-3)), LatchEvidence::Unknown);
+        assert_eq!(seen(Some(0.5e-3)), LatchEvidence::Present);
         assert_eq!(seen(None), LatchEvidence::Unknown);
+        // Without jitter nothing shows it.
+        let regular = residuals(1e-3, 0.0, Some(0.5e-3));
+        assert_eq!(evidence(&regular, 0.0004), LatchEvidence::Unknown);
+    }
+
+    /// Polls that scatter about the end of a cycle, and whose midpoints are as uncertain: the order
+    /// of their ages is unknown, but the instants of the positions are a cycle apart.
+    #[test]
+    fn instants_on_a_grid_about_which_polls_scatter_show_a_latch() {
+        let seen = |is_latched: bool| {
+            let mut samples = residuals(1e-3, 0.0, None);
+            for (i, sample) in (0..).zip(&mut samples) {
+                let drawn = |factor: f64| (f64::from(i) * factor).fract() - 0.5;
+                let (taken, midpoint) = (drawn(0.618_033_99), drawn(0.414_213_56));
+                let taken_s = 0.2e-3 * taken;
+                let age_s = match is_latched {
+                    true => taken_s.rem_euclid(CYCLE_S),
+                    false => 0.0,
+                };
+                let midpoint_s = taken_s + 0.1e-3 * midpoint;
+                sample.at_s += midpoint_s;
+                sample.off_deg = 50.0 * (taken_s - age_s - midpoint_s);
+                sample.bound_s = 0.15e-3;
+            }
+            evidence(&samples, 0.0004)
+        };
+        assert_eq!(seen(true), LatchEvidence::Present);
+        assert_ne!(seen(false), LatchEvidence::Present);
+    }
+
+    /// A quantised position says when the axis passed it only to within a count.
+    #[test]
+    fn the_limits_contain_a_delay_at_their_end_however_slow_the_axis_is() {
+        let count_deg = 0.0015;
+        for rate_deg_s in [0.5, 7.0, 50.0] {
+            for delay_s in [-0.2e-3, 0.2e-3] {
+                let mut samples = residuals(2.5e-3, 0.0, None);
+                for (i, sample) in (0..).zip(&mut samples) {
+                    let drawn = (f64::from(i) * 0.618_033_99).fract() - 0.5;
+                    sample.off_deg = count_deg * drawn;
+                    sample.rate_deg_s = rate_deg_s;
+                    // All were taken as early, or as late, as their bounds allow.
+                    sample.bound_s = 0.2e-3;
+                }
+                let sd = count_deg / f64::sqrt(12.0);
+                let (_, (low, high)) = delay(&samples, LatchEvidence::Absent, sd, 0.0);
+                let (low, high) = (low.as_secs_f64(), high.as_secs_f64());
+                let what = format!("{rate_deg_s} deg/s: {low} to {high}");
+                assert!((low - 1e-6..=high + 1e-6).contains(&delay_s), "{what}");
+                // Quantisation is no conflict: it does not widen them.
+                assert!(low > -0.3e-3 && high < 0.3e-3, "{what}");
+            }
+        }
     }
 
     /// Samples whose instants exclude each other give wider limits than each of them does.
@@ -224,7 +297,7 @@ mod tests {
             sample.off_deg = 0.0;
         }
         let limits = |samples: &[Residual]| {
-            let (_, (low, high)) = delay(samples, LatchEvidence::Absent);
+            let (_, (low, high)) = delay(samples, LatchEvidence::Absent, 0.0, 0.0);
             [low, high].map(Span::as_secs_f64)
         };
         let [low, high] = limits(&samples);

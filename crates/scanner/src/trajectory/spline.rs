@@ -1,11 +1,11 @@
 //! A cubic spline through samples by least squares, for motion without a command.
 //!
 //! Its pieces are cubics with a common angle and speed where they meet, so that the acceleration
-//! may change at once, as it does at corners of the commanded motion and where an obstacle stops
-//! the head. An interval is halved while residuals in it have a common sign over more samples than
-//! chance explains (a scan statistic over windows of all sizes): knots are far apart on straight
-//! lines and close where the motion changes. The normal equations have bandwidth four and are
-//! solved as such.
+//! may change at once, as it does at corners of the commanded motion. Where an obstacle stops the
+//! head the speed changes at once, too: at kinks (`kinks`) pieces share the angle only. An interval
+//! is halved while residuals in it have a common sign over more samples than chance explains (a
+//! scan statistic over windows of all sizes): knots are far apart on straight lines and close where
+//! the motion changes. The normal equations have bandwidth four and are solved as such.
 
 use units::{Host, Span, Stamp};
 
@@ -38,19 +38,29 @@ const TAIL_DIFFERENCE: f64 = 2.326_174;
 /// Least share of the assumed errors that samples have.
 const MIN_SCALE: f64 = 0.25;
 
-/// Fits `observed`, in order of time and in seconds after `origin`, from `from_s` to `to_s`. `None`
-/// with fewer than four of them or without time.
+/// Fits `observed`, in order of time and in seconds after `origin`, from `from_s` to `to_s`, with
+/// kinks at `kinks_s`. `None` with fewer than four of them or without time.
 pub(super) fn fit(
     observed: &[Observed],
     origin: Stamp<Host>,
-    from_s: f64,
-    to_s: f64,
+    (from_s, to_s): (f64, f64),
+    kinks_s: &[f64],
 ) -> Option<SplineFit> {
     let length = to_s - from_s;
     if observed.len() < BAND || length <= 0.0 || !length.is_finite() {
         return None;
     }
-    let mut knots = vec![from_s, to_s];
+    let end = |at_s| Knot {
+        at_s,
+        is_kink: false,
+    };
+    let kinks = kinks_s.iter().map(|at_s| Knot {
+        at_s: *at_s,
+        is_kink: true,
+    });
+    let mut knots = vec![end(from_s)];
+    knots.extend(kinks);
+    knots.push(end(to_s));
     let mut spline = Spline::fit(observed, knots)?;
     for _ in 0..MAX_ROUNDS {
         knots = spline.finer_knots(observed);
@@ -65,9 +75,17 @@ pub(super) fn fit(
     })
 }
 
+/// A knot, in seconds after the origin.
+#[derive(Clone, Copy, Debug)]
+struct Knot {
+    at_s: f64,
+    /// The speed changes at once.
+    is_kink: bool,
+}
+
 struct Spline {
-    knots: Vec<f64>,
-    /// Angle and speed at each knot.
+    knots: Vec<Knot>,
+    /// Angle and speed at each knot; at kinks the speed before, the angle and the speed after.
     coefficients: Vec<f64>,
     /// The factor of the normal equations, for standard deviations.
     factor: Banded,
@@ -75,6 +93,22 @@ struct Spline {
     residuals: Vec<f64>,
     /// Index of the first sample of each interval, and the number of samples.
     firsts: Vec<usize>,
+    /// Indices of the coefficients of each interval.
+    indices: Vec<[usize; BAND]>,
+}
+
+/// Indices of angle and speed at both ends of each interval.
+fn indices(knots: &[Knot]) -> Vec<[usize; BAND]> {
+    let mut first = 0;
+    let pairs = knots.windows(2).map(|pair| {
+        let kink = |knot: Option<&Knot>| usize::from(knot.is_some_and(|knot| knot.is_kink));
+        let (left, right) = (kink(pair.first()), kink(pair.last()));
+        let angle = first + left;
+        first = angle + 2;
+        // Before a kink the speed is first.
+        [angle, angle + 1, angle + 2 + right, angle + 3 - right]
+    });
+    pairs.collect()
 }
 
 /// Weights of angle and speed at both ends of an interval of `length` at `x` (0 to 1) in it.
@@ -89,15 +123,17 @@ fn basis(x: f64, length: f64) -> [f64; BAND] {
 }
 
 impl Spline {
-    fn fit(observed: &[Observed], knots: Vec<f64>) -> Option<Self> {
-        let count = 2 * knots.len();
+    fn fit(observed: &[Observed], knots: Vec<Knot>) -> Option<Self> {
+        let count = 2 * knots.len() + knots.iter().filter(|knot| knot.is_kink).count();
         let mut normal = Banded::zeros(count);
         let mut right = vec![0.0; count];
         let weight = |o: &Observed| 1.0 / (o.sd_deg * o.sd_deg);
         let stiffness = STIFFNESS * observed.iter().map(weight).fold(f64::INFINITY, f64::min);
         let mut firsts = vec![0];
+        let indices = indices(&knots);
         for (k, pair) in knots.windows(2).enumerate() {
-            let &[from, to] = pair else { continue };
+            let [from, to] = [pair.first()?.at_s, pair.last()?.at_s];
+            let index = *indices.get(k)?;
             let length = to - from;
             let first = *firsts.last()?;
             let rest = observed.get(first..)?;
@@ -110,23 +146,17 @@ impl Spline {
             for o in rest.get(..inside)? {
                 let values = basis((o.at_s - from) / length, length);
                 let weight = weight(o);
-                for (i, a) in values.iter().enumerate() {
-                    *right.get_mut(2 * k + i)? += weight * a * o.angle_deg;
-                    for (j, b) in values.iter().enumerate().take(i + 1) {
-                        normal.add(2 * k + i, 2 * k + j, weight * a * b)?;
-                    }
+                for (i, a) in index.iter().zip(values) {
+                    *right.get_mut(*i)? += weight * a * o.angle_deg;
                 }
+                normal.add_square(index, values, weight)?;
             }
             // Bending energy of the cubic.
             for bend in [
                 [0.0, -1.0, 0.0, 1.0].map(|b| b * length),
                 [2.0, length, -2.0, length],
             ] {
-                for (i, a) in bend.iter().enumerate() {
-                    for (j, b) in bend.iter().enumerate().take(i + 1) {
-                        normal.add(2 * k + i, 2 * k + j, stiffness * a * b)?;
-                    }
-                }
+                normal.add_square(index, bend, stiffness)?;
             }
         }
         let factor = normal.factor()?;
@@ -137,10 +167,11 @@ impl Spline {
             factor,
             residuals: Vec::with_capacity(observed.len()),
             firsts,
+            indices,
         };
         for k in 0..spline.knots.len() - 1 {
             let (from, length) = spline.interval(k)?;
-            let around = spline.coefficients.get(2 * k..2 * k + BAND)?;
+            let around = spline.around(k)?;
             let inside = observed.get(*spline.firsts.get(k)?..*spline.firsts.get(k + 1)?)?;
             for o in inside {
                 let values = basis((o.at_s - from) / length, length);
@@ -153,11 +184,20 @@ impl Spline {
 
     fn interval(&self, k: usize) -> Option<(f64, f64)> {
         let (from, to) = (self.knots.get(k)?, self.knots.get(k + 1)?);
-        Some((*from, to - from))
+        Some((from.at_s, to.at_s - from.at_s))
+    }
+
+    /// Angle and speed at both ends of interval `k`.
+    fn around(&self, k: usize) -> Option<[f64; BAND]> {
+        let mut around = [0.0; BAND];
+        for (value, index) in around.iter_mut().zip(self.indices.get(k)?) {
+            *value = *self.coefficients.get(*index)?;
+        }
+        Some(around)
     }
 
     /// The knots, and the middles of intervals whose residuals are not random.
-    fn finer_knots(&self, observed: &[Observed]) -> Vec<f64> {
+    fn finer_knots(&self, observed: &[Observed]) -> Vec<Knot> {
         let scale = scale(&self.residuals);
         let chance = 2.0 * (self.residuals.len() as f64).ln() + MIN_EXCESS;
         let limit = chance * scale * scale;
@@ -165,6 +205,7 @@ impl Spline {
         for (k, pair) in self.knots.windows(2).enumerate() {
             let &[from, to] = pair else { continue };
             finer.push(from);
+            let (from, to) = (from.at_s, to.at_s);
             let samples = self.firsts.get(k).zip(self.firsts.get(k + 1));
             let Some((&first, &last)) = samples else {
                 continue;
@@ -178,7 +219,10 @@ impl Spline {
             let half = times.partition_point(|o| o.at_s < middle);
             let is_divisible = half >= MIN_SAMPLES && times.len() - half >= MIN_SAMPLES;
             if is_divisible && greatest_window(residuals) > limit {
-                finer.push(middle);
+                finer.push(Knot {
+                    at_s: middle,
+                    is_kink: false,
+                });
             }
         }
         finer.extend(self.knots.last());
@@ -191,9 +235,7 @@ impl Spline {
         let pieces = (0..intervals).map(|k| {
             let (from_s, length) = self.interval(k)?;
             let (from, to) = (at(from_s), at(from_s + length));
-            let &[a, va, b, vb] = self.coefficients.get(2 * k..2 * k + BAND)? else {
-                return None;
-            };
+            let [a, va, b, vb] = self.around(k)?;
             let ns = to.saturating_since(from).as_nanos().max(1) as f64;
             let inside = self
                 .residuals
@@ -203,25 +245,33 @@ impl Spline {
             let sd = (self.variance(k, length)? * (square / freedom).max(1.0)).sqrt();
             Some(CubicPiece::hermite(from, ns, [a, va * 1e-9], [b, vb * 1e-9]).with_sd(sd))
         });
-        PiecewiseCubic::new(pieces.collect::<Option<Vec<_>>>()?, at(*self.knots.last()?))
+        PiecewiseCubic::new(
+            pieces.collect::<Option<Vec<_>>>()?,
+            at(self.knots.last()?.at_s),
+        )
     }
 
     /// Variance in the middle of interval `k` if the samples' errors are as assumed.
     fn variance(&self, k: usize, length: f64) -> Option<f64> {
         // The inverse of such a band matrix decays by about a half per interval.
         const REACH: usize = 24;
+        let index = *self.indices.get(k)?;
+        let first = index[0];
         let (low, high) = (
-            (2 * k).saturating_sub(REACH),
-            (2 * k + BAND + REACH).min(self.coefficients.len()),
+            first.saturating_sub(REACH),
+            (first + BAND + REACH).min(self.coefficients.len()),
         );
         let mut right = vec![0.0; high - low];
         let middle = basis(0.5, length);
-        for (i, b) in middle.into_iter().enumerate() {
-            *right.get_mut(2 * k - low + i)? = b;
+        for (i, b) in index.into_iter().zip(middle) {
+            *right.get_mut(i - low)? = b;
         }
         let solved = self.factor.solve_within(low, right)?;
-        let around = solved.get(2 * k - low..)?.iter();
-        Some(around.zip(middle).map(|(s, b)| s * b).sum::<f64>().max(0.0))
+        let mut variance = 0.0;
+        for (i, b) in index.into_iter().zip(middle) {
+            variance += solved.get(i - low)? * b;
+        }
+        Some(variance.max(0.0))
     }
 }
 
@@ -294,6 +344,16 @@ impl Banded {
     /// `column` is at most `row`.
     fn add(&mut self, row: usize, column: usize, value: f64) -> Option<()> {
         *self.rows.get_mut(row)?.get_mut(row.checked_sub(column)?)? += value;
+        Some(())
+    }
+
+    /// Adds the square of a weighted sum of coefficients.
+    fn add_square(&mut self, index: [usize; BAND], values: [f64; BAND], weight: f64) -> Option<()> {
+        for (n, (i, a)) in index.into_iter().zip(values).enumerate() {
+            for (j, b) in index.into_iter().zip(values).take(n + 1) {
+                self.add(i.max(j), i.min(j), weight * a * b)?;
+            }
+        }
         Some(())
     }
 
@@ -408,7 +468,13 @@ mod tests {
     #[test]
     fn a_cubic_is_recovered() {
         let motion = |t: f64| 1.0 - 3.0 * t + 2.0 * t * t - 0.7 * t * t * t;
-        let fit = fit(&observed(200, 2.0, motion), Stamp::from_nanos(0), 0.0, 2.0).unwrap();
+        let fit = fit(
+            &observed(200, 2.0, motion),
+            Stamp::from_nanos(0),
+            (0.0, 2.0),
+            &[],
+        )
+        .unwrap();
         assert!(worst(&fit, 2.0, motion) < 1e-6);
     }
 
@@ -422,7 +488,7 @@ mod tests {
                 noise = noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
                 sample.angle_deg += 0.02 * (f64::from(noise) / f64::from(u32::MAX) - 0.5);
             }
-            let fit = fit(&samples, Stamp::from_nanos(0), 0.0, 2.0).unwrap();
+            let fit = fit(&samples, Stamp::from_nanos(0), (0.0, 2.0), &[]).unwrap();
             let off = worst(&fit, 2.0, motion);
             assert!(off < 0.016, "{hertz} Hz: {off}");
             fit.parameters as f64
@@ -435,14 +501,54 @@ mod tests {
     fn a_gap_in_the_samples_is_bridged() {
         let mut samples = observed(400, 2.0, |t| 5.0 * t);
         samples.retain(|o| !(0.9..1.2).contains(&o.at_s));
-        let fit = fit(&samples, Stamp::from_nanos(0), 0.0, 2.0).unwrap();
+        let fit = fit(&samples, Stamp::from_nanos(0), (0.0, 2.0), &[]).unwrap();
         assert!(worst(&fit, 2.0, |t| 5.0 * t) < 1e-3);
+    }
+
+    /// A head that stops at once, and goes on later.
+    #[test]
+    fn a_kink_keeps_the_speeds_on_both_sides() {
+        let stops = |t: f64| 50.0 * (t.min(0.7031) + (t - 1.2047).max(0.0));
+        let observed = observed(400, 2.0, stops);
+        let kinks_s = super::super::kinks::find(&observed);
+        let [a, b] = kinks_s[..] else {
+            panic!("{kinks_s:?}");
+        };
+        assert!((a - 0.7031).abs() < 1e-3 && (b - 1.2047).abs() < 1e-3);
+        let by = |kinks_s: &[f64]| {
+            let fit = fit(&observed, Stamp::from_nanos(0), (0.0, 2.0), kinks_s).unwrap();
+            (worst(&fit, 2.0, stops), fit.parameters)
+        };
+        let (smooth, broken) = (by(&[]), by(&kinks_s));
+        assert!(broken.0 < 1e-3 && smooth.0 > 0.02, "{broken:?} {smooth:?}");
+        assert!(broken.1 < 12, "{broken:?}");
+        // A ramp is no kink.
+        let ramp =
+            |t: f64| 500.0 * (t.clamp(0.5, 0.6) - 0.5).powi(2) / 2.0 + 50.0 * (t - 0.6).max(0.0);
+        let found = super::super::kinks::find(&super::tests::observed(800, 2.0, ramp));
+        assert!(found.is_empty(), "{found:?}");
     }
 
     #[test]
     fn too_few_samples_give_no_spline() {
-        assert!(fit(&observed(3, 1.0, |t| t), Stamp::from_nanos(0), 0.0, 1.0,).is_none());
-        assert!(fit(&observed(9, 1.0, |t| t), Stamp::from_nanos(0), 1.0, 1.0,).is_none());
+        assert!(
+            fit(
+                &observed(3, 1.0, |t| t),
+                Stamp::from_nanos(0),
+                (0.0, 1.0),
+                &[]
+            )
+            .is_none()
+        );
+        assert!(
+            fit(
+                &observed(9, 1.0, |t| t),
+                Stamp::from_nanos(0),
+                (1.0, 1.0),
+                &[]
+            )
+            .is_none()
+        );
     }
 
     #[test]
