@@ -9,6 +9,7 @@ use super::status::AxisTask;
 
 /// State of the drive.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[non_exhaustive]
 pub struct AxisReport {
     /// Name of the device's profile.
     pub device: String,
@@ -50,6 +51,7 @@ pub struct AxisReport {
 
 /// An entry of the error history.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[non_exhaustive]
 pub struct DriveFault {
     /// Four hexadecimal digits.
     pub code: String,
@@ -64,6 +66,7 @@ pub struct DriveFault {
 /// Answer to `POST /tilt/stop` of a service that ends with its command.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct StoppedCommand {
     /// Name of the device's profile.
     pub device: String,

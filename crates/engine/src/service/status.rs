@@ -41,6 +41,7 @@ impl AxisTask {
 
 /// The task of the axis and its progress.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct Activity {
     /// The task.
     pub doing: AxisTask,
@@ -80,6 +81,7 @@ pub enum DeviceHealth {
 
 /// The drive.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct DriveSnapshot {
     /// State.
     pub state: DeviceHealth,
@@ -103,6 +105,7 @@ pub struct DriveSnapshot {
 
 /// The lidar.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct LidarStatus {
     /// State.
     pub state: DeviceHealth,
@@ -126,6 +129,7 @@ pub struct LidarStatus {
 
 /// Limits and defaults of the axis.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct AxisStatus {
     /// Smallest angle, degrees.
     pub min_deg: f64,
@@ -162,6 +166,7 @@ pub struct DiskStatus {
 
 /// Event clients.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct ClientsStatus {
     /// Connected clients.
     pub events: usize,
@@ -171,6 +176,7 @@ pub struct ClientsStatus {
 
 /// Status of the whole service: the body of `GET /api/v1/status`.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct ServiceStatus {
     /// Version of the program.
     pub version: &'static str,
