@@ -22,7 +22,7 @@ use engine::devices::drive_session::Session;
 use engine::devices::profile as devices;
 use io::can::{CanPort, Slcan, SocketCan};
 use io::port::{Port, RecordingPort, SerialPort};
-use protocol::canopen::sdo::SdoClient;
+use protocol::canopen::sdo::{Initiate, SdoRequest, SdoResponse};
 use protocol::canopen::slcan::Bitrate;
 use protocol::canopen::{CanFrame, CobId, CommunicationObject, NodeId, PdoNumber};
 use protocol::epos2::objects::POSITION_ACTUAL;
@@ -170,7 +170,6 @@ fn ask(kind: DeviceKind, drive: &SoftwareDrive, period: Span, seconds: f64) -> M
         }
     };
     let node = NodeId::new(AxisConfig::default().node).unwrap();
-    let mut sdo = SdoClient::<8>::new(node, Span::from_secs(1));
     let mut samples = Vec::new();
     let child = drive.process.id().to_string();
     let (begin, client_s, drive_s) = (Instant::now(), cpu_s("self"), cpu_s(&child));
@@ -182,7 +181,7 @@ fn ask(kind: DeviceKind, drive: &SoftwareDrive, period: Span, seconds: f64) -> M
             bus.read(left).unwrap();
         }
         let request = bus.now();
-        let position = Quadcounts(read_position(bus.as_mut(), &mut sdo));
+        let position = Quadcounts(read_position(bus.as_mut(), node));
         let answer = bus.now();
         samples.push(ShaftSample {
             request,
@@ -205,18 +204,21 @@ fn ask(kind: DeviceKind, drive: &SoftwareDrive, period: Span, seconds: f64) -> M
     }
 }
 
-fn read_position(bus: &mut dyn CanPort, sdo: &mut SdoClient<8>) -> i32 {
-    sdo.read(POSITION_ACTUAL.address).unwrap();
+fn read_position(bus: &mut dyn CanPort, node: NodeId) -> i32 {
+    let address = POSITION_ACTUAL.address;
+    let request = SdoRequest::InitiateUpload { address };
+    bus.write_frame(&request.to_frame(node)).unwrap();
     loop {
-        while let Some(frame) = sdo.poll_transmit(bus.now()) {
-            bus.write_frame(&frame).unwrap();
-        }
-        if let Some(outcome) = sdo.poll_outcome() {
-            return outcome.result.unwrap().scalar().unwrap();
-        }
-        match bus.read(Span::from_secs(1)).unwrap() {
-            Some((frame, _)) => drop(sdo.handle_frame(&frame)),
-            None => sdo.handle_timeout(bus.now()),
+        let (frame, _) = bus.read(Span::from_secs(1)).unwrap().expect("a response");
+        if let Ok((
+            _,
+            SdoResponse::InitiateUpload {
+                transfer: Initiate::Expedited(position),
+                ..
+            },
+        )) = SdoResponse::parse(&frame)
+        {
+            return position.to_u32().cast_signed();
         }
     }
 }

@@ -327,10 +327,10 @@ fn sensors(
         let ended = child.wait();
         thread::sleep(GRACE);
         stop.store(true, Ordering::Release);
-        let line = line.ok_or(format!("the sensors said nothing: {ended:?}"))?;
+        let line = line.ok_or(format!("no line from the sensors: {ended:?}"))?;
         let line = line.map_err(|e| e.to_string())?;
         line.parse()
-            .map_err(|e| format!("the sensors said {line:?}: {e}"))
+            .map_err(|e| format!("unexpected line {line:?} from the sensors: {e}"))
     }))
 }
 

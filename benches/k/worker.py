@@ -63,7 +63,7 @@ def main():
     try:
         counts = {"numpy": by_numpy, "treecorr": lambda p: by_treecorr(p, slop), "corrfunc": by_corrfunc}[name](points)
     except ImportError as error:
-        print(json.dumps({"who": who, "said": f"not installed ({error.name})"}))
+        print(json.dumps({"who": who, "text": f"not installed ({error.name})"}))
         return
     cpu_s = time.process_time() - start
     all_pairs = len(points) * (len(points) - 1) / 2

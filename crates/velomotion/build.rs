@@ -16,8 +16,8 @@ fn main() {
     if released && log.exists() {
         println!("cargo:rerun-if-changed={}", log.display());
     }
-    let told = env::var("VELOMOTION_COMMIT").ok();
-    let commit = told
+    let given = env::var("VELOMOTION_COMMIT").ok();
+    let commit = given
         .or_else(|| head(&root))
         .filter(|commit| !commit.is_empty());
     let version = env!("CARGO_PKG_VERSION");
@@ -38,6 +38,6 @@ fn head(root: &Path) -> Option<String> {
         .output()
         .ok()
         .filter(|output| output.status.success())?;
-    let said = String::from_utf8(output.stdout).ok()?;
-    Some(said.trim().to_owned())
+    let text = String::from_utf8(output.stdout).ok()?;
+    Some(text.trim().to_owned())
 }

@@ -26,10 +26,6 @@ pub const POSITION_PORT: u16 = 8308;
 pub const LASERS: usize = 16;
 /// Data blocks of a data packet.
 pub const BLOCKS: usize = 12;
-/// Firing sequences of a data packet in a single-return mode: two per block.
-pub const SEQUENCES: usize = 2 * BLOCKS;
-/// Firing sequences of a data packet in dual-return mode: two blocks share their firings.
-pub const DUAL_SEQUENCES: usize = SEQUENCES / 2;
 
 /// Nanoseconds from one firing sequence to the next.
 pub const SEQUENCE_PERIOD_NS: i64 = 55_296;
@@ -40,10 +36,6 @@ pub const DISTANCE_UNIT_MM: u32 = 2;
 pub const TURN_CDEG: u16 = 36_000;
 /// Microseconds of an hour: timestamps are below this.
 pub const HOUR_US: u32 = 3_600_000_000;
-
-/// The returns of one firing sequence, laser 0 first: distance in units of 2 mm (0 for no return)
-/// and calibrated reflectivity (0..=100 diffuse, above that retroreflective).
-pub type Returns = [(u16, u8); LASERS];
 
 /// Bytes of a block: flag, azimuth, 32 channels.
 const BLOCK_LEN: usize = HEADER_LEN + 2 * LASERS * CHANNEL_LEN;

@@ -1,31 +1,30 @@
-//! SDO on both ends: the client accepts only answers to its request, the simulated unit answers
+//! SDO on both ends: a transfer accepts only answers to its request, the simulated unit answers
 //! every request, and both survive any frame of the bus at any time.
 
 use firmware_sim::epos2::{CanServer, Node, NodeConfig, UsbServer};
+use protocol::Bounded;
 use protocol::canopen::sdo::{
-    Expedited, FrameDisposition, Initiate, SdoClient, SdoOutcome, SdoRequest, SdoResponse,
-    SdoSegment, SdoValue, TransferDirection, TransferError,
+    Expedited, Initiate, SEGMENT_LEN, SdoRequest, SdoResponse, SdoSegment, SdoTransfer,
+    TransferError, TransferStep,
 };
 use protocol::canopen::{BusMessage, CanFrame, CommunicationObject, NodeId};
 use protocol::epos2::message::{ReadObject, SerialAnswer as UsbAnswer, WriteObject};
 use protocol::epos2::objects::{self, Address};
 use protocol::epos2::usb::{self, UsbDecoder};
 use protocol::epos2::{CommError, SerialFrame};
-use units::{Host, Span, Stamp};
 
 use super::can_frames;
 use super::input::Input;
 
-/// Buffer of the client under test, small enough that objects exceed it.
+/// Buffer of the transfer under test, small enough that objects exceed it.
 const ROOM: usize = 24;
-const TIMEOUT: Span = Span::from_millis(20);
 
-/// Mode 0: the client and scripted answers. 1: the unit and any frames. Else the client and the
+/// Mode 0: a transfer and scripted answers. 1: the unit and any frames. Else transfers with the
 /// unit, compared with its USB interface.
 pub fn holds(data: &[u8]) {
     let mut input = Input::new(data);
     match input.u8() % 3 {
-        0 => client(&mut input),
+        0 => transfer(&mut input),
         1 => server(&mut input),
         _ => dialogue(&mut input),
     }
@@ -59,85 +58,68 @@ fn address(input: &mut Input<'_>) -> Address {
     }
 }
 
-/// A client with its request, its frames, and its answers.
-struct ClientUnderTest {
-    client: SdoClient<ROOM>,
-    now: Stamp<Host>,
+/// A transfer with its requests and answers.
+#[derive(Default)]
+struct TransferUnderTest {
+    transfer: Option<SdoTransfer<ROOM>>,
+    /// The request to send next.
+    request: Option<SdoRequest>,
     address: Address,
     data: Vec<u8>,
+    is_read: bool,
     sent: Vec<SdoRequest>,
     taken: Vec<SdoResponse>,
 }
 
-fn client(input: &mut Input<'_>) {
-    let mut client = ClientUnderTest {
-        client: SdoClient::new(node_1(), TIMEOUT),
-        now: Stamp::from_nanos(0),
-        address: Address::default(),
-        data: Vec::new(),
-        sent: Vec::new(),
-        taken: Vec::new(),
-    };
+fn transfer(input: &mut Input<'_>) {
+    let mut transfer = TransferUnderTest::default();
     while !input.is_empty() {
-        client.act(input);
+        transfer.act(input);
     }
-    client.finish();
 }
 
-impl ClientUnderTest {
+impl TransferUnderTest {
     fn act(&mut self, input: &mut Input<'_>) {
-        match input.u8() % 8 {
-            0 => self.read(address(input)),
-            1 => self.write(address(input), input),
-            2 => self.transmit(),
-            3 => {
-                self.now += Span::from_millis((input.u8() & 0x1F).into());
-                self.client.handle_timeout(self.now);
+        match input.u8() % 4 {
+            0 => {
+                self.address = address(input);
+                self.is_read = true;
+                self.begin(SdoTransfer::upload(self.address), &[]);
             }
-            4 if input.u8() & 7 == 0 => self.client.cancel(),
+            1 => self.write(input),
+            2 => self.sent.extend(self.request.take()),
             _ => {
                 let frame = self.answer(input);
                 self.receive(&frame);
             }
         }
-        // Fetched at once or later.
-        if input.u8() & 3 != 0 {
-            self.fetch();
-        }
     }
 
-    fn read(&mut self, address: Address) {
-        if self.client.read(address).is_ok() {
-            self.begin(address, &[]);
-        }
-    }
-
-    fn write(&mut self, address: Address, input: &mut Input<'_>) {
+    fn write(&mut self, input: &mut Input<'_>) {
+        let address = address(input);
         let len = usize::from(input.u8()) % (ROOM + 2);
         let data = input.take(len);
-        let started = self.client.write(address, data);
-        assert!(started.is_err() || data.len() <= ROOM);
-        if started.is_ok() {
-            self.begin(address, data);
+        match SdoTransfer::download(address, data, SEGMENT_LEN) {
+            Ok(started) => {
+                assert!(data.len() <= ROOM);
+                self.address = address;
+                self.is_read = false;
+                self.begin(started, data);
+            }
+            Err(error) => {
+                let (max, got) = (ROOM, data.len());
+                assert_eq!(error, TransferError::TooLong { max, got });
+                assert!(got > max);
+            }
         }
     }
 
-    fn begin(&mut self, address: Address, data: &[u8]) {
-        self.address = address;
+    fn begin(&mut self, (transfer, request): (SdoTransfer<ROOM>, SdoRequest), data: &[u8]) {
+        self.transfer = Some(transfer);
+        self.request = Some(request);
         self.data = data.to_vec();
         self.sent.clear();
         self.taken.clear();
-    }
-
-    fn transmit(&mut self) {
-        while let Some(frame) = self.client.poll_transmit(self.now) {
-            let (node, request) = SdoRequest::parse(&frame).expect("a request");
-            assert_eq!(node, node_1());
-            // An abort belongs to the transfer before.
-            if !matches!(request, SdoRequest::Abort { .. }) {
-                self.sent.push(request);
-            }
-        }
     }
 
     /// An answer that fits, nearly fits, or does not fit.
@@ -188,75 +170,35 @@ impl ClientUnderTest {
     }
 
     fn receive(&mut self, frame: &CanFrame) {
-        let was_busy = self.client.is_busy();
-        let handled = self.client.handle_frame(frame);
-        let answer = SdoResponse::parse(frame).ok().map(|(_, answer)| answer);
-        match handled {
-            FrameDisposition::Foreign => {
-                assert_ne!(
-                    frame.cob_id(),
-                    Some(CommunicationObject::SdoResponse(node_1()).cob_id())
-                );
-            }
-            FrameDisposition::Accepted => {
-                assert!(was_busy);
-                let Some(answer) = answer else {
-                    // No SDO message: the transfer has failed.
-                    assert!(!self.client.is_busy());
-                    return;
-                };
-                let other = answer.address().is_some_and(|got| got != self.address);
-                assert!(
-                    !other || !self.client.is_busy(),
-                    "an answer about {:?}",
-                    answer.address()
-                );
-                self.taken.push(answer);
-            }
-            FrameDisposition::Stale => {}
-            FrameDisposition::Unsolicited => assert!(!was_busy || !self.was_sent()),
-        }
-    }
-
-    /// Whether all requests were sent.
-    fn was_sent(&self) -> bool {
-        let mut client = self.client.clone();
-        client.poll_transmit(self.now).is_none()
-    }
-
-    fn fetch(&mut self) {
-        let Some(SdoOutcome {
-            address,
-            direction,
-            result,
-        }) = self.client.poll_outcome()
-        else {
+        let Ok((node, answer)) = SdoResponse::parse(frame) else {
             return;
         };
-        assert!(!self.client.is_busy());
-        assert_eq!(address, self.address);
-        match (direction, result) {
-            (TransferDirection::Upload, Ok(value)) => self.was_read(&value),
-            (TransferDirection::Download, Ok(value)) => {
-                assert!(value.bytes.is_empty());
+        let is_sent = self.request.is_none();
+        let Some(mut transfer) = self.transfer.take_if(|_| is_sent && node == node_1()) else {
+            return;
+        };
+        self.taken.push(answer);
+        match transfer.handle_response(&answer) {
+            Ok(TransferStep::Send(request)) => {
+                assert!(answer.address().is_none_or(|got| got == self.address));
+                self.transfer = Some(transfer);
+                self.request = Some(request);
+            }
+            Ok(TransferStep::Done(value)) if self.is_read => self.was_read(&value),
+            Ok(TransferStep::Done(value)) => {
+                assert!(value.is_empty());
                 self.was_written();
             }
-            (_, Err(TransferError::Aborted(error))) => {
-                let Some(SdoResponse::Abort {
-                    address,
-                    error: got,
-                }) = self.taken.last()
-                else {
-                    panic!("no side aborted");
-                };
-                assert_eq!((*address, *got), (self.address, error));
+            Err(TransferError::Aborted(error)) => {
+                let address = self.address;
+                assert_eq!(answer, SdoResponse::Abort { address, error });
             }
-            (_, Err(_)) => {}
+            Err(error) => assert!(error.abort_code().is_some()),
         }
     }
 
     /// Checks a read value against a second implementation.
-    fn was_read(&self, value: &SdoValue<ROOM>) {
+    fn was_read(&self, value: &[u8]) {
         let [
             SdoResponse::InitiateUpload { address, transfer },
             segments @ ..,
@@ -283,8 +225,7 @@ impl ClientUnderTest {
             }
         }
         assert!(segments.is_empty() || matches!(transfer, Initiate::Segmented { .. }));
-        assert_eq!(*value.bytes, expected[..]);
-        assert_eq!(value.sized, !matches!(transfer, Initiate::Unsized(_)));
+        assert_eq!(value, expected);
     }
 
     /// Checks that the written value was sent completely and confirmed segment by segment.
@@ -317,16 +258,6 @@ impl ClientUnderTest {
         }
         assert_eq!(written, self.data);
         assert_eq!(self.sent.len(), self.taken.len());
-    }
-
-    /// Checks that every transfer ends without further frames.
-    fn finish(&mut self) {
-        self.transmit();
-        if let Some(deadline) = self.client.poll_timeout() {
-            self.client.handle_timeout(deadline);
-        }
-        assert!(!self.client.is_busy());
-        self.fetch();
     }
 }
 
@@ -472,18 +403,16 @@ fn check_request(
     }
 }
 
-/// The client and the unit directly connected: each object equals that of the unit's USB interface.
+/// Transfers with the unit: each object equals that of the unit's USB interface.
 fn dialogue(input: &mut Input<'_>) {
     let mut node = Node::new(NodeConfig::default());
     let mut server = CanServer::new();
-    let mut client = SdoClient::<ROOM>::new(node_1(), TIMEOUT);
     while !input.is_empty() {
         pass_time(&mut node, &mut server, input.u8() & 0x3F);
         let choice = input.u8();
         let address = address(input);
         if choice & 3 != 0 {
-            client.read(address).expect("nothing under way");
-            let got = exchange(&mut client, &mut node, &mut server);
+            let got = exchange(SdoTransfer::upload(address), &mut node, &mut server);
             read_is_the_same(&mut node, address, &got);
         } else {
             let data = input.take(usize::from(choice >> 2) % 9);
@@ -492,34 +421,47 @@ fn dialogue(input: &mut Input<'_>) {
                 continue;
             }
             let mut twin = node.clone();
-            client.write(address, data).expect("nothing under way");
-            let got = exchange(&mut client, &mut node, &mut server);
+            let started = SdoTransfer::download(address, data, SEGMENT_LEN).expect("room");
+            let got = exchange(started, &mut node, &mut server);
             write_is_the_same(&mut twin, address, data, &got);
         }
     }
 }
 
-type Exchanged = Result<SdoValue<ROOM>, TransferError>;
+/// `None` if the unit is silent.
+type Exchanged = Option<Result<Bounded<u8, ROOM>, TransferError>>;
 
-fn exchange(client: &mut SdoClient<ROOM>, node: &mut Node, server: &mut CanServer) -> Exchanged {
-    let now = Stamp::from_nanos(0);
-    // The longest object has ten segments.
-    for _ in 0..16 {
-        while let Some(frame) = client.poll_transmit(now) {
-            let mut answers = Vec::new();
-            server.input(node, &frame, &mut |answer| answers.push(*answer));
-            for answer in &answers {
-                client.handle_frame(answer);
+fn exchange(
+    (mut transfer, mut request): (SdoTransfer<ROOM>, SdoRequest),
+    node: &mut Node,
+    server: &mut CanServer,
+) -> Exchanged {
+    let mut send = |request: SdoRequest| {
+        let mut response = None;
+        server.input(node, &request.to_frame(node_1()), &mut |frame| {
+            response = match SdoResponse::parse(frame) {
+                Ok((from, response)) if from == node_1() => Some(response),
+                _ => response,
+            };
+        });
+        response
+    };
+    loop {
+        match transfer.handle_response(&send(request)?) {
+            Ok(TransferStep::Send(next)) => request = next,
+            Ok(TransferStep::Done(value)) => return Some(Ok(value)),
+            Err(error) => {
+                if let Some(code) = error.abort_code() {
+                    let address = transfer.address();
+                    send(SdoRequest::Abort {
+                        address,
+                        error: code,
+                    });
+                }
+                return Some(Err(error));
             }
         }
-        if let Some(outcome) = client.poll_outcome() {
-            return outcome.result;
-        }
     }
-    // The write silenced the node.
-    client.cancel();
-    while client.poll_transmit(now).is_some() {}
-    client.poll_outcome().expect("a cancelled transfer").result
 }
 
 fn usb(node: &mut Node, request: &SerialFrame) -> UsbAnswer {
@@ -537,19 +479,21 @@ fn read_is_the_same(node: &mut Node, address: Address, got: &Exchanged) {
     let request = ReadObject { node: 0, address }.to_frame();
     let answer = usb(node, &request);
     match got {
-        Ok(value) if value.bytes.len() <= 4 => {
+        Some(Ok(value)) if value.len() <= 4 => {
             assert_eq!(answer.error, CommError::NONE, "{address:?}");
             let words = answer.value().expect("a value").to_le_bytes();
-            assert_eq!(*value.bytes, words[..value.bytes.len()], "{address:?}");
+            assert_eq!(**value, words[..value.len()], "{address:?}");
         }
-        Err(TransferError::Aborted(error)) => assert_eq!(answer.error, *error, "{address:?}"),
+        Some(Err(TransferError::Aborted(error))) => {
+            assert_eq!(answer.error, *error, "{address:?}");
+        }
         // Longer than the interface's or the client's buffer, or the unit is silent.
         _ => {}
     }
 }
 
 fn write_is_the_same(twin: &mut Node, address: Address, data: &[u8], got: &Exchanged) {
-    if got.is_err() || data.len() > 4 || data.is_empty() {
+    if !matches!(got, Some(Ok(_))) || data.len() > 4 || data.is_empty() {
         return;
     }
     let mut bytes = [0; 4];

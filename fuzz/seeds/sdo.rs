@@ -1,33 +1,30 @@
-//! SDO transfers of every kind: scripts for the client, for the simulated unit, and for both.
+//! SDO transfers of every kind: scripts for a transfer, for the simulated unit, and for both.
 
 use crate::Seed;
 
 /// Modes of `properties::sdo`.
-const CLIENT: u8 = 0;
+const TRANSFER: u8 = 0;
 const UNIT: u8 = 1;
 const BOTH: u8 = 2;
 
-/// After each of the client's steps: fetch the outcome.
-const FETCH: u8 = 1;
-/// Sends the pending frames.
-const SEND: [u8; 2] = [2, FETCH];
+/// Sends the pending request.
+const SEND: [u8; 1] = [2];
 
 pub fn seeds() -> Vec<Seed> {
     let mut seeds = Vec::new();
     let mut add = |name: &str, parts: &[&[u8]]| seeds.push((name.to_owned(), parts.concat()));
-    let read = [0, 0, FETCH];
-    // Step 5 answers: kind, then its arguments.
-    let expedited = [5, 2, 7, 1, 2, 3, 4, FETCH];
-    let announced = [5, 2, 3, 9, FETCH];
-    let first = [5, 3, 7, 1, 2, 3, 4, 5, 6, 7, FETCH];
-    let second = [5, 0x83, 2 | 8, 8, 9, FETCH];
-    let abort = [5, 7, 0, 0, 2, 6, FETCH];
-    let late = [3, 25, FETCH];
-    add("read", &[&[CLIENT], &read, &SEND, &expedited]);
+    let read = [0, 0];
+    // Step 3 answers: kind, then its arguments.
+    let expedited = [3, 2, 7, 1, 2, 3, 4];
+    let announced = [3, 2, 3, 9];
+    let first = [3, 3, 7, 1, 2, 3, 4, 5, 6, 7];
+    let second = [3, 0x83, 2 | 8, 8, 9];
+    let abort = [3, 7, 0, 0, 2, 6];
+    add("read", &[&[TRANSFER], &read, &SEND, &expedited]);
     add(
         "segments",
         &[
-            &[CLIENT],
+            &[TRANSFER],
             &read,
             &SEND,
             &announced,
@@ -39,39 +36,37 @@ pub fn seeds() -> Vec<Seed> {
     );
     add(
         "toggle",
-        &[&[CLIENT], &read, &SEND, &announced, &SEND, &second],
+        &[&[TRANSFER], &read, &SEND, &announced, &SEND, &second],
     );
     add(
         "abort",
-        &[&[CLIENT], &read, &SEND, &abort, &read, &SEND, &expedited],
+        &[&[TRANSFER], &read, &SEND, &abort, &read, &SEND, &expedited],
     );
-    add(
-        "late",
-        &[
-            &[CLIENT],
-            &read,
-            &SEND,
-            &late,
-            &SEND,
-            &[0, 1, FETCH],
-            &SEND,
-            &expedited,
-            &expedited,
-        ],
-    );
-    let write = [1, 12, 9, 1, 2, 3, 4, 5, 6, 7, 8, 9, FETCH];
-    let taken = [5, 5, FETCH];
+    // Another transfer replaces one without an answer.
+    let restarted: [&[u8]; 8] = [
+        &[TRANSFER],
+        &read,
+        &SEND,
+        &[0, 1],
+        &SEND,
+        &expedited,
+        &expedited,
+        &SEND,
+    ];
+    add("restarted", &restarted);
+    let write = [1, 12, 9, 1, 2, 3, 4, 5, 6, 7, 8, 9];
+    let taken = [3, 5];
     add(
         "write",
         &[
-            &[CLIENT],
+            &[TRANSFER],
             &write,
             &SEND,
             &taken,
             &SEND,
-            &[5, 6, FETCH],
+            &[3, 6],
             &SEND,
-            &[5, 0x86, FETCH],
+            &[3, 0x86],
         ],
     );
     // Step 1 sends a request to the unit: kind, object, arguments; step 0 advances time; else a

@@ -44,7 +44,7 @@ pub fn seeds() -> Vec<Seed> {
         for (start, stamp_us, options) in [
             ("hour", 3_599_998_000, 0),
             ("mid", 1_082_337_235, 16),
-            ("told", 0, 7),
+            ("known", 0, 7),
         ] {
             let script = [head(at, stamp_us, options), steps.clone()].concat();
             seeds.push((format!("{name}-{start}"), script));

@@ -16,7 +16,7 @@ pub struct Bounded<T, const N: usize> {
 /// The list is at its capacity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("no room for more than {capacity} values")]
-pub struct Full {
+pub struct CapacityError {
     /// The most values it holds.
     pub capacity: usize,
 }
@@ -31,10 +31,10 @@ impl<T: Copy + Default, const N: usize> Bounded<T, N> {
     /// A copy of `items`.
     ///
     /// # Errors
-    /// [`Full`] where they are more than `N`.
-    pub fn from_slice(items: &[T]) -> Result<Self, Full> {
+    /// [`CapacityError`] where they are more than `N`.
+    pub fn from_slice(items: &[T]) -> Result<Self, CapacityError> {
         if items.len() > N {
-            return Err(Full { capacity: N });
+            return Err(CapacityError { capacity: N });
         }
         Ok(items.iter().copied().collect())
     }
@@ -42,9 +42,12 @@ impl<T: Copy + Default, const N: usize> Bounded<T, N> {
     /// Appends `item`.
     ///
     /// # Errors
-    /// [`Full`] where there are `N` already; the list is unchanged.
-    pub fn push(&mut self, item: T) -> Result<(), Full> {
-        *self.items.get_mut(self.len).ok_or(Full { capacity: N })? = item;
+    /// [`CapacityError`] where there are `N` already; the list is unchanged.
+    pub fn push(&mut self, item: T) -> Result<(), CapacityError> {
+        *self
+            .items
+            .get_mut(self.len)
+            .ok_or(CapacityError { capacity: N })? = item;
         self.len += 1;
         Ok(())
     }
@@ -124,11 +127,11 @@ mod tests {
         let mut list = Bounded::<u8, 2>::new();
         assert_eq!(list.push(1), Ok(()));
         assert_eq!(list.push(2), Ok(()));
-        assert_eq!(list.push(3), Err(Full { capacity: 2 }));
+        assert_eq!(list.push(3), Err(CapacityError { capacity: 2 }));
         assert_eq!(list.as_slice(), [1, 2]);
         assert_eq!(
             Bounded::<u8, 2>::from_slice(&[1, 2, 3]),
-            Err(Full { capacity: 2 })
+            Err(CapacityError { capacity: 2 })
         );
     }
 

@@ -61,7 +61,7 @@ type Tried = BTreeSet<(usize, String)>;
 /// The longest path of a resolution; longer ones go in a circle.
 const MAX_SEGMENTS: usize = 32;
 
-/// What a path leads to.
+/// The target of a path.
 enum Target {
     Module,
     /// An item of the file.

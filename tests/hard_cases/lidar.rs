@@ -5,7 +5,7 @@ mod order;
 
 use ::lidar::{Decoder, Duplicates, Echo, Firing, Options, Stats, Timekeeper, UtcClock, UtcState};
 use firmware_sim::vlp16::{
-    DataPacketBuilder, HOUR_US, LASERS, PacketModel, Pps, ReturnMode, Returns, SEQUENCE_PERIOD_NS,
+    DataPacketBuilder, HOUR_US, LASERS, PacketModel, Pps, ReturnMode, SEQUENCE_PERIOD_NS,
     position_packet,
 };
 use protocol::vlp16::PositionPacket;
@@ -252,7 +252,7 @@ fn blocks_after_the_gap_of_a_limited_field_of_view_are_timed_later() {
 /// distance, one none.
 #[test]
 fn dual_returns_may_be_missing_on_either_side() {
-    let mut last: Returns = [(0, 0); LASERS];
+    let mut last = [(0_u16, 0_u8); LASERS];
     let mut strongest = last;
     (last[0], strongest[0]) = ((5_000, 10), (4_000, 90));
     last[1] = (5_001, 11);

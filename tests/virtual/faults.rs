@@ -227,7 +227,7 @@ struct Cell {
     printed: Option<String>,
     stop: Option<Span>,
     worst_mm: f64,
-    doubted: bool,
+    is_warned: bool,
 }
 
 /// Greatest error of a point without a warning, however the polls were damaged.
@@ -261,13 +261,13 @@ fn run_fault(
     };
     assert!(cloud.len() > 10_000, "{name}: {} points", cloud.len());
     let worst_mm = captured.error().worst_m * 1e3;
-    let doubted = scan
+    let is_warned = scan
         .contents
         .warnings
         .iter()
         .any(|w| w.contains("angle error may reach"));
     assert!(
-        worst_mm < WORST_MM || doubted,
+        worst_mm < WORST_MM || is_warned,
         "{name}: worst point {worst_mm} mm off without a warning"
     );
     let stop = captured.stop_sent(begin).map(|at| at - begin);
@@ -309,7 +309,7 @@ fn run_fault(
         printed: ended.err().map(|error| error.to_string()),
         stop: stop.filter(|_| failed),
         worst_mm,
-        doubted,
+        is_warned,
     }
 }
 
@@ -413,7 +413,7 @@ fn cell(cell: &Cell) -> String {
         (Some(_), Some(stop)) => format!("stop after {:.0} ms", stop.as_secs_f64() * 1e3),
         (Some(_), None) => "says it cannot stop".to_owned(),
     };
-    let warned = if cell.doubted { ", warned" } else { "" };
+    let warned = if cell.is_warned { ", warned" } else { "" };
     format!("{what}; {}{warned}", below(cell.worst_mm))
 }
 

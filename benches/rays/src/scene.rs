@@ -1,4 +1,4 @@
-//! What is cast at, and from where: the same for every competitor.
+//! The scene and the origins of rays: the same for every competitor.
 
 use std::f64::consts::TAU;
 

@@ -15,6 +15,7 @@ pub const FIELDS: Fields = Fields::DEVICE_TIME.union(Fields::LASER);
 
 /// Distance of a cloud from the truth.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct TruthReport {
     /// Points that were compared.
     pub points: u64,

@@ -11,6 +11,7 @@ pub struct Bounds {
 
 /// Number and extent of points.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Summary {
     /// Number of points.
     pub points: u64,

@@ -44,6 +44,7 @@ struct Answer {
 
 /// The part of the status that clients of this program read.
 #[derive(Debug, Deserialize)]
+#[non_exhaustive]
 pub struct RemoteStatus {
     /// The task of the axis.
     pub activity: RemoteActivity,
@@ -53,6 +54,7 @@ pub struct RemoteStatus {
 
 /// The task of the axis.
 #[derive(Debug, Deserialize)]
+#[non_exhaustive]
 pub struct RemoteActivity {
     /// Number of the move, from 1.
     pub step: usize,
@@ -62,6 +64,7 @@ pub struct RemoteActivity {
 
 /// The drive.
 #[derive(Debug, Deserialize)]
+#[non_exhaustive]
 pub struct RemoteDrive {
     /// Port.
     pub port: Option<PathBuf>,

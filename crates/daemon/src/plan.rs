@@ -31,6 +31,7 @@ const RPM: f64 = 600.0;
 
 /// Estimate of a capture.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct CaptureEstimate {
     /// The request.
     pub asked: CaptureRequest,

@@ -159,7 +159,7 @@ impl Scans {
     /// Removes a scan that has just begun and has no data.
     pub fn forget(&self, id: &str) {
         self.scans().remove(id);
-        // What remains is a failed scan at the next start.
+        // The rest is a failed scan at the next start.
         let _ = fs::remove_dir_all(self.place(id));
     }
 

@@ -1,12 +1,14 @@
-//! Configuration of the axis, with validation.
+//! Configuration of the axis: `defaults` has the values of the Velomotion-16, `checks` validates.
 //!
 //! Plain data: files, device names and baud rates are the caller's concern.
 
-use std::fmt::Display;
+mod checks;
+mod defaults;
 
 use units::{Degrees, Gearing, Quadcounts, Rpm, RpmPerS, Span};
 
 use crate::error::DriveError;
+use checks::invalid;
 
 /// The tilt axis: gearing, limits, switches, brake, homing and timing.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,6 +69,7 @@ pub struct MotionGuardConfig {
 
 /// Heartbeats on a CAN bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct CanHeartbeats {
     /// Node id of the host's heartbeat while the axis may move, 1 to 127, other than the drive's.
     pub host_node: u8,
@@ -137,6 +140,7 @@ pub struct HomingConfig {
 
 /// Periods and time limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct AxisTiming {
     /// Time limit of a reply (the drive's own frame timeout is 500 ms).
     pub timeout: Span,
@@ -163,132 +167,6 @@ pub struct AxisTiming {
     pub standstill: Span,
 }
 
-impl Default for AxisConfig {
-    /// The Velomotion-16's axis: 500 lines, 120:1, up to 75 deg/s and 1000 deg/s2, factory inputs
-    /// for the switches, brake on output 1.
-    fn default() -> Self {
-        Self {
-            node: 1,
-            gearing: DEFAULT_GEARING,
-            sensor_polarity: 0,
-            limits: AxisLimits {
-                min: Degrees(-60.0),
-                max: Degrees(60.0),
-            },
-            max_speed: Rpm(1_500),
-            max_acceleration: RpmPerS(20_000),
-            quick_stop: RpmPerS(20_000),
-            max_following_error: Degrees(3.0),
-            arrival_tolerance: SMALLEST_TOLERANCE,
-            standstill_spread: SMALLEST_TOLERANCE,
-            guard: MotionGuardConfig::default(),
-            limit_switches: LimitSwitchConfig::default(),
-            brake: Some(BrakeConfig::default()),
-            hold_without_brake: false,
-            homing: HomingConfig::default(),
-            timing: AxisTiming::default(),
-            can: CanHeartbeats::default(),
-        }
-    }
-}
-
-/// Spread of the positions of a servo that hunts by 8 qc either way, with a margin, and the
-/// smallest tolerance at rest.
-const DITHER_QC: f64 = 20.0;
-const SMALLEST_TOLERANCE: Degrees = Degrees(0.03);
-
-/// 500 lines and 120:1.
-const DEFAULT_GEARING: Gearing = match Gearing::new(500, 120, 1) {
-    Ok(gearing) => gearing,
-    Err(_) => unreachable!(),
-};
-
-impl Default for MotionGuardConfig {
-    /// At 56.25 deg/s the lag allowed is 3.3 deg, just above the drive's own following error of
-    /// 3 deg. A servo with a damping ratio of 0.5 and a bandwidth of 10 Hz overshoots a stop from
-    /// 1000 deg/s2 by less than 0.2 deg.
-    fn default() -> Self {
-        Self {
-            behind: Degrees(0.5),
-            servo_lag: Span::from_millis(50),
-            ahead: Degrees(0.5),
-            beyond_limits: Degrees(0.1),
-            homing_margin: Degrees(10.0),
-        }
-    }
-}
-
-impl Default for CanHeartbeats {
-    /// Heartbeats every 50 ms. The host tolerates their absence for as long as silence in a move.
-    /// The drive tolerates 500 ms, as the host's threads may be delayed: an axis at 98 deg/s is at
-    /// rest 0.7 s after its host died.
-    fn default() -> Self {
-        Self {
-            host_node: 127,
-            host_heartbeat: Span::from_millis(50),
-            host_limit: Span::from_millis(500),
-            node_heartbeat: Span::from_millis(50),
-            node_limit: Span::from_secs(1),
-        }
-    }
-}
-
-impl Default for LimitSwitchConfig {
-    /// The factory setting (2070): input 6 negative, input 5 positive, active high.
-    fn default() -> Self {
-        Self {
-            negative: Some(6),
-            positive: Some(5),
-            active_low: false,
-        }
-    }
-}
-
-impl Default for BrakeConfig {
-    /// Output 1, and the factory setting of 10 ms each way.
-    fn default() -> Self {
-        Self {
-            output: 1,
-            inverted: false,
-            rise: Span::from_millis(10),
-            fall: Span::from_millis(10),
-        }
-    }
-}
-
-impl Default for HomingConfig {
-    /// Method 17 (edge of the negative limit switch, without index), then 5 deg off the switch.
-    fn default() -> Self {
-        Self {
-            method: 17,
-            switch_speed: Rpm(400),
-            zero_speed: Rpm(40),
-            acceleration: RpmPerS(5_000),
-            offset: Degrees(5.0),
-            home_position: Degrees(-60.0),
-            current_threshold_ma: 500,
-            time_limit: Span::from_secs(60),
-        }
-    }
-}
-
-impl Default for AxisTiming {
-    fn default() -> Self {
-        Self {
-            timeout: Span::from_millis(500),
-            timeout_moving: Span::from_millis(100),
-            silence_limit: Span::from_secs(1),
-            read_retries: 2,
-            poll_period: Span::from_millis(1),
-            status_period: Span::from_millis(20),
-            hold: Span::from_millis(50),
-            arrival_margin: Span::from_secs(1),
-            state_limit: Span::from_secs(2),
-            standstill: Span::from_millis(50),
-        }
-    }
-}
-
 /// The limits in quadcounts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct LimitsQc {
@@ -304,83 +182,11 @@ impl LimitsQc {
     }
 }
 
-/// Upper limit of max profile velocity (607F), EPOS2 Firmware Specification.
-const MAX_SPEED_RPM: u32 = 25_000;
-const HOMING_METHODS: [i8; 15] = [1, 2, 7, 11, 17, 18, 23, 27, 33, 34, 35, -1, -2, -3, -4];
-/// One hour. No wait is meant to be longer, and sums of such spans cannot overflow.
-const MAX_SPAN_MS: i64 = 3_600_000;
-
 impl AxisConfig {
     /// Whether the drive holds the axis at rest, as nothing else does.
     #[must_use]
     pub const fn holds(&self) -> bool {
         self.hold_without_brake && self.brake.is_none()
-    }
-
-    /// Tolerance of arrival and standstill that suits an encoder and gear: 0.03 deg, or the spread
-    /// of a hunting servo where a count is more than 0.0015 deg.
-    #[must_use]
-    pub fn rest_tolerance(gearing: Gearing) -> Degrees {
-        let spread = DITHER_QC * gearing.degrees_per_qc();
-        Degrees(SMALLEST_TOLERANCE.0.max(spread))
-    }
-
-    /// Validates every field.
-    ///
-    /// # Errors
-    /// [`DriveError::Config`] with the first invalid field.
-    pub fn check(&self) -> Result<(), DriveError> {
-        within("node", self.node, 1, 127)?;
-        within("max_speed", self.max_speed.0, 1, MAX_SPEED_RPM)?;
-        for (field, acceleration) in [
-            ("max_acceleration", self.max_acceleration),
-            ("quick_stop", self.quick_stop),
-        ] {
-            within(field, acceleration.0, 1, u32::MAX)?;
-        }
-        let guard = &self.guard;
-        for (field, angle, min) in [
-            ("guard.following_error_deg", self.max_following_error, 0.01),
-            ("guard.arrival_deg", self.arrival_tolerance, 0.0),
-            ("guard.standstill_deg", self.standstill_spread, 0.001),
-            ("guard.behind_deg", guard.behind, 0.01),
-            ("guard.ahead_deg", guard.ahead, 0.01),
-            ("guard.beyond_limits_deg", guard.beyond_limits, 0.0),
-            ("guard.homing_margin_deg", guard.homing_margin, 0.0),
-        ] {
-            within(field, angle.0, min, 360.0)?;
-        }
-        within_ms("guard.servo_lag_ms", guard.servo_lag, 0, 10_000)?;
-        self.limits_qc()?;
-        self.limit_switches.check()?;
-        if let Some(brake) = self.brake {
-            within("brake.output", brake.output, 1, 5)?;
-            within_ms("brake.rise", brake.rise, 0, u16::MAX.into())?;
-            within_ms("brake.fall", brake.fall, 0, u16::MAX.into())?;
-        }
-        self.check_homing()?;
-        self.timing.check()?;
-        self.can.check(self.node)
-    }
-
-    fn check_homing(&self) -> Result<(), DriveError> {
-        let homing = &self.homing;
-        if !HOMING_METHODS.contains(&homing.method) {
-            let expected = format!("one of {HOMING_METHODS:?}");
-            return Err(invalid("homing.method", expected, homing.method));
-        }
-        for (field, speed) in [
-            ("homing.switch_speed", homing.switch_speed),
-            ("homing.zero_speed", homing.zero_speed),
-        ] {
-            within(field, speed.0, 1, self.max_speed.0)?;
-        }
-        let max_acceleration = self.max_acceleration.0;
-        let acceleration = homing.acceleration.0;
-        within("homing.acceleration", acceleration, 1, max_acceleration)?;
-        self.quadcounts("homing.offset", homing.offset)?;
-        self.quadcounts("homing.home_position", homing.home_position)?;
-        within_ms("homing.time_limit (ms)", homing.time_limit, 1, i64::MAX)
     }
 
     /// The limits in quadcounts, rounded to the nearest.
@@ -421,26 +227,6 @@ impl LimitSwitchConfig {
     pub(crate) fn mask(self) -> u16 {
         u16::from(self.negative.is_some()) | u16::from(self.positive.is_some()) << 1
     }
-
-    fn check(self) -> Result<(), DriveError> {
-        for (field, input) in [
-            ("limit_switches.negative", self.negative),
-            ("limit_switches.positive", self.positive),
-        ] {
-            if let Some(input) = input {
-                within(field, input, 1, 9)?;
-            }
-        }
-        if self.negative.is_some() && self.negative == self.positive {
-            let got = format!("{:?} for both", self.negative);
-            return Err(invalid(
-                "limit_switches",
-                "two different inputs".into(),
-                got,
-            ));
-        }
-        Ok(())
-    }
 }
 
 impl HomingConfig {
@@ -450,121 +236,15 @@ impl HomingConfig {
     }
 }
 
-impl AxisTiming {
-    fn check(&self) -> Result<(), DriveError> {
-        for (field, span, min_ms) in [
-            ("timing.timeout", self.timeout, 1),
-            ("timing.timeout_moving", self.timeout_moving, 1),
-            ("timing.poll_period", self.poll_period, 0),
-            ("timing.status_period", self.status_period, 0),
-            ("timing.hold", self.hold, 0),
-            ("timing.arrival_margin", self.arrival_margin, 1),
-            ("timing.state_limit", self.state_limit, 1),
-            ("timing.standstill", self.standstill, 1),
-        ] {
-            within_ms(field, span, min_ms, MAX_SPAN_MS)?;
-        }
-        Ok(())
-    }
-}
-
-impl CanHeartbeats {
-    fn check(&self, node: u8) -> Result<(), DriveError> {
-        within("can.host_node", self.host_node, 1, 127)?;
-        if self.host_node == node {
-            let expected = "a node id other than the drive's".into();
-            return Err(invalid("can.host_node", expected, node));
-        }
-        for (field, span, above) in [
-            ("can.host_heartbeat", self.host_heartbeat, Span::ZERO),
-            ("can.host_limit", self.host_limit, self.host_heartbeat),
-            ("can.node_heartbeat", self.node_heartbeat, Span::ZERO),
-            ("can.node_limit", self.node_limit, self.node_heartbeat),
-        ] {
-            let min_ms = whole_ms(above).saturating_add(1);
-            within_ms(field, span, min_ms, u16::MAX.into())?;
-        }
-        Ok(())
-    }
-}
-
 /// Whole milliseconds, rounded away from zero so that a negative span never becomes zero.
 pub(crate) fn whole_ms(span: Span) -> i64 {
     let ns = span.as_nanos();
     ns / 1_000_000 + (ns % 1_000_000).signum()
 }
 
-fn within_ms(field: &'static str, span: Span, min: i64, max: i64) -> Result<(), DriveError> {
-    within(field, whole_ms(span), min, max)
-}
-
-fn within<T: PartialOrd + Display>(
-    field: &'static str,
-    value: T,
-    min: T,
-    max: T,
-) -> Result<(), DriveError> {
-    // Written so that NaN is refused.
-    if !(value >= min && value <= max) {
-        return Err(invalid(field, format!("{min} to {max}"), value));
-    }
-    Ok(())
-}
-
-fn invalid(field: &'static str, expected: String, got: impl Display) -> DriveError {
-    DriveError::Config {
-        field,
-        expected,
-        got: got.to_string(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn invalid_field(change: impl FnOnce(&mut AxisConfig)) -> &'static str {
-        let mut config = AxisConfig::default();
-        change(&mut config);
-        match config.check() {
-            Err(DriveError::Config { field, .. }) => field,
-            other => panic!("{other:?}"),
-        }
-    }
-
-    #[test]
-    fn the_default_is_valid() {
-        assert_eq!(AxisConfig::default().check(), Ok(()));
-        let limits = AxisConfig::default().limits_qc().unwrap();
-        assert_eq!((limits.min.0, limits.max.0), (-40_000, 40_000));
-    }
-
-    #[test]
-    fn the_error_names_the_invalid_field() {
-        type Change = fn(&mut AxisConfig);
-        let cases: [(&str, Change); 13] = [
-            ("node", |c| c.node = 0),
-            ("node", |c| c.node = 128),
-            ("max_speed", |c| c.max_speed = Rpm(25_001)),
-            ("limits", |c| c.limits.min = Degrees(60.0)),
-            ("limits.max", |c| c.limits.max = Degrees(f64::NAN)),
-            ("homing.method", |c| c.homing.method = 3),
-            ("homing.zero_speed", |c| c.homing.zero_speed = Rpm(0)),
-            ("limit_switches", |c| c.limit_switches.positive = Some(6)),
-            ("brake.output", |c| {
-                c.brake.as_mut().unwrap().output = 6;
-            }),
-            ("timing.timeout", |c| c.timing.timeout = Span::ZERO),
-            ("can.host_node", |c| c.can.host_node = 1),
-            ("can.node_limit", |c| {
-                c.can.node_limit = Span::from_millis(50);
-            }),
-            ("timing.hold", |c| c.timing.hold = Span::from_nanos(-1)),
-        ];
-        for (field, change) in cases {
-            assert_eq!(invalid_field(change), field);
-        }
-    }
 
     #[test]
     fn limit_switch_bits_are_those_of_2071() {

@@ -330,6 +330,7 @@ impl fmt::Display for Deviation {
 
 /// Read or write of an object, for messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Operation {
     /// The object.
     pub address: Address,

@@ -87,7 +87,7 @@ impl SyncMatcher {
             self.last_open = None;
         }
         if sent < self.earliest_sync(sent) && !self.is_complete {
-            // Its PDO cannot be told from an earlier one's.
+            // Its PDO cannot be distinguished from an earlier one's.
             self.unanswered.clear();
         } else {
             self.unanswered.push_back(sent);

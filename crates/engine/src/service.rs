@@ -40,7 +40,7 @@ use crate::devices::lidar_receiver::{LidarReceiver, PacketTap};
 use crate::devices::profile;
 use crate::failure::{Failure, Kind};
 use axis_report::{AxisReport, StopAnswer, StoppedCommand};
-use device_thread::Order;
+use device_thread::ThreadRequest;
 use events::Events;
 use lidar_stats::LidarStats;
 use live_preview::{LivePreview, PreviewInput};
@@ -59,7 +59,7 @@ const SHORTEST_SUSPENSION: Span = Span::from_millis(500);
 
 /// The end of a capture whose motion began.
 pub struct CaptureEnd {
-    /// What became of the recording.
+    /// Result of the recording.
     pub outcome: Outcome,
     /// The simulator's truth, where the devices are software.
     pub truth: Option<Truth>,
@@ -81,7 +81,7 @@ pub struct DeviceService {
     preview: PreviewInput,
     receiver: Mutex<Option<Arc<LidarReceiver>>>,
     lidar_stats: Arc<Mutex<LidarStats>>,
-    orders: mpsc::Sender<Order>,
+    requests: mpsc::Sender<ThreadRequest>,
     ending: AtomicBool,
     connects: AtomicU64,
     started: Instant,
@@ -105,7 +105,7 @@ impl DeviceService {
     /// [`Kind::BadInput`] where the configuration describes no valid axis; for one command, also
     /// where a device cannot be opened.
     pub fn start(options: ServiceOptions) -> Result<(Arc<Self>, DeviceThread), Failure> {
-        let (orders, inbox) = mpsc::channel();
+        let (requests, inbox) = mpsc::channel();
         let axis = profile::axis(&options.config.axis)?;
         // A command prints its own messages.
         let resident = matches!(options.lifetime, Lifetime::Resident);
@@ -121,7 +121,7 @@ impl DeviceService {
             preview: PreviewInput::default(),
             receiver: Mutex::default(),
             lidar_stats: Arc::default(),
-            orders,
+            requests,
             ending: AtomicBool::new(false),
             connects: AtomicU64::new(0),
             started: Instant::now(),
@@ -246,7 +246,7 @@ impl DeviceService {
     ) -> Result<oneshot::Receiver<CaptureResult>, LeaseError> {
         let (answer, result) = oneshot::channel();
         let plan = Box::new(plan);
-        self.order(Order::Capture {
+        self.request(ThreadRequest::Capture {
             lease,
             plan,
             answer,
@@ -273,7 +273,7 @@ impl DeviceService {
             self.update_activity(|activity| activity.reads_only = true);
         }
         let (answer, report) = oneshot::channel();
-        self.order(Order::Jog {
+        self.request(ThreadRequest::Jog {
             lease,
             commands,
             answer,
@@ -414,18 +414,20 @@ impl DeviceService {
         self.ending.store(true, Ordering::Release);
         self.stop(Some(reason));
         // A device thread that is gone needs no waking.
-        let _ = self.order(Order::Wake);
+        let _ = self.request(ThreadRequest::Wake);
     }
 
     /// Opens the devices again: the machine was suspended, and they may be others now.
     pub fn reopen(&self, reason: Failure) {
         self.stop(Some(reason));
         // A device thread that is gone has no devices.
-        let _ = self.order(Order::Reopen);
+        let _ = self.request(ThreadRequest::Reopen);
     }
 
-    fn order(&self, order: Order) -> Result<(), LeaseError> {
-        self.orders.send(order).map_err(|_| LeaseError::ending())
+    fn request(&self, request: ThreadRequest) -> Result<(), LeaseError> {
+        self.requests
+            .send(request)
+            .map_err(|_| LeaseError::ending())
     }
 
     // The lidar.

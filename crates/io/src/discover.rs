@@ -15,6 +15,7 @@ pub const EPOS2_PRODUCT: u16 = 0xA8B0;
 
 /// Descriptor of a USB device.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct UsbIdentity {
     /// Vendor number.
     pub vendor: u16,
@@ -24,6 +25,7 @@ pub struct UsbIdentity {
 
 /// A serial port of this machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct SerialPortFound {
     /// Its path.
     pub path: PathBuf,

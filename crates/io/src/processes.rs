@@ -10,6 +10,7 @@ use nix::sys::socket::sockopt::PeerCredentials;
 
 /// The process that listens at a Unix socket.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct SocketOwner {
     /// Process id; 0 if it is in a container.
     pub pid: u32,

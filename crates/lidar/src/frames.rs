@@ -26,6 +26,7 @@ pub struct FrameCutter {
 
 /// A complete frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct RevolutionFrame {
     /// Index from 0.
     pub index: u64,

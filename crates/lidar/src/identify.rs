@@ -58,7 +58,7 @@ pub(crate) struct Identifier {
     /// Whether a spacing confirmed the current model.
     confirmed: bool,
     /// Model by the last spacing, if it contradicts a confirmed model.
-    doubted_by: Option<&'static Model>,
+    contradicted_by: Option<&'static Model>,
     /// Model that explains the last spacings without loss, and their number.
     regular: Option<(&'static Model, u8)>,
 }
@@ -75,7 +75,7 @@ impl Identifier {
             user_model,
             by_spacing: None,
             confirmed: false,
-            doubted_by: None,
+            contradicted_by: None,
             regular: None,
         }
     }
@@ -135,7 +135,7 @@ impl Identifier {
         match evidence_of(spacing, current, named, dual, self.confirmed)? {
             SpacingEvidence::Current => {
                 self.confirmed = true;
-                self.doubted_by = None;
+                self.contradicted_by = None;
                 self.regular = None;
                 None
             }
@@ -150,13 +150,13 @@ impl Identifier {
                 Some(model)
             }
             SpacingEvidence::Other(model)
-                if self.confirmed && !same(self.doubted_by, Some(model)) =>
+                if self.confirmed && !same(self.contradicted_by, Some(model)) =>
             {
-                self.doubted_by = Some(model);
+                self.contradicted_by = Some(model);
                 None
             }
             SpacingEvidence::Other(model) => {
-                self.doubted_by = None;
+                self.contradicted_by = None;
                 Some(model)
             }
         }

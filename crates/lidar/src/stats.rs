@@ -62,6 +62,7 @@ pub struct Stats {
 
 /// A place in a recording at which packets are missing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct PacketGap {
     /// Device time from the first firing to the gap, without clock steps.
     pub at: Span,

@@ -85,6 +85,7 @@ pub enum NoUtc {
 
 /// A change of the lock or of the reason for its absence.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct UtcChange {
     /// Device time of the change.
     pub at: Stamp<Lidar>,

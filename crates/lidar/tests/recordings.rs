@@ -142,7 +142,7 @@ fn assert_valid(datagrams: &[Datagram], decoded: &Decoded) {
     }
 }
 
-/// What a recording holds, by decoders other than ours.
+/// Contents of a recording by decoders other than ours.
 struct Expected {
     data: u64,
     position: u64,

@@ -3,7 +3,7 @@
 //!
 //! The packets come from `firmware-sim`, which implements the manual without code of this crate.
 
-use firmware_sim::vlp16::{DataPacketBuilder, LASERS, PacketModel, ReturnMode, Returns};
+use firmware_sim::vlp16::{DataPacketBuilder, LASERS, PacketModel, ReturnMode};
 use lidar::{Decoder, Duplicates, Echo, Firing, Options};
 use proptest::prelude::*;
 use units::{Host, Lidar, Stamp};
@@ -35,6 +35,8 @@ impl Rotor {
 
 /// Returns of firings: the only one of each laser, or the last and the strongest.
 type Shots = Vec<(Returns, Returns)>;
+/// Distance in units of 2 mm (0 for no return) and reflectivity of each laser.
+type Returns = [(u16, u8); LASERS];
 
 /// Packets with their completion times.
 fn build(rotor: Rotor, dual: bool, shots: &Shots) -> Vec<(i64, Vec<u8>)> {

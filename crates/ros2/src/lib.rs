@@ -26,7 +26,7 @@ use engine::service::DeviceService;
 pub use bridge::Bridge;
 pub use counts::Counts;
 
-/// What keeps the scans: a daemon.
+/// The store of scans: a daemon.
 pub trait ScanService: Send + Sync {
     /// The devices.
     fn devices(&self) -> &Arc<DeviceService>;
@@ -41,7 +41,7 @@ pub trait ScanService: Send + Sync {
     fn log(&self, scan: &str) -> PathBuf;
 }
 
-/// What all threads of the bridge share.
+/// State of all threads of the bridge.
 pub(crate) struct Context {
     pub(crate) scans: Arc<dyn ScanService>,
     pub(crate) settings: Ros2Config,

@@ -16,7 +16,7 @@ const USUAL_DEPTH: u32 = 42;
 const ATTACHMENT_BYTES: usize = 33;
 const GID_BYTES: usize = 16;
 
-/// What `rmw_zenoh` knows a publisher or a client by.
+/// Identity of a publisher or a client in `rmw_zenoh`.
 pub type Gid = [u8; GID_BYTES];
 
 /// What is offered (`rmw/types.h`): history is keep last, and deadline, lifespan and liveliness are
@@ -66,7 +66,7 @@ pub fn key(settings: &Ros2, name: &str, kind: &MessageType) -> String {
     format!("{domain}/{name}/{}/{}", type_name(kind), kind.hash)
 }
 
-/// What an entity is.
+/// Kind of an entity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Entity {
     /// A publisher.

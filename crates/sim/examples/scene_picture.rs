@@ -12,7 +12,7 @@ use std::io::{Write, stdout};
 
 use glam::{DMat3, DVec2, DVec3, dvec2, dvec3};
 use sim::cast::{Caster, Cylinder, Hit, Object, Ray, Reach, Surface};
-use sim::scenery::{Placed, Scenery, no_files, shipped};
+use sim::scenery::{PlacedScenery, Scenery, no_files, shipped};
 use sim::sensor::{LidarMount, LidarSensor};
 
 /// Pixels of the view, and of the panorama beneath it.
@@ -91,7 +91,7 @@ fn screen(colour: DVec3) -> [u8; 3] {
 }
 
 /// Objects around the scanner.
-fn enclosing(placed: &Placed) -> Vec<bool> {
+fn enclosing(placed: &PlacedScenery) -> Vec<bool> {
     let inside = |surface: &Surface| match surface {
         Surface::Sphere(sphere) => sphere.radius_m > 5.0,
         Surface::Cuboid(cuboid) => {
@@ -140,14 +140,14 @@ impl Camera {
 }
 
 struct Seen<'a> {
-    placed: &'a Placed,
+    placed: &'a PlacedScenery,
     caster: &'a Caster,
     with_scanner: &'a Caster,
     enclosing: Vec<bool>,
 }
 
 impl Seen<'_> {
-    /// What is met and the normal there, the outsides of what encloses the scanner being cut away.
+    /// The surface met and its normal; the outsides of enclosing surfaces are cut away.
     fn meet(&self, from: DVec3, direction: DVec3) -> Option<(Hit, DVec3)> {
         let ray = Ray::new(from, direction).ok()?;
         let mut reach = Reach::up_to(1e4);

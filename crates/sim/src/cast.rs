@@ -29,12 +29,12 @@ pub use build::Quality;
 pub use caster::{CastError, Caster};
 pub use height_field::{HeightField, HeightFieldError};
 pub use mesh::{Mesh, MeshError};
-pub(crate) use packet::{LANES, Lanes, Nearest};
+pub(crate) use packet::{LANES, Nearest, RayLanes};
 pub use placement::{Placement, PlacementError};
 pub use ray::{Hit, ObjectId, Ray, RayError, Reach};
 pub use solids::{Cuboid, Cylinder, Plane, Sphere};
 pub use surface::{Object, Surface};
-pub use triangle::Sheared8;
+pub use triangle::ShearedRays;
 
 #[cfg(test)]
 mod tests;

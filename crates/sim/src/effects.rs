@@ -56,7 +56,7 @@ impl Needs {
     }
 }
 
-/// What all effects have in common.
+/// Methods of all effects.
 pub trait Effect: core::fmt::Debug {
     /// The key in the scene file's `[effects]` and the name of the effect's random draws.
     fn name(&self) -> &'static str;

@@ -51,7 +51,7 @@ pub enum TiltSteps {
 
 /// Firings at the azimuth where a revolution begins, if a revolution is a whole number of steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Seam {
+pub enum RevolutionEnds {
     /// At the begin and at the end, as in the 2018 paper: 901 firings of 0.4 degrees.
     Twice,
     /// At the begin only: 900 firings.
@@ -83,7 +83,7 @@ pub struct PatternSettings {
     /// Azimuth of the first firing of a frame, degrees.
     pub start_deg: f64,
     /// Whether the last firing of a frame repeats the first azimuth.
-    pub seam: Seam,
+    pub seam: RevolutionEnds,
     /// The tilt.
     pub tilt: PatternTilt,
     /// Number of whole frames; `None` for as long as the tilt moves, with the last frame cut off.
@@ -179,8 +179,8 @@ impl Pattern {
         let per_revolution = 360.0 / settings.step_deg;
         let whole = (per_revolution - per_revolution.round()).abs() < WHOLE * per_revolution;
         let firings = match (whole, settings.seam) {
-            (true, Seam::Twice) => per_revolution.round() + 1.0,
-            (true, Seam::Once) => per_revolution.round(),
+            (true, RevolutionEnds::Twice) => per_revolution.round() + 1.0,
+            (true, RevolutionEnds::Once) => per_revolution.round(),
             (false, _) => per_revolution.ceil(),
         };
         let tilt = settings.tilt;

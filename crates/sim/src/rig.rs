@@ -33,7 +33,7 @@ pub use truth::Truth;
 /// Configuration of the virtual world.
 #[derive(Clone, Debug)]
 pub struct RigConfig {
-    /// What beams meet.
+    /// The scene of the lidar's beams.
     pub scene: Arc<Scene>,
     /// Height of the lidar's origin above the tilt axis (d of Eq. 4-6).
     pub mount: Metres,
@@ -55,6 +55,7 @@ pub struct RigConfig {
 
 /// Configuration of the rig's lidar.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct RigLidar {
     /// Revolutions per minute in the lidar's own time (300..=1200 on the real one).
     pub rpm: u32,
@@ -116,6 +117,7 @@ pub struct Datagram {
 
 /// Bytes from the drive: a frame, a handshake or a line of its adapter.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct DriveOutput {
     /// When they left the drive.
     pub at: Stamp<Host>,

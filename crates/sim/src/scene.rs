@@ -6,12 +6,12 @@
 use glam::DVec3;
 
 use crate::cast::{CastError, Caster, Hit as CastHit, Object, Ray, Reach};
-use crate::scenery::{Material, MaterialAssignment, Placed};
+use crate::scenery::{Material, MaterialAssignment, PlacedScenery};
 
 /// Objects and materials.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
-    placed: Placed,
+    placed: PlacedScenery,
     caster: Caster,
 }
 
@@ -36,7 +36,7 @@ impl Scene {
     ///
     /// # Errors
     /// [`CastError`] for invalid geometry.
-    pub fn of(placed: Placed) -> Result<Self, CastError> {
+    pub fn of(placed: PlacedScenery) -> Result<Self, CastError> {
         let caster = placed.caster()?;
         Ok(Self { placed, caster })
     }
@@ -60,7 +60,7 @@ impl Scene {
 
     /// The placed objects and materials.
     #[must_use]
-    pub const fn placed(&self) -> &Placed {
+    pub const fn placed(&self) -> &PlacedScenery {
         &self.placed
     }
 

@@ -40,6 +40,7 @@ pub struct SceneFile {
 
 /// The effects of a scene.
 #[derive(Debug, Default)]
+#[non_exhaustive]
 pub struct SceneEffects {
     /// All of them, as [`Simulation::run`] takes them.
     pub effects: ConfiguredEffects,
@@ -50,10 +51,11 @@ pub struct SceneEffects {
 /// An invalid scene file.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("line {line}: {what}")]
+#[non_exhaustive]
 pub struct SceneFileError {
     /// The line, from 1.
     pub line: usize,
-    /// What is wrong there.
+    /// The error.
     pub what: String,
 }
 

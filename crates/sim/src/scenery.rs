@@ -1,9 +1,8 @@
 //! The surroundings of the scanner: objects and materials of a scene file.
 //!
 //! [`Scenery::parse`] reads and checks the text. [`Scenery::place`] makes the objects that rays are
-//! cast at ([`Placed`]); the caller provides the bytes of mesh files. [`SHIPPED`] has the scenes of
-//! the simulator. Errors have a line and a column.
-//!
+//! cast at ([`PlacedScenery`]); the caller provides the bytes of mesh files. [`SHIPPED`] has the
+//! scenes of the simulator. Errors have a line and a column.
 
 mod error;
 mod generators;
@@ -16,7 +15,7 @@ mod shipped;
 
 pub use error::{FilePosition, SceneryError};
 pub(crate) use error::{InvalidValue, line_of_value};
-pub use materials::{Material, MaterialAssignment, MaterialTable, Placed};
+pub use materials::{Material, MaterialAssignment, MaterialTable, PlacedScenery};
 pub use meshes::{MeshFileError, MeshFormat};
 pub use moving::{Moving, Travel};
 pub use objects::ObjectTable;
@@ -84,7 +83,7 @@ impl Scenery {
         &self,
         seed: u64,
         files: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
-    ) -> Result<Placed, SceneryError> {
+    ) -> Result<PlacedScenery, SceneryError> {
         place::place(self, seed, files)
     }
 }

@@ -136,6 +136,7 @@ pub trait SimulationSink {
 
 /// Counts of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct SimulationSummary {
     /// Data packets that left the lidar.
     pub packets: u64,

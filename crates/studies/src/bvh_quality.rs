@@ -21,7 +21,7 @@ pub(crate) const BVH_QUALITY: Study = Study {
     choice: "scene, tree",
     columns: &[
         ("build_ms", "build, ms"),
-        ("trace_ns_per_ray", "ns a ray"),
+        ("trace_ns_per_ray", "ns per ray"),
         ("scan_ms", "built and 3 M rays, ms"),
         ("hits_that_differ", "hits that differ"),
     ],

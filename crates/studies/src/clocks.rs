@@ -13,7 +13,7 @@ pub(crate) const CLOCKS: Study = Study {
     title: "The lidar's clock from its packets",
     choice: "link, clock",
     columns: &[
-        ("time_ns_per_packet", "ns a packet"),
+        ("time_ns_per_packet", "ns per packet"),
         ("bias_us", "bias, us"),
         ("worst_error_us", "worst error, us"),
     ],

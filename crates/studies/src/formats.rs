@@ -24,8 +24,8 @@ pub(super) const FORMATS: Study = Study {
     title: "Point formats",
     choice: "format",
     columns: &[
-        ("time_s_per_million_points", "s a million points"),
-        ("bytes_per_point", "bytes a point"),
+        ("time_s_per_million_points", "s per million points"),
+        ("bytes_per_point", "bytes per point"),
         ("worst_error_um", "worst error of a place, um"),
     ],
     trades: &[Trade::new(0, 2), Trade::new(1, 2)],

@@ -18,7 +18,7 @@ pub(crate) const GRANULARITY: Study = Study {
     title: "How often angles are computed",
     choice: "angles per",
     columns: &[
-        ("time_ns_per_point", "ns a point"),
+        ("time_ns_per_point", "ns per point"),
         ("worst_error_mm", "worst error, mm at 100 m"),
     ],
     trades: &[Trade::new(0, 1).joined()],

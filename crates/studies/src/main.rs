@@ -24,7 +24,7 @@ mod workload;
 use std::error::Error;
 use std::path::PathBuf;
 
-use analysis::tradeoff::{self, Bench, Book, Effort, Machine, Study, StudyReport, text};
+use analysis::tradeoff::{self, Bench, Book, Effort, Machine, Study, StudyReport};
 use clap::Parser;
 
 /// Measures the choices behind velomotion's own arithmetic.
@@ -81,6 +81,6 @@ fn main() -> Result<(), Box<dyn Error>> {
             std::fs::write(folder.join(path), content)?;
         }
     }
-    print!("{}", text::report(&report));
+    print!("{}", BOOK.page(&report));
     Ok(())
 }

@@ -16,7 +16,7 @@ pub(crate) const TRIGONOMETRY: Study = Study {
     title: "Numbers and sines",
     choice: "numbers, sine and cosine",
     columns: &[
-        ("time_ns_per_point", "ns a point"),
+        ("time_ns_per_point", "ns per point"),
         ("worst_error_mm", "worst error, mm at 100 m"),
     ],
     trades: &[Trade::new(0, 1)],

@@ -63,9 +63,7 @@ impl<C> Stamp<C> {
     /// The time from `earlier` to this instant, saturating.
     #[must_use]
     pub const fn saturating_since(self, earlier: Self) -> Span {
-        Span {
-            ns: self.ns.saturating_sub(earlier.ns),
-        }
+        Span::from_nanos(self.ns.saturating_sub(earlier.ns))
     }
 }
 
@@ -82,34 +80,27 @@ impl Span {
     /// A span of microseconds.
     #[must_use]
     pub const fn from_micros(us: i64) -> Self {
-        Self { ns: us * 1_000 }
+        Self::from_nanos(us * 1_000)
     }
 
     /// A span of milliseconds.
     #[must_use]
     pub const fn from_millis(ms: i64) -> Self {
-        Self { ns: ms * 1_000_000 }
+        Self::from_nanos(ms * 1_000_000)
     }
 
     /// A span of whole seconds.
     #[must_use]
     pub const fn from_secs(s: i64) -> Self {
-        Self {
-            ns: s * 1_000_000_000,
-        }
+        Self::from_nanos(s * 1_000_000_000)
     }
 
     /// A span of `s` seconds, rounded to the nearest nanosecond, saturating.
     #[must_use]
     pub fn from_secs_f64(s: f64) -> Self {
         let ns = s * 1e9;
-        Self {
-            ns: if ns >= 0.0 {
-                (ns + 0.5) as i64
-            } else {
-                (ns - 0.5) as i64
-            },
-        }
+        let half = if ns >= 0.0 { 0.5 } else { -0.5 };
+        Self::from_nanos((ns + half) as i64)
     }
 
     /// Nanoseconds.
@@ -133,23 +124,19 @@ impl Span {
     /// The sum of the two spans, saturating.
     #[must_use]
     pub const fn saturating_add(self, other: Self) -> Self {
-        Self {
-            ns: self.ns.saturating_add(other.ns),
-        }
+        Self::from_nanos(self.ns.saturating_add(other.ns))
     }
 
     /// The difference of the two spans, saturating.
     #[must_use]
     pub const fn saturating_sub(self, other: Self) -> Self {
-        Self {
-            ns: self.ns.saturating_sub(other.ns),
-        }
+        Self::from_nanos(self.ns.saturating_sub(other.ns))
     }
 
     /// Half of the span, towards zero.
     #[must_use]
     pub const fn half(self) -> Self {
-        Self { ns: self.ns / 2 }
+        Self::from_nanos(self.ns / 2)
     }
 }
 
@@ -212,31 +199,25 @@ impl<C> SubAssign<Span> for Stamp<C> {
 impl<C> Sub for Stamp<C> {
     type Output = Span;
     fn sub(self, earlier: Self) -> Span {
-        Span {
-            ns: self.ns - earlier.ns,
-        }
+        Span::from_nanos(self.ns - earlier.ns)
     }
 }
 impl Add for Span {
     type Output = Self;
     fn add(self, other: Self) -> Self {
-        Self {
-            ns: self.ns + other.ns,
-        }
+        Self::from_nanos(self.ns + other.ns)
     }
 }
 impl Sub for Span {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
-        Self {
-            ns: self.ns - other.ns,
-        }
+        Self::from_nanos(self.ns - other.ns)
     }
 }
 impl Neg for Span {
     type Output = Self;
     fn neg(self) -> Self {
-        Self { ns: -self.ns }
+        Self::from_nanos(-self.ns)
     }
 }
 

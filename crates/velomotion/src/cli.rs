@@ -4,19 +4,19 @@ use std::net::SocketAddr;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use cloud::Fields;
-use engine::capture::jog::{GotoRequest, JogRequest};
-use engine::capture_request::CaptureRequest;
-use engine::reconstruct::decoder_options::DecoderRequest;
-use engine::reconstruct::replay;
-use lidar::Duplicates;
-use protocol::vlp16::{Model, models};
+use engine::reconstruct::source::SensorAddress;
 use scanner::Tolerance;
 
 use crate::sweep_ranges::SweepRanges;
-use engine::reconstruct::source::SensorAddress;
+
+mod requests;
+mod values;
+
+use values::{
+    acceleration, azimuth, deceleration, effect_or_all, number, place, seed, share, threads,
+    two_times,
+};
 
 /// Version, and the commit of the build.
 pub const VERSION: &str = env!("VELOMOTION_VERSION");
@@ -235,12 +235,6 @@ pub struct Simulate {
 /// `--without all`.
 pub const ALL: &str = "all";
 
-/// Names of the effects, and [`ALL`].
-fn effect_or_all() -> PossibleValuesParser {
-    let names = sim::effect_models::EffectsConfig::NAMES.iter().copied();
-    PossibleValuesParser::new(names.chain([ALL]))
-}
-
 /// Requested accuracy.
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub struct AccuracyArguments {
@@ -248,15 +242,6 @@ pub struct AccuracyArguments {
     /// of the ranges: selects the cheapest sufficient method [default: the most accurate]
     #[arg(long, value_name = "LENGTH@DISTANCE", allow_hyphen_values = true)]
     pub tolerance: Option<Tolerance>,
-}
-
-impl AccuracyArguments {
-    /// The accuracy requested from the scanner.
-    #[must_use]
-    pub fn wanted(&self) -> scanner::Accuracy {
-        self.tolerance
-            .map_or(scanner::Accuracy::Best, scanner::Accuracy::Within)
-    }
 }
 
 /// Packet decoding.
@@ -272,8 +257,8 @@ pub struct LidarArguments {
     #[arg(long, value_name = "FILE")]
     pub calibration: Option<PathBuf>,
     /// Equal returns of a pulse in dual return mode: one point or two
-    #[arg(long, value_enum, default_value_t = Equal::Once)]
-    pub equal_returns: Equal,
+    #[arg(long, value_enum, default_value_t = EqualReturns::Once)]
+    pub equal_returns: EqualReturns,
     /// Start all rays in one point, as many drivers do, instead of at the height of each laser
     #[arg(long)]
     pub one_origin: bool,
@@ -304,84 +289,12 @@ pub enum ModelName {
 
 /// Treatment of two equal returns of one pulse.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum Equal {
+pub enum EqualReturns {
     /// One point
     #[default]
     Once,
     /// Two points
     Twice,
-}
-
-impl From<TimeArgument> for replay::TimeReference {
-    fn from(time: TimeArgument) -> Self {
-        match time {
-            TimeArgument::Host => Self::Host,
-            TimeArgument::Utc => Self::Utc,
-        }
-    }
-}
-
-impl LidarArguments {
-    /// The request to the engine.
-    #[must_use]
-    pub fn request(&self) -> DecoderRequest {
-        DecoderRequest {
-            model: self.model.map(ModelName::model),
-            calibration: self.calibration.clone(),
-            duplicates: match self.equal_returns {
-                Equal::Once => Duplicates::Unique,
-                Equal::Twice => Duplicates::All,
-            },
-            one_origin: self.one_origin,
-        }
-    }
-}
-
-impl From<TiltVerb> for JogRequest {
-    fn from(verb: TiltVerb) -> Self {
-        match verb {
-            TiltVerb::Status | TiltVerb::Faults { clear: false } => Self::Status,
-            TiltVerb::Faults { clear: true } => Self::ClearFaults,
-            TiltVerb::Stop => Self::Stop,
-            TiltVerb::Home => Self::Home,
-            TiltVerb::Goto { to, speed, accel } => Self::Goto(GotoRequest {
-                to_deg: to,
-                speed_deg_s: speed,
-                accel_deg_s2: accel,
-            }),
-        }
-    }
-}
-
-impl From<&Capture> for CaptureRequest {
-    fn from(arguments: &Capture) -> Self {
-        Self {
-            speed_deg_s: arguments.speed,
-            from_deg: arguments.from,
-            to_deg: arguments.to,
-            accel_deg_s2: arguments.accel,
-            sweeps: arguments.sweeps,
-            both_ways: arguments.both_ways,
-            tolerance: arguments
-                .accuracy
-                .tolerance
-                .map(|t| format!("{}m@{}m", t.off.0, t.at.0)),
-            name: None,
-        }
-    }
-}
-
-impl ModelName {
-    /// The model.
-    #[must_use]
-    pub const fn model(self) -> &'static Model {
-        match self {
-            Self::Vlp16 => &models::VLP_16,
-            Self::HiRes => &models::PUCK_HI_RES,
-            Self::Hdl32e => &models::HDL_32E,
-            Self::Vlp32c => &models::VLP_32C,
-        }
-    }
 }
 
 /// Output of a cloud.
@@ -399,16 +312,6 @@ pub struct Output {
     /// Overwrite existing files
     #[arg(long)]
     pub force: bool,
-}
-
-impl Output {
-    /// Columns of the cloud in addition to the position.
-    #[must_use]
-    pub fn fields(&self) -> Fields {
-        let asked = [(self.uncertainty, Fields::SD), (self.echo, Fields::ECHO)];
-        let asked = asked.into_iter().filter(|(asked, _)| *asked);
-        asked.fold(Fields::FILE, |fields, (_, field)| fields | field)
-    }
 }
 
 /// `info`.
@@ -593,82 +496,6 @@ pub struct FirmwareSim {
     /// Let the encoder's count deviate by up to this many quadcounts at rest under power
     #[arg(long, value_name = "QC", default_value_t = 0)]
     pub dither: u8,
-}
-
-/// Parses two times, milliseconds.
-fn two_times(text: &str) -> Result<(u16, u16), String> {
-    text.split_once(',')
-        .and_then(|(open, close)| Some((open.parse().ok()?, close.parse().ok()?)))
-        .ok_or_else(|| "expected two times from 0 to 65535 ms: OPEN,CLOSE".to_owned())
-}
-
-/// Parses an acceleration of the axis, deg/s2; 1e6 is far beyond any motor.
-fn acceleration(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value.abs() <= 1e6 => Ok(value),
-        _ => Err("expected an acceleration from -1000000 to 1000000 deg/s2".to_owned()),
-    }
-}
-
-/// Parses a deceleration of the axis, deg/s2.
-fn deceleration(text: &str) -> Result<f64, String> {
-    acceleration(text)
-        .ok()
-        .filter(|value| *value >= 0.0)
-        .ok_or_else(|| "expected a deceleration from 0 to 1000000 deg/s2".to_owned())
-}
-
-/// Parses a number of any use as an angle, speed, acceleration or factor.
-fn number(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        // Later checks print the number: 1e300 would have 301 digits.
-        Ok(number) if number.is_nan() || number.abs() <= 1e6 => Ok(number),
-        _ => Err("expected a number from -1e6 to 1e6".to_owned()),
-    }
-}
-
-/// Parses a seed.
-fn seed(text: &str) -> Result<u64, String> {
-    let expected = || format!("expected a whole number from 0 to {}", u64::MAX);
-    text.parse().map_err(|_| expected())
-}
-
-/// Parses a number of threads.
-fn threads(text: &str) -> Result<NonZeroUsize, String> {
-    let number = text.parse::<u16>().ok().map(usize::from);
-    let number = number.and_then(NonZeroUsize::new);
-    number.ok_or_else(|| format!("expected a whole number from 1 to {}", u16::MAX))
-}
-
-/// Parses a share below 1.
-fn share(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(share) if (0.0..1.0).contains(&share) => Ok(share),
-        _ => Err("expected a share from 0 (every pair is counted) to below 1".to_owned()),
-    }
-}
-
-/// Parses a position, metres.
-fn place(text: &str) -> Result<[f64; 3], String> {
-    let numbers: Vec<f64> = text
-        .split(',')
-        .filter_map(|number| number.trim().parse().ok())
-        .filter(|number: &f64| number.is_finite())
-        .collect();
-    match (numbers.try_into(), text.split(',').count()) {
-        (Ok(place), 3) => Ok(place),
-        _ => Err("expected three numbers, metres: X,Y,Z".to_owned()),
-    }
-}
-
-/// Parses an azimuth, degrees.
-fn azimuth(text: &str) -> Result<f64, String> {
-    let degrees: f64 = text.parse().map_err(|_| "expected degrees".to_owned())?;
-    if (-360.0..=360.0).contains(&degrees) {
-        Ok(degrees)
-    } else {
-        Err("expected an azimuth from -360 to 360 degrees".to_owned())
-    }
 }
 
 #[cfg(test)]

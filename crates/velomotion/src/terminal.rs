@@ -31,7 +31,7 @@ static STDERR: LazyLock<SyncSender<StderrMessage>> = LazyLock::new(|| {
     sender
 });
 
-/// What the thread does next.
+/// The thread's next action.
 enum StderrMessage {
     /// Writes these bytes, above the bar if there is one.
     Text(Vec<u8>),

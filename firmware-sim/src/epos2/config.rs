@@ -28,7 +28,7 @@ pub struct NodeConfig {
     pub hard_stops: [Option<i32>; 2],
     /// Model of the servo; `None`: the shaft follows exactly.
     pub servo: Option<Servo>,
-    /// What moves and holds the shaft without power; `None`: an unpowered shaft stays in place.
+    /// Gravity and friction on the shaft without power; `None`: an unpowered shaft stays in place.
     pub load: Option<AxisLoad>,
     /// Whether 6064 is renewed once per control cycle of 1 ms; else it is the count at the request.
     pub latches_position: bool,
@@ -40,7 +40,7 @@ pub struct NodeConfig {
     pub fault_at_power_on: DeviceError,
 }
 
-/// What moves and holds the shaft while the power stage is off, as accelerations of the motor in
+/// Gravity and friction on the shaft while the power stage is off, as accelerations of the motor in
 /// rpm/s. The power stage overcomes gravity and friction without deviation, but not a closed brake.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AxisLoad {

@@ -1,4 +1,4 @@
-//! What reads and writes of single objects mean to the node: computed values and side effects.
+//! Computed values of single objects, and side effects of writes.
 //!
 //! Objects that are not named here are plain storage.
 
@@ -128,7 +128,7 @@ impl Node {
         self.write(address, u32::from_le_bytes(raw))
     }
 
-    /// What a write sets off.
+    /// The side effect of a write.
     fn written(&mut self, address: Address, raw: u32) {
         match address {
             a if a == objects::CONTROLWORD.address => self.command(raw as u16),

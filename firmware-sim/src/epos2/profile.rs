@@ -10,7 +10,7 @@ use super::fixed::{BITS, Fine, MS, Speed, distance, div_ceil};
 use super::leg::ProfileLeg;
 use super::ramp::{RampShape, Sin2Progress};
 
-/// What a move may not exceed.
+/// Limits of a move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct MotionLimits {
     /// Cruise speed, above zero; signed where it is a speed to hold.
@@ -33,12 +33,12 @@ pub(super) struct TrapezoidalProfile {
     qc_per_turn: u32,
     /// Brake to zero, change to the cruise speed, cruise; those not needed last no time.
     legs: [ProfileLeg; 3],
-    landing: Landing,
+    landing: FinalLeg,
 }
 
 /// The last stretch, counted back from the target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Landing {
+struct FinalLeg {
     target: Fine,
     forward: bool,
     /// Mean.
@@ -130,7 +130,7 @@ impl TrapezoidalProfile {
                 change,
                 ProfileLeg::cruise(cruise_from, signed(peak), duration),
             ],
-            landing: Landing {
+            landing: FinalLeg {
                 target,
                 forward,
                 deceleration: limits.deceleration,
@@ -163,7 +163,7 @@ impl TrapezoidalProfile {
     }
 }
 
-impl Landing {
+impl FinalLeg {
     fn at(&self, time: i128, qc_per_turn: u32) -> Option<(Fine, Speed)> {
         let left = self.duration - time;
         if left <= 0 {

@@ -17,7 +17,7 @@ pub struct Rs232Server {
     last_byte_us: u64,
 }
 
-/// What the master sends next.
+/// The next bytes of the master.
 #[derive(Clone, Debug)]
 enum HandshakeState {
     /// An opcode.

@@ -94,7 +94,12 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::vlp16::{DUAL_SEQUENCES, LASERS, Returns, SEQUENCES};
+    use crate::vlp16::LASERS;
+
+    /// Firing sequences of a data packet in a single-return mode: two per block.
+    const SEQUENCES: usize = 2 * BLOCKS;
+    /// Firing sequences of a data packet in dual-return mode: two blocks share their firings.
+    const DUAL_SEQUENCES: usize = SEQUENCES / 2;
 
     fn strongest() -> DataPacketBuilder {
         DataPacketBuilder::new(PacketModel::Vlp16, ReturnMode::Strongest)
@@ -112,7 +117,7 @@ mod tests {
     }
 
     /// Unique returns: distance 100 x sequence + laser, reflectivity laser.
-    fn distinct(sequence: usize) -> Returns {
+    fn distinct(sequence: usize) -> [(u16, u8); LASERS] {
         core::array::from_fn(|laser| ((100 * sequence + laser) as u16, laser as u8))
     }
 

@@ -22,9 +22,9 @@ pub enum Reaction {
 pub struct ErrorDescription {
     /// Name in the maxon specification.
     pub name: &'static str,
-    /// What happened.
+    /// Description.
     pub meaning: &'static str,
-    /// What to do about it.
+    /// Remedy.
     pub remedy: &'static str,
     /// How the drive stops.
     pub reaction: Reaction,

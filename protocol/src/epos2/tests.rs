@@ -173,7 +173,7 @@ fn a_sync_pair_restarts_a_frame_at_any_point() {
         for cut in 0..whole.len() {
             let mut stream = whole[..cut].to_vec();
             // Cut between an escape and its double, the new sync pair completes the double and
-            // cannot be told apart.
+            // cannot be distinguished.
             let open_escape = decoder_after(&stream).is_none();
             stream.extend(&whole);
             let mut got = decode_all(&stream);

@@ -14,6 +14,7 @@ const FIRST_YEAR: u16 = 80;
 /// Date, time, position and validity of an RMC sentence (`$GPRMC`, or of another talker such as
 /// `$GNRMC`), its checksum verified.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Rmc {
     /// Whether the receiver declares the data valid: status A, not V.
     pub valid: bool,
@@ -25,6 +26,7 @@ pub struct Rmc {
 
 /// A position in WGS 84.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct GpsPosition {
     /// Degrees, positive in the north.
     pub latitude_deg: f64,
@@ -86,10 +88,11 @@ pub struct UtcTime {
 /// Reason why a sentence gives no time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("NMEA sentence offset {offset}: expected {fault}")]
+#[non_exhaustive]
 pub struct NmeaError {
     /// Offset in the payload of the position packet in bytes.
     pub offset: usize,
-    /// What was expected there.
+    /// The expected text.
     pub fault: NmeaFault,
 }
 

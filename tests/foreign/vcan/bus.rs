@@ -6,15 +6,20 @@
 
 use io::can::{CanPort, SocketCan};
 use io::clock;
-use protocol::canopen::sdo::{FrameDisposition, SdoClient, SdoValue, TransferError};
-use protocol::canopen::{CanFrame, NodeId};
+use protocol::Bounded;
+use protocol::canopen::sdo::{
+    Expedited, SEGMENT_LEN, SdoRequest, SdoResponse, SdoTransfer, TransferError, TransferStep,
+};
+use protocol::canopen::{CanFrame, CommunicationObject, NodeId};
 use protocol::epos2::objects::{Address, Scalar, TypedObject};
 use units::{Host, Span, Stamp};
 
 /// Time limit of an answer and of a command's effect: an emulated machine on a busy host is slow.
 pub const TIME_LIMIT: Span = Span::from_secs(5);
 /// The longest object read here has 8 bytes.
-type Sdo = SdoClient<16>;
+const MAX_OBJECT: usize = 16;
+type Transfer = SdoTransfer<MAX_OBJECT>;
+type ObjectData = Bounded<u8, MAX_OBJECT>;
 
 /// A frame other than an SDO answer, with the kernel's receive time.
 pub type ReceivedFrame = (CanFrame, Stamp<Host>);
@@ -22,7 +27,7 @@ pub type ReceivedFrame = (CanFrame, Stamp<Host>);
 /// Master of one node.
 pub struct Master {
     bus: SocketCan,
-    sdo: Sdo,
+    node: NodeId,
     received: Vec<ReceivedFrame>,
 }
 
@@ -31,7 +36,7 @@ impl Master {
     pub fn open(interface: &str, node: NodeId) -> Self {
         Self {
             bus: SocketCan::open(interface).unwrap(),
-            sdo: Sdo::new(node, TIME_LIMIT),
+            node,
             received: Vec::new(),
         }
     }
@@ -82,52 +87,68 @@ impl Master {
 
     /// Reads an object of up to four bytes.
     pub fn read<T: Scalar>(&mut self, object: TypedObject<T>) -> T {
-        let value = self.read_raw(object.address);
-        value
-            .and_then(|value| value.scalar())
-            .unwrap_or_else(|error| panic!("{object:?}: {error}"))
+        let bytes = self
+            .read_raw(object.address)
+            .unwrap_or_else(|error| panic!("{object:?}: {error}"));
+        let width = usize::from(T::BYTES);
+        assert_eq!(bytes.len(), width, "{object:?}");
+        let value = Expedited::new(&bytes).expect("one to four bytes");
+        T::from_raw(value.to_u32())
     }
 
     /// Reads an object of any length.
-    pub fn read_raw(&mut self, address: Address) -> Result<SdoValue<16>, TransferError> {
-        self.sdo.read(address).unwrap();
-        self.transfer()
+    pub fn read_raw(&mut self, address: Address) -> Result<ObjectData, TransferError> {
+        self.run(Transfer::upload(address))
     }
 
     /// Writes an object of up to four bytes.
     pub fn write<T: Scalar>(&mut self, object: TypedObject<T>, value: T) {
-        self.sdo.write_scalar(object.address, value).unwrap();
-        self.transfer()
+        self.write_raw(object.address, Expedited::of(value).as_slice())
             .unwrap_or_else(|error| panic!("{object:?}: {error}"));
     }
 
     /// Writes bytes to an object.
     pub fn write_raw(&mut self, address: Address, bytes: &[u8]) -> Result<(), TransferError> {
-        self.sdo.write(address, bytes).unwrap();
-        self.transfer().map(drop)
+        self.run(Transfer::download(address, bytes, SEGMENT_LEN)?)
+            .map(drop)
     }
 
-    /// Completes the transfer under way.
-    fn transfer(&mut self) -> Result<SdoValue<16>, TransferError> {
+    /// Runs a transfer. After an error that the node did not report, the node gets an abort.
+    fn run(
+        &mut self,
+        (mut transfer, mut request): (Transfer, SdoRequest),
+    ) -> Result<ObjectData, TransferError> {
+        let address = transfer.address();
         loop {
-            while let Some(frame) = self.sdo.poll_transmit(clock::now()) {
-                self.send(&frame);
+            self.send(&request.to_frame(self.node));
+            match transfer.handle_response(&self.response()) {
+                Ok(TransferStep::Send(next)) => request = next,
+                Ok(TransferStep::Done(data)) => return Ok(data),
+                Err(error) => {
+                    if let Some(code) = error.abort_code() {
+                        let abort = SdoRequest::Abort {
+                            address,
+                            error: code,
+                        };
+                        self.send(&abort.to_frame(self.node));
+                    }
+                    return Err(error);
+                }
             }
-            if let Some(outcome) = self.sdo.poll_outcome() {
-                return outcome.result;
+        }
+    }
+
+    /// The node's next SDO response. Other frames are kept.
+    fn response(&mut self) -> SdoResponse {
+        let channel = CommunicationObject::SdoResponse(self.node).cob_id();
+        let end = clock::now() + TIME_LIMIT;
+        loop {
+            let left = end.saturating_since(clock::now());
+            let received = self.bus.read(left).unwrap().expect("an SDO response");
+            if received.0.cob_id() == Some(channel) {
+                return SdoResponse::parse(&received.0).unwrap().1;
             }
-            let left = self
-                .sdo
-                .poll_timeout()
-                .map_or(Span::ZERO, |end| end.saturating_since(clock::now()));
-            match self.bus.read(left).unwrap() {
-                Some(received) => match self.sdo.handle_frame(&received.0) {
-                    FrameDisposition::Accepted => {}
-                    FrameDisposition::Foreign => self.received.push(received),
-                    other => panic!("{other:?}: {}", received.0),
-                },
-                None => self.sdo.handle_timeout(clock::now()),
-            }
+            self.received.push(received);
         }
     }
 }

@@ -172,11 +172,11 @@ fn identity(master: &mut Master) {
     assert_eq!(master.read(objects::PRODUCT_CODE), 0x6420_0000);
     assert_eq!(master.read(objects::REVISION), 0x2126_0000);
     let name = master.read_raw(objects::DEVICE_NAME).unwrap();
-    assert_eq!(name.bytes.as_slice(), b"EPOS2");
+    assert_eq!(name.as_slice(), b"EPOS2");
     let serial = master.read_raw(objects::SERIAL_NUMBER_64).unwrap();
     let low = master.read(objects::SERIAL_NUMBER);
-    assert_eq!(serial.bytes.len(), 8);
-    assert_eq!(serial.bytes[..4], low.to_le_bytes());
+    assert_eq!(serial.len(), 8);
+    assert_eq!(serial[..4], low.to_le_bytes());
 }
 
 /// Checks that aborts carry their reason (CiA 301, "SDO abort codes") and that the next transfer

@@ -1,4 +1,4 @@
-//! What memory allows: columns as points have them, written and copied without any thought.
+//! Limits of the memory: columns of points, written and copied without computation.
 
 use std::hint::black_box;
 

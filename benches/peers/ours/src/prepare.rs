@@ -1,4 +1,4 @@
-//! What a recording is, and its parts as the others take them. All numbers little-endian.
+//! A recording, and its parts in the form of the other libraries. All numbers little-endian.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -76,7 +76,7 @@ pub fn packets(path: &Path) -> Packets {
 /// Writes the parts and describes them as a JSON object.
 ///
 /// - `packets.bin`: i64 host time in nanoseconds and 1206 bytes a packet.
-/// - `points.bin`: 40 bytes a point in order of firing: x, y, z in metres (sensor's frame; x right,
+/// - `points.bin`: 40 bytes per point in firing order: x, y, z in metres (sensor's frame; x right,
 ///   y forward) and device time in
 ///   seconds as f64, firing as u32 counted from the first, ring, reflectivity, laser, a zero byte.
 /// - `angles.csv`: what `replay --tilt` takes.

@@ -13,6 +13,7 @@ pub struct BinCounts(Vec<u64>);
 
 /// Statistics of the points per bin.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct Statistics {
     /// Number of bins.
     pub bins: usize,

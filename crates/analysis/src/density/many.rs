@@ -1,8 +1,8 @@
-//! Many points in few places, and on one circle: what they leave is what fewer points leave, and
-//! does not take the square of the time.
+//! Many points in few places, and on one circle: the holes are those of fewer points, and the time
+//! does not grow with the square of the points.
 //!
-//! Were every point asked of every cell about a hole, each of these would take minutes. Left out:
-//! times, which a busy machine decides.
+//! If every point were tested for every cell near a hole, each of these tests would take minutes.
+//! They do not measure times, which depend on the machine's load.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 

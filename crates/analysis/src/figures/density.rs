@@ -68,20 +68,20 @@ pub fn density(scans: &AnalyzedScans) -> String {
     }
     body += &scale(&shades, top);
     let bins = faces.len();
-    let title = format!("Points a bin on the sphere ({bins} bins)");
+    let title = format!("Points per bin on the sphere ({bins} bins)");
     let about = about(scans, &shades);
     document(&title, &about, top + 58.0, &body)
 }
 
 fn about(scans: &AnalyzedScans, shades: &Shades) -> String {
     let mut about = format!(
-        "Hemispheres seen from +x, from -y and from +z, a row a scan; bins from {} to {} points, darker is more.",
+        "Hemispheres seen from +x, from -y and from +z, one row per scan; bins from {} to {} points, darker is more.",
         shades.low, shades.high
     );
     for scan in &scans.scans {
         let s = scan.counts.statistics();
         about += &format!(
-            " {}: mean {:.3}, standard deviation {:.2}, {} to {} points a bin, {} bins empty.",
+            " {}: mean {:.3}, standard deviation {:.2}, {} to {} points per bin, {} bins empty.",
             scan.name, s.mean, s.sd, s.min, s.max, s.empty
         );
     }
@@ -97,7 +97,7 @@ fn row(
 ) -> String {
     let s = scan.counts.statistics();
     let more = format!(
-        "{} points; a bin {:.3} on average, sd {:.2}, from {} to {}; {} empty",
+        "{} points; {:.3} per bin on average, sd {:.2}, from {} to {}; {} empty",
         scan.points, s.mean, s.sd, s.min, s.max, s.empty
     );
     let mut svg = heading(&scan.name, &more, top + 14.0);
@@ -184,7 +184,7 @@ fn triangle(path: &mut String, side: &Side, face: &IcosahedronFace) {
 fn scale(shades: &Shades, top: f64) -> String {
     let (left, wide, high) = (MARGIN + 90.0, 430.0, 12.0);
     let y = top + 12.0;
-    let mut svg = scale_name(y, "points a bin");
+    let mut svg = scale_name(y, "points per bin");
     if shades.high == shades.low {
         let colour = Shades::of_step(shades.step(shades.low));
         svg += &format!(

@@ -43,7 +43,7 @@ pub fn histogram(scans: &AnalyzedScans) -> String {
     );
     let mut body = String::new();
     let mut about =
-        "The number of bins in classes of points a bin, on a logarithmic scale.".to_owned();
+        "The number of bins in classes of points per bin, on a logarithmic scale.".to_owned();
     let mut top = TITLE;
     for (number, scan) in scans.scans.iter().enumerate() {
         let (s, width) = (scan.counts.statistics(), class_width(scan));
@@ -75,7 +75,7 @@ pub fn histogram(scans: &AnalyzedScans) -> String {
 fn plot(scan: &AnalyzedScan, number: usize, width: u64, x: &PlotAxis, y: &PlotAxis) -> String {
     let s = scan.counts.statistics();
     let more = format!(
-        "mean {:.3} (line), sd {:.2} (dashed), {} to {} points a bin, classes of {width}",
+        "mean {:.3} (line), sd {:.2} (dashed), {} to {} points per bin, classes of {width}",
         s.mean, s.sd, s.min, s.max
     );
     let mut svg = heading(&scan.name, &more, 14.0);
@@ -83,7 +83,12 @@ fn plot(scan: &AnalyzedScan, number: usize, width: u64, x: &PlotAxis, y: &PlotAx
     svg += &AREA.horizontals(y);
     svg += &AREA.frame();
     let (across, up) = (AREA.right - 6.0, AREA.top + 14.0);
-    svg += &small(across, up, TextAnchor::End, "points a bin across, bins up");
+    svg += &small(
+        across,
+        up,
+        TextAnchor::End,
+        "points per bin across, bins up",
+    );
     let (mut bars, bottom) = (String::new(), AREA.bottom);
     for class in scan
         .counts

@@ -33,7 +33,7 @@ pub const SPHERE_M: f64 = 10.0;
 /// Results of one scan.
 #[derive(Clone, Debug)]
 pub struct AnalyzedScan {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// Number of points with a direction.
     pub points: u64,

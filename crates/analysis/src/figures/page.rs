@@ -212,7 +212,7 @@ fn densities(scans: &AnalyzedScans) -> String {
         "sd a deg\u{b2}",
     ];
     let bins = scans.bins.bins().len();
-    table(&format!("Points a bin, of {bins} bins"), &words, &rows)
+    table(&format!("Points per bin, of {bins} bins"), &words, &rows)
 }
 
 fn plane_table(scans: &AnalyzedScans) -> String {

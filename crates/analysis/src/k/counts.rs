@@ -4,6 +4,7 @@ use super::Edges;
 
 /// Exact numbers of pairs per bin of angle.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct PairCounts {
     /// The bins.
     pub edges: Edges,

@@ -10,6 +10,7 @@ use std::f64::consts::PI;
 /// The K function at the upper edges of bins. Fewer than two points have no pairs: all lists but
 /// the angles are empty then, and the extremes are 0.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct KCurve {
     /// `t_j`, radians; the last is pi.
     pub theta_rad: Vec<f64>,

@@ -134,7 +134,7 @@ impl Mul for Dd {
     }
 }
 
-/// What [`Dd::cosine`] may be off: 2^-98. Thirty operations of 2^-104 each come before the result;
+/// Error bound of [`Dd::cosine`]: 2^-98. Thirty operations of 2^-104 each come before the result;
 /// a test holds it against fractions.
 pub(super) const COSINE_ERROR: f64 = 1.0 / ((1_u128 << 98) as f64);
 

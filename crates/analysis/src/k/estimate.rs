@@ -4,6 +4,7 @@ use super::{Edges, PairCounts};
 
 /// Pairs by angle, with a bound on the error.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Estimate {
     /// Name of the method in lower case.
     pub method: &'static str,

@@ -2,8 +2,7 @@
 //!
 //! A row is one point of the first leaf against all of the second: dot products in f32, less the
 //! cosine of an edge. The sign says on which side of the edge a pair is, unless it is nearer to it
-//! than [`F32_BAND`]: those few pairs are judged one by one, in f64 and without rounding. Left out:
-//! which leaves.
+//! than [`F32_BAND`]: those few pairs are decided one by one, in f64 and without rounding.
 
 use fearless_simd::{Simd, f32x16, prelude::*, u32x16};
 use glam::DVec3;
@@ -182,7 +181,7 @@ pub(super) fn rows<L: SignMask>(leaf: &Leaf) -> Rows {
     rows
 }
 
-/// What dot products are compared with: the cosine of every inner edge, shifted and scaled for the
+/// Thresholds of dot products: the cosine of every inner edge, shifted and scaled for the
 /// sign masks.
 pub(super) fn thresholds<L: SignMask>(edges: &Edges) -> Vec<f32> {
     let inner = 0..edges.bins().saturating_sub(1);

@@ -2,7 +2,7 @@
 
 use fearless_simd::{Level, dispatch};
 
-use super::sign_mask::{Portable, SignMask};
+use super::sign_mask::{PortableSignMask, SignMask};
 
 /// The widest registers to use.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -29,22 +29,22 @@ impl Registers {
         let level = self.level();
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         {
-            use super::sign_mask::x86::{Half, Wide};
+            use super::sign_mask::x86::{Avx2SignMask, Avx512SignMask};
             use fearless_simd::Simd as _;
             if let Some(avx512) = level.as_avx512() {
                 return avx512.vectorize(
                     #[inline(always)]
-                    || work.run(Wide(avx512)),
+                    || work.run(Avx512SignMask(avx512)),
                 );
             }
             if let Some(avx2) = level.as_avx2() {
                 return avx2.vectorize(
                     #[inline(always)]
-                    || work.run(Half(avx2)),
+                    || work.run(Avx2SignMask(avx2)),
                 );
             }
         }
-        dispatch!(level, simd => work.run(Portable(simd)));
+        dispatch!(level, simd => work.run(PortableSignMask(simd)));
     }
 
     /// The level of these registers, or a lower one that the processor has.

@@ -58,15 +58,19 @@ pub(super) trait SignMask: Copy {
 
     /// The words of the mask with any marks, and all words. A word has 16 bits with ones for
     /// numbers too near to zero: bits 15, 13 and so on for rows 0 and 1, 2 and 3 and so on. Words
-    /// come by eights, four lanes of the first row and the same four of the next.
-    fn which(self, mask: Self::Mask) -> (u32, [u16; 2 * LANES]);
+    /// come by eights, four lanes of the first row and the same four of the next. All are zero
+    /// unless [`SignMask::MASK_NAMES_PAIRS`].
+    #[inline(always)]
+    fn which(self, _: Self::Mask) -> (u32, [u16; 2 * LANES]) {
+        (0, [0; 2 * LANES])
+    }
 }
 
 /// The registers of any processor: AVX2, SSE, NEON or none.
 #[derive(Clone, Copy)]
-pub(super) struct Portable<S>(pub S);
+pub(super) struct PortableSignMask<S>(pub S);
 
-impl<S: Simd> SignMask for Portable<S> {
+impl<S: Simd> SignMask for PortableSignMask<S> {
     type S = S;
     type Mask = (u32x16<S>, f32x16<S>);
 
@@ -111,11 +115,6 @@ impl<S: Simd> SignMask for Portable<S> {
     fn undecided(self, row: f32x16<S>) -> u64 {
         row.abs().simd_le(F32_BAND).to_bitmask()
     }
-
-    #[inline(always)]
-    fn which(self, _: Self::Mask) -> (u32, [u16; 2 * LANES]) {
-        (0, [0; 2 * LANES])
-    }
 }
 
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -139,9 +138,9 @@ pub(super) mod x86 {
 
     /// AVX-512, in which selecting the nearer number is one instruction.
     #[derive(Clone, Copy)]
-    pub(in super::super) struct Wide(pub Avx512);
+    pub(in super::super) struct Avx512SignMask(pub Avx512);
 
-    impl SignMask for Wide {
+    impl SignMask for Avx512SignMask {
         type S = Avx512;
 
         /// Two bits per row in words of 16 bits.
@@ -204,9 +203,9 @@ pub(super) mod x86 {
 
     /// AVX2.
     #[derive(Clone, Copy)]
-    pub(in super::super) struct Half(pub Avx2);
+    pub(in super::super) struct Avx2SignMask(pub Avx2);
 
-    impl SignMask for Half {
+    impl SignMask for Avx2SignMask {
         type S = Avx2;
 
         /// The number of negative rows in two halves of 16 lanes, and the smallest of all packed
@@ -261,11 +260,6 @@ pub(super) mod x86 {
         fn undecided(self, row: f32x16<Avx2>) -> u64 {
             let bits = row.bitcast::<u32x16<Avx2>>();
             bits.simd_lt(BAND_END.to_bits()).to_bitmask()
-        }
-
-        #[inline(always)]
-        fn which(self, _: Self::Mask) -> (u32, [u16; 2 * LANES]) {
-            (0, [0; 2 * LANES])
         }
     }
 

@@ -56,7 +56,7 @@ fn table(findings: &StudyFindings) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::study::example;
+    use super::super::report::example;
     use super::*;
 
     #[test]

@@ -5,11 +5,12 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::study::{Effort, Machine, Measurement};
+use super::{Effort, Machine, Measurement};
 use super::{StudyFindings, StudyReport, Trade};
 
 /// Findings of one run.
 #[derive(Clone, Debug, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct TradeoffReport {
     /// Name and version of the program.
     pub program: String,
@@ -23,6 +24,7 @@ pub struct TradeoffReport {
 
 /// Findings of one study.
 #[derive(Clone, Debug, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct TradeoffStudy {
     /// Name, as for `--only`.
     pub name: &'static str,
@@ -40,6 +42,7 @@ pub struct TradeoffStudy {
 
 /// A column.
 #[derive(Clone, Debug, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct TradeoffColumn {
     /// Its key in `values`.
     pub key: &'static str,
@@ -49,6 +52,7 @@ pub struct TradeoffColumn {
 
 /// A choice.
 #[derive(Clone, Debug, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct TradeoffRow {
     /// Name.
     pub name: String,
@@ -60,6 +64,7 @@ pub struct TradeoffRow {
 
 /// A trade.
 #[derive(Clone, Debug, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct TradeoffFront {
     /// Column of the cost.
     pub cost: &'static str,
@@ -124,7 +129,7 @@ fn front(findings: &StudyFindings, trade: &Trade) -> TradeoffFront {
 
 #[cfg(test)]
 mod tests {
-    use super::super::study::example;
+    use super::super::report::example;
     use super::*;
 
     /// The whole format: a key that is renamed, added or removed fails here.
@@ -143,7 +148,7 @@ mod tests {
                 "title": "Ways & means",
                 "choice": "way",
                 "columns": [
-                    {"key": "time_ns", "heading": "ns a point"},
+                    {"key": "time_ns", "heading": "ns per point"},
                     {"key": "error_mm", "heading": "worst error, mm"},
                     {"key": "size_bytes", "heading": "bytes"},
                 ],

@@ -30,7 +30,9 @@ impl Book<'_> {
         [page].into_iter().chain(figures).collect()
     }
 
-    fn page(&self, report: &StudyReport) -> String {
+    /// The page alone.
+    #[must_use]
+    pub fn page(&self, report: &StudyReport) -> String {
         let mut page = vec![
             format!("# {}", escaped(self.title)),
             format!(
@@ -99,7 +101,7 @@ fn escaped(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::study::example;
+    use super::super::report::example;
     use super::*;
 
     const BOOK: Book<'_> = Book {
@@ -116,7 +118,7 @@ mod tests {
         assert!(page.contains("**A quick look"), "{page}");
         assert!(page.contains("![Ways &amp; means](tradeoff/example.svg)"));
         assert!(page.contains(
-            "| way | ns a point | worst error, mm | bytes | front |\n|---|--:|--:|--:|:-:|\n"
+            "| way | ns per point | worst error, mm | bytes | front |\n|---|--:|--:|--:|:-:|\n"
         ));
         assert!(
             page.contains("| coarse &lt;&amp;&gt; way | 2 (1.8..3.4) | 130 | 10 | 1 |"),

@@ -64,7 +64,7 @@ pub struct PatternLidar {
     /// Elevations of its lasers, degrees, in any order; at least one.
     pub elevations_deg: Vec<f64>,
     /// Revolutions per second.
-    pub turns_per_s: f64,
+    pub revolutions_per_s: f64,
 }
 
 impl PatternLidar {
@@ -73,7 +73,7 @@ impl PatternLidar {
     pub fn vlp_16() -> Self {
         Self {
             elevations_deg: (0..16).map(|i| f64::from(2 * i - 15)).collect(),
-            turns_per_s: 10.0,
+            revolutions_per_s: 10.0,
         }
     }
 
@@ -87,8 +87,8 @@ impl PatternLidar {
 
     /// Revolutions of the lidar during a sweep.
     #[must_use]
-    pub fn turns(&self, sweep: &TiltSweep) -> f64 {
-        sweep.duration_s() * self.turns_per_s
+    pub fn revolutions(&self, sweep: &TiltSweep) -> f64 {
+        sweep.duration_s() * self.revolutions_per_s
     }
 
     /// Vertical field of view of a sweep across the tilt axis, degrees: that of the lidar plus the
@@ -105,9 +105,9 @@ impl PatternLidar {
     /// x 8) = 0.586.
     #[must_use]
     pub fn mean_resolution_deg(&self, sweep: &TiltSweep) -> f64 {
-        let turns = sweep.way_deg / sweep.speed_deg_s * self.turns_per_s;
+        let revolutions = sweep.way_deg / sweep.speed_deg_s * self.revolutions_per_s;
         let lasers = u32::try_from(self.elevations_deg.len()).unwrap_or(u32::MAX);
-        vertical_resolution_deg(self.field_deg(sweep), lasers, turns)
+        vertical_resolution_deg(self.field_deg(sweep), lasers, revolutions)
     }
 
     /// The widest gaps between neighbouring scan lines in the plane across the tilt axis, at the
@@ -132,11 +132,11 @@ impl PatternLidar {
 
     fn gaps_at(&self, sweep: &TiltSweep, phase: f64) -> LineGaps {
         let (low, high) = self.ends_deg();
-        let turns = self.turns(sweep);
+        let revolutions = self.revolutions(sweep);
         let passes: Vec<f64> = (0..)
             .map(|k| f64::from(k) + phase)
-            .take_while(|turn| *turn <= turns)
-            .map(|turn| -sweep.angle_deg(turn / self.turns_per_s))
+            .take_while(|revolution| *revolution <= revolutions)
+            .map(|revolution| -sweep.angle_deg(revolution / self.revolutions_per_s))
             .collect();
         let own = self.elevations_deg.iter();
         let mut lines: Vec<f64> = own
@@ -167,15 +167,15 @@ impl PatternLidar {
     /// less that of the laser.
     #[must_use]
     pub fn widest_circle_deg(&self, sweep: &TiltSweep, step_deg: f64) -> f64 {
-        let turns = self.turns(sweep).floor().clamp(0.0, 1e9) as u64 + 1;
+        let revolutions = self.revolutions(sweep).floor().clamp(0.0, 1e9) as u64 + 1;
         let mut worst: f64 = 0.0;
         for direction in grid(step_deg) {
             if !self.may_see(sweep, direction) {
                 continue;
             }
             let mut nearest = f64::INFINITY;
-            for turn in strided(turns) {
-                let Some(off) = self.off_line_deg(sweep, direction, turn) else {
+            for revolution in strided(revolutions) {
+                let Some(off) = self.off_line_deg(sweep, direction, revolution) else {
                     continue;
                 };
                 nearest = nearest.min(off);
@@ -212,9 +212,9 @@ impl PatternLidar {
 
     /// Distance of a direction from the nearest line of a revolution, degrees; `None` if the sweep
     /// ends before the lidar points there.
-    fn off_line_deg(&self, sweep: &TiltSweep, [x, y, z]: [f64; 3], turn: u64) -> Option<f64> {
+    fn off_line_deg(&self, sweep: &TiltSweep, [x, y, z]: [f64; 3], revolution: u64) -> Option<f64> {
         let whole = sweep.duration_s();
-        let mut t = turn as f64 / self.turns_per_s;
+        let mut t = revolution as f64 / self.revolutions_per_s;
         let mut up = z;
         // The time at which the lidar points there depends slightly on the tilt, and the tilt on
         // the time.
@@ -223,7 +223,7 @@ impl PatternLidar {
             let across = x * cos - z * sin;
             up = x * sin + z * cos;
             let azimuth = across.atan2(y).rem_euclid(TAU) / TAU;
-            t = (turn as f64 + azimuth) / self.turns_per_s;
+            t = (revolution as f64 + azimuth) / self.revolutions_per_s;
         }
         if t > whole {
             return None;
@@ -250,6 +250,7 @@ fn grid(step_deg: f64) -> impl Iterator<Item = [f64; 3]> {
 
 /// Largest angles between neighbouring scan lines across the tilt axis, degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct LineGaps {
     /// In the whole field of view, whose ends count as lines.
     pub field_deg: f64,
@@ -289,7 +290,7 @@ mod tests {
         let vlp = PatternLidar::vlp_16();
         let fast = sweep(56.25, f64::INFINITY);
         assert!(close(fast.duration_s(), 0.8, 1e-12));
-        assert!(close(vlp.turns(&fast), 8.0, 1e-12));
+        assert!(close(vlp.revolutions(&fast), 8.0, 1e-12));
         assert!(close(vlp.field_deg(&fast), 75.0, 1e-12));
         assert!(close(vlp.mean_resolution_deg(&fast), 0.5859, 5e-5));
         // Independent of the ramps.
@@ -390,7 +391,7 @@ mod tests {
         }
         let one = PatternLidar {
             elevations_deg: vec![0.0],
-            turns_per_s: 10.0,
+            revolutions_per_s: 10.0,
         };
         // A single laser at elevation 0 sees the pole and, if slow enough, everything it passes:
         // 0.1 degrees per revolution, at an end up to twice that.
@@ -400,7 +401,7 @@ mod tests {
 
     /// Every direction against every revolution, with rotation matrices and no early exit.
     fn slow_circle_deg(lidar: &PatternLidar, sweep: &TiltSweep, step_deg: f64) -> f64 {
-        let turns = lidar.turns(sweep).floor() as u32 + 1;
+        let revolutions = lidar.revolutions(sweep).floor() as u32 + 1;
         let mut worst: f64 = 0.0;
         for direction in grid(step_deg) {
             let local = |gamma_deg: f64| {
@@ -417,13 +418,13 @@ mod tests {
                 continue;
             }
             let mut nearest = f64::INFINITY;
-            for turn in 0..turns {
-                let mut t = f64::from(turn) / lidar.turns_per_s;
+            for revolution in 0..revolutions {
+                let mut t = f64::from(revolution) / lidar.revolutions_per_s;
                 let mut seen = DVec3::ZERO;
                 for _ in 0..20 {
                     seen = local(sweep.angle_deg(t));
                     let azimuth = (FRAC_PI_2 - seen.y.atan2(seen.x)).rem_euclid(TAU);
-                    t = (f64::from(turn) + azimuth / TAU) / lidar.turns_per_s;
+                    t = (f64::from(revolution) + azimuth / TAU) / lidar.revolutions_per_s;
                 }
                 if t <= sweep.duration_s() {
                     for w in &lidar.elevations_deg {

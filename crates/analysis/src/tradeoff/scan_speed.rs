@@ -53,7 +53,7 @@ fn measure(bench: &mut Bench<'_>) -> Result<Measured, StudyError> {
         Row::new(
             format!("{speed_deg_s} deg/s"),
             speed_deg_s.to_string(),
-            "VLP-16 at 10 turns a second",
+            "VLP-16 at 600 rpm",
             values.map(without_rounding),
         )
     });

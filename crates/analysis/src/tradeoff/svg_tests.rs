@@ -1,6 +1,6 @@
 //! Figures are well-formed, complete, and inside their frame.
 
-use super::super::study::example;
+use super::super::report::example;
 use super::*;
 use crate::draw::xml::elements;
 

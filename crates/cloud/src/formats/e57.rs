@@ -52,7 +52,7 @@ pub(super) struct E57Encoder<W: Read + Write + Seek + Send + 'static> {
 }
 
 struct EncoderThread {
-    orders: SyncSender<WorkerCommand>,
+    commands: SyncSender<WorkerCommand>,
     thread: JoinHandle<e57::Result<()>>,
 }
 
@@ -75,9 +75,12 @@ impl<W: Read + Write + Seek + Send + 'static> E57Writer<W> {
 
 impl<W: Read + Write + Seek + Send + 'static> E57Encoder<W> {
     /// Sends a command to the thread; if it has ended, returns its error.
-    fn order(&mut self, order: WorkerCommand) -> Result<(), EncodeFault> {
+    fn command(&mut self, command: WorkerCommand) -> Result<(), EncodeFault> {
         self.fault.outcome(Ok::<_, e57::Error>(()))?;
-        let sent = self.worker.as_ref().map(|worker| worker.orders.send(order));
+        let sent = self
+            .worker
+            .as_ref()
+            .map(|worker| worker.commands.send(command));
         match sent {
             Some(Ok(())) => Ok(()),
             Some(Err(_)) | None => {
@@ -90,7 +93,7 @@ impl<W: Read + Write + Seek + Send + 'static> E57Encoder<W> {
     /// Waits for the end of the thread.
     fn wait(&mut self) -> Result<(), EncodeFault> {
         let ended = self.worker.take().map_or(Ok(()), |worker| {
-            drop(worker.orders);
+            drop(worker.commands);
             match worker.thread.join() {
                 Ok(result) => result.map_err(Into::into),
                 Err(_) => Err(Box::<dyn Error + Send + Sync>::from(
@@ -128,23 +131,23 @@ impl<W: Read + Write + Seek + Send + 'static> Encoder for E57Encoder<W> {
         };
         let attributes = PointAttributes::new(self.fields);
         let about = worker::CloudDescription::new(metadata);
-        let (orders, receiver) = sync_channel(QUEUE);
+        let (commands, receiver) = sync_channel(QUEUE);
         let thread = thread::Builder::new()
             .name(FORMAT.to_owned())
             .spawn(move || worker::run(output, &attributes, &about, &receiver))
             .map_err(EncodeFault::library)?;
-        self.worker = Some(EncoderThread { orders, thread });
+        self.worker = Some(EncoderThread { commands, thread });
         Ok(())
     }
 
     fn points(&mut self, batch: &Points) -> Result<(), EncodeFault> {
         self.note_times(batch);
         let start = self.start.unwrap_or(Stamp::from_nanos(0));
-        self.order(WorkerCommand::Points(Box::new(batch.clone()), start))
+        self.command(WorkerCommand::Points(Box::new(batch.clone()), start))
     }
 
     fn finish(&mut self, summary: &Summary) -> Result<(), EncodeFault> {
-        self.order(WorkerCommand::Finish(FileEnding {
+        self.command(WorkerCommand::Finish(FileEnding {
             identity: identity::of(&self.description, *summary, [self.start, self.end]),
             start_gps_s: self.start.map(gps_time::gps_s),
             end_gps_s: self.end.map(gps_time::gps_s),

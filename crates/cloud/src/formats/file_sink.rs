@@ -1,4 +1,4 @@
-//! What the writers of all formats share: the order of calls, the number of points, and errors that
+//! Parts of the writers of all formats: the order of calls, the number of points, and errors that
 //! name the format.
 
 use std::error::Error;

@@ -105,7 +105,7 @@ impl<W: Write + Seek + Send + Sync + 'static> LasEncoder<W> {
         let mut point_format = las::point::Format::new(6)?;
         point_format.extra_bytes = extra_bytes::length(&self.extras);
         point_format.is_compressed = self.format == "laz";
-        let marker = if metadata.simulated { "SIMULATED " } else { "" };
+        let prefix = if metadata.simulated { "SIMULATED " } else { "" };
         // The builder has private fields, so it cannot be written as one literal.
         let mut builder = Builder::from((1, 4));
         builder.point_format = point_format;
@@ -115,11 +115,11 @@ impl<W: Write + Seek + Send + Sync + 'static> LasEncoder<W> {
             z: axis,
         };
         builder.gps_time_type = GpsTimeType::Standard;
-        builder.system_identifier = fitting(&format!("{marker}{}", metadata.source));
+        builder.system_identifier = fitting(&format!("{prefix}{}", metadata.source));
         builder.generating_software = fitting(&metadata.software);
         builder.vlrs = vec![
             extra_bytes::record(&self.extras),
-            text_record(metadata, marker),
+            text_record(metadata, prefix),
         ];
         builder.into_header()
     }
@@ -189,13 +189,13 @@ fn fitting(text: &str) -> String {
 }
 
 /// The metadata as a text area description (LAS 1.4 R15, section 5.2: `LASF_Spec` 3).
-fn text_record(metadata: &Metadata, marker: &str) -> Vlr {
+fn text_record(metadata: &Metadata, prefix: &str) -> Vlr {
     let mut text = metadata.lines().join("\n").into_bytes();
     text.push(0);
     Vlr {
         user_id: "LASF_Spec".to_owned(),
         record_id: 3,
-        description: format!("{marker}cloud"),
+        description: format!("{prefix}cloud"),
         data: text,
     }
 }

@@ -2,8 +2,8 @@
 //! little-endian.
 //!
 //! Four bytes of encapsulation header, then the members of a message in their order, each number at
-//! a multiple of its own size counted from behind that header. Left out: big-endian, parameter
-//! lists, reading.
+//! a multiple of its own size, counted from the end of that header. Big-endian messages, parameter
+//! lists and reading are not supported.
 
 /// A message being written.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

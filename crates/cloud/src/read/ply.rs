@@ -3,7 +3,7 @@
 use super::source::{Positions, ReadError, SourceFile, SourceNumber, shown};
 use crate::formats::Format;
 
-/// What the header says.
+/// The header.
 struct PlyHeader {
     data: PlyEncoding,
     /// Where the data begins.

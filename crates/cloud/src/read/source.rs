@@ -1,4 +1,4 @@
-//! What the readers share: a file with its numbers and lines, and errors.
+//! Parts of all readers: a file with its numbers and lines, and errors.
 
 use thiserror::Error;
 
@@ -10,6 +10,7 @@ pub type Positions = Vec<[f64; 3]>;
 /// Why a cloud cannot be read.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("{format}: byte {offset}: expected {expected}, got {got}")]
+#[non_exhaustive]
 pub struct ReadError {
     /// The format.
     pub format: Format,

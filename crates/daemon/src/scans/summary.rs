@@ -25,8 +25,9 @@ pub(super) fn of(record: &ScanRecord, place: &Path, has_log: bool) -> Option<Str
         ),
         None => (String::new(), Vec::new()),
     };
-    let said = [sentence(&why), left.to_owned()].into_iter();
-    let all: Vec<String> = said.chain(help).filter(|said| !said.is_empty()).collect();
+    let mut all = vec![sentence(&why), left.to_owned()];
+    all.extend(help);
+    all.retain(|text| !text.is_empty());
     Some(all.join(" "))
 }
 

@@ -48,7 +48,7 @@ fn the_newest_scan_does_not_depend_on_the_clock() {
 fn unreadable_scans_are_listed_and_left_unchanged() {
     let folder = tempfile::tempdir().unwrap();
     let scans = Scans::open(folder.path()).unwrap();
-    let (later, strange) = (finished(&scans, None), finished(&scans, None));
+    let (later, unknown) = (finished(&scans, None), finished(&scans, None));
     let edit = |id: &str, from: &str, to: &str| {
         let path = scans.place(id).join(RECORD);
         let text = fs::read_to_string(&path).unwrap();
@@ -59,7 +59,7 @@ fn unreadable_scans_are_listed_and_left_unchanged() {
     // An option of a later version: the scan is listed with the fields of this version.
     edit(&later, "\"both_ways\": false", "\"zigzag\": 3");
     // A state that this version does not know.
-    let bytes = edit(&strange, "\"whole\"", "\"superb\"");
+    let bytes = edit(&unknown, "\"whole\"", "\"superb\"");
     // A user's folder: a log and a cloud from elsewhere, and other files.
     let theirs = scans.place("hall");
     fs::create_dir(&theirs).unwrap();
@@ -74,9 +74,9 @@ fn unreadable_scans_are_listed_and_left_unchanged() {
         (view(&later).state, &view(&later).asked),
         (ScanState::Whole, &None)
     );
-    let why = view(&strange).why.clone().unwrap();
+    let why = view(&unknown).why.clone().unwrap();
     assert!(why.message.contains("superb"), "{why}");
-    assert_eq!(view(&strange).state, ScanState::Partial, "it has a cloud");
+    assert_eq!(view(&unknown).state, ScanState::Partial, "it has a cloud");
     assert_eq!(view("hall").state, ScanState::Partial);
     assert_eq!(again.view("linked"), None);
     assert!(
@@ -85,13 +85,13 @@ fn unreadable_scans_are_listed_and_left_unchanged() {
     );
     // Neither overwritten nor deleted without a request.
     again
-        .change(&strange, |record| record.points = Some(7))
+        .change(&unknown, |record| record.points = Some(7))
         .unwrap();
-    assert_eq!(fs::read(again.place(&strange).join(RECORD)).unwrap(), bytes);
+    assert_eq!(fs::read(again.place(&unknown).join(RECORD)).unwrap(), bytes);
     let gone = again.retain(0, 0);
-    assert!(gone.iter().all(|scan| scan.id != strange), "{gone:?}");
-    assert!(again.view(&strange).is_some());
-    assert!(again.delete(&strange).unwrap().is_some());
+    assert!(gone.iter().all(|scan| scan.id != unknown), "{gone:?}");
+    assert!(again.view(&unknown).is_some());
+    assert!(again.delete(&unknown).unwrap().is_some());
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Transfers of objects of any length, with the rules of SDO on every link.
 
-use protocol::canopen::sdo::{Expedited, SdoTransfer, SdoValue, TransferStep};
+use protocol::Bounded;
+use protocol::canopen::sdo::{Expedited, SdoTransfer, TransferStep};
 use protocol::epos2::CommError;
 use protocol::epos2::objects::Address;
 
@@ -27,7 +28,7 @@ impl Ops {
             let read = self.run_transfer(Operation::read(address), transfer, request);
             match read.await {
                 Err(DriveError::NoAnswer { .. }) if retries > 0 => retries -= 1,
-                result => return result.map(|value| value.bytes.to_vec()),
+                result => return result.map(|value| value.to_vec()),
             }
         }
     }
@@ -65,7 +66,7 @@ impl Ops {
         operation: Operation,
         mut transfer: ObjectTransfer,
         mut request: TransferRequest,
-    ) -> Result<SdoValue<MAX_OBJECT>, DriveError> {
+    ) -> Result<Bounded<u8, MAX_OBJECT>, DriveError> {
         let address = transfer.address();
         loop {
             let exchange = self.request(address, ObjectAccess::Transfer(request));

@@ -139,8 +139,8 @@ async fn wait_until_attained(ops: &mut Ops) -> Result<(), DriveError> {
 /// demand that its axis does not follow.
 #[derive(Default)]
 struct HomingTravel {
-    demand: Way,
-    position: Way,
+    demand: TravelledWay,
+    position: TravelledWay,
     /// Longest time between the first readings of both, and between the latest.
     first_apart: Span,
     apart: Span,
@@ -150,13 +150,13 @@ struct HomingTravel {
 
 /// A distance from the start, qc.
 #[derive(Default)]
-struct Way {
+struct TravelledWay {
     /// The latest reading, and when it was requested.
     last: Option<(i32, Stamp<Host>)>,
     travelled: i64,
 }
 
-impl Way {
+impl TravelledWay {
     /// Adds a reading that was requested and answered at these times.
     fn add(
         &mut self,

@@ -73,8 +73,8 @@ pub(super) async fn configure(ops: &Ops) -> Result<(AngleSource, bool), DriveErr
     Ok((angle, monitors_host))
 }
 
-/// What the drive does if the host's heartbeat is missing (6007): 1, the reaction to a device error
-/// (605E: ramp, then power off and brake), or 3, a quick stop that keeps the axis powered. Firmware
+/// The drive's reaction to a missing heartbeat of the host (6007): 1, that to a device error (605E:
+/// ramp, then power off and brake), or 3, a quick stop that keeps the axis powered. Firmware
 /// without these values has the reaction of 605E.
 fn abort_option(ops: &Ops) -> i16 {
     match ops.config.holds() {

@@ -229,7 +229,7 @@ fn a_request_rejected_for_its_checksum_is_repeated_even_if_it_writes() {
     assert!(link.take_result().unwrap().is_ok());
 }
 
-/// What happens to a reply.
+/// Fault of a reply.
 #[derive(Clone, Copy, Debug)]
 enum Fate {
     Arrives,

@@ -138,7 +138,7 @@ fn a_unit_that_always_refuses_is_reported() {
     panic!("the command does not end: {client:?}");
 }
 
-/// What happens to a byte on its way.
+/// Fault of a byte on the line.
 #[derive(Clone, Copy, Debug)]
 enum Fate {
     Arrives,

@@ -15,7 +15,7 @@ use units::{Host, Span, Stamp};
 use super::long_object::LongObject;
 use super::wire::{BusFaults, RequestTap};
 
-/// What happens to a request and its reply.
+/// Faults of a request and its reply.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fate {
     Sent,
@@ -73,7 +73,7 @@ impl Server {
         answers
     }
 
-    /// What the unit sends on its own. Call it after each tick of the node.
+    /// The unit's unsolicited frames. Call it after each tick of the node.
     pub fn poll(&mut self, node: &mut Node) -> Vec<Vec<u8>> {
         let mut replies = Vec::new();
         if let Self::Can(server) = self {

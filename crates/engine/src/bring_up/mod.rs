@@ -27,7 +27,7 @@ pub enum Judgement {
     Problem,
     /// No limit applies.
     Noted,
-    /// Nobody looked: still to be checked.
+    /// Not checked yet: the operator did not look.
     Unchecked,
 }
 
@@ -50,7 +50,7 @@ pub struct BringUpResult {
 pub struct BringUpStep {
     /// Title.
     pub title: &'static str,
-    /// What it does, for the person at the supply switch.
+    /// Description for the operator at the supply switch.
     pub plan: &'static str,
     /// Whether the axis gets power.
     pub moves: bool,
@@ -73,7 +73,7 @@ pub const STEPS: [BringUpStep; 10] = [
 
 /// The person at the axis.
 pub trait Operator {
-    /// Asks for an action; returns whether it was done. Nobody may be there.
+    /// Asks for an action; returns whether it was done. It is not if there is no operator.
     fn has_done(&mut self, request: &str) -> bool;
 }
 
@@ -262,7 +262,7 @@ impl<'a> BringUp<'a> {
     }
 }
 
-/// What the commands of a session reported.
+/// Reports of a session's commands.
 #[derive(Default)]
 struct SessionRecord {
     samples: Vec<ShaftSample>,

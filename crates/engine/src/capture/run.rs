@@ -34,7 +34,7 @@ const LIDAR_WAIT: Duration = Duration::from_secs(2);
 /// Between two polls for the first packet.
 const LIDAR_POLL: Duration = Duration::from_millis(5);
 
-/// What a capture works with.
+/// Devices and files of a capture.
 pub struct CaptureJob<'a> {
     /// The plan.
     pub plan: &'a CapturePlan,
@@ -82,13 +82,13 @@ pub struct RecordingEnd {
 /// The recording's part of the report, independent of its cloud.
 #[derive(Clone, Debug, Default)]
 pub struct Outcome {
-    /// What went wrong.
+    /// The failure.
     pub failure: Option<Failure>,
     /// Records lost on the way to the log.
     pub lost_records: u64,
     /// Counts of packets.
     pub reception: Option<Reception>,
-    /// What is doubtful about it.
+    /// Reasons to doubt its completeness.
     pub warnings: Vec<String>,
 }
 

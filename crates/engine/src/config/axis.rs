@@ -56,6 +56,7 @@ pub enum WithoutBrake {
 /// Digital inputs of the limit switches (1..=9). A switch omitted from the table does not exist.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct LimitSwitchSettings {
     /// Input of the lower limit switch.
     #[serde(default)]
@@ -71,6 +72,7 @@ pub struct LimitSwitchSettings {
 /// Tolerances of the drive client's motion guard, degrees of tilt unless named otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct GuardSettings {
     /// How far the axis may lag behind its plan at low speed.
     pub behind_deg: f64,
@@ -96,6 +98,7 @@ pub struct GuardSettings {
 /// Homing of the axis.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct HomingSettings {
     /// Homing method (object 6098).
     pub method: i8,

@@ -15,6 +15,7 @@ const LAST_DOMAIN: u8 = 232;
 /// The `[daemon.ros2]` table.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct Ros2 {
     /// The zenoh router in zenoh's notation: `tcp/HOST:PORT`.
     #[serde(deserialize_with = "router")]

@@ -1,4 +1,4 @@
-//! What a log or recording holds.
+//! Contents of a log or recording.
 
 use io::recording::DatagramKind;
 use lidar::{Decoder, Options, PacketGap, Stats, UtcClock, UtcState};
@@ -13,7 +13,7 @@ use crate::reconstruct::report::{
     Contents, Gps, GpsReport, InfoReport, MissingPackets, PacketCounts, SensorReport, SweepReport,
     TiltReport,
 };
-use crate::reconstruct::source::{Pass, SensorAddress, Source};
+use crate::reconstruct::source::{PassSummary, SensorAddress, Source};
 
 /// Reads the whole recording and lists what it holds.
 ///
@@ -181,7 +181,7 @@ impl SensorSurveys {
         mut self,
         config: &ScanConfig,
         drive: Option<(DriveLink, u64)>,
-        pass: &Pass,
+        pass: &PassSummary,
         steps: &[ClockStep],
     ) -> Contents {
         for survey in &mut self.sensors {
@@ -288,7 +288,7 @@ pub fn contents(
     config: &ScanConfig,
     stats: &Stats,
     drive: Option<(DriveLink, u64)>,
-    pass: &Pass,
+    pass: &PassSummary,
     steps: &[ClockStep],
 ) -> Contents {
     let counts = &pass.counts;
@@ -341,7 +341,7 @@ fn packet_gaps(stats: &Stats, steps: &[ClockStep]) -> Vec<MissingPackets> {
     gaps.into_iter().map(report).collect()
 }
 
-fn warnings(stats: &Stats, pass: &Pass, steps: &[ClockStep]) -> Vec<String> {
+fn warnings(stats: &Stats, pass: &PassSummary, steps: &[ClockStep]) -> Vec<String> {
     let mut warnings: Vec<String> = stats.conflicts.iter().map(ToString::to_string).collect();
     warnings.extend(steps.iter().map(ToString::to_string));
     let lidar_was_set = steps.iter().any(|step| step.clock == SetClock::Lidar);

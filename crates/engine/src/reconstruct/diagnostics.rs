@@ -37,30 +37,30 @@ impl NamedValues {
     }
 }
 
-fn check(name: &str, doubt: Option<String>, fine: &str, values: NamedValues) -> Diagnostic {
+fn check(name: &str, problem: Option<String>, fine: &str, values: NamedValues) -> Diagnostic {
     Diagnostic {
         name: format!("velomotion: {name}"),
-        level: match doubt {
+        level: match problem {
             Some(_) => DiagnosticLevel::Warn,
             None => DiagnosticLevel::Ok,
         },
-        message: doubt.unwrap_or_else(|| fine.to_owned()),
+        message: problem.unwrap_or_else(|| fine.to_owned()),
         values: values.0,
     }
 }
 
 fn devices(contents: &Contents) -> Diagnostic {
-    let doubt = contents
+    let problem = contents
         .simulated
         .then(|| "SIMULATED: software devices, not a scan of anything real".to_owned());
     let values = NamedValues::new().with("simulated", contents.simulated);
-    check("devices", doubt, "real devices", values)
+    check("devices", problem, "real devices", values)
 }
 
 fn lidar(scan: &ScanReport) -> Diagnostic {
     let contents = &scan.contents;
     let lost = contents.lost_packets.saturating_add(scan.lost_records);
-    let doubt = (lost > 0).then(|| format!("{lost} packets were lost"));
+    let problem = (lost > 0).then(|| format!("{lost} packets were lost"));
     let packets = contents.packets;
     let values = NamedValues::new()
         .with_some("model", contents.model.as_ref())
@@ -73,12 +73,12 @@ fn lidar(scan: &ScanReport) -> Diagnostic {
         .with("lost_records", scan.lost_records)
         .with("returns", contents.returns)
         .with("duration_s", contents.duration_s);
-    check("lidar", doubt, "nothing was lost", values)
+    check("lidar", problem, "nothing was lost", values)
 }
 
 fn clock(sync: &SyncReport) -> Diagnostic {
     let steps = sync.steps.len();
-    let doubt = (steps > 0).then(|| format!("clocks were set {steps} times, which was undone"));
+    let problem = (steps > 0).then(|| format!("clocks were set {steps} times, which was undone"));
     let values = NamedValues::new()
         .with("method", sync.clock_method)
         .with("residual_us", sync.clock_residual_us)
@@ -86,7 +86,7 @@ fn clock(sync: &SyncReport) -> Diagnostic {
         .with("drift_ppm", sync.clock_drift_ppm)
         .with("steps", steps);
     let fine = format!("known within {:.0} us", sync.clock_bound_us);
-    check("clock", doubt, &fine, values)
+    check("clock", problem, &fine, values)
 }
 
 fn tilt(scan: &ScanReport) -> Diagnostic {

@@ -46,6 +46,7 @@ pub struct FrameWriter<'a> {
 
 /// Totals over all frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct FrameTotals {
     /// Points, and returns without a tilt angle.
     pub placed: PlacementCounts,

@@ -15,7 +15,7 @@ use super::source::Source;
 use crate::failure::{Failure, Kind};
 use crate::output::{file_failure, overwrite};
 
-/// What was copied.
+/// Counts of copied packets.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 #[non_exhaustive]
 pub struct LidarCopyReport {

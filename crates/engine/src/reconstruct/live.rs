@@ -15,7 +15,7 @@ use crate::output::sink_failure;
 /// Of the live points one firing in this many is compared, which bounds the memory.
 const STRIDE: i64 = 8;
 
-/// What identifies a point: device time of its firing, laser, echo.
+/// Identity of a point: device time of its firing, laser, echo.
 type PointKey = (Stamp<Lidar>, u8, u8);
 
 const KEY: Fields = Fields::DEVICE_TIME.union(Fields::LASER).union(Fields::ECHO);

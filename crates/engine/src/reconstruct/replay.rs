@@ -24,11 +24,11 @@ use super::live::{LiveDifference, LivePoints};
 use super::warnings::{alignment_warnings, incomplete_sweeps};
 use crate::failure::{Failure, Kind};
 use crate::output::{Target, sink_failure};
-use crate::reconstruct::diagnostics as checks;
+use crate::reconstruct::diagnostics;
 use crate::reconstruct::report::{
     self, ScanReport, StepReport, SyncReport, ToleranceReport, TruthErrors,
 };
-use crate::reconstruct::source::{Pass, Source};
+use crate::reconstruct::source::{PassSummary, Source};
 use crate::reconstruct::utc::{InUtc, UtcSurvey};
 
 /// Clock of the point times.
@@ -130,7 +130,7 @@ pub fn make(request: &Reconstruction<'_>, mut target: Target) -> Result<ScanRepo
 struct FirstPass {
     config: ScanConfig,
     drive: Option<(DriveLink, u64)>,
-    pass: Pass,
+    pass: PassSummary,
     alignment: Alignment,
     /// Receive time of the last data packet.
     last_data: Option<Stamp<Host>>,
@@ -211,7 +211,7 @@ pub fn scan(
 
 /// Sends the summary of a scan to a sink.
 fn send_summary(sink: &mut dyn Sink, scan: &ScanReport, output: &Path) -> Result<(), Failure> {
-    sink.diagnostics(&checks::of(scan))
+    sink.diagnostics(&diagnostics::of(scan))
         .map_err(|error| sink_failure(output, &error))
 }
 

@@ -20,6 +20,7 @@ pub struct PacketCounts {
 
 /// The drive part of a log.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct TiltReport {
     /// Shaft samples.
     pub samples: u64,
@@ -30,6 +31,7 @@ pub struct TiltReport {
 
 /// State of a lidar's satellite receiver.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct Gps {
     /// State of the pulse per second: `absent`, `synchronising`, `locked` or `error`.
     #[schema(schema_with = crate::document::pps_states)]
@@ -45,6 +47,7 @@ pub struct Gps {
 
 /// Position of an antenna in WGS 84.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct GpsReport {
     /// Degrees, positive in the north.
     pub latitude_deg: f64,
@@ -54,6 +57,7 @@ pub struct GpsReport {
 
 /// One of several lidars in a file.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct SensorReport {
     /// Address and data port.
     pub name: String,
@@ -77,6 +81,7 @@ pub struct SensorReport {
 
 /// Data packets that are missing at one place.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct MissingPackets {
     /// From the first firing, seconds of device time.
     pub at_s: f64,
@@ -125,6 +130,7 @@ pub struct Contents {
 
 /// Report of `info`.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct InfoReport {
     /// Contents of the file.
     #[serde(flatten)]
@@ -143,6 +149,7 @@ pub struct InfoReport {
 
 /// One sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct SweepReport {
     /// Angle at the start.
     pub from_deg: f64,
@@ -160,6 +167,7 @@ pub struct SweepReport {
 
 /// A clock step during the recording.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct StepReport {
     /// `host` or `lidar`.
     pub clock: &'static str,
@@ -189,6 +197,7 @@ impl StepReport {
 
 /// Choice of a trajectory method under a tolerance.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct ToleranceReport {
     /// Tolerated error, metres.
     pub asked_m: f64,
@@ -204,6 +213,7 @@ pub struct ToleranceReport {
 
 /// A method and its error bound.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct TriedMethod {
     /// Its name.
     pub method: &'static str,
@@ -231,6 +241,7 @@ impl ToleranceReport {
 
 /// Synchronisation of clocks and angles.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct SyncReport {
     /// Method of the clock model.
     pub clock_method: &'static str,
@@ -281,6 +292,7 @@ pub struct Reception {
 
 /// Errors of a cloud against the simulator's truth.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[non_exhaustive]
 pub struct TruthErrors {
     /// Root mean square of the point errors.
     pub rms_m: f64,
@@ -291,6 +303,7 @@ pub struct TruthErrors {
 /// The points that the live view shows of a scan, against those of the cloud. One firing in eight
 /// is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct LiveReport {
     /// Points placed live.
     pub points: u64,
@@ -304,6 +317,7 @@ pub struct LiveReport {
 
 /// Report of `replay` and `capture`.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct ScanReport {
     /// Contents of the log.
     #[serde(flatten)]

@@ -36,7 +36,7 @@ pub struct SensorAddress {
 
 /// Result of one pass over a recording.
 #[derive(Clone, Debug)]
-pub struct Pass {
+pub struct PassSummary {
     /// Packet counts by kind.
     pub counts: RecordingCounts,
     /// Where and why the file ends early.
@@ -76,7 +76,7 @@ impl fmt::Display for SensorAddress {
     }
 }
 
-/// Limit of the sensors that are told apart, which bounds memory.
+/// The largest number of separate sensors, which bounds memory.
 const MAX_SENSORS: usize = 256;
 
 /// Selects the records of one sensor; by default of the first that sends data.
@@ -254,7 +254,7 @@ impl Source {
     pub fn read(
         &self,
         mut take: impl FnMut(&Record<'_>) -> Result<(), Failure>,
-    ) -> Result<Pass, Failure> {
+    ) -> Result<PassSummary, Failure> {
         let mut filter = self.filter();
         let pass = self.read_all(|record| {
             if filter.takes(record) {
@@ -263,7 +263,7 @@ impl Source {
             Ok(())
         })?;
         self.check(&filter.sensors)?;
-        Ok(Pass {
+        Ok(PassSummary {
             doubled: filter.doubled,
             ..pass
         })
@@ -301,7 +301,7 @@ impl Source {
     pub fn read_all(
         &self,
         mut take: impl FnMut(&Record<'_>) -> Result<(), Failure>,
-    ) -> Result<Pass, Failure> {
+    ) -> Result<PassSummary, Failure> {
         let mut recording = self.recording()?;
         while let Some(record) = recording.next_record().map_err(|error| failure(&error))? {
             take(&record)?;
@@ -314,7 +314,7 @@ impl Source {
                 offset.saturating_add(1)
             )));
         }
-        Ok(Pass {
+        Ok(PassSummary {
             counts,
             truncated: recording.end().and_then(cut_off),
             doubled: 0,

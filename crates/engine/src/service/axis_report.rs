@@ -15,6 +15,7 @@ use super::status::AxisTask;
     "negative_limit": false, "positive_limit": false, "home_switch": false, "faults": [],
     "simulated": false, "power": true, "activity": "moving", "age_s": 0.02, "switches_age_s": 1.4,
 }))]
+#[non_exhaustive]
 pub struct AxisReport {
     /// Name of the device's profile.
     pub device: String,
@@ -56,6 +57,7 @@ pub struct AxisReport {
 
 /// An entry of the error history.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[non_exhaustive]
 pub struct DriveFault {
     /// Four hexadecimal digits.
     pub code: String,
@@ -70,6 +72,7 @@ pub struct DriveFault {
 /// Answer to `POST /tilt/stop` of a service that ends with its command.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct StoppedCommand {
     /// Name of the device's profile.
     pub device: String,

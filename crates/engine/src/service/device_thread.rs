@@ -1,7 +1,7 @@
 //! The thread that owns the devices: it opens them, opens them again when they come back, and runs
-//! one order after the other.
+//! one request after the other.
 //!
-//! Only this thread talks to the drive. After a panic in an order the session stops the axis as it
+//! Only this thread talks to the drive. After a panic in a request the session stops the axis as it
 //! unwinds, and the thread goes on.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -32,11 +32,11 @@ use crate::threads::spawn;
 const POLL_INTERVAL: Duration = Duration::from_secs(2);
 /// First and longest wait before a device is tried again.
 const RETRY_WAIT: (Duration, Duration) = (Duration::from_millis(250), Duration::from_secs(5));
-/// What software devices remember of the truth before a capture.
+/// Truth of the software devices before a capture.
 const TRUTH_MEMORY: Span = Span::from_secs(60);
 
-/// An order to the device thread. Orders that move the axis carry its lease.
-pub(super) enum Order {
+/// A request to the device thread. Requests that move the axis carry its lease.
+pub(super) enum ThreadRequest {
     /// Records a scan.
     Capture {
         lease: AxisLease,
@@ -65,11 +65,11 @@ pub struct DeviceThread {
 impl DeviceThread {
     pub(super) fn start(
         service: &Arc<DeviceService>,
-        orders: Receiver<Order>,
+        requests: Receiver<ThreadRequest>,
     ) -> Result<Self, Failure> {
         let worker = Worker {
             service: Arc::clone(service),
-            orders,
+            requests,
             simulated: None,
             lidar_retry: Backoff::new(),
         };
@@ -105,10 +105,10 @@ impl DeviceThread {
     }
 }
 
-/// What the thread works with.
+/// State of the thread.
 pub(super) struct Worker {
     pub(super) service: Arc<DeviceService>,
-    orders: Receiver<Order>,
+    requests: Receiver<ThreadRequest>,
     pub(super) simulated: Option<Simulated>,
     pub(super) lidar_retry: Backoff,
 }
@@ -199,13 +199,13 @@ impl Worker {
         }
     }
 
-    /// Refuses orders that were sent before the drive was known to be absent.
+    /// Refuses requests that were sent before the drive was known to be absent.
     fn refuse_for(&mut self, wait: Duration) {
         let until = Instant::now() + wait;
         loop {
             let left = until.saturating_duration_since(Instant::now());
-            match self.orders.recv_timeout(left) {
-                Ok(order) => self.refuse(order),
+            match self.requests.recv_timeout(left) {
+                Ok(request) => self.refuse(request),
                 Err(_) => return,
             }
             if self.service.is_ending() {
@@ -214,26 +214,26 @@ impl Worker {
         }
     }
 
-    fn refuse(&self, order: Order) {
+    fn refuse(&self, request: ThreadRequest) {
         let problem = self.service.state.borrow().drive.problem.clone();
         let failure = problem.unwrap_or_else(|| {
             Failure::new(Kind::NoDevice, "the drive is not connected").help("see the status")
         });
-        match order {
-            Order::Capture { lease, answer, .. } => {
+        match request {
+            ThreadRequest::Capture { lease, answer, .. } => {
                 drop(lease);
                 drop(answer.send(Err(failure)));
             }
-            Order::Jog { lease, answer, .. } => {
+            ThreadRequest::Jog { lease, answer, .. } => {
                 drop(lease);
                 drop(answer.send(Err(failure)));
             }
-            Order::Reopen => self.forget_lidar(),
-            Order::Wake => {}
+            ThreadRequest::Reopen => self.forget_lidar(),
+            ThreadRequest::Wake => {}
         }
     }
 
-    /// Runs orders with an open port until it is lost.
+    /// Runs requests with an open port until it is lost.
     fn serve(&mut self, mut connection: DriveConnection) -> ConnectionLoss {
         let resident = matches!(self.service.lifetime, Lifetime::Resident);
         let mut poll = Instant::now();
@@ -254,15 +254,15 @@ impl Worker {
                 AxisKnowledge::AtRest => poll.saturating_duration_since(Instant::now()),
                 AxisKnowledge::Unknown | AxisKnowledge::MayMove => connect.left(),
             };
-            match self.orders.recv_timeout(next) {
-                Ok(Order::Reopen) => {
+            match self.requests.recv_timeout(next) {
+                Ok(ThreadRequest::Reopen) => {
                     self.drive_absent(None);
                     self.forget_lidar();
                     return ConnectionLoss::Stale;
                 }
-                Ok(Order::Wake) | Err(RecvTimeoutError::Timeout) => {}
-                Ok(order) => {
-                    if let Some(lost) = self.execute(&mut connection, order) {
+                Ok(ThreadRequest::Wake) | Err(RecvTimeoutError::Timeout) => {}
+                Ok(request) => {
+                    if let Some(lost) = self.execute(&mut connection, request) {
                         return lost;
                     }
                     poll = Instant::now() + POLL_INTERVAL;
@@ -279,7 +279,7 @@ impl Worker {
         connect: &mut Backoff,
         poll: &mut Instant,
     ) -> Result<(), ConnectionLoss> {
-        // Orders go first: the lease fails while one is under way.
+        // Requests go first: the lease fails while one is under way.
         if connection.axis != AxisKnowledge::AtRest
             && connect.left().is_zero()
             && let Ok(lease) = AxisLease::take(&self.service, AxisTask::Connecting, None)
@@ -315,18 +315,18 @@ impl Worker {
         Ok(())
     }
 
-    /// Runs one order and survives its panics.
+    /// Runs one request and survives its panics.
     fn execute(
         &mut self,
         connection: &mut DriveConnection,
-        order: Order,
+        request: ThreadRequest,
     ) -> Option<ConnectionLoss> {
         if self.service.is_ending() {
-            self.refuse(order);
+            self.refuse(request);
             return Some(ConnectionLoss::Ending);
         }
-        match order {
-            Order::Capture {
+        match request {
+            ThreadRequest::Capture {
                 lease,
                 plan,
                 answer,
@@ -337,7 +337,7 @@ impl Worker {
                 let _ = answer.send(result);
                 lost
             }
-            Order::Jog {
+            ThreadRequest::Jog {
                 lease,
                 commands,
                 answer,
@@ -361,7 +361,7 @@ impl Worker {
                 let _ = answer.send(result);
                 lost
             }
-            Order::Reopen | Order::Wake => None,
+            ThreadRequest::Reopen | ThreadRequest::Wake => None,
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The drive's port from one order to the next.
+//! The drive's port from one request to the next.
 
 use std::time::{Duration, Instant};
 
@@ -9,27 +9,27 @@ use units::Span;
 use crate::devices::drive_port::Opened;
 use crate::devices::drive_session::SessionError;
 
-/// Silence after which no more answers are expected: between orders, and after a failed one.
+/// Silence after which no more answers are expected: between requests, and after a failed one.
 const QUIET: (Span, Span) = (Span::from_millis(10), Span::from_millis(500));
 /// Longest wait for silence.
 const QUIET_LIMIT: Duration = Duration::from_secs(2);
 
-/// What is known of the axis behind a port.
+/// Knowledge of the axis behind a port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum AxisKnowledge {
     /// Nothing: the drive was not connected to yet.
     Unknown,
     /// It may move: it was not seen at rest. Connecting brings it to rest.
     MayMove,
-    /// It is at rest between orders.
+    /// It is at rest between requests.
     AtRest,
 }
 
-/// A port that stays open from one order to the next.
+/// A port that stays open from one request to the next.
 pub(super) struct DriveConnection {
     /// The port.
     pub(super) opened: Opened,
-    /// Whether the last order failed: an answer to it may still arrive.
+    /// Whether the last request failed: an answer to it may still arrive.
     pub(super) failed: bool,
     /// The axis.
     pub(super) axis: AxisKnowledge,

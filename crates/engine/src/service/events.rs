@@ -210,7 +210,7 @@ impl Subscription {
     }
 }
 
-/// A wish for points that can be switched on and off. Dropping it withdraws the wish.
+/// A request for points that can be switched on and off. Dropping it withdraws the request.
 #[derive(Debug)]
 pub struct PointsRequest {
     events: Arc<Events>,

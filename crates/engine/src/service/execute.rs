@@ -219,14 +219,7 @@ impl Worker {
         }
         // A suspension is looked for here, too: the port may fail before anything else shows it.
         if let Some(suspended) = suspension(suspended, service.suspended()) {
-            outcome.failure = Some(match outcome.failure.take() {
-                Some(other) if other.kind != Kind::Interrupted => Failure {
-                    message: format!("{}; and {}", suspended.message, other.message),
-                    help: other.help.or(suspended.help),
-                    kind: other.kind,
-                },
-                _ => suspended,
-            });
+            outcome.failure = Some(with_suspension(outcome.failure.take(), suspended));
         }
         if let Some(failure) = &mut outcome.failure
             && failure.kind == Kind::Interrupted
@@ -255,6 +248,18 @@ impl Worker {
             _ => Ok(CaptureEnd { outcome, truth }),
         };
         (result, lost)
+    }
+}
+
+/// The failure of a capture during which the machine was suspended.
+fn with_suspension(failure: Option<Failure>, suspended: Failure) -> Failure {
+    match failure {
+        Some(other) if other.kind != Kind::Interrupted => Failure {
+            message: format!("{}; and {}", suspended.message, other.message),
+            help: other.help.or(suspended.help),
+            kind: other.kind,
+        },
+        _ => suspended,
     }
 }
 

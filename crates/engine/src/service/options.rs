@@ -1,4 +1,4 @@
-//! What a service is started with.
+//! Options of a service.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use units::Span;
 use super::status::AxisTask;
 use crate::config::{Config, Device};
 
-/// What the service takes from the machine. Tests replace it.
+/// Functions of the machine. Tests replace them.
 #[derive(Clone)]
 pub struct Environment {
     /// Lists the devices that are plugged in.
@@ -50,7 +50,7 @@ pub enum Lifetime {
     },
 }
 
-/// What a service is made of.
+/// Parts of a service.
 pub struct ServiceOptions {
     /// The configuration.
     pub config: Config,

@@ -45,6 +45,7 @@ impl AxisTask {
     "doing": "capturing", "scan": "2026-05-04-101500", "homes": false, "step": 1, "steps": 1,
     "from_deg": 0.0, "to_deg": -45.0, "left_s": 0.4, "received": 377,
 }))]
+#[non_exhaustive]
 pub struct Activity {
     /// The task.
     pub doing: AxisTask,
@@ -84,6 +85,7 @@ pub enum DeviceHealth {
 
 /// The drive.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct DriveSnapshot {
     /// State.
     pub state: DeviceHealth,
@@ -112,6 +114,7 @@ pub struct DriveSnapshot {
     "state": "connected", "problem": null, "model": "VLP-16", "return_mode": "strongest",
     "rpm": 600.0, "received": 90_512, "packets_per_s": 905.0, "lost_packets": 0, "dropped_by_kernel": 0,
 }))]
+#[non_exhaustive]
 pub struct LidarStatus {
     /// State.
     pub state: DeviceHealth,
@@ -136,6 +139,7 @@ pub struct LidarStatus {
 
 /// Limits and defaults of the axis.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct AxisStatus {
     /// Smallest angle, degrees.
     pub min_deg: f64,
@@ -172,6 +176,7 @@ pub struct DiskStatus {
 
 /// Event clients.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct ClientsStatus {
     /// Connected clients.
     pub events: usize,
@@ -181,6 +186,7 @@ pub struct ClientsStatus {
 
 /// Status of the whole service: the body of `GET /api/v1/status`.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct ServiceStatus {
     /// Version of the program.
     pub version: &'static str,

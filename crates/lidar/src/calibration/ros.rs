@@ -41,6 +41,7 @@ const REFLECTIVITY: [(&str, f64); 4] = [
 
 /// Content of a file.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct RosCalibration {
     /// Corrections of every laser in firing order.
     pub corrections: Corrections,

@@ -446,7 +446,14 @@ mod tests {
         for is_used in [|_: f64| true, |t: f64| !(0.4..1.0).contains(&t)] {
             let mut samples = observed(120, 2.0, motion);
             samples.retain(|sample| is_used(sample.at_s));
-            let knots = || vec![0.0, 0.25, 0.5, 1.0, 1.5, 2.0];
+            let knots = || {
+                let all = [0.0, 0.25, 0.5, 1.0, 1.5, 2.0];
+                let knot = |at_s| Knot {
+                    at_s,
+                    is_kink: at_s == 0.25,
+                };
+                all.map(knot).to_vec()
+            };
             let before = Spline::fit(&samples, knots()).unwrap();
             let mut trace = 0.0;
             for i in 0..samples.len() {

@@ -5,7 +5,7 @@
 use fearless_simd::{Simd, dispatch};
 
 use super::caster::{Caster, Stacks};
-use super::packet::{LANES, Lanes, Nearest};
+use super::packet::{LANES, Nearest, RayLanes};
 use super::ray::{Hit, Ray, Reach};
 
 /// Packets of each beam that are cast before those of the next beam.
@@ -16,7 +16,7 @@ const PACKETS_AT_A_TIME: usize = 8;
 pub(crate) trait Packets {
     /// Sets the lanes of a packet. The result has a bit for each lane with a ray, bit 0 for the
     /// first. An invalid ray hits nothing.
-    fn load(&self, packet: usize, lanes: &mut Lanes) -> u64;
+    fn load(&self, packet: usize, lanes: &mut RayLanes) -> u64;
 
     /// Takes what those lanes hit.
     fn take(&mut self, packet: usize, loaded: u64, nearest: &Nearest);
@@ -44,7 +44,7 @@ impl Piece<'_> {
 }
 
 impl Packets for Piece<'_> {
-    fn load(&self, packet: usize, lanes: &mut Lanes) -> u64 {
+    fn load(&self, packet: usize, lanes: &mut RayLanes) -> u64 {
         let mut loaded = 0;
         for (lane, place) in self.places(packet) {
             if let Some(ray) = self.rays.get(place) {
@@ -90,7 +90,7 @@ impl Caster {
     #[inline(always)]
     fn packets<S: Simd>(&self, simd: S, packets: usize, reach: Reach, of: &mut dyn Packets) {
         let mut stacks = Stacks::new();
-        let mut lanes = Lanes::ZERO;
+        let mut lanes = RayLanes::ZERO;
         for packet in 0..packets {
             let loaded = of.load(packet, &mut lanes);
             let wanted = loaded & lanes.sound(simd);

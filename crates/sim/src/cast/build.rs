@@ -40,20 +40,20 @@ impl Quality {
 }
 
 /// An item while the tree is built.
-struct Item {
+struct BuildItem {
     bounds: Bounds,
     id: u32,
 }
 
 /// Items that become one child.
-struct Part {
+struct BuildRange {
     begin: usize,
     end: usize,
     bounds: Bounds,
 }
 
-impl Part {
-    fn over(items: &[Item], begin: usize, end: usize) -> Self {
+impl BuildRange {
+    fn over(items: &[BuildItem], begin: usize, end: usize) -> Self {
         let mut bounds = Bounds::EMPTY;
         for item in items.get(begin..end).unwrap_or_default() {
             bounds.join(&item.bounds);
@@ -77,15 +77,15 @@ struct Job {
 pub(super) fn build(boxes: &[Bounds], quality: Quality) -> (Bvh, Vec<u32>) {
     let quality = quality.clean();
     let mut bins = Bins::new(quality.bins);
-    let mut items: Vec<Item> = boxes
+    let mut items: Vec<BuildItem> = boxes
         .iter()
         .zip(0..)
-        .map(|(bounds, id)| Item {
+        .map(|(bounds, id)| BuildItem {
             bounds: *bounds,
             id,
         })
         .collect();
-    let whole = Part::over(&items, 0, items.len());
+    let whole = BuildRange::over(&items, 0, items.len());
     let mut nodes = Vec::with_capacity(items.len() / 4 + 1);
     nodes.push(Node::EMPTY);
     let mut jobs = vec![Job {
@@ -125,19 +125,19 @@ pub(super) fn build(boxes: &[Bounds], quality: Quality) -> (Bvh, Vec<u32>) {
 }
 
 /// Up to eight parts of the items of a node: the largest is cut until there are eight.
-fn parts(items: &mut [Item], job: &Job, bins: &mut Bins) -> Vec<Part> {
+fn parts(items: &mut [BuildItem], job: &Job, bins: &mut Bins) -> Vec<BuildRange> {
     let (begin, end) = (job.begin, job.end);
     if end - begin <= 8 {
         return (begin..end)
-            .map(|at| Part::over(items, at, at + 1))
+            .map(|at| BuildRange::over(items, at, at + 1))
             .collect();
     }
     // Cuts go through the middle where the best ones could make the tree too deep for the stack.
     let balanced = (end - begin - 1).ilog2() as usize / 3 + 1;
     let by_area = bins.can_cut() && job.level + balanced < LEVELS;
-    let mut parts = vec![Part::over(items, begin, end)];
+    let mut parts = vec![BuildRange::over(items, begin, end)];
     while parts.len() < 8 {
-        let size = |part: &Part| {
+        let size = |part: &BuildRange| {
             if by_area {
                 part.bounds.area()
             } else {
@@ -152,8 +152,8 @@ fn parts(items: &mut [Item], job: &Job, bins: &mut Bins) -> Vec<Part> {
         };
         let part = parts.swap_remove(largest);
         let cut = cut(items, &part, by_area.then_some(&mut *bins));
-        parts.push(Part::over(items, part.begin, cut));
-        parts.push(Part::over(items, cut, part.end));
+        parts.push(BuildRange::over(items, part.begin, cut));
+        parts.push(BuildRange::over(items, cut, part.end));
     }
     // In the order of the items, so that neighbours stay neighbours in memory.
     parts.sort_unstable_by_key(|part| part.begin);
@@ -161,7 +161,7 @@ fn parts(items: &mut [Item], job: &Job, bins: &mut Bins) -> Vec<Part> {
 }
 
 /// Sorts the items of a part so that those before the result are one side of the best cut.
-fn cut(items: &mut [Item], part: &Part, bins: Option<&mut Bins>) -> usize {
+fn cut(items: &mut [BuildItem], part: &BuildRange, bins: Option<&mut Bins>) -> usize {
     let middle = part.begin + part.len() / 2;
     let Some(slice) = items.get_mut(part.begin..part.end) else {
         return middle;
@@ -222,7 +222,7 @@ impl Binning {
         }
     }
 
-    fn bin(&self, item: &Item) -> usize {
+    fn bin(&self, item: &BuildItem) -> usize {
         (((item.bounds.middle2(self.axis) - self.low) * self.scale) as usize).min(self.last)
     }
 }
@@ -252,7 +252,7 @@ impl Bins {
 
     /// Axis and first bin behind the cut with the least expected cost; `None` if no cut separates
     /// anything.
-    fn cheapest(&mut self, items: &[Item], centres: &Bounds) -> Option<(usize, usize)> {
+    fn cheapest(&mut self, items: &[BuildItem], centres: &Bounds) -> Option<(usize, usize)> {
         let mut best = (f64::INFINITY, None);
         for axis in 0..3 {
             if centres.high[axis] <= centres.low[axis] {
@@ -276,7 +276,7 @@ impl Bins {
         best.1
     }
 
-    fn fill(&mut self, items: &[Item], binning: &Binning) {
+    fn fill(&mut self, items: &[BuildItem], binning: &Binning) {
         self.of.fill((Bounds::EMPTY, 0));
         for item in items {
             if let Some((bounds, count)) = self.of.get_mut(binning.bin(item)) {

@@ -1,7 +1,7 @@
-//! Objects in a scene, and what rays meet first among them.
+//! Objects in a scene, and the first hit of a ray among them.
 //!
-//! Finite objects are in a tree of their own, about the middle of the scene; endless planes are
-//! asked one after the other. Left out: how one object is met.
+//! Finite objects are in a tree of their own, relative to the middle of the scene; endless planes
+//! are tested one after the other. `surface` tests one object.
 
 use fearless_simd::{Level, Simd, dispatch};
 use thiserror::Error;
@@ -12,7 +12,7 @@ use super::beam::{Beam, up_to};
 use super::build::Quality;
 use super::bvh::{Bounds, Bvh, MOST_ITEMS, Stack};
 use super::mesh::short_middle;
-use super::packet::{Ask, Best, Lanes, Nearest, loaded, spread};
+use super::packet::{Best, Nearest, ObjectTest, RayLanes, loaded, spread};
 use super::ray::{Hit, Ray, Reach};
 use super::surface::Object;
 
@@ -190,7 +190,7 @@ impl Caster {
         let Stacks { objects, inner } = stacks;
         let above_m = reach.above_m;
         for &object in &self.each {
-            let ask = Ask { above_m, object };
+            let ask = ObjectTest { above_m, object };
             self.ask(simd, inner, ray, ask, &mut best);
         }
         if self.leaves.is_empty() {
@@ -208,7 +208,7 @@ impl Caster {
             #[inline(always)]
             |leaf| {
                 if let Some(&object) = self.leaves.get(leaf as usize) {
-                    let ask = Ask { above_m, object };
+                    let ask = ObjectTest { above_m, object };
                     self.ask(simd, inner, ray, ask, &mut best);
                 }
                 up_to(best.range_m)
@@ -224,7 +224,7 @@ impl Caster {
         simd: S,
         stack: &mut Stack,
         ray: ([f64; 3], [f64; 3]),
-        ask: Ask,
+        ask: ObjectTest,
         best: &mut Best,
     ) {
         if let Some(object) = self.objects.get(ask.object as usize) {
@@ -238,7 +238,7 @@ impl Caster {
         &self,
         simd: S,
         stacks: &mut Stacks,
-        lanes: &mut Lanes,
+        lanes: &mut RayLanes,
         mut wanted: u64,
         reach: Reach,
     ) -> Nearest {
@@ -256,7 +256,7 @@ impl Caster {
         let Stacks { objects, inner } = stacks;
         let above_m = reach.above_m;
         for &object in &self.each {
-            let ask = Ask { above_m, object };
+            let ask = ObjectTest { above_m, object };
             self.ask_eight(simd, inner, (lanes, wanted), ask, &mut nearest);
         }
         if self.leaves.is_empty() {
@@ -275,7 +275,7 @@ impl Caster {
                 #[inline(always)]
                 |leaf| {
                     if let Some(&object) = self.leaves.get(leaf as usize) {
-                        let ask = Ask { above_m, object };
+                        let ask = ObjectTest { above_m, object };
                         self.ask_eight(simd, inner, (lanes, alike), ask, &mut nearest);
                     }
                     up_to(nearest.farthest(simd, alike))
@@ -291,8 +291,8 @@ impl Caster {
         &self,
         simd: S,
         stack: &mut Stack,
-        (lanes, wanted): (&Lanes, u64),
-        ask: Ask,
+        (lanes, wanted): (&RayLanes, u64),
+        ask: ObjectTest,
         nearest: &mut Nearest,
     ) {
         if let Some(object) = self.objects.get(ask.object as usize) {
@@ -302,7 +302,7 @@ impl Caster {
 
     /// Some of the lanes in the tree of objects.
     #[inline(always)]
-    fn beam<S: Simd>(&self, simd: S, mut lanes: Lanes, alike: u64) -> Beam<true> {
+    fn beam<S: Simd>(&self, simd: S, mut lanes: RayLanes, alike: u64) -> Beam<true> {
         lanes.fill(alike);
         let [x, y, z] = loaded(simd, &lanes.origin);
         let middle = self.middle_m;
@@ -313,7 +313,7 @@ impl Caster {
 
     /// Whether all lanes go so nearly the same way that walking together is faster.
     #[inline(always)]
-    fn go_together<S: Simd>(&self, simd: S, lanes: &Lanes) -> bool {
+    fn go_together<S: Simd>(&self, simd: S, lanes: &RayLanes) -> bool {
         let direction = spread(loaded(simd, &lanes.direction));
         let origin = spread(loaded(simd, &lanes.origin));
         direction.width() <= WIDE && origin.width() <= FAR_APART * self.tree.reach_m

@@ -10,9 +10,9 @@ use thiserror::Error;
 use super::beam::{Beam, up_to};
 use super::build::Quality;
 use super::bvh::{Bounds, Bvh, MOST_ITEMS, Stack};
-use super::packet::{Ask, Best, Lanes, Nearest, loaded, spread};
+use super::packet::{Best, Nearest, ObjectTest, RayLanes, loaded, spread};
 use super::ray::FARTHEST_M;
-use super::triangle::{Corners, Sheared, Sheared8};
+use super::triangle::{Corners, ShearedRay, ShearedRays};
 
 /// With fewer rays than this that go the same way, one by one is faster.
 const LEAST_TOGETHER: u32 = 3;
@@ -209,7 +209,7 @@ impl Mesh {
         simd: S,
         stack: &mut Stack,
         (origin, direction): ([f64; 3], [f64; 3]),
-        ask: Ask,
+        ask: ObjectTest,
         best: &mut Best,
     ) {
         // A function of its own in machine code: it is called from several places.
@@ -225,10 +225,10 @@ impl Mesh {
         simd: S,
         stack: &mut Stack,
         (origin, direction): ([f64; 3], [f64; 3]),
-        ask: Ask,
+        ask: ObjectTest,
         best: &mut Best,
     ) {
-        let ray = Sheared::new(origin, direction);
+        let ray = ShearedRay::new(origin, direction);
         let beam = Beam::thin(origin, direction, self.bvh.reach_m);
         let far = up_to(best.range_m);
         self.bvh.walk(
@@ -255,9 +255,9 @@ impl Mesh {
         &self,
         simd: S,
         stack: &mut Stack,
-        lanes: &Lanes,
+        lanes: &RayLanes,
         mut wanted: u64,
-        ask: Ask,
+        ask: ObjectTest,
         nearest: &mut Nearest,
     ) {
         while wanted != 0 {
@@ -287,9 +287,9 @@ impl Mesh {
         &self,
         simd: S,
         stack: &mut Stack,
-        lanes: &Lanes,
+        lanes: &RayLanes,
         (alike, axis): (u64, usize),
-        ask: Ask,
+        ask: ObjectTest,
         nearest: &mut Nearest,
     ) {
         let mut lanes = *lanes;
@@ -297,7 +297,7 @@ impl Mesh {
             lanes.fill(alike);
         }
         let (origin, direction) = (loaded(simd, &lanes.origin), loaded(simd, &lanes.direction));
-        let rays = Sheared8::new(simd, axis, origin, direction);
+        let rays = ShearedRays::new(simd, axis, origin, direction);
         let beam = Beam::<true>::about(&spread(origin), &spread(direction), self.bvh.reach_m);
         let mut far = up_to(nearest.farthest(simd, alike));
         self.bvh.walk(

@@ -15,12 +15,12 @@ pub(crate) const LANES: usize = 8;
 
 /// Origins and directions by coordinate, in some frame.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Lanes {
+pub(crate) struct RayLanes {
     pub(super) origin: [[f64; LANES]; 3],
     pub(super) direction: [[f64; LANES]; 3],
 }
 
-impl Lanes {
+impl RayLanes {
     pub(super) const ZERO: Self = Self {
         origin: [[0.0; LANES]; 3],
         direction: [[0.0; LANES]; 3],
@@ -119,7 +119,7 @@ pub(super) fn spread<S: Simd>(of: [f64x8<S>; 3]) -> Spread {
 
 /// Parameters of a test of an object: distance above which hits count, and the object's number.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Ask {
+pub(super) struct ObjectTest {
     pub above_m: f64,
     pub object: u32,
 }
@@ -216,7 +216,7 @@ impl Nearest {
         simd: S,
         lanes: u64,
         met: f64x8<S>,
-        ask: Ask,
+        ask: ObjectTest,
         primitives: u64x8<S>,
     ) -> bool {
         let had = f64x8::load_array_ref(simd, &self.range_m);

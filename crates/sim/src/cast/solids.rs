@@ -1,9 +1,8 @@
 //! Sphere, box, cylinder and plane, each in its own frame.
 //!
-//! A ray's line crosses each of them at most twice; it hits the first crossing ahead, so that all
-//! are seen from inside as from outside. Nothing is computed from an edge, so that edges and
-//! corners have no cracks. Left out: where they stand ([`Placement`]), and eight rays at once
-//! (`solids8`).
+//! A ray's line crosses each of them at most twice; it hits the first crossing ahead, from inside
+//! as from outside. Nothing is computed from an edge, so that edges and corners have no cracks.
+//! [`Placement`] places them, `solids8` casts eight rays at once.
 //!
 //! [`Placement`]: super::Placement
 

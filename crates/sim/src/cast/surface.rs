@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use super::bvh::{Bounds, Stack};
 use super::mesh::Mesh;
-use super::packet::{Ask, Best, Lanes, Nearest, loaded};
+use super::packet::{Best, Nearest, ObjectTest, RayLanes, loaded};
 use super::placement::Placement;
 use super::solids::{Crossings, Cuboid, Cylinder, Plane, Sphere, first_above};
 use super::solids8::first_above8;
@@ -168,7 +168,7 @@ impl Object {
         simd: S,
         stack: &mut Stack,
         ray: ([f64; 3], [f64; 3]),
-        ask: Ask,
+        ask: ObjectTest,
         best: &mut Best,
     ) {
         let (origin, direction) = self.own_ray(ray);
@@ -188,9 +188,9 @@ impl Object {
         &self,
         simd: S,
         stack: &mut Stack,
-        lanes: &Lanes,
+        lanes: &RayLanes,
         wanted: u64,
-        ask: Ask,
+        ask: ObjectTest,
         nearest: &mut Nearest,
     ) {
         let origin = self.placement.own_points(loaded(simd, &lanes.origin));
@@ -201,7 +201,7 @@ impl Object {
             Surface::Mesh(mesh) => {
                 let from = mesh.origin_m();
                 let [x, y, z] = origin;
-                let own = Lanes {
+                let own = RayLanes {
                     origin: [x - from.x, y - from.y, z - from.z].map(Into::into),
                     direction: direction.map(Into::into),
                 };

@@ -40,14 +40,14 @@ pub(super) fn turned<T>(axis: usize, [x, y, z]: [T; 3]) -> [T; 3] {
 
 /// A ray, and the shear that makes it the z axis.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sheared {
+pub(super) struct ShearedRay {
     axis: usize,
     origin: [f64; 3],
     shear: [f64; 2],
     stretch: f64,
 }
 
-impl Sheared {
+impl ShearedRay {
     #[inline(always)]
     pub(super) fn new(origin: [f64; 3], direction: [f64; 3]) -> Self {
         let axis = steepest(direction);
@@ -101,7 +101,7 @@ fn edge(p: [f64; 3], q: [f64; 3]) -> f64 {
 /// Eight rays with the same dominant axis, translated and sheared until each is the z axis, for
 /// tests of single triangles. [`Caster`](super::Caster) is for scenes.
 #[derive(Clone, Copy, Debug)]
-pub struct Sheared8<S: Simd> {
+pub struct ShearedRays<S: Simd> {
     simd: S,
     axis: usize,
     origin: [f64x8<S>; 3],
@@ -109,7 +109,7 @@ pub struct Sheared8<S: Simd> {
     stretch: f64x8<S>,
 }
 
-impl<S: Simd> Sheared8<S> {
+impl<S: Simd> ShearedRays<S> {
     /// Origins (metres) and directions by coordinate, with the dominant axis `axis` (0 x, 1 y, 2
     /// z).
     #[inline(always)]
@@ -125,7 +125,7 @@ impl<S: Simd> Sheared8<S> {
         }
     }
 
-    /// As [`Sheared::sheared`].
+    /// As [`ShearedRay::sheared`].
     #[inline(always)]
     fn sheared(&self, corner: [f64; 3]) -> [f64x8<S>; 3] {
         let [x, y, z] = turned(self.axis, corner);

@@ -10,6 +10,7 @@ use super::settings::InvalidSetting;
 /// `[effects.duplicate]`.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct DuplicateSettings {
     /// Share of the packets, 0 to 1.
     pub share: f64,

@@ -13,6 +13,7 @@ use super::settings::{InvalidSetting, SettingCheck};
 /// `[effects.encoder_quantisation]`.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
 pub struct EncoderQuantisationSettings {
     /// Encoder lines per motor revolution, four counts each; default 500.
     pub encoder_lines: u32,

@@ -22,6 +22,7 @@ pub struct EffectLine {
 
 /// One effect that was on.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct EffectExplanation {
     /// Its name.
     pub effect: &'static str,
@@ -45,6 +46,7 @@ pub struct EffectExplanation {
 
 /// The effects of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct Explanation {
     /// Effects that were on, in the order in which they act.
     pub on: Vec<EffectExplanation>,

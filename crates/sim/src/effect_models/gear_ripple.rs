@@ -10,6 +10,7 @@ use super::settings::{InvalidSetting, SettingCheck};
 /// `[effects.gear_ripple]`.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct GearRippleSettings {
     /// Largest deviation of the platform, degrees.
     pub amplitude_deg: f64,

@@ -14,6 +14,7 @@ use crate::random::Source;
 /// `[effects.lidar_clock]`.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
 pub struct LidarClockSettings {
     /// Drift, parts per million, positive is fast; -1000 to 1000.
     pub drift_ppm: f64,

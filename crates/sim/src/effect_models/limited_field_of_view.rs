@@ -15,6 +15,7 @@ use super::settings::{InvalidSetting, SettingCheck};
 /// second, across 0 where the first is greater; equal azimuths are the whole revolution.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct LimitedFieldOfViewSettings {
     /// Begin of the view, 0 to 360 degrees.
     pub from_deg: f64,

@@ -12,6 +12,7 @@ use crate::random::Source;
 /// `[effects.link_jitter]`, microseconds.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
 pub struct LinkJitterSettings {
     /// Minimum delay of the lidar's packets.
     pub lidar_delay_us: f64,

@@ -9,6 +9,7 @@ use crate::random::Source;
 /// `[effects.loss]`.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
 pub struct LossSettings {
     /// Share of lost lidar packets, 0 to 1.
     pub lidar_share: f64,

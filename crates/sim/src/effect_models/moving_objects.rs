@@ -20,6 +20,7 @@ use crate::scenery::Travel;
 /// `[effects.moving_objects]`.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
 pub struct MovingObjectsSettings {
     /// The boxes: persons, cars, trolleys.
     pub boxes: Vec<MovingBox>,

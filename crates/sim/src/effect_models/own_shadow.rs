@@ -16,6 +16,7 @@ use super::settings::{InvalidSetting, SettingCheck};
 /// `[effects.own_shadow]`.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
 pub struct OwnShadowSettings {
     /// Sectors that the frame hides.
     pub sectors: Vec<ShadowSector>,

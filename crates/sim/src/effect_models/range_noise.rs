@@ -16,6 +16,7 @@ use crate::random::Source;
 /// `[effects.range_noise]`.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct RangeNoiseSettings {
     /// Standard deviation, metres.
     pub sd_m: f64,

@@ -22,6 +22,7 @@ use crate::random::Source;
 /// `[effects.reflectance]`.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
 pub struct ReflectanceSettings {
     /// Range at which a target is detected half the time head-on, metres.
     pub half_range_m: f64,

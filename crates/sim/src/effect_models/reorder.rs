@@ -10,6 +10,7 @@ use super::settings::InvalidSetting;
 /// `[effects.reorder]`.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct ReorderSettings {
     /// Share of delayed packets, 0 to 1.
     pub share: f64,

@@ -14,6 +14,7 @@ use super::settings::{InvalidSetting, SettingCheck};
 /// `[effects.servo_lag]`.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct ServoLagSettings {
     /// Corner (first order) or natural (second order) frequency, 0.1 to 200 Hz.
     pub frequency_hz: f64,

@@ -9,6 +9,7 @@ use thiserror::Error;
 /// A setting with an invalid value.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("sim: effects.{effect}.{setting}: expected {expected}, got {got}")]
+#[non_exhaustive]
 pub struct InvalidSetting {
     /// The effect.
     pub effect: &'static str,

@@ -27,6 +27,7 @@ use crate::random::Source;
 /// `[effects.weather]`; absent settings have no effect.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
 pub struct WeatherSettings {
     /// Visibility in fog (meteorological optical range), metres.
     pub visibility_m: Option<f64>,

@@ -38,6 +38,7 @@ pub type ConfiguredEffects = Effects<
 
 /// How often an effect was called and acted, and the time it took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct UsageCounts {
     /// Calls.
     pub calls: u64,
@@ -51,6 +52,7 @@ pub struct UsageCounts {
 
 /// An effect of a run and its counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct EffectUsage {
     /// Its key in the scene file.
     pub name: &'static str,

@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use super::surroundings::FirstSurface;
 use super::{Echo, Echoes, Firing, Surroundings};
-use crate::cast::{LANES, Lanes, Nearest, Packets, Reach};
+use crate::cast::{LANES, Nearest, Packets, RayLanes, Reach};
 use crate::sensor::MAX_LASERS;
 
 /// Consecutive firings and their returns.
@@ -28,7 +28,7 @@ impl FiringRays<'_> {
 }
 
 impl Packets for FiringRays<'_> {
-    fn load(&self, packet: usize, lanes: &mut Lanes) -> u64 {
+    fn load(&self, packet: usize, lanes: &mut RayLanes) -> u64 {
         let (laser, first) = self.laser_and_firing(packet);
         let mut loaded = 0;
         let firings = self.firings.iter().skip(first).take(LANES);
@@ -93,7 +93,7 @@ struct FanRays<'a> {
 }
 
 impl Packets for FanRays<'_> {
-    fn load(&self, packet: usize, lanes: &mut Lanes) -> u64 {
+    fn load(&self, packet: usize, lanes: &mut RayLanes) -> u64 {
         let mut loaded = 0;
         let directions = self.directions.iter().skip(packet * LANES).take(LANES);
         for (lane, direction) in directions.enumerate() {

@@ -1,4 +1,4 @@
-//! What rays meet: the only place where the simulation calls the ray caster.
+//! First surfaces of rays: the only place where the simulation calls the ray caster.
 //!
 //! Static objects are cast for a whole packet at once (`batch`), moving objects per firing; the
 //! nearer counts. Effects cast further rays one by one ([`Surroundings::meet`]) or several from one
@@ -49,7 +49,7 @@ pub(super) struct FirstSurface {
 }
 
 impl FirstSurface {
-    /// What a ray hit, with its normal if that is wanted.
+    /// The surface that a ray hit, with its normal if requested.
     #[inline]
     pub fn new(
         scene: &Scene,
@@ -182,7 +182,7 @@ impl Surroundings {
         &mut self.bodies
     }
 
-    /// What returns of the first static surface, or of a moving one before it.
+    /// The echo of the first static surface, or of a moving one before it.
     #[inline]
     fn with_moving(
         &self,
@@ -198,7 +198,7 @@ impl Surroundings {
         self.returning(moving.or(first)?)
     }
 
-    /// What returns of the first surface: nothing if it is too near or absorbing.
+    /// The echo of the first surface: none if it is too near or absorbing.
     #[inline]
     pub(super) fn returning(&self, first: FirstSurface) -> Option<SurfaceHit> {
         let returns = first.met.range_m >= self.range.min_m && !first.absorbing;

@@ -1,6 +1,8 @@
 //! Names of patterns with options: `rmbl:120,rpm=600,tilt=stepped`.
 
-use super::{Pattern, PatternError, PatternSensor, PatternSettings, PatternTilt, Seam, TiltSteps};
+use super::{
+    Pattern, PatternError, PatternSensor, PatternSettings, PatternTilt, RevolutionEnds, TiltSteps,
+};
 
 /// All names: fixed sensors; one or sixteen lasers tilted by half a revolution (rotating single-
 /// and multi-beam lidar); and velomotion's own sweep.
@@ -66,7 +68,7 @@ impl PatternRequest {
                 rpm: RPM,
                 step_deg: 0.0,
                 start_deg: START_DEG,
-                seam: Seam::Twice,
+                seam: RevolutionEnds::Twice,
                 tilt,
                 frames: None,
                 d_m: 0.0,
@@ -108,8 +110,8 @@ impl PatternRequest {
     /// [`PatternError::Option`] for an unknown option or value.
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), PatternError> {
         match (key, value) {
-            ("seam", "once") => self.settings.seam = Seam::Once,
-            ("seam", "twice") => self.settings.seam = Seam::Twice,
+            ("seam", "once") => self.settings.seam = RevolutionEnds::Once,
+            ("seam", "twice") => self.settings.seam = RevolutionEnds::Twice,
             ("seam", _) => return Err(self.wrong("seam=once or seam=twice", value)),
             ("tilt", "stepped") => self.settings.tilt.steps = TiltSteps::Stepped,
             ("tilt", "continuous") => self.settings.tilt.steps = TiltSteps::Continuous,

@@ -39,6 +39,7 @@ impl fmt::Display for FilePosition {
 /// An invalid scene.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("sim: scene, {at}: {what}")]
+#[non_exhaustive]
 pub struct SceneryError {
     /// The position of the value or object, or of its table where several values are involved.
     pub at: FilePosition,
@@ -67,7 +68,7 @@ impl SceneryError {
 pub(crate) struct InvalidValue {
     /// Its keys, joined by dots: in the file, or in the table of an object or material.
     pub path: String,
-    /// What is wrong with it.
+    /// The error.
     pub what: String,
 }
 

@@ -71,7 +71,7 @@ pub enum MaterialAssignment {
 
 /// A scene to cast rays at: its objects and, by the same index, their materials.
 #[derive(Clone, Debug, Default)]
-pub struct Placed {
+pub struct PlacedScenery {
     /// The objects.
     pub objects: Vec<Object>,
     /// The material of each object.
@@ -82,7 +82,7 @@ pub struct Placed {
     pub moving: Vec<Moving>,
 }
 
-impl Placed {
+impl PlacedScenery {
     /// The material at a hit, by the index of the object and its primitive (see
     /// [`crate::cast::Hit`]).
     #[inline]

@@ -38,7 +38,7 @@ pub enum MeshFileError {
     Contents {
         /// The format it was read as.
         format: MeshFormat,
-        /// What is wrong in it.
+        /// The error.
         message: String,
     },
     /// Nothing to hit.
@@ -69,12 +69,12 @@ impl MeshFormat {
 
 /// The triangles of a file.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Soup {
+pub(super) struct TriangleSoup {
     pub vertices: Vec<DVec3>,
     pub triangles: Vec<[u32; 3]>,
 }
 
-impl Soup {
+impl TriangleSoup {
     /// In metres, z up.
     pub fn scaled(mut self, unit_m: f64, y_up: bool) -> Self {
         for vertex in &mut self.vertices {
@@ -101,7 +101,7 @@ pub(super) fn read(
     format: MeshFormat,
     bytes: &[u8],
     beside: Beside<'_>,
-) -> Result<Soup, MeshFileError> {
+) -> Result<TriangleSoup, MeshFileError> {
     match format {
         MeshFormat::Obj => obj::read(bytes),
         MeshFormat::Ply => ply::read(bytes),

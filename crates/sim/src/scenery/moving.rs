@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::{DMat3, DVec3};
 
 use super::error::FilePosition;
-use super::materials::Placed;
+use super::materials::PlacedScenery;
 use crate::cast::{Object, Placement, PlacementError};
 
 /// A motion: the origin moves along a line, the object rotates about it.
@@ -46,7 +46,7 @@ pub struct Moving {
     pub at: FilePosition,
 }
 
-impl Placed {
+impl PlacedScenery {
     /// The static objects, and the moving ones, each in a frame whose origin is the motion's and
     /// whose axes are the base's at the start.
     ///

@@ -25,7 +25,7 @@ pub struct ObjectTable {
     /// Rotation about its origin: the axis, with degrees per second as its length.
     pub turn_deg_s: [f64; 3],
     /// The same thing several times.
-    pub copies: Copies,
+    pub copies: CopyLayout,
     /// A sphere.
     pub sphere: Option<SphereShape>,
     /// A plane.
@@ -51,7 +51,7 @@ pub struct ObjectTable {
 /// its position.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Copies {
+pub struct CopyLayout {
     /// Offsets one by one, metres.
     pub at_m: Vec<[f64; 3]>,
     /// Number along x, y and z; with `step_m`.
@@ -262,7 +262,7 @@ impl ObjectTable {
     }
 }
 
-impl Copies {
+impl CopyLayout {
     /// The most that one object may be copied.
     const MOST: u64 = 100_000;
 

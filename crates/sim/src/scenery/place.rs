@@ -8,7 +8,7 @@ use glam::{DMat3, DVec3};
 use super::Scenery;
 use super::error::{FilePosition, InvalidValue, SceneryError, invalid};
 use super::generators::{self, ObjectPart};
-use super::materials::{Material, MaterialAssignment, Placed};
+use super::materials::{Material, MaterialAssignment, PlacedScenery};
 use super::meshes::{self, MeshFileError, MeshFormat};
 use super::moving::{Moving, Travel};
 use super::objects::{HeightFieldShape, MeshShape, ObjectTable};
@@ -26,23 +26,23 @@ struct Builder<'a> {
     files: Files<'a>,
     /// Meshes that several objects share: by file, unit and which way is up.
     meshes: BTreeMap<(String, u64, Option<bool>), Arc<Mesh>>,
-    placed: Placed,
+    placed: PlacedScenery,
 }
 
 pub(super) fn place(
     scenery: &Scenery,
     seed: u64,
     files: Files<'_>,
-) -> Result<Placed, SceneryError> {
+) -> Result<PlacedScenery, SceneryError> {
     let mut materials = scenery.materials.clone();
     materials.push(Material::plain());
     let mut builder = Builder {
         seed,
         files,
         meshes: BTreeMap::new(),
-        placed: Placed {
+        placed: PlacedScenery {
             materials,
-            ..Placed::default()
+            ..PlacedScenery::default()
         },
     };
     for (number, (at, object)) in scenery.objects.iter().enumerate() {

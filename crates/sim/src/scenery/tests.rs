@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::*;
 use crate::cast::{Caster, Ray, Reach};
 
-fn placed(text: &str) -> Placed {
+fn placed(text: &str) -> PlacedScenery {
     Scenery::parse(text)
         .unwrap()
         .place(1, &mut no_files)
@@ -21,7 +21,12 @@ fn wrong(text: &str) -> String {
 }
 
 /// Distance, reflectivity and normal of a ray's hit.
-fn hit(placed: &Placed, caster: &Caster, from: DVec3, to: DVec3) -> Option<(f64, u8, DVec3)> {
+fn hit(
+    placed: &PlacedScenery,
+    caster: &Caster,
+    from: DVec3,
+    to: DVec3,
+) -> Option<(f64, u8, DVec3)> {
     let ray = Ray::new(from, to.normalize()).unwrap();
     let hit = caster.nearest(&ray, Reach::default())?;
     let material = placed.material(hit.object.index(), hit.primitive).unwrap();

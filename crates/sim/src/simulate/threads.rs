@@ -20,7 +20,7 @@ const CHUNK_PACKETS: u64 = 32;
 /// Finished chunks per thread that may wait.
 const QUEUED_CHUNKS: usize = 4;
 
-/// What all threads share.
+/// State of all threads.
 pub(super) struct SharedRun<'a> {
     lidar: Lidar,
     course: &'a AxisCourse,

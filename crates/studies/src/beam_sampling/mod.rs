@@ -18,7 +18,7 @@ pub(super) const BEAM_SAMPLING: Study = Study {
     title: "Sub-rays of a beam",
     choice: "scene, sub-rays",
     columns: &[
-        ("time_ns_per_shot", "ns a shot"),
+        ("time_ns_per_shot", "ns per shot"),
         ("rms_error_m", "RMS at edges, m"),
         ("worst_error_m", "worst at edges, m"),
         ("dual_wrong_percent", "two returns wrong, %"),

@@ -4,7 +4,7 @@
 
 use crate::placing::Real;
 use fearless_simd::{Level, Simd, SimdBase, SimdFloat, dispatch, f32x8, f64x8, prelude::*};
-use sim::cast::Sheared8;
+use sim::cast::ShearedRays;
 
 /// Rays per packet.
 pub const LANES: usize = 8;
@@ -177,7 +177,7 @@ fn moeller<S: Simd, T: Real, V: SimdFloat<S> + SimdBase<S, Element = T>>(
     nearest
 }
 
-/// The caster's test (`sim::cast::Sheared8`) in any number type.
+/// The caster's test (`sim::cast::ShearedRays`) in any number type.
 #[inline(always)]
 fn watertight<S: Simd, T: Real, V: SimdFloat<S> + SimdBase<S, Element = T>>(
     simd: S,
@@ -244,7 +244,7 @@ fn turned<T>(axis: usize, [x, y, z]: [T; 3]) -> [T; 3] {
 #[inline(always)]
 fn sheared<S: Simd>(simd: S, triangles: &[[[f64; 3]; 3]], rays: &Eight<f64>) -> f64x8<S> {
     let (origin, direction) = (loaded(simd, &rays.origin), loaded(simd, &rays.direction));
-    let sheared = Sheared8::new(simd, rays.axis, origin, direction);
+    let sheared = ShearedRays::new(simd, rays.axis, origin, direction);
     let mut nearest = f64x8::splat(simd, f64::INFINITY);
     for corners in triangles {
         if let Some(range) = sheared.meet(corners) {

@@ -21,7 +21,7 @@ pub(super) const PRECISION: Study = Study {
     title: "Numbers in which rays are cast",
     choice: "coordinates, test",
     columns: &[
-        ("time_ns_per_test", "ns a test"),
+        ("time_ns_per_test", "ns per test"),
         ("rms_error_mm", "RMS error, mm"),
         ("worst_error_mm", "worst error, mm"),
         ("missed_per_million", "slipped through, of a million"),

@@ -52,7 +52,7 @@ pub struct AxisProgress {
     angle_deg: Option<f64>,
 }
 
-/// What records a capture.
+/// Recorder of a capture.
 pub trait CaptureBackend {
     /// Looks how far the capture is.
     ///
@@ -201,7 +201,8 @@ impl<'a> DaemonCapture<'a> {
         self.client.get(&format!("/api/v1/scans/{}", self.id))
     }
 
-    /// What the daemon's simulator knows of the cloud, once the daemon has made its own.
+    /// The cloud's errors against the truth of the daemon's simulator, once the daemon has made its
+    /// own cloud.
     ///
     /// # Errors
     /// Where the daemon is gone.

@@ -62,7 +62,7 @@ pub fn run(arguments: &cli::FirmwareSim, common: &Common) -> Result<CommandOutpu
     Ok(CommandOutput::default())
 }
 
-/// What moves and holds the unpowered axis.
+/// Gravity and friction on the unpowered axis.
 fn load(arguments: &cli::FirmwareSim, axis: &AxisConfig) -> Option<AxisLoad> {
     let motor = |deg_s2: f64| axis.gearing.rpm_per_s(DegPerS2(deg_s2)).0;
     if arguments.gravity.is_none() && arguments.friction.is_none() && arguments.brake.is_none() {

@@ -128,7 +128,10 @@ fn cloud_options(arguments: &cli::Replay) -> impl Iterator<Item = &'static str> 
         ("--live", arguments.live),
         ("--model", lidar.model.is_some()),
         ("--calibration", lidar.calibration.is_some()),
-        ("--equal-returns", lidar.equal_returns != cli::Equal::Once),
+        (
+            "--equal-returns",
+            lidar.equal_returns != cli::EqualReturns::Once,
+        ),
         ("--one-origin", lidar.one_origin),
         ("--tolerance", arguments.accuracy.tolerance.is_some()),
         ("--uncertainty", arguments.output.uncertainty),

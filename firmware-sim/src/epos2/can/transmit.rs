@@ -32,14 +32,14 @@ pub(super) struct TransmitPdo {
 }
 
 /// The configuration of a PDO in use.
-struct Configured {
+struct ConfiguredPdo {
     id: CommunicationId,
     kind: TransmissionType,
     layout: PdoLayout,
     inhibit_us: u64,
 }
 
-impl Configured {
+impl ConfiguredPdo {
     fn of(node: &Node, number: PdoNumber) -> Option<Self> {
         let index = parameters(FIRST, number);
         let id = mapping::identifier(&node.dictionary, index);
@@ -78,7 +78,7 @@ impl Configured {
 impl TransmitPdo {
     /// A SYNC.
     pub fn on_sync(&mut self, node: &Node, number: PdoNumber, out: &mut impl FnMut(&CanFrame)) {
-        let Some(configured) = Configured::of(node, number) else {
+        let Some(configured) = ConfiguredPdo::of(node, number) else {
             return;
         };
         let Some(data) = configured.sample(node) else {
@@ -108,7 +108,7 @@ impl TransmitPdo {
         now_us: u64,
         out: &mut impl FnMut(&CanFrame),
     ) {
-        let Some(configured) = Configured::of(node, number) else {
+        let Some(configured) = ConfiguredPdo::of(node, number) else {
             return;
         };
         let by_event = matches!(
@@ -133,7 +133,7 @@ impl TransmitPdo {
         requested: CobId,
         out: &mut impl FnMut(&CanFrame),
     ) {
-        let Some(configured) = Configured::of(node, number) else {
+        let Some(configured) = ConfiguredPdo::of(node, number) else {
             return;
         };
         if configured.id.id != CanId::Standard(requested) || !configured.id.remote {
@@ -151,7 +151,7 @@ impl TransmitPdo {
     fn send(
         &mut self,
         node: &Node,
-        configured: &Configured,
+        configured: &ConfiguredPdo,
         data: Data,
         out: &mut impl FnMut(&CanFrame),
     ) {

@@ -3,9 +3,9 @@
 //!
 //! The client sends an [`SdoRequest`], the node's server returns an [`SdoResponse`]. Up to four
 //! bytes travel in the first exchange (expedited transfer), more in segments of seven (segmented
-//! transfer). [`SdoTransfer`] holds the rules of one transfer, [`SdoClient`] adds time limits and
-//! stale responses. Both are state machines without I/O. Block transfer is not supported: its
-//! messages are `Unknown`, and a node aborts them with
+//! transfer). [`SdoTransfer`] holds the rules of one transfer as a state machine without I/O; the
+//! caller sends, receives and keeps time. Block transfer is not supported: its messages are
+//! `Unknown`, and a node aborts them with
 //! [`AbortCode::COMMAND`](crate::canopen::AbortCode::COMMAND).
 //!
 //! [`SdoTransfer`] is generic over the capacity of a segment: the EPOS2 carries the same transfers
@@ -41,19 +41,17 @@ macro_rules! sdo_frame {
     };
 }
 
-mod client;
 mod data;
-mod outcome;
+mod error;
 mod request;
 mod response;
 mod transfer;
 
-pub use client::SdoClient;
 pub use data::{Expedited, GenericSdoSegment, Initiate, SEGMENT_LEN, SdoSegment};
-pub use outcome::{FrameDisposition, SdoOutcome, SdoValue, StartError, TransferError};
+pub use error::TransferError;
 pub use request::{GenericSdoRequest, SdoRequest};
 pub use response::{GenericSdoResponse, SdoResponse};
-pub use transfer::{SdoTransfer, TransferDirection, TransferStep};
+pub use transfer::{SdoTransfer, TransferStep};
 
 use crate::canopen::Address;
 use crate::canopen::cob_id::{CommunicationObject, NodeId};

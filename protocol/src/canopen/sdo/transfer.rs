@@ -3,19 +3,10 @@
 
 use super::{
     Expedited, GenericSdoRequest, GenericSdoResponse, GenericSdoSegment, Initiate, SEGMENT_LEN,
-    SdoValue, TransferError,
+    TransferError,
 };
 use crate::Bounded;
 use crate::canopen::Address;
-
-/// Direction of a transfer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TransferDirection {
-    /// The client reads the object.
-    Upload,
-    /// The client writes the object.
-    Download,
-}
 
 /// A transfer of up to `N` bytes in segments of up to `L`.
 #[derive(Clone, Copy, Debug)]
@@ -48,8 +39,9 @@ enum TransferState {
 pub enum TransferStep<const N: usize, const L: usize = SEGMENT_LEN> {
     /// Send the next request.
     Send(GenericSdoRequest<L>),
-    /// The transfer is complete.
-    Done(SdoValue<N>),
+    /// The transfer is complete, with the data read. The last bytes of a value whose size the node
+    /// does not indicate (four bytes in one exchange) may be unused.
+    Done(Bounded<u8, N>),
 }
 
 impl<const N: usize, const L: usize> SdoTransfer<N, L> {
@@ -104,43 +96,8 @@ impl<const N: usize, const L: usize> SdoTransfer<N, L> {
         self.address
     }
 
-    /// Read or write.
-    #[must_use]
-    pub const fn direction(&self) -> TransferDirection {
-        match self.state {
-            TransferState::InitiateUpload | TransferState::UploadSegment { .. } => {
-                TransferDirection::Upload
-            }
-            TransferState::InitiateDownload | TransferState::DownloadSegment { .. } => {
-                TransferDirection::Download
-            }
-        }
-    }
-
-    /// Whether no response has arrived yet.
-    pub(super) const fn is_first(&self) -> bool {
-        matches!(
-            self.state,
-            TransferState::InitiateUpload | TransferState::InitiateDownload
-        )
-    }
-
-    /// Whether `response` has the service of the initiate response expected next.
-    pub(super) fn awaits_initiate(&self, response: &GenericSdoResponse<L>) -> bool {
-        matches!(
-            (self.state, response),
-            (
-                TransferState::InitiateUpload,
-                GenericSdoResponse::InitiateUpload { .. }
-            ) | (
-                TransferState::InitiateDownload,
-                GenericSdoResponse::InitiateDownload { .. }
-            )
-        )
-    }
-
     /// Description of the expected response, for messages.
-    pub(super) const fn expected(&self) -> &'static str {
+    const fn expected(&self) -> &'static str {
         match self.state {
             TransferState::InitiateUpload => "an upload response (4x)",
             TransferState::UploadSegment { .. } => "an upload segment (0x, 1x)",
@@ -179,7 +136,7 @@ impl<const N: usize, const L: usize> SdoTransfer<N, L> {
             }
             (TransferState::InitiateDownload, GenericSdoResponse::InitiateDownload { .. }) => {
                 if Expedited::new(&self.data).is_some() {
-                    return Ok(self.done(true));
+                    return Ok(TransferStep::Done(Bounded::new()));
                 }
                 Ok(self.send_segment(0, false))
             }
@@ -189,7 +146,7 @@ impl<const N: usize, const L: usize> SdoTransfer<N, L> {
             ) => {
                 check_toggle(toggle, *got)?;
                 if sent >= self.data.len() {
-                    return Ok(self.done(true));
+                    return Ok(TransferStep::Done(Bounded::new()));
                 }
                 Ok(self.send_segment(sent, !toggle))
             }
@@ -207,11 +164,11 @@ impl<const N: usize, const L: usize> SdoTransfer<N, L> {
         let size = match initiate {
             Initiate::Expedited(data) => {
                 self.data.extend(data.as_slice().iter().copied());
-                return Ok(self.done(true));
+                return Ok(TransferStep::Done(self.data));
             }
             Initiate::Unsized(bytes) => {
                 self.data.extend(*bytes);
-                return Ok(self.done(false));
+                return Ok(TransferStep::Done(self.data));
             }
             Initiate::Segmented { size } => *size,
         };
@@ -248,7 +205,7 @@ impl<const N: usize, const L: usize> SdoTransfer<N, L> {
         }
         self.data.extend(segment.bytes.iter().copied());
         if segment.last {
-            Ok(self.done(true))
+            Ok(TransferStep::Done(self.data))
         } else {
             Ok(self.request_segment(!segment.toggle, size))
         }
@@ -264,14 +221,6 @@ impl<const N: usize, const L: usize> SdoTransfer<N, L> {
         let sent = offset + segment.bytes.len();
         self.state = TransferState::DownloadSegment { toggle, sent };
         TransferStep::Send(GenericSdoRequest::DownloadSegment(segment))
-    }
-
-    fn done(&self, sized: bool) -> TransferStep<N, L> {
-        let bytes = match self.direction() {
-            TransferDirection::Upload => self.data,
-            TransferDirection::Download => Bounded::new(),
-        };
-        TransferStep::Done(SdoValue { bytes, sized })
     }
 }
 

@@ -157,7 +157,7 @@ impl SerialAnswer {
         answer.to_frame()
     }
 
-    /// What `read` finds in an answer of success; the inner error is what the unit reports.
+    /// The result of `read` on an answer of success; the inner error is that of the unit.
     fn read<T>(
         frame: &SerialFrame,
         read: impl FnOnce(&Self) -> Result<T, SerialFrameError>,

@@ -64,7 +64,7 @@ pub(super) fn run<W: Read + Write + Seek>(
     output: W,
     attributes: &PointAttributes,
     about: &CloudDescription,
-    orders: &Receiver<WorkerCommand>,
+    commands: &Receiver<WorkerCommand>,
 ) -> e57::Result<()> {
     let mut file = e57::E57Writer::new(output, PLACEHOLDER)?;
     if attributes.are_extended() {
@@ -89,7 +89,7 @@ pub(super) fn run<W: Read + Write + Seek>(
         },
     }));
     let ending = loop {
-        match orders.recv() {
+        match commands.recv() {
             Ok(WorkerCommand::Points(points, start)) => {
                 for point in points.iter() {
                     cloud.add_point(attributes.values(&point, start))?;

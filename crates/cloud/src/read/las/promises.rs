@@ -107,8 +107,8 @@ fn extended(bytes: &[u8], header: &LasHeader) -> Result<(), Wrong> {
     if header.minor < 4 {
         return Ok(());
     }
-    let said = || Some((u64::take(bytes, EXTENDED_AT)?, u32::take(bytes, EXTENDED)?));
-    let Some((start, count)) = said().filter(|(_, count)| *count > 0) else {
+    let announced = || Some((u64::take(bytes, EXTENDED_AT)?, u32::take(bytes, EXTENDED)?));
+    let Some((start, count)) = announced().filter(|(_, count)| *count > 0) else {
         return Ok(());
     };
     let mut at = usize::try_from(start).unwrap_or(usize::MAX);
@@ -146,9 +146,9 @@ fn compressed(bytes: &[u8], header: &LasHeader) -> Result<(), Wrong> {
     ))?;
     // The offset of the table is before the chunks, or at the end of the file if it could not be
     // written.
-    let said = |at: usize| u64::take(bytes, at).filter(|&table| table > header.data as u64);
-    let table = said(header.data)
-        .or_else(|| said(bytes.len().checked_sub(8)?))
+    let table_at = |at: usize| u64::take(bytes, at).filter(|&table| table > header.data as u64);
+    let table = table_at(header.data)
+        .or_else(|| table_at(bytes.len().checked_sub(8)?))
         .and_then(|table| usize::try_from(table).ok())
         .filter(|table| *table < bytes.len());
     let chunks = table.and_then(|table| Some((table, u32::take(bytes, table.checked_add(4)?)?)));

@@ -4,7 +4,7 @@
 use fearless_simd::Level;
 use proptest::prelude::*;
 
-use super::super::triangle::Sheared;
+use super::super::triangle::ShearedRay;
 use super::*;
 
 /// Tests every triangle in sequence, without boxes.
@@ -18,7 +18,7 @@ fn nearest_by_brute_force(
         (low.min(v), high.max(v))
     });
     let middle = (0.5 * (low + high)).as_vec3().as_dvec3();
-    let sheared = Sheared::new(
+    let sheared = ShearedRay::new(
         (ray.origin_m() - middle).to_array(),
         ray.direction().to_array(),
     );

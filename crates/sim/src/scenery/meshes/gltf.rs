@@ -10,7 +10,7 @@ use ::gltf::mesh::Mode;
 use ::gltf::{Accessor, Document, Gltf, Node, Primitive};
 use glam::{DMat4, DVec3};
 
-use super::{Beside, Fault, Soup};
+use super::{Beside, Fault, TriangleSoup};
 
 /// Length of a GLB's header, which the length in it counts.
 const HEADER: u32 = 12;
@@ -19,7 +19,7 @@ const DEEPEST: usize = 64;
 /// So many instances of meshes may a file have: nodes can share children.
 const MOST_NODES: usize = 1 << 20;
 
-pub(super) fn read(bytes: &[u8], beside: Beside<'_>) -> Result<Soup, Fault> {
+pub(super) fn read(bytes: &[u8], beside: Beside<'_>) -> Result<TriangleSoup, Fault> {
     check_length(bytes)?;
     let Gltf { document, mut blob } =
         Gltf::from_slice_without_validation(bytes).map_err(|error| error.to_string())?;
@@ -38,7 +38,7 @@ pub(super) fn read(bytes: &[u8], beside: Beside<'_>) -> Result<Soup, Fault> {
     }
     let mut reader = Reader {
         buffers,
-        soup: Soup::default(),
+        soup: TriangleSoup::default(),
         nodes: 0,
     };
     reader.document(&document)?;
@@ -74,7 +74,7 @@ fn check_positions(json: &Root) -> Result<(), Fault> {
 
 struct Reader {
     buffers: Vec<Vec<u8>>,
-    soup: Soup,
+    soup: TriangleSoup,
     nodes: usize,
 }
 

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use super::{Fault, Soup};
+use super::{Fault, TriangleSoup};
 
-pub(super) fn read(mut bytes: &[u8]) -> Result<Soup, Fault> {
+pub(super) fn read(mut bytes: &[u8]) -> Result<TriangleSoup, Fault> {
     let options = tobj::LoadOptions {
         triangulate: true,
         ignore_points: true,
@@ -17,7 +17,7 @@ pub(super) fn read(mut bytes: &[u8]) -> Result<Soup, Fault> {
     let no_materials = |_: &Path| Ok(Default::default());
     let (models, _) = tobj::load_obj_buf(&mut bytes, &options, no_materials)
         .map_err(|error| error.to_string())?;
-    let mut soup = Soup::default();
+    let mut soup = TriangleSoup::default();
     for model in models {
         let first = u32::try_from(soup.vertices.len()).map_err(|_| "too many vertices")?;
         let (vertices, rest) = model.mesh.positions.as_chunks::<3>();

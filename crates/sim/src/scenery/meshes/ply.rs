@@ -4,13 +4,13 @@ use glam::DVec3;
 use ply_rs_bw::parser::Parser;
 use ply_rs_bw::ply::{DefaultElement, Property};
 
-use super::{Fault, Soup};
+use super::{Fault, TriangleSoup};
 
-pub(super) fn read(mut bytes: &[u8]) -> Result<Soup, Fault> {
+pub(super) fn read(mut bytes: &[u8]) -> Result<TriangleSoup, Fault> {
     let ply = Parser::<DefaultElement>::new()
         .read_ply(&mut bytes)
         .map_err(|error| error.to_string())?;
-    let mut soup = Soup::default();
+    let mut soup = TriangleSoup::default();
     for vertex in ply
         .payload
         .get("vertex")

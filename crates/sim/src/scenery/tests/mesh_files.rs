@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 
-use super::super::meshes::Soup;
+use super::super::meshes::TriangleSoup;
 use super::*;
 use crate::cast::{Cuboid, Object};
 
@@ -147,7 +147,7 @@ fn files(name: &str) -> Result<Vec<u8>, String> {
 const NAMES: [&str; 5] = ["box.obj", "box.ply", "binary.PLY", "box.gltf", "box.glb"];
 
 /// The box as a mesh, from a file.
-fn mesh(name: &str) -> Placed {
+fn mesh(name: &str) -> PlacedScenery {
     let up = if name.contains(".gl") {
         ", y_up = false"
     } else {
@@ -299,7 +299,7 @@ fn broken_files_never_panic() {
     ] {
         let read = |bytes: &[u8]| {
             let soup = meshes::read(format, bytes, &mut |_| Ok(gltf_buffer()));
-            let _ = soup.as_ref().map(Soup::mesh);
+            let _ = soup.as_ref().map(TriangleSoup::mesh);
         };
         for length in 0..bytes.len() {
             read(&bytes[..length]);

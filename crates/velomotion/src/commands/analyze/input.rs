@@ -17,7 +17,7 @@ use scanner::{Accuracy, TiltSource};
 use sim::patterns::{Pattern, PatternError, PatternRequest};
 
 use super::report::DeviceReport;
-use super::view::{Outside, Seen};
+use super::view::{DistantOrigin, ViewReport};
 use engine::failure::{Failure, Kind};
 use engine::reconstruct::replay;
 use engine::reconstruct::replay::TimeReference;
@@ -39,17 +39,17 @@ pub struct Input {
     /// Rows with NaN coordinates, mostly shots without a return.
     pub without_numbers: u64,
     /// Field of view, if known: for patterns and logs.
-    pub view: Option<Seen>,
+    pub view: Option<ViewReport>,
     /// Warnings.
     pub warnings: Vec<String>,
     /// Position of the origin relative to a cloud.
-    pub outside: Option<Outside>,
+    pub outside: Option<DistantOrigin>,
     /// The pattern, if it is one.
     pub pattern: Option<Pattern>,
 }
 
 /// An input named by an argument.
-pub enum Named<'a> {
+pub enum InputArgument<'a> {
     /// A pattern.
     Pattern(Box<Pattern>),
     /// A cloud in a readable format.
@@ -58,7 +58,7 @@ pub enum Named<'a> {
     Log(&'a Path),
 }
 
-impl<'a> Named<'a> {
+impl<'a> InputArgument<'a> {
     /// Classifies an argument without reading the file: by pattern name, else by extension. `.xyz`,
     /// `.txt` and `.asc` are read like `.csv`.
     ///
@@ -127,7 +127,7 @@ fn of_pattern(pattern: &Pattern) -> Input {
         directions: pattern.directions(),
         frames: Some(u64::from(pattern.frames())),
         scan_s: Some(pattern.scan_s()),
-        view: Some(Seen::of_pattern(pattern)),
+        view: Some(ViewReport::of_pattern(pattern)),
         pattern: Some(pattern.clone()),
         ..Input::default()
     }
@@ -180,7 +180,7 @@ fn of_cloud(path: &Path, format: Format, origin_m: DVec3) -> Result<Input, Failu
     })?;
     let places = read.positions.into_iter().map(DVec3::from_array);
     let places: Vec<DVec3> = places.map(|place| place - origin_m).collect();
-    let outside = Outside::new(&places, origin_m);
+    let outside = DistantOrigin::new(&places, origin_m);
     let (directions, without_direction) = directions(path, places, read.without_numbers)?;
     Ok(Input {
         name: path.display().to_string(),
@@ -226,12 +226,12 @@ fn directions(
 }
 
 /// Collects the points of a log and its tilt samples.
-struct Kept {
+struct LogPoints {
     points: Points,
     track: TiltTrack,
 }
 
-impl Sink for Kept {
+impl Sink for LogPoints {
     fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
         Sink::points(&mut self.points, batch)
     }
@@ -269,7 +269,7 @@ fn of_log(path: &Path, interrupt: &AtomicBool) -> Result<Input, Failure> {
         lost_records: 0,
         interrupt,
     };
-    let mut kept = Kept {
+    let mut kept = LogPoints {
         points: Points::new(Fields::NONE),
         track: TiltTrack::default(),
     };
@@ -277,7 +277,7 @@ fn of_log(path: &Path, interrupt: &AtomicBool) -> Result<Input, Failure> {
     let points = &kept.points;
     let places = points.x_m().iter().zip(points.y_m()).zip(points.z_m());
     let places: Vec<DVec3> = places.map(|((x, y), z)| DVec3::new(*x, *y, *z)).collect();
-    let view = Seen::of_log(&scan, &kept.track, &places);
+    let view = ViewReport::of_log(&scan, &kept.track, &places);
     let (directions, without_direction) = directions(path, places, 0)?;
     let (frames, scan_s) = if scan.sweeps.is_empty() {
         let seconds = scan.contents.duration_s;

@@ -28,7 +28,7 @@ use sim::patterns::{AXIS, FieldOfView, Pattern};
 pub use report::{
     AnalyzeReport, Blind, Density, DeviceReport, GapReport, HoleReport, KReport, PatternReport,
 };
-pub use view::Seen;
+pub use view::ViewReport;
 
 use super::CommandOutput;
 use crate::cli::{self, Common};
@@ -36,7 +36,7 @@ use crate::signals;
 use crate::terminal::Progress;
 use engine::failure::{Failure, Kind};
 use folder::Folder;
-use input::{Input, Named};
+use input::{Input, InputArgument};
 
 /// Classes of the histogram.
 const CLASSES: usize = 10;
@@ -66,7 +66,7 @@ pub fn run(arguments: &cli::Analyze, common: &Common) -> Result<CommandOutput, F
         Failure::new(Kind::Incomplete, format!("cannot start a thread: {error}"))
             .help("end other programs, or raise the limit of threads")
     })?;
-    let (said, folder) = loop {
+    let (output, folder) = loop {
         match all.recv_timeout(LOOK_AGAIN) {
             Ok(found) => break found?,
             Err(RecvTimeoutError::Timeout) => go_on(&interrupt)?,
@@ -82,7 +82,7 @@ pub fn run(arguments: &cli::Analyze, common: &Common) -> Result<CommandOutput, F
     if let Some((folder, report, progress)) = folder {
         folder.write(&report, &progress)?;
     }
-    Ok(said)
+    Ok(output)
 }
 
 /// The output, and the folder to be written.
@@ -100,13 +100,13 @@ fn measured(
         let report = sweep.run(&arguments.inputs, &measure, progress, interrupt)?;
         return Ok((CommandOutput::result(&report, report.text()), None));
     }
-    let inputs: Vec<Named<'_>> = arguments
+    let inputs: Vec<InputArgument<'_>> = arguments
         .inputs
         .iter()
-        .map(|argument| Named::new(argument))
+        .map(|argument| InputArgument::new(argument))
         .collect::<Result<_, _>>()?;
     let origin_m = DVec3::from_array(arguments.origin.unwrap_or_default());
-    if arguments.origin.is_some() && !inputs.iter().any(Named::is_cloud) {
+    if arguments.origin.is_some() && !inputs.iter().any(InputArgument::is_cloud) {
         let what = "--origin is where the scanner was in a cloud, and no cloud is named";
         let help = "leave it out: patterns and logs know where theirs is";
         return Err(Failure::new(Kind::Usage, what).help(help));
@@ -129,8 +129,8 @@ fn measured(
         patterns.push(pattern);
     }
     let report = AnalyzeReport { patterns };
-    let said = CommandOutput::result(&report, report.text());
-    Ok((said, folder.map(|folder| (folder, report, progress))))
+    let output = CommandOutput::result(&report, report.text());
+    Ok((output, folder.map(|folder| (folder, report, progress))))
 }
 
 /// Settings common to all inputs.
@@ -251,13 +251,19 @@ impl Measure {
                 step_rad: rotation.step_rad,
                 frames: rotation.frames as usize,
             });
-        let wish = Sampling {
+        let sampling = Sampling {
             tolerance: self.tolerance,
             ..Sampling::default()
         };
         let threads = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
         let directions = &input.directions;
-        let estimate = k::estimate(directions, rotation.as_ref(), &self.edges, &wish, threads);
+        let estimate = k::estimate(
+            directions,
+            rotation.as_ref(),
+            &self.edges,
+            &sampling,
+            threads,
+        );
         let estimate = estimate.map_err(|error| {
             Failure::new(Kind::BadInput, format!("{}: {error}", input.name))
                 .help("--k-error 0 counts every pair, whatever the points")

@@ -6,7 +6,7 @@ use analysis::k::KCurve;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::view::Seen;
+use super::view::ViewReport;
 
 /// Report on all inputs.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
@@ -31,7 +31,7 @@ pub struct PatternReport {
     /// Rows with NaN coordinates, omitted.
     pub without_numbers: u64,
     /// Field of view of patterns and logs; null if unknown.
-    pub view: Option<Seen>,
+    pub view: Option<ViewReport>,
     /// Points per bin, over all bins.
     pub density: Density,
     /// Points per bin, over bins whose centre is in view; null if the view is unknown.
@@ -130,7 +130,8 @@ pub struct GapReport {
 }
 
 /// Holes in view that are larger than the 99 % gap, and bands about the tilt axis without points.
-/// Without a known view holes cannot be told from directions out of view: all values are null.
+/// Without a known view holes cannot be distinguished from directions out of view: all values are
+/// null.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Blind {
     /// Smallest radius of the counted holes, degrees.

@@ -76,10 +76,10 @@ impl SweepRanges {
             );
             return Err(Failure::new(Kind::Usage, what).help(EXAMPLE));
         };
-        let wish =
+        let request =
             PatternRequest::parse(name).map_err(|error| pattern_failure(&error).help(EXAMPLE))?;
         // All are checked before the first is measured.
-        let patterns = self.patterns(&wish)?;
+        let patterns = self.patterns(&request)?;
         let mut settings = Vec::with_capacity(patterns.len());
         progress.begin_count(patterns.len() as u64);
         for (number, (values, pattern)) in patterns.into_iter().enumerate() {
@@ -98,20 +98,21 @@ impl SweepRanges {
         })
     }
 
-    fn patterns(&self, wish: &PatternRequest) -> Result<Vec<(Vec<f64>, Pattern)>, Failure> {
+    fn patterns(&self, request: &PatternRequest) -> Result<Vec<(Vec<f64>, Pattern)>, Failure> {
         let all: usize = self.ranges.iter().map(|range| range.steps).product();
         (0..all)
             .map(|mut number| {
-                let mut wish = wish.clone();
+                let mut request = request.clone();
                 let mut values = Vec::with_capacity(self.ranges.len());
                 for range in &self.ranges {
                     let value = range.value(number % range.steps);
                     number /= range.steps;
-                    wish.set_number(&range.key, value)
+                    request
+                        .set_number(&range.key, value)
                         .map_err(|error| pattern_failure(&error).help(EXAMPLE))?;
                     values.push(value);
                 }
-                let pattern = wish.build().map_err(|error| pattern_failure(&error))?;
+                let pattern = request.build().map_err(|error| pattern_failure(&error))?;
                 Ok((values, pattern))
             })
             .collect()
@@ -213,7 +214,7 @@ impl SettingsReport {
         }
         text.push_str(
             "\nall in view, where the scan can see: radius of the largest hole; 99 % of\n\
-             directions have a point within; sd / mean of points a bin, of bins in view only\n\
+             directions have a point within; sd / mean of points per bin, bins in view\n\
              * no other setting is as good in this and as quick, and better in one of them\n",
         );
         text.trim_end().to_owned()

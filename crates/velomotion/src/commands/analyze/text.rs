@@ -105,7 +105,7 @@ impl PatternReport {
     fn lines(&self) -> Vec<String> {
         let mut lines = Vec::new();
         if let Some(frames) = self.frames {
-            lines.push(format!("{} of the lidar", counted(frames, "turn")));
+            lines.push(format!("{} of the lidar", counted(frames, "revolution")));
         }
         let left_out = [
             (self.without_direction, "in the origin"),

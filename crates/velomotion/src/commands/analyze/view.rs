@@ -16,7 +16,7 @@ use engine::reconstruct::report::ScanReport;
 
 /// A field of view and its parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
-pub struct Seen {
+pub struct ViewReport {
     /// The directions.
     #[serde(skip)]
     pub view: FieldOfView,
@@ -35,7 +35,7 @@ pub struct Seen {
 /// cloud.
 const FEW: f64 = 0.01;
 
-impl Seen {
+impl ViewReport {
     /// View of a pattern, at its hollow sphere.
     #[must_use]
     pub fn of_pattern(pattern: &Pattern) -> Self {
@@ -84,7 +84,7 @@ impl Seen {
 
 /// An origin outside the box that holds 98 % of a cloud's points along each axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Outside {
+pub struct DistantOrigin {
     origin_m: DVec3,
     /// Distance from the origin to the box, metres.
     off_m: f64,
@@ -94,7 +94,7 @@ pub struct Outside {
     size_m: f64,
 }
 
-impl Outside {
+impl DistantOrigin {
     /// Position of `origin_m` relative to the points; `None` if it lies among them.
     pub fn new(places: &[DVec3], origin_m: DVec3) -> Option<Self> {
         let axis = |of: fn(&DVec3) -> f64| middle(&mut places.iter().map(of).collect::<Vec<_>>());
@@ -166,9 +166,12 @@ mod tests {
                 })
                 .collect()
         };
-        assert_eq!(Outside::new(&corners(DVec3::ZERO), DVec3::ZERO), None);
-        assert_eq!(Outside::new(&corners(DVec3::splat(9.9)), DVec3::ZERO), None);
-        let far = Outside::new(
+        assert_eq!(DistantOrigin::new(&corners(DVec3::ZERO), DVec3::ZERO), None);
+        assert_eq!(
+            DistantOrigin::new(&corners(DVec3::splat(9.9)), DVec3::ZERO),
+            None
+        );
+        let far = DistantOrigin::new(
             &corners(DVec3::new(450_000.0, 5_400_000.0, 0.0)),
             DVec3::ZERO,
         );
@@ -180,7 +183,7 @@ mod tests {
             "{message}"
         );
         // A scan of a single wall is valid.
-        let close = Outside::new(&corners(DVec3::new(11.0, 0.0, 0.0)), DVec3::ZERO).unwrap();
+        let close = DistantOrigin::new(&corners(DVec3::new(11.0, 0.0, 0.0)), DVec3::ZERO).unwrap();
         assert_eq!(close.warning(80.0), None);
     }
 }

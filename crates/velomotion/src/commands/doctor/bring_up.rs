@@ -50,12 +50,12 @@ pub struct BringUpReport {
 }
 
 /// Asks at the terminal; with `--yes` it asks nothing.
-struct Person {
+struct TerminalOperator {
     unattended: bool,
     has_ended: bool,
 }
 
-impl Person {
+impl TerminalOperator {
     fn answer(&self) -> String {
         let mut line = String::new();
         // An end of the input ends the bring-up.
@@ -98,7 +98,7 @@ impl Person {
     }
 }
 
-impl Operator for Person {
+impl Operator for TerminalOperator {
     fn has_done(&mut self, request: &str) -> bool {
         if self.unattended {
             return false;
@@ -119,26 +119,13 @@ pub(super) fn run(
     config: &Config,
     (name, device): (String, Device),
 ) -> Result<CommandOutput, Failure> {
-    if profile::simulated(&device) {
-        return Err(Failure::new(
-            Kind::Usage,
-            "the bring-up needs a drive of its own, not the software devices of --device sim",
-        )
-        .help("name the drive with --device; velomotion firmware-sim is one to practise with"));
-    }
-    if !arguments.yes && !std::io::stdin().is_terminal() {
-        return Err(Failure::new(
-            Kind::Usage,
-            "the questions need a terminal: stdin is not one",
-        )
-        .help("run it in a terminal, or with --yes, which runs every step unattended"));
-    }
+    check_arguments(arguments, &device)?;
     let axis = profile::axis(&config.axis)?;
     let interrupt = signals::motion_interrupt_flag()?;
     let port = drive_port::port_path(&name, &device, Search::Once, &discover)?;
     let path = arguments.report.clone().unwrap_or_else(|| REPORT.into());
     let mut report = ReportFile::open(&path, &name, &port)?;
-    let mut person = Person {
+    let mut person = TerminalOperator {
         unattended: arguments.yes,
         has_ended: false,
     };
@@ -193,6 +180,32 @@ pub(super) fn run(
     person.show(&done);
     report.append(&done)?;
     steps.push(done);
+    conclude(steps, report)
+}
+
+/// Refuses software devices, and questions without a terminal.
+fn check_arguments(arguments: &Doctor, device: &Device) -> Result<(), Failure> {
+    let (message, help) = if profile::simulated(device) {
+        (
+            "the bring-up needs a drive of its own, not the software devices of --device sim",
+            "name the drive with --device; velomotion firmware-sim is one to practise with",
+        )
+    } else if !arguments.yes && !std::io::stdin().is_terminal() {
+        (
+            "the questions need a terminal: stdin is not one",
+            "run it in a terminal, or with --yes, which runs every step unattended",
+        )
+    } else {
+        return Ok(());
+    };
+    Err(Failure::new(Kind::Usage, message).help(help))
+}
+
+/// Ends the report with its result.
+fn conclude(
+    steps: Vec<BringUpStepReport>,
+    mut report: ReportFile,
+) -> Result<CommandOutput, Failure> {
     let count = |judgement| {
         let all = steps.iter().flat_map(|step| &step.measurements);
         all.filter(|found| found.judgement == judgement).count()
@@ -209,9 +222,9 @@ pub(super) fn run(
         Failure::new(Kind::DeviceFault, format!("{problems} problems found"))
             .help("correct them before the head is coupled; the report has the advice")
     });
-    let text = format!("{result}; report {}", path.display());
+    let text = format!("{result}; report {}", report.path.display());
     let output = BringUpReport {
-        report: path,
+        report: report.path,
         steps,
         problems,
         unchecked,

@@ -173,7 +173,7 @@ impl SimulationSink for Log<'_> {
             } => {
                 let answer = match request {
                     DriveRequest::Position => ReadObject::answer(Ok(*position_qc as u32)),
-                    DriveRequest::Probe(which) => ReadObject::answer(Err(marker(*which).1)),
+                    DriveRequest::Probe(which) => ReadObject::answer(Err(probe_request(*which).1)),
                     _ => WriteObject::answer(Ok(())),
                 };
                 self.frame(*at, Direction::FromDevice, &answer)
@@ -234,7 +234,7 @@ fn frame(request: DriveRequest, gearing: Gearing) -> SerialFrame {
     };
     let (address, value) = match request {
         DriveRequest::Position => return read(objects::POSITION_ACTUAL.address),
-        DriveRequest::Probe(which) => return read(marker(which).0),
+        DriveRequest::Probe(which) => return read(probe_request(which).0),
         DriveRequest::Target(qc) => (objects::TARGET_POSITION.address, qc as u32),
         DriveRequest::Speed(deg_s) => (objects::PROFILE_VELOCITY.address, rpm(deg_s)),
         DriveRequest::Acceleration(deg_s2) => (objects::PROFILE_ACCELERATION.address, rpm(deg_s2)),
@@ -257,7 +257,7 @@ fn frame(request: DriveRequest, gearing: Gearing) -> SerialFrame {
 }
 
 /// Address and error answer of the two probe requests.
-const fn marker(second: bool) -> (Address, CommError) {
+const fn probe_request(second: bool) -> (Address, CommError) {
     let [one, other] = drive::PROBES;
     if second { other } else { one }
 }

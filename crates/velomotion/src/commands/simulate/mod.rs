@@ -5,6 +5,7 @@
 
 mod log;
 
+use std::fs::File;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -15,6 +16,7 @@ use cloud::{Fields, Metadata, TiltTrack};
 use glam::{DMat3, DVec2};
 use io::log::{LogConfig, LogError, LogWriter};
 use protocol::record::DriveLink;
+use scanner::ScanConfig;
 use serde::Serialize;
 use sim::effect_models::Explanation;
 use sim::effects::{Effects, FiringEffectSet, Stopwatch};
@@ -231,26 +233,9 @@ pub fn make(
         encoder.gearing().unwrap_or(polls.gearing)
     });
     let config = scan_config(&scene, gearing);
-    let head = LogConfig {
-        metadata: toml::to_string(&config).map_err(|error| cannot_write(path, &error))?,
-        drive: gearing.map(|_| DriveLink::Usb),
-    };
-    let overwrite = output::overwrite(force);
-    let writer = match is_pcap(path) {
-        true => LogWriter::create_pcap(path, overwrite),
-        false => LogWriter::create(path, &head, overwrite),
-    };
-    let writer = writer.map_err(|error| log_failure(path, &error))?;
+    let writer = create_log(path, &config, gearing.is_some(), force)?;
     if let Some(truth) = &mut truth {
-        let placed = TiltTrack {
-            mount: Some(Metres(config.mount.d_m)),
-            ..TiltTrack::default()
-        };
-        let sink = truth.sink();
-        let begun = sink
-            .begin(&metadata(&name))
-            .and_then(|()| sink.tilt(&placed));
-        begun.map_err(|error| output::sink_failure(truth.path(), &error))?;
+        begin_truth(truth, &name, config.mount.d_m)?;
     }
     let began = Instant::now();
     let mut out = Log::new(
@@ -268,8 +253,8 @@ pub fn make(
             scene.simulation.run(&mut none, threads, &mut out)
         }
         false => {
-            let asked = &mut scene.effects.effects;
-            scene.simulation.run(asked, threads, &mut out)
+            let effects = &mut scene.effects.effects;
+            scene.simulation.run(effects, threads, &mut out)
         }
     };
     let warnings = beyond_the_log(&scene).into_iter().collect();
@@ -312,6 +297,36 @@ pub fn make(
         explanation,
     };
     Ok((report, failure))
+}
+
+/// Creates the log.
+fn create_log(
+    path: &Path,
+    config: &ScanConfig,
+    has_drive: bool,
+    force: bool,
+) -> Result<LogWriter<File>, Failure> {
+    let head = LogConfig {
+        metadata: toml::to_string(config).map_err(|error| cannot_write(path, &error))?,
+        drive: has_drive.then_some(DriveLink::Usb),
+    };
+    let overwrite = output::overwrite(force);
+    let writer = match is_pcap(path) {
+        true => LogWriter::create_pcap(path, overwrite),
+        false => LogWriter::create(path, &head, overwrite),
+    };
+    writer.map_err(|error| log_failure(path, &error))
+}
+
+/// Begins the cloud of the truth, of a lidar `d_m` above the tilt axis.
+fn begin_truth(truth: &mut Target, name: &str, d_m: f64) -> Result<(), Failure> {
+    let track = TiltTrack {
+        mount: Some(Metres(d_m)),
+        ..TiltTrack::default()
+    };
+    let sink = truth.sink();
+    let begun = sink.begin(&metadata(name)).and_then(|()| sink.tilt(&track));
+    begun.map_err(|error| output::sink_failure(truth.path(), &error))
 }
 
 impl SimulationReport {
@@ -370,8 +385,9 @@ impl SimulationReport {
 /// Mount settings of the scene that a log cannot store: its rotation and horizontal offset.
 fn beyond_the_log(scene: &SceneFile) -> Option<String> {
     let mount = &scene.simulation.mount;
-    let told = mount.rotation == DMat3::IDENTITY && mount.position_m.truncate() == DVec2::ZERO;
-    (!told).then(|| {
+    let is_recorded =
+        mount.rotation == DMat3::IDENTITY && mount.position_m.truncate() == DVec2::ZERO;
+    (!is_recorded).then(|| {
         format!(
             "a log stores only the height of the mount, {} m: replay ignores the scene's position_m and rotation_deg, the truth includes them",
             mount.position_m.z

@@ -3,13 +3,14 @@
 //! `analysis::tradeoff` has the studies, tables and pages; the clock and the files are here.
 //! Studies behind the program's own choices are in the crate `studies`.
 
+mod text;
 mod trajectory;
 
 use std::path::{Path, PathBuf};
 
 use analysis::tradeoff::{
     self, Bench, Book, Effort, K_FUNCTION, Machine, SCAN_SPEED, Study, StudyReport, TradeoffReport,
-    html, svg, text,
+    html, svg,
 };
 
 use super::CommandOutput;

@@ -20,7 +20,7 @@ pub(super) const TRAJECTORIES: Study = Study {
     choice: "polls, method",
     // The worst errors are those of `CIRCUMSTANCES`.
     columns: &[
-        ("time_ms_per_sweep", "ms a sweep"),
+        ("time_ms_per_sweep", "ms per sweep"),
         ("worst_ideal_deg", "worst, ideal polls, deg"),
         ("worst_jitter_0_1_ms_deg", "worst, 0.1 ms jitter, deg"),
         ("worst_jitter_0_5_ms_deg", "worst, 0.5 ms jitter, deg"),

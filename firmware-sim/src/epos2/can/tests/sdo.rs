@@ -4,12 +4,10 @@ extern crate std;
 use std::vec::Vec;
 
 use proptest::prelude::*;
-use protocol::canopen::NodeId;
 use protocol::canopen::nmt::NmtCommand;
-use protocol::canopen::sdo::{SdoClient, TransferDirection};
+use protocol::canopen::sdo::{SdoResponse, SdoTransfer, TransferError, TransferStep};
 use protocol::epos2::CommError;
 use protocol::epos2::objects::{self, Address};
-use units::{Span, Stamp};
 
 use super::Bus;
 
@@ -207,26 +205,25 @@ fn the_node_answers_only_its_own_requests_and_none_when_stopped() {
     assert_eq!(bus.take().len(), 1);
 }
 
-/// Reads every entry with the client of the protocol crate, which tests both sides of segmented
-/// transfers.
+/// Reads every entry by the transfers of the protocol crate, which tests both sides of them.
 #[test]
 fn every_entry_is_read_over_can_unchanged() {
     let mut bus = Bus::new();
     for entry in &crate::epos2::table::TABLE {
-        let mut client = SdoClient::<8>::new(NodeId::new(1).unwrap(), Span::from_millis(1));
-        client.read(entry.address).unwrap();
-        while let Some(frame) = client.poll_transmit(Stamp::from_nanos(0)) {
-            bus.server.input(&mut bus.node, &frame, &mut |answer| {
-                client.handle_frame(answer);
-            });
-        }
-        let outcome = client.poll_outcome().unwrap();
-        assert_eq!(outcome.direction, TransferDirection::Upload);
+        let (mut transfer, mut request) = SdoTransfer::<8>::upload(entry.address);
+        let result = loop {
+            let bytes = bus.sdo(request.to_bytes());
+            match transfer.handle_response(&SdoResponse::from_bytes(bytes)) {
+                Ok(TransferStep::Send(next)) => request = next,
+                Ok(TransferStep::Done(data)) => break Ok(data),
+                Err(error) => break Err(error),
+            }
+        };
         match bus.node.read(entry.address) {
-            Ok(value) => assert_eq!(outcome.result.unwrap().bytes.as_slice(), value.bytes()),
+            Ok(value) => assert_eq!(result.unwrap().as_slice(), value.bytes()),
             Err(code) => {
-                let error = protocol::canopen::sdo::TransferError::Aborted(code);
-                assert_eq!(outcome.result, Err(error), "{}", entry.address);
+                let error = TransferError::Aborted(code);
+                assert_eq!(result, Err(error), "{}", entry.address);
             }
         }
     }

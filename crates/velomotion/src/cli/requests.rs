@@ -1,0 +1,105 @@
+//! Arguments as requests to the engine.
+
+use cloud::Fields;
+use engine::capture::jog::{GotoRequest, JogRequest};
+use engine::capture_request::CaptureRequest;
+use engine::reconstruct::decoder_options::DecoderRequest;
+use engine::reconstruct::replay;
+use lidar::Duplicates;
+use protocol::vlp16::{Model, models};
+
+use super::{
+    AccuracyArguments, Capture, EqualReturns, LidarArguments, ModelName, Output, TiltVerb,
+    TimeArgument,
+};
+
+impl AccuracyArguments {
+    /// The accuracy requested from the scanner.
+    #[must_use]
+    pub fn wanted(&self) -> scanner::Accuracy {
+        self.tolerance
+            .map_or(scanner::Accuracy::Best, scanner::Accuracy::Within)
+    }
+}
+
+impl From<TimeArgument> for replay::TimeReference {
+    fn from(time: TimeArgument) -> Self {
+        match time {
+            TimeArgument::Host => Self::Host,
+            TimeArgument::Utc => Self::Utc,
+        }
+    }
+}
+
+impl LidarArguments {
+    /// The request to the engine.
+    #[must_use]
+    pub fn request(&self) -> DecoderRequest {
+        DecoderRequest {
+            model: self.model.map(ModelName::model),
+            calibration: self.calibration.clone(),
+            duplicates: match self.equal_returns {
+                EqualReturns::Once => Duplicates::Unique,
+                EqualReturns::Twice => Duplicates::All,
+            },
+            one_origin: self.one_origin,
+        }
+    }
+}
+
+impl From<TiltVerb> for JogRequest {
+    fn from(verb: TiltVerb) -> Self {
+        match verb {
+            TiltVerb::Status | TiltVerb::Faults { clear: false } => Self::Status,
+            TiltVerb::Faults { clear: true } => Self::ClearFaults,
+            TiltVerb::Stop => Self::Stop,
+            TiltVerb::Home => Self::Home,
+            TiltVerb::Goto { to, speed, accel } => Self::Goto(GotoRequest {
+                to_deg: to,
+                speed_deg_s: speed,
+                accel_deg_s2: accel,
+            }),
+        }
+    }
+}
+
+impl From<&Capture> for CaptureRequest {
+    fn from(arguments: &Capture) -> Self {
+        Self {
+            speed_deg_s: arguments.speed,
+            from_deg: arguments.from,
+            to_deg: arguments.to,
+            accel_deg_s2: arguments.accel,
+            sweeps: arguments.sweeps,
+            both_ways: arguments.both_ways,
+            tolerance: arguments
+                .accuracy
+                .tolerance
+                .map(|t| format!("{}m@{}m", t.off.0, t.at.0)),
+            name: None,
+        }
+    }
+}
+
+impl ModelName {
+    /// The model.
+    #[must_use]
+    pub const fn model(self) -> &'static Model {
+        match self {
+            Self::Vlp16 => &models::VLP_16,
+            Self::HiRes => &models::PUCK_HI_RES,
+            Self::Hdl32e => &models::HDL_32E,
+            Self::Vlp32c => &models::VLP_32C,
+        }
+    }
+}
+
+impl Output {
+    /// Columns of the cloud in addition to the position.
+    #[must_use]
+    pub fn fields(&self) -> Fields {
+        let asked = [(self.uncertainty, Fields::SD), (self.echo, Fields::ECHO)];
+        let asked = asked.into_iter().filter(|(asked, _)| *asked);
+        asked.fold(Fields::FILE, |fields, (_, field)| fields | field)
+    }
+}

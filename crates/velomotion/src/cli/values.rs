@@ -1,0 +1,89 @@
+//! Parsers of the values of arguments.
+
+use std::num::NonZeroUsize;
+
+use clap::builder::PossibleValuesParser;
+
+use super::ALL;
+
+/// Names of the effects, and [`ALL`].
+pub(super) fn effect_or_all() -> PossibleValuesParser {
+    let names = sim::effect_models::EffectsConfig::NAMES.iter().copied();
+    PossibleValuesParser::new(names.chain([ALL]))
+}
+
+/// Parses two times, milliseconds.
+pub(super) fn two_times(text: &str) -> Result<(u16, u16), String> {
+    text.split_once(',')
+        .and_then(|(open, close)| Some((open.parse().ok()?, close.parse().ok()?)))
+        .ok_or_else(|| "expected two times from 0 to 65535 ms: OPEN,CLOSE".to_owned())
+}
+
+/// Parses an acceleration of the axis, deg/s2; 1e6 is far beyond any motor.
+pub(super) fn acceleration(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.abs() <= 1e6 => Ok(value),
+        _ => Err("expected an acceleration from -1000000 to 1000000 deg/s2".to_owned()),
+    }
+}
+
+/// Parses a deceleration of the axis, deg/s2.
+pub(super) fn deceleration(text: &str) -> Result<f64, String> {
+    acceleration(text)
+        .ok()
+        .filter(|value| *value >= 0.0)
+        .ok_or_else(|| "expected a deceleration from 0 to 1000000 deg/s2".to_owned())
+}
+
+/// Parses a number of any use as an angle, speed, acceleration or factor.
+pub(super) fn number(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        // Later checks print the number: 1e300 would have 301 digits.
+        Ok(number) if number.is_nan() || number.abs() <= 1e6 => Ok(number),
+        _ => Err("expected a number from -1e6 to 1e6".to_owned()),
+    }
+}
+
+/// Parses a seed.
+pub(super) fn seed(text: &str) -> Result<u64, String> {
+    let expected = || format!("expected a whole number from 0 to {}", u64::MAX);
+    text.parse().map_err(|_| expected())
+}
+
+/// Parses a number of threads.
+pub(super) fn threads(text: &str) -> Result<NonZeroUsize, String> {
+    let number = text.parse::<u16>().ok().map(usize::from);
+    let number = number.and_then(NonZeroUsize::new);
+    number.ok_or_else(|| format!("expected a whole number from 1 to {}", u16::MAX))
+}
+
+/// Parses a share below 1.
+pub(super) fn share(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(share) if (0.0..1.0).contains(&share) => Ok(share),
+        _ => Err("expected a share from 0 (every pair is counted) to below 1".to_owned()),
+    }
+}
+
+/// Parses a position, metres.
+pub(super) fn place(text: &str) -> Result<[f64; 3], String> {
+    let numbers: Vec<f64> = text
+        .split(',')
+        .filter_map(|number| number.trim().parse().ok())
+        .filter(|number: &f64| number.is_finite())
+        .collect();
+    match (numbers.try_into(), text.split(',').count()) {
+        (Ok(place), 3) => Ok(place),
+        _ => Err("expected three numbers, metres: X,Y,Z".to_owned()),
+    }
+}
+
+/// Parses an azimuth, degrees.
+pub(super) fn azimuth(text: &str) -> Result<f64, String> {
+    let degrees: f64 = text.parse().map_err(|_| "expected degrees".to_owned())?;
+    if (-360.0..=360.0).contains(&degrees) {
+        Ok(degrees)
+    } else {
+        Err("expected an azimuth from -360 to 360 degrees".to_owned())
+    }
+}
