@@ -78,19 +78,18 @@ fn doctor_names_the_program_that_has_the_port() {
     assert_eq!(code, Some(4));
 }
 
-/// Every step of the bring-up against the simulated drive, in which nothing is wrong. Other links
+/// Every step of the bring-up against the simulated drive. Other links
 /// and defects are tested in virtual time.
 #[test]
 fn the_bring_up_finds_nothing_wrong_with_a_healthy_drive() {
-    let interface = "--usb";
-    let bench = Bench::new(interface);
+    let bench = Bench::new("--usb");
     let output = bench.run("doctor --bring-up --yes --report first.md --json");
     let report: Value = serde_json::from_slice(&output.stdout).unwrap();
     let steps = report["steps"].as_array().unwrap();
-    assert_eq!(steps.len(), 11, "{interface}");
+    assert_eq!(steps.len(), 11);
     for step in steps {
         let measurements = step["measurements"].as_array().unwrap();
-        assert!(!measurements.is_empty(), "{interface}: {step}");
+        assert!(!measurements.is_empty(), "{step}");
     }
     let value = |name: &str| {
         let all = steps
@@ -107,7 +106,7 @@ fn the_bring_up_finds_nothing_wrong_with_a_healthy_drive() {
     assert!(value("in a move").starts_with("at rest after 0."));
     let text = std::fs::read_to_string(bench.folder.path().join("first.md")).unwrap();
     assert_eq!(text.matches("\n## ").count(), 12);
-    // Nobody presses the switches or turns the axis. The machine may be too busy to poll.
+    // No person presses the switches or turns the axis. The machine may be too busy to poll.
     assert_eq!(report["unchecked"], 2);
     let judged = steps
         .iter()

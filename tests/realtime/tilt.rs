@@ -297,6 +297,7 @@ fn a_daemon_stops_its_axis_though_no_program_reads_its_log() {
     // Until the daemon listens, a command uses the drive itself.
     while UnixStream::connect(bench.daemon_socket()).is_err() {
         assert!(begin.elapsed().as_secs() < 20, "no daemon");
+        std::thread::sleep(Duration::from_millis(10));
     }
     while !bench.run("tilt home").status.success() {
         assert!(begin.elapsed().as_secs() < 40, "no drive");
@@ -335,7 +336,7 @@ fn a_program_without_the_port_cannot_confirm_a_stop() {
     assert_eq!(stopped["stopped"], serde_json::Value::Null, "{stopped}");
 }
 
-/// A person who wants the axis stopped is told what to do, and which process hangs.
+/// The message says what to do, and which process hangs.
 #[test]
 fn a_stop_by_a_suspended_program_is_reported_as_not_confirmed() {
     let bench = Bench::new("--usb");

@@ -10,7 +10,7 @@ use engine::devices::{profile, simulated};
 use firmware_sim::epos2::AxisLoad;
 use scanner::ScanConfig;
 use sim::{Attachment, Rig};
-use units::{DegPerS2, Degrees, Host, Stamp};
+use units::{DegPerS2, Degrees, Gearing, Host, Stamp};
 use velomotion_tests::capture::link;
 use velomotion_tests::port::{Links, VirtualPort};
 
@@ -109,4 +109,17 @@ fn a_home_offset_onto_the_switch_is_a_problem() {
             .any(|(_, advice)| advice.contains("[axis.homing]")),
         "{problems:?}"
     );
+}
+
+/// The motor turns twice as far as the configured encoder says.
+#[test]
+fn a_wrong_gear_is_a_problem() {
+    let found = bring_up(Attachment::Usb, |axis, _| {
+        axis.gearing = Gearing::new(500, 240, 1).unwrap();
+    });
+    let problems = problems(&found);
+    let is_range = |(name, advice): &(&str, &str)| {
+        *name == "onto the other switch" && advice.contains("check gear")
+    };
+    assert!(problems.iter().any(is_range), "{problems:?}");
 }

@@ -69,13 +69,16 @@ impl Document for ErrorReport {
     const SCHEMA: &'static str = "error-1";
 }
 
+const LINKS: [&str; 3] = ["usb", "rs232", "can"];
+
 /// Schema of a text that is one of these names, or null where it is unknown.
-fn names(names: &[&str], may_be_unknown: bool) -> Schema {
+fn names(description: &str, names: &[&str], may_be_unknown: bool) -> Schema {
     let known = names.iter().map(|&name| Value::from(name));
     let unknown = may_be_unknown.then_some(Value::Null);
     let mut types = vec![Type::String];
     types.extend(may_be_unknown.then_some(Type::Null));
     ObjectBuilder::new()
+        .description(Some(description))
         .schema_type(SchemaType::from_iter(types))
         .enum_values(Some(known.chain(unknown)))
         .build()
@@ -83,19 +86,20 @@ fn names(names: &[&str], may_be_unknown: bool) -> Schema {
 }
 
 pub(crate) fn return_modes() -> Schema {
-    names(&["strongest", "last", "dual"], true)
+    names("Return mode.", &["strongest", "last", "dual"], true)
 }
 
 pub(crate) fn links() -> Schema {
-    names(&["usb", "rs232", "can"], true)
+    names("Link of the drive.", &LINKS, true)
 }
 
 pub(crate) fn transports() -> Schema {
-    names(&["usb", "rs232", "can"], false)
+    names("Link of the drive.", &LINKS, false)
 }
 
 pub(crate) fn pps_states() -> Schema {
-    names(&["absent", "synchronising", "locked", "error"], false)
+    let states = ["absent", "synchronising", "locked", "error"];
+    names("State of the pulse per second.", &states, false)
 }
 
 pub(crate) fn angle_methods() -> Schema {
@@ -104,7 +108,7 @@ pub(crate) fn angle_methods() -> Schema {
         .into_iter()
         .chain(with_samples)
         .collect();
-    names(&all, false)
+    names("Method of the trajectory.", &all, false)
 }
 
 /// The schema of a document, in JSON Schema 2020-12. A command that fails with a result adds

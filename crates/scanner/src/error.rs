@@ -40,6 +40,16 @@ pub enum ScanError {
         /// Where it ended.
         to: Degrees,
     },
+    /// The plan of the log begins once more after its last sweep: the log holds several scans.
+    #[error(
+        "more sweeps than the log's configuration plans: after the last one another goes from {:.3} to {:.3} deg", from.0, to.0
+    )]
+    SurplusSweep {
+        /// Where it began.
+        from: Degrees,
+        /// Where it ended.
+        to: Degrees,
+    },
     /// The table of angles is unusable.
     #[error(transparent)]
     Table(#[from] AngleTableError),

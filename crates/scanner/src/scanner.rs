@@ -67,6 +67,7 @@ impl Survey {
             unseen: unseen_sweeps,
             inferred: inferred_sweeps,
             ambiguous: ambiguous_motions,
+            surplus: _,
         } = angles.sweeps(&shaft.moves, config.sweep.as_ref())?;
         let spans = angles.spans(&sweeps);
         let sample_gaps = angles.gaps(&sweeps);

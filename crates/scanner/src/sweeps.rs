@@ -62,6 +62,8 @@ pub struct FoundSweeps {
     /// Beginnings and ends of motions that begin like a sweep of the plan, but neither the log has
     /// their target nor do they end like one.
     pub ambiguous: Vec<(Degrees, Degrees)>,
+    /// Beginnings and ends of further sweeps of a plan that was complete.
+    pub surplus: Vec<(Degrees, Degrees)>,
 }
 
 /// The motion after a command.
@@ -265,6 +267,14 @@ impl MoveWatch {
                     found.seen.push(sweep);
                 }
                 (true, false) => found.unseen.push((sweep.from, sweep.to)),
+                (false, true)
+                    if plan.is_some_and(|plan| {
+                        done as u64 >= u64::from(plan.sweeps)
+                            && plan.is_next_sweep(0, from, moved.target, END_TOLERANCE_DEG)
+                    }) =>
+                {
+                    found.surplus.push((sweep.from, sweep.to));
+                }
                 (false, true) if moved.has_no_target && is_next(due) && way > END_TOLERANCE_DEG => {
                     found.ambiguous.push((sweep.from, sweep.to));
                 }

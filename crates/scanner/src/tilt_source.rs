@@ -95,6 +95,9 @@ impl TiltAngles {
             return Ok(FoundSweeps::default());
         }
         let found = moves.sweeps(&self.samples, plan);
+        if let [(from, to), ..] = *found.surplus {
+            return Err(ScanError::SurplusSweep { from, to });
+        }
         match (&*found.seen, &*found.unseen, &*found.ambiguous) {
             ([], &[(from, to), ..], _) => Err(ScanError::UnseenSweep { from, to }),
             ([], [], &[(from, to), ..]) => Err(ScanError::AmbiguousMotion { from, to }),

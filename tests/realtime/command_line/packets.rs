@@ -157,17 +157,24 @@ fn one_origin_omits_the_laser_offsets() {
 fn laspy_reads_the_return_numbers_of_dual_mode() {
     let path = recording("vlp16-dual.pcap");
     let place = Place::new();
-    let line = format!("replay {} --tilt none -o cloud.las", path.display());
-    assert!(place.run(&line).status.success());
+    for output in ["-o cloud.las", "--frames 0 -o frame.las"] {
+        let line = format!("replay {} --tilt none {output}", path.display());
+        assert!(place.run(&line).status.success());
+    }
     let python = std::env::var_os("VELOMOTION_PYTHON").unwrap_or_else(|| "python3".into());
     let script = concat!(
         env!("CARGO_MANIFEST_DIR"),
         "/../../tests/foreign/laspy_reads.py"
     );
-    let mut read = Command::new(python);
-    let read = read.arg(script).arg(place.path("cloud.las"));
-    let read = json(&read.output().unwrap());
     // Number, of how many, points.
     let expected = serde_json::json!([[1, 1, 1_510], [1, 2, 2], [2, 2, 2]]);
-    assert_eq!(read["returns"], expected);
+    for cloud in ["cloud.las", "frame-00000.las"] {
+        let mut read = Command::new(&python);
+        let read = read.arg(script).arg(place.path(cloud));
+        assert_eq!(
+            json(&read.output().unwrap())["returns"],
+            expected,
+            "{cloud}"
+        );
+    }
 }

@@ -187,6 +187,7 @@ fn when_ready(folder: &Path) -> Result<(), String> {
         if entries.any(is_socket) && status().is_ok_and(|status| status.status.success()) {
             return Ok(());
         }
+        std::thread::sleep(Duration::from_millis(10));
     }
     Err("the daemon has no drive".to_owned())
 }

@@ -146,7 +146,11 @@ fn make(
     let log = io::files::open_regular(log).map_err(|_| Refusal::no_file(LOG))?;
     // The name may belong to another file by now; this one leads to the open file (proc(5)).
     let log_path = format!("/proc/self/fd/{}", log.as_raw_fd());
-    let source = Source::open(FilePath::new(&log_path), None)?;
+    let named = |failure: Failure| Failure {
+        message: failure.message.replace(&log_path, LOG),
+        ..failure
+    };
+    let source = Source::open(FilePath::new(&log_path), None).map_err(named)?;
     let request = Reconstruction::of_log(&source, accuracy, interrupt);
     let mut file = io::files::scratch_in(folder).map_err(cannot)?;
     let out = QuotaFile::new(file.try_clone().map_err(cannot)?, Arc::clone(quota));
@@ -159,7 +163,7 @@ fn make(
     });
     made.map_err(|failure| match quota.refused() {
         Some(full) => Refusal::no_room(full.clone()),
-        None => failure.into(),
+        None => named(failure).into(),
     })?;
     drop(sink);
     file.seek(SeekFrom::Start(0)).map_err(cannot)?;

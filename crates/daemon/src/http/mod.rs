@@ -158,6 +158,7 @@ async fn in_use() -> Refusal {
         "another velomotion command uses the device",
         "wait for its end, or stop it (tilt stop)",
     )
+    .retry_after(refusal::RETRY_S)
 }
 
 async fn no_method() -> Refusal {
@@ -191,8 +192,8 @@ async fn status(State(service): State<Arc<DeviceService>>) -> Response {
 pub struct HealthReport {
     /// Whether the daemon answers: always true.
     live: bool,
-    /// Whether it could capture now: both devices are connected, no motion is under way, and the
-    /// disk has room.
+    /// Whether it could capture now: both devices are connected, no motion is under way, and more
+    /// of the disk is free than its reserve.
     ready: bool,
     /// The drive.
     drive: DeviceHealth,
@@ -210,7 +211,7 @@ async fn health(State(api): State<Arc<Api>>) -> Response {
     let (drive, lidar) = (status.drive.state, status.lidar.state);
     let disk = &status.disk;
     let ready = [drive, lidar] == [DeviceHealth::Connected; 2]
-        && status.activity.doing == AxisTask::Idle
+        && (status.activity.doing == AxisTask::Idle || status.activity.reads_only)
         && disk
             .free_bytes
             .is_none_or(|free| free >= disk.reserve_bytes);

@@ -23,14 +23,14 @@ use super::{captures, download, events, metrics, page, scans, tilt};
 
 /// Refusals, each with the meaning of its status.
 macro_rules! refusals {
-    ($($name:ident: $meaning:literal;)*) => {
+    ($($name:ident: $meaning:literal, such as $kind:ident: $example:literal;)*) => {
         $(
             #[doc = $meaning]
             pub struct $name;
 
             impl<'r> ToResponse<'r> for $name {
                 fn response() -> (&'r str, RefOr<Answer>) {
-                    (stringify!($name), refusal($meaning).into())
+                    (stringify!($name), refusal($meaning, Kind::$kind, $example).into())
                 }
             }
         )*
@@ -38,16 +38,18 @@ macro_rules! refusals {
 }
 
 refusals! {
-    Usage: "Invalid request";
-    Denied: "Missing or wrong token, or a request of another site's page";
-    NotFound: "Not found";
-    NotNow: "Not possible now: busy, a device is absent or in fault, or the disk is nearly full";
-    Limit: "Too large, too many, or too slow";
+    Usage: "Invalid request", such as Usage: "speed_deg_s: expected a number above 0, got -5";
+    Denied: "Missing or wrong token, or a request of another site's page",
+        such as Denied: "the token is missing or wrong";
+    NotFound: "Not found", such as NotFound: "there is no scan \"hall-1\"";
+    NotNow: "Not possible now: busy, a device is absent or in fault, or the disk is nearly full",
+        such as Busy: "the axis is busy: it is homing";
+    Limit: "Too large, too many, or too slow", such as Limit: "too many downloads at once";
 }
 
-fn refusal(meaning: &str) -> Answer {
+fn refusal(meaning: &str, kind: Kind, example: &str) -> Answer {
     let body = RefOr::<Schema>::Ref(Ref::from_schema_name("ErrorReport"));
-    let failure = Failure::new(Kind::Busy, "the axis is busy: it is homing").help("wait");
+    let failure = Failure::new(kind, example).help("what to do next");
     let example = ErrorReport { error: failure }.to_json();
     ResponseBuilder::new()
         .description(meaning)
@@ -293,6 +295,14 @@ mod tests {
             checked += 1;
         }
         assert!(checked >= 6, "{checked}");
+        let operations = described["paths"].as_object().unwrap().values();
+        let operations = operations.flat_map(|path| path.as_object().unwrap().values());
+        let bodies = operations.filter_map(|operation| {
+            let body = operation.pointer("/requestBody/content/application~1json/schema/$ref")?;
+            body.as_str()?.rsplit('/').next()
+        });
+        let bodies: BTreeSet<&str> = bodies.collect();
+        assert_eq!(bodies, REQUESTS.into());
     }
 
     #[test]

@@ -164,6 +164,10 @@ pub(super) fn positions(bring_up: &mut BringUp<'_>, when: &str, periods: &[Vec<S
     };
     let pairs = periods.iter().flat_map(|samples| samples.windows(2));
     let mut gaps: Vec<f64> = pairs.map(ms).collect();
+    if gaps.is_empty() {
+        let name = format!("positions {when}");
+        return bring_up.problem(&name, "none came", "check the link (links.md)");
+    }
     let rate = 1e3 * gaps.len() as f64 / gaps.iter().sum::<f64>();
     let is_polled = |sample: &ShaftSample| sample.trigger == SampleTrigger::Request;
     let by = match periods.iter().flatten().all(is_polled) {

@@ -7,7 +7,7 @@ use drive::{
     MoveReport, ShaftSample,
 };
 use protocol::epos2::objects::input;
-use units::{DegPerS, Degrees, Rpm, Span, Stamp};
+use units::{DegPerS, Degrees, Host, Quadcounts, Rpm, Span, Stamp};
 
 use super::at_rest::{REST_NS, inputs, positions};
 use super::{BringUp, BringUpStep, Operator, SessionRecord};
@@ -57,7 +57,7 @@ pub(super) const FOLLOWING: BringUpStep = BringUpStep {
 
 fn home(bring_up: &mut BringUp<'_>, _: &mut dyn Operator) -> Result<(), SessionError> {
     let axis = bring_up.axis.clone();
-    let homed = home_as(bring_up, axis, "homing")?;
+    let homed = home_as(bring_up, axis, "homing", false)?;
     let wanted = bring_up.axis.homing.home_position.0;
     let tolerance = bring_up.axis.arrival_tolerance.0;
     bring_up.judge(
@@ -77,8 +77,14 @@ fn home(bring_up: &mut BringUp<'_>, _: &mut dyn Operator) -> Result<(), SessionE
     Ok(())
 }
 
-/// Homes as `axis` says, and notes time and travel; returns the angle.
-fn home_as(bring_up: &mut BringUp<'_>, axis: AxisConfig, name: &str) -> Result<f64, SessionError> {
+/// Homes as `axis` says, and notes time and travel, which is judged if the axis comes from the other
+/// end of its range; returns the angle.
+fn home_as(
+    bring_up: &mut BringUp<'_>,
+    axis: AxisConfig,
+    name: &str,
+    from_end: bool,
+) -> Result<f64, SessionError> {
     let method = axis.homing.method;
     let began = bring_up.opened.port.now();
     let commands = [
@@ -93,28 +99,50 @@ fn home_as(bring_up: &mut BringUp<'_>, axis: AxisConfig, name: &str) -> Result<f
         .now()
         .saturating_since(began)
         .as_secs_f64();
-    let demands = recording.events.iter().filter_map(|event| match event {
-        DriveEvent::Progress(CommandProgress::Searching { demand, .. }) => Some(demand.0),
-        _ => None,
-    });
-    let (low, high) = demands.fold((i32::MAX, i32::MIN), |(low, high), demand| {
-        (low.min(demand), high.max(demand))
-    });
-    let travel = f64::from(high.saturating_sub(low).max(0));
-    let travel = travel * bring_up.axis.gearing.degrees_per_qc();
-    let limits = bring_up.axis.limits;
-    let expected = limits.max.0 - limits.min.0 + bring_up.axis.homing.offset.0.abs();
-    bring_up.judge(
-        name,
-        format!("method {method}, {took:.1} s, {travel:.1} deg travelled (range {expected:.1} deg)"),
-        travel <= expected + bring_up.axis.guard.homing_margin.0,
-        "the switch is further away than the range of the axis: check gear, encoder lines and limits",
-    );
+    let travel = searched(&recording, &bring_up.axis);
+    let value = format!("method {method}, {took:.1} s, {travel:.1} deg travelled");
+    match from_end {
+        false => bring_up.note(name, value),
+        true => {
+            let limits = bring_up.axis.limits;
+            let range = limits.max.0 - limits.min.0;
+            bring_up.judge(
+                name,
+                format!("{value} (range of the axis {range:.1} deg)"),
+                travel >= range,
+                "the switches are closer to each other than the limits: check gear, encoder lines and limits",
+            );
+        }
+    }
     let homed = recording.events.iter().find_map(|event| match event {
         DriveEvent::Done(CommandOutcome::Homed { angle, .. }) => Some(angle.0),
         _ => None,
     });
     Ok(homed.unwrap_or(f64::NAN))
+}
+
+/// Degrees between the ends of the demand's way in homing. Where the drive sets its zero the demand
+/// jumps, further than the axis can move.
+fn searched(recording: &SessionRecord, axis: &AxisConfig) -> f64 {
+    let demands = recording.events.iter().filter_map(|event| match event {
+        DriveEvent::Progress(CommandProgress::Searching { at, demand }) => Some((*at, *demand)),
+        _ => None,
+    });
+    let demands: Vec<(Stamp<Host>, Quadcounts)> = demands.collect();
+    let fastest = axis.gearing.rate(axis.max_speed).0;
+    let (mut place, mut low, mut high) = (0.0, 0.0_f64, 0.0_f64);
+    for pair in demands.windows(2) {
+        let &[(since, before), (at, demand)] = pair else {
+            continue;
+        };
+        let step = axis.gearing.angle(demand).0 - axis.gearing.angle(before).0;
+        let seconds = at.saturating_since(since).as_secs_f64();
+        if step.abs() <= 2.0 * fastest * seconds + 1.0 {
+            place += step;
+        }
+        (low, high) = (low.min(place), high.max(place));
+    }
+    high - low
 }
 
 fn other_switch(bring_up: &mut BringUp<'_>, _: &mut dyn Operator) -> Result<(), SessionError> {
@@ -139,9 +167,9 @@ fn other_switch(bring_up: &mut BringUp<'_>, _: &mut dyn Operator) -> Result<(), 
     let mut axis = bring_up.axis.clone();
     axis.homing.method = other;
     axis.homing.offset = Degrees(-axis.homing.offset.0);
-    home_as(bring_up, axis, "onto the other switch")?;
+    home_as(bring_up, axis, "onto the other switch", true)?;
     let axis = bring_up.axis.clone();
-    home_as(bring_up, axis, "back")?;
+    home_as(bring_up, axis, "back", true)?;
     Ok(())
 }
 
@@ -350,7 +378,7 @@ fn largest_deviation(recording: &SessionRecord, axis: &AxisConfig) -> f64 {
         for sample in samples.filter(|sample| is_within(sample, report)) {
             let angle = axis.gearing.angle(sample.position).0;
             let direction = (report.plan.to.0 - report.plan.from.0).signum();
-            let at = |stamp: Stamp<units::Host>| {
+            let at = |stamp: Stamp<Host>| {
                 let travelled = report
                     .plan
                     .travelled(stamp.saturating_since(report.started));

@@ -79,7 +79,7 @@ pub fn missing(scan: &ScanReport) -> Option<Failure> {
     if lost > 0 {
         let of = lost.saturating_add(scan.contents.packets.data);
         let first = scan.contents.packet_gaps.first();
-        let place = first.map_or(String::new(), |gap| match gap.packets == lost {
+        let place = first.map_or(String::new(), |gap| match gap.missing == lost {
             true => format!(" at {:.3} s", gap.at_s),
             false => format!(", the first at {:.3} s", gap.at_s),
         });

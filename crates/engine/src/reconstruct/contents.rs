@@ -336,7 +336,7 @@ fn packet_gaps(stats: &Stats, steps: &[ClockStep]) -> Vec<MissingPackets> {
     }
     let report = |gap: PacketGap| MissingPackets {
         at_s: gap.at.as_secs_f64(),
-        packets: gap.packets,
+        missing: gap.packets,
     };
     gaps.into_iter().map(report).collect()
 }

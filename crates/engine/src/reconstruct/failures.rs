@@ -25,6 +25,9 @@ pub fn scan_failure(path: &Path, error: &ScanError) -> Failure {
         ScanError::UnseenSweep { .. } => {
             "the command alone would place its points: scan again, and see why the drive's link was silent; --tilt none gives them in the sensor's own frame"
         }
+        ScanError::SurplusSweep { .. } => {
+            "a program has joined the logs of several scans: replay each by itself; --tilt none gives all points in the sensor's own frame"
+        }
         ScanError::AmbiguousMotion { .. } => {
             "the recorder dropped the command: whether this was a sweep cut short or another move, the log does not show; --tilt none gives its points in the sensor's own frame"
         }

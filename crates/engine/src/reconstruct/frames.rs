@@ -122,7 +122,8 @@ impl<'a> FrameWriter<'a> {
                 utc,
                 organised: plan.organised,
                 cutter,
-                points: Points::new(plan.fields),
+                // LAS numbers the returns of a pulse by their echo.
+                points: Points::new(plan.fields | Fields::ECHO),
                 grid: OrganisedFrame::new(),
                 totals: FrameTotals::default(),
                 ended: Vec::new(),

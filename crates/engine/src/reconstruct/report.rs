@@ -86,7 +86,7 @@ pub struct MissingPackets {
     /// From the first firing, seconds of device time.
     pub at_s: f64,
     /// Their number.
-    pub packets: u64,
+    pub missing: u64,
 }
 
 /// Contents of a file.

@@ -392,6 +392,25 @@ fn second_sweeps_without_a_start_or_a_target_are_found() {
     }
 }
 
+/// As in a file that holds the logs of two scans.
+#[test]
+fn a_plan_that_begins_once_more_after_its_last_sweep_is_reported() {
+    let mut axis = Axis::new();
+    for way in [-45.0, 45.0] {
+        axis.command(axis.angle + way, 0x1F);
+        axis.travel(way, 45.0);
+        let found = axis.watch.sweeps(&axis.samples, Some(&PLAN));
+        assert_eq!((found.seen.len(), found.surplus.len()), (1, 0));
+    }
+    axis.command(-45.0, 0x1F);
+    axis.travel(-45.0, 45.0);
+    let found = axis.watch.sweeps(&axis.samples, Some(&PLAN));
+    let [(from, to)] = found.surplus[..] else {
+        panic!("{found:?}");
+    };
+    assert!(from.0.abs() < 1e-9 && (to.0 + 45.0).abs() < 1e-9);
+}
+
 /// The axis stopped on its way, and the log does not show where it was going.
 #[test]
 fn a_motion_of_unknown_target_that_ends_elsewhere_is_ambiguous() {

@@ -169,6 +169,10 @@ fn usage(error: &clap::Error) -> Failure {
     let mut paragraphs = text.split("\n\n").map(flat);
     let message = paragraphs.next().unwrap_or_default();
     let message = message.strip_prefix("error: ").unwrap_or(&message);
+    let message = match message.char_indices().nth(LONGEST_MESSAGE) {
+        Some((end, _)) => format!("{}...", message.get(..end).unwrap_or_default()),
+        None => message.to_owned(),
+    };
     let help = paragraphs
         .filter(|paragraph| !paragraph.starts_with("For more information"))
         .map(|paragraph| match paragraph.strip_prefix("tip: ") {
@@ -178,6 +182,9 @@ fn usage(error: &clap::Error) -> Failure {
         .chain(["--help lists all options".to_owned()]);
     Failure::new(Kind::Usage, message).help(help.collect::<Vec<_>>().join("\n"))
 }
+
+/// Characters of a message; a value with many words is cut there.
+const LONGEST_MESSAGE: usize = 300;
 
 /// A word of a message; the middle of a long one, such as a file given for a number, is omitted.
 fn brief(word: &str) -> String {

@@ -42,6 +42,7 @@ enum Verdict {
 /// Report of `doctor`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
 pub struct DoctorReport {
+    /// What was found, in the order of the checks.
     findings: Vec<Finding>,
 }
 
