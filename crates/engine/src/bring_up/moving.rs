@@ -77,8 +77,8 @@ fn home(bring_up: &mut BringUp<'_>, _: &mut dyn Operator) -> Result<(), SessionE
     Ok(())
 }
 
-/// Homes as `axis` says, and notes time and travel, which is judged if the axis comes from the other
-/// end of its range; returns the angle.
+/// Homes as `axis` says, and notes time and travel, which is judged if the axis comes from the
+/// other end of its range; returns the angle.
 fn home_as(
     bring_up: &mut BringUp<'_>,
     axis: AxisConfig,
