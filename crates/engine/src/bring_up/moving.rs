@@ -104,12 +104,13 @@ fn home_as(
     match from_end {
         false => bring_up.note(name, value),
         true => {
+            // The switches are beyond the limits, and the axis comes from the offset beside one.
             let limits = bring_up.axis.limits;
-            let range = limits.max.0 - limits.min.0;
+            let least = limits.max.0 - limits.min.0 - bring_up.axis.homing.offset.0.abs();
             bring_up.judge(
                 name,
-                format!("{value} (range of the axis {range:.1} deg)"),
-                travel >= range,
+                format!("{value} (expected at least {least:.1} deg)"),
+                travel >= least,
                 "the switches are closer to each other than the limits: check gear, encoder lines and limits",
             );
         }
