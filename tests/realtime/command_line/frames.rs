@@ -78,3 +78,17 @@ fn revolutions_are_written_to_one_recording() {
     assert!(report["clouds"].as_u64() > Some(3), "{report}");
     assert_eq!(count("/diagnostics"), 1);
 }
+
+/// Numbers of another recording's frames need not be those of this one.
+#[test]
+fn frames_of_two_recordings_do_not_mix() {
+    let place = Place::new();
+    std::fs::write(place.path("frame-00042.ply"), "").unwrap();
+    let path = recording("vlp16-strongest-gps.pcap");
+    let line = format!(
+        "replay {} --tilt none --frames 180 -o frame.ply",
+        path.display()
+    );
+    place.fails(&line, 2, &["frame-00042.ply exists already"]);
+    assert!(place.run(&format!("{line} --force")).status.success());
+}

@@ -539,6 +539,12 @@ fn angles_of_another_device_can_be_attached() {
     );
     let scan = json(&output);
     assert_eq!(scan["sync"]["angle_bound_deg"], serde_json::Value::Null);
+    assert!(!scan["warnings"].to_string().contains("drive"), "{scan}");
+    place.fails(
+        &format!("replay {} --tilt none --mount other.toml", path.display()),
+        2,
+        &["--mount", "--tilt none"],
+    );
     // The configuration has a mount, too: the cloud is the same.
     let cloud = std::fs::read(place.path("cloud.ply")).unwrap();
     let again = place.run(&format!("{line} --config other.toml --force"));

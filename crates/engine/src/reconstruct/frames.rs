@@ -106,6 +106,15 @@ impl<'a> FrameWriter<'a> {
             )
             .help("give -o a name that ends in .pcd, or leave --organised out"));
         }
+        if !plan.force
+            && let Some(earlier) = earlier_frame(&plan.output)
+        {
+            return Err(Failure::new(
+                Kind::Usage,
+                format!("{} exists already: frames of two recordings would mix", earlier.display()),
+            )
+            .help("give -o another name, remove the earlier frames, or overwrite those of the same number with --force"));
+        }
         let merge_equal = options.duplicates == Duplicates::Unique;
         let mcap = match Format::from_path(&plan.output) {
             Ok(Format::Mcap) => Some(open_mcap(plan, alignment, utc.is_some(), &metadata)?),
@@ -348,6 +357,20 @@ fn empty_cell(
 fn frame_comment(frame: &RevolutionFrame) -> String {
     let whole = if frame.whole { "whole" } else { "not whole" };
     format!("frame {}, {whole}: {} firings", frame.index, frame.firings)
+}
+
+/// A frame of an earlier run with this output.
+fn earlier_frame(output: &Path) -> Option<PathBuf> {
+    let folder = output.parent().filter(|folder| *folder != Path::new(""));
+    let entries = std::fs::read_dir(folder.unwrap_or(Path::new("."))).ok()?;
+    let mut names =
+        entries.filter_map(|entry| Some(output.with_file_name(entry.ok()?.file_name())));
+    let is_frame = |path: &PathBuf| {
+        let stem = path.file_stem().and_then(|stem| stem.to_str());
+        let index = stem.and_then(|stem| stem.rsplit_once('-')?.1.parse().ok());
+        index.is_some_and(|index| name(output, index) == *path)
+    };
+    names.find(is_frame)
 }
 
 /// `scan.pcd` with index 17 becomes `scan-00017.pcd`.

@@ -26,6 +26,8 @@ pub struct LidarCopyReport {
     pub datagrams: u64,
     /// Its size, bytes.
     pub bytes: u64,
+    /// Whether the devices were simulated, which a pcap cannot say.
+    pub simulated: bool,
     /// Where and why the recording ends early.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub truncated: Option<String>,
@@ -69,11 +71,13 @@ pub fn copy(
         )
         .help("velomotion info shows what the recording holds"));
     }
+    let simulated = source.config()?.simulated;
     file.commit().map_err(|error| file_failure(&error))?;
     Ok(LidarCopyReport {
         output: output.to_owned(),
         datagrams: counts.lidar,
         bytes: counts.bytes,
+        simulated,
         truncated: pass.truncated,
     })
 }

@@ -341,7 +341,7 @@ fn report(
         &alignment.steps,
     );
     let incomplete = incomplete_sweeps(&first_pass.config, alignment);
-    let warnings = alignment_warnings(alignment).into_iter();
+    let warnings = alignment_warnings(alignment, &request.tilt).into_iter();
     contents
         .warnings
         .extend(warnings.chain(incomplete.iter().cloned()));

@@ -1,7 +1,7 @@
 //! Warnings about a reconstructed scan: uncertain times and angles, and incomplete sweeps.
 
 use scanner::trajectory::Method;
-use scanner::{Alignment, ScanConfig};
+use scanner::{Alignment, ScanConfig, TiltSource};
 use units::Span;
 
 /// Angle bound above which a warning is due: 17 mm at 10 m.
@@ -17,7 +17,7 @@ const CUT_SHORT_DEG: f64 = 0.1;
 
 /// Warnings about times and angles: packets that all came late, slow or missing polls, sweeps that
 /// deviate from the plan.
-pub(super) fn alignment_warnings(alignment: &Alignment) -> Vec<String> {
+pub(super) fn alignment_warnings(alignment: &Alignment, tilt: &TiltSource) -> Vec<String> {
     let mut warnings = Vec::new();
     let clock_bound = alignment.clock.bound();
     if clock_bound > WARNING_CLOCK_BOUND {
@@ -32,7 +32,10 @@ pub(super) fn alignment_warnings(alignment: &Alignment) -> Vec<String> {
             "the clocks of host and lidar drift by {drift_ppm:.0} ppm, more than two crystals do: the host's clock was slewed, or one is faulty; times are those of the host's clock"
         ));
     }
-    warnings.extend(angle_warning(alignment));
+    // The accuracy of a table is not known.
+    if !matches!(tilt, TiltSource::Table(_)) {
+        warnings.extend(angle_warning(alignment));
+    }
     if alignment.implausible > 0 {
         warnings.push(format!(
             "{} shaft positions contradict their neighbours and were omitted: the drive's link corrupts data",

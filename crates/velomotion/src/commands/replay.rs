@@ -33,7 +33,7 @@ pub fn run(arguments: &cli::Replay, common: &Common) -> Result<CommandOutput, Fa
     // Check the input before an output is opened.
     let mut source = Source::open(&arguments.input, arguments.lidar.sensor)?;
     if let Some(pcap) = arguments.output.output.as_deref().filter(is_pcap) {
-        return copy(arguments, &source, pcap, &interrupt);
+        return copy(arguments, common, &source, pcap, &interrupt);
     }
     let tilt = tilt_source(&arguments.tilt)?;
     let mount = mount(arguments, common, &tilt, &source)?;
@@ -144,6 +144,7 @@ fn cloud_options(arguments: &cli::Replay) -> impl Iterator<Item = &'static str> 
 /// The lidar's datagrams alone.
 fn copy(
     arguments: &cli::Replay,
+    common: &Common,
     source: &Source,
     pcap: &Path,
     interrupt: &AtomicBool,
@@ -161,6 +162,10 @@ fn copy(
         );
         Failure::new(Kind::Incomplete, what).help(format!("what is there is in {}", pcap.display()))
     });
+    if report.simulated {
+        Progress::new(common)
+            .say("SIMULATED: this log was made by simulated devices; the pcap does not say so");
+    }
     let text = format!(
         "{} packets of the lidar in {}",
         report.datagrams,
@@ -181,6 +186,10 @@ fn mount(
     source: &Source,
 ) -> Result<Option<(MountConfig, PathBuf)>, Failure> {
     let load = |file: PathBuf| config::load_mount(&file).map(|mount| Some((mount, file)));
+    if let (Some(_), TiltSource::None) = (&arguments.mount, tilt) {
+        let what = "--mount is for a tilted lidar: --tilt none gives the sensor's own frame";
+        return Err(Failure::new(Kind::Usage, what).help("omit one of them"));
+    }
     if let Some(file) = &arguments.mount {
         return load(file.clone());
     }

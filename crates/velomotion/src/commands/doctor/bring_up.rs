@@ -124,7 +124,6 @@ pub(super) fn run(
     let interrupt = signals::motion_interrupt_flag()?;
     let port = drive_port::port_path(&name, &device, Search::Once, &discover)?;
     let path = arguments.report.clone().unwrap_or_else(|| REPORT.into());
-    let mut report = ReportFile::open(&path, &name, &port)?;
     let mut person = TerminalOperator {
         unattended: arguments.yes,
         has_ended: false,
@@ -143,6 +142,7 @@ pub(super) fn run(
             axis: &config.axis,
         });
     let mut opened = drive_port::open(&device, &port, guarding.as_ref())?;
+    let mut report = ReportFile::open(&path, &name, &port)?;
     let acceleration = DegPerS2(device.accel_deg_s2);
     let mut bring_up = BringUp::new(axis, acceleration, &mut opened, Arc::clone(&interrupt));
     for (number, step) in STEPS.iter().enumerate() {
