@@ -41,7 +41,7 @@ QUIET_US = 100.0
 
 
 def verdict(row):
-    """What a user is told against what is true.
+    """The report of the program against the truth.
 
     SILENT: exit 0, no warning, and an error beyond its bound. unsaid: the same within the bound,
     but well above what the samples allow. wrong, poor: the same two with a message. ALARM: a
