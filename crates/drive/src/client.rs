@@ -18,7 +18,7 @@ use std::task::{Context, Poll, Waker};
 
 use protocol::canopen::NodeId;
 use protocol::record::DriveLink;
-use units::{Host, Stamp};
+use units::{Host, Span, Stamp};
 
 use crate::can_services::CanServices;
 use crate::codec::Codec;
@@ -53,6 +53,7 @@ impl DriveClient {
             can: node.map(|node| CanServices::new(node, config.can)),
             referenced: false,
             lag: None,
+            host_delayed: None,
             now: Stamp::from_nanos(0),
             is_starting: false,
             wake: None,
@@ -169,6 +170,16 @@ impl DriveClient {
     /// Acts on deadlines that have passed.
     pub fn handle_timeout(&mut self, now: Stamp<Host>) {
         self.advance(now);
+    }
+
+    /// Reports that the host did not run for this time, up to `now`: replies may wait to be read, so
+    /// deadlines move. A machine that delays one program delays others, such as the system's part
+    /// of the link or a simulated drive: for some seconds silence is tolerated where only an
+    /// unloaded machine proves the link lost.
+    pub fn handle_host_delay(&mut self, delay: Span, now: Stamp<Host>) {
+        let mut core = lock(&self.core);
+        core.host_delayed = Some(now);
+        core.link.postpone(delay);
     }
 
     /// Takes the oldest event.

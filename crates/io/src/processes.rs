@@ -36,11 +36,30 @@ pub fn has_open(pid: u32, file: &Path) -> Option<bool> {
     has_handle(pid, &file.canonicalize().ok()?)
 }
 
-/// The processes that have a file open, as far as this user may see them.
+/// The processes that have a file open, as far as this user may see them. The program that made a
+/// pseudo-terminal, a simulated device, is none of its users.
 #[must_use]
 pub fn holders(file: &Path) -> Vec<u32> {
-    let real = file.canonicalize();
-    real.map_or_else(|_| Vec::new(), |real| holders_of(&real))
+    let Ok(real) = file.canonicalize() else {
+        return Vec::new();
+    };
+    let mut holders = holders_of(&real);
+    if let Ok(index) = real.strip_prefix("/dev/pts") {
+        holders.retain(|pid| !has_device_side(*pid, index));
+    }
+    holders
+}
+
+/// Whether a process has the device side of the pseudo-terminal with this number (pts(4)).
+fn has_device_side(pid: u32, index: &Path) -> bool {
+    let infos = fs::read_dir(format!("/proc/{pid}/fdinfo"));
+    infos.into_iter().flatten().flatten().any(|info| {
+        let text = fs::read_to_string(info.path()).unwrap_or_default();
+        let number = text
+            .lines()
+            .find_map(|line| line.strip_prefix("tty-index:"));
+        number.is_some_and(|number| Path::new(number.trim()) == index)
+    })
 }
 
 /// Names and ids of the processes that have a file open, for messages.

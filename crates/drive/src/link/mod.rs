@@ -208,6 +208,25 @@ impl RequestLink {
         }
     }
 
+    /// Moves the deadlines by a time in which the host read no input.
+    pub fn postpone(&mut self, delay: Span) {
+        match &mut self.state {
+            LinkState::AwaitReply { deadline, limit } => {
+                *deadline = deadline.saturating_add(delay);
+                *limit = limit.saturating_add(delay);
+            }
+            LinkState::Probing { deadline, .. } => *deadline = deadline.saturating_add(delay),
+            LinkState::Idle | LinkState::Desynchronised { .. } => {}
+        }
+        if let Some(started) = self
+            .active
+            .as_mut()
+            .and_then(|active| active.started.as_mut())
+        {
+            *started = started.saturating_add(delay);
+        }
+    }
+
     /// Acts on deadlines that have passed.
     pub fn expire(&mut self, now: Stamp<Host>) {
         self.codec.expire(now);

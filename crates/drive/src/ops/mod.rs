@@ -32,6 +32,8 @@ pub(crate) struct Core {
     pub referenced: bool,
     /// How far the axis lagged behind its demand, as far as known: a stop takes this distance more.
     pub lag: Option<Degrees>,
+    /// When the host was last delayed.
+    pub host_delayed: Option<Stamp<Host>>,
     pub now: Stamp<Host>,
     /// A command was started, but [`Core::begin`] has not run yet.
     pub is_starting: bool,
@@ -56,6 +58,8 @@ pub(crate) struct Ops {
     pub is_moving: bool,
     /// Time without any input from the drive that an operation tolerates.
     pub silence_limit: Span,
+    /// The same on a loaded host, at least.
+    pub loaded_silence_limit: Span,
     /// An alarm of the CAN bus fails the operation in progress.
     pub aborts_on_alarm: bool,
     /// The power was switched off: friction stops the axis, without a brake slower than a ramp.
@@ -67,11 +71,15 @@ pub(crate) struct Ops {
 const PROBE_TIMEOUT_MOVING: Span = Span::from_millis(40);
 /// Time limit of a quick stop on a link that seems lost: two such probes.
 const LAST_ATTEMPT_TIMEOUT: Span = Span::from_millis(80);
+/// Time after a delay of the host for which it counts as loaded. With four busy loops per processor
+/// delays follow each other within a second or two.
+const LOADED_TIME: Span = Span::from_secs(5);
 
 impl Ops {
     pub fn new(core: SharedCore, config: Arc<AxisConfig>) -> Self {
         Self {
             core,
+            loaded_silence_limit: config.timing.silence_limit,
             config,
             is_moving: false,
             silence_limit: Span::ZERO,
@@ -291,6 +299,12 @@ impl Ops {
         .await;
     }
 
+    fn is_host_loaded(&self) -> bool {
+        let core = lock(&self.core);
+        core.host_delayed
+            .is_some_and(|delayed| core.now.saturating_since(delayed) < LOADED_TIME)
+    }
+
     fn is_interrupted(&self, core: &Core) -> bool {
         self.aborts_on_alarm && core.can.as_ref().is_some_and(|can| can.alarm.is_some())
     }
@@ -305,11 +319,16 @@ impl Ops {
 
     fn request(&self, address: Address, access: ObjectAccess) -> LinkRequest {
         let timing = &self.config.timing;
+        let loaded = match self.is_host_loaded() {
+            true => self.loaded_silence_limit,
+            false => Span::ZERO,
+        };
         let (timeout, probe_timeout) = if self.is_moving {
             let timeout = timing.timeout_moving;
             (timeout, timeout.min(PROBE_TIMEOUT_MOVING))
         } else {
-            (timing.timeout, timing.timeout)
+            let timeout = timing.timeout.max(loaded);
+            (timeout, timeout)
         };
         LinkRequest {
             address,
@@ -320,7 +339,7 @@ impl Ops {
                 ObjectAccess::Read => timing.read_retries,
                 _ => 0,
             },
-            silence_limit: self.silence_limit,
+            silence_limit: self.silence_limit.max(loaded),
             is_urgent: false,
             is_last_attempt: false,
         }

@@ -42,12 +42,14 @@ async fn run(ops: &mut Ops) -> Result<CommandOutcome, DriveError> {
     let speed = ops.config.gearing.rate(ops.config.homing.switch_speed);
     let margin = Span::from_secs_f64(ops.config.guard.homing_margin.0 / speed.0);
     ops.silence_limit = ops.config.timing.silence_limit.min(margin);
+    ops.loaded_silence_limit = ops.silence_limit;
     ops.set_lag(Degrees(speed.0 * ops.config.guard.servo_lag.as_secs_f64()));
     ops.write(objects::CONTROLWORD, control::START_HOMING)
         .await?;
     ops.report(CommandProgress::Homing);
     wait_until_attained(ops).await?;
     ops.is_moving = false;
+    ops.loaded_silence_limit = ops.config.timing.silence_limit;
     ops.write(objects::CONTROLWORD, control::ENABLE_OPERATION)
         .await?;
     set_mode(ops, mode::PROFILE_POSITION).await?;

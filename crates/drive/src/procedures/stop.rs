@@ -48,6 +48,7 @@ pub(crate) async fn brake(mut ops: Ops) -> Result<CommandOutcome, DriveError> {
 pub(super) async fn make_safe(ops: &mut Ops, cause: DriveError) -> DriveError {
     ops.aborts_on_alarm = false;
     ops.silence_limit = Span::ZERO;
+    ops.loaded_silence_limit = Span::ZERO;
     let stopped = match cause {
         DriveError::LinkLost { .. }
         | DriveError::NodeSilent { .. }
@@ -70,6 +71,7 @@ pub(super) async fn make_safe(ops: &mut Ops, cause: DriveError) -> DriveError {
 /// Quick stop, then power off. Harmless in every state: a drive that is off or in fault stays so.
 pub(super) async fn halt(ops: &mut Ops) -> Result<StopReport, DriveError> {
     ops.is_moving = true;
+    ops.loaded_silence_limit = Span::ZERO;
     let quick_stop = ops
         .write_urgent(objects::CONTROLWORD, control::QUICK_STOP)
         .await;

@@ -164,6 +164,19 @@ fn an_urgent_request_does_not_wait_for_the_probe() {
     assert!(link.take_result().unwrap().is_ok());
 }
 
+/// The host did not run while the reply came: the reply waits to be read.
+#[test]
+fn a_delayed_host_still_reads_the_reply() {
+    let mut link = RequestLink::new(Codec::usb(1));
+    link.submit(read(0x6064));
+    link.transmit(at(0)).unwrap();
+    link.postpone(Span::from_millis(1_900));
+    assert_eq!(link.deadline(), Some(at(2_000)));
+    assert_eq!(link.transmit(at(1_900)), None);
+    link.handle_input(&answer(7), at(1_900));
+    assert_eq!(value(&mut link), Some(7));
+}
+
 #[test]
 fn silence_is_reported_after_two_probes() {
     let mut link = RequestLink::new(Codec::usb(1));

@@ -324,6 +324,52 @@ fn silence_at_the_end_of_a_move_does_not_fail_it() {
     }
 }
 
+/// On a loaded host silence at the end of a move is no sign of a lost link: the move goes on.
+#[test]
+fn a_loaded_host_waits_at_the_end_of_a_move() {
+    for link in [DriveLink::Usb, DriveLink::Can] {
+        for k in 1..60 {
+            let mut rig = Rig::homed_on(link);
+            let began = rig.now;
+            rig.client.handle_host_delay(Span::from_millis(20), began);
+            rig.client.start(DriveCommand::Sweep(to(-15.0))).unwrap();
+            assert_eq!(rig.run_for(Span::from_millis(15 * k)), None, "{link:?} {k}");
+            let until = rig.now + Span::from_millis(900);
+            rig.unit.distort = Box::new(move |at, bytes| match at < until {
+                true => Vec::new(),
+                false => bytes,
+            });
+            let end = rig.finish();
+            assert!(
+                matches!(end, Ok(CommandOutcome::Arrived(_))),
+                "{link:?} {k}: {end:?}"
+            );
+            assert_eq!(
+                rig.unit.state(),
+                DeviceState::OperationEnabled,
+                "{link:?} {k}: no stop"
+            );
+        }
+    }
+}
+
+/// A stop is never patient.
+#[test]
+fn a_loaded_host_does_not_delay_a_stop() {
+    let duration = |is_loaded: bool| {
+        let mut rig = Rig::sweeping_on(DriveLink::Usb, Span::from_millis(600));
+        if is_loaded {
+            rig.client.handle_host_delay(Span::from_millis(20), rig.now);
+        }
+        rig.unit.distort = Box::new(|_, _| Vec::new());
+        let from = rig.now;
+        rig.client.start(DriveCommand::Stop).unwrap();
+        assert!(rig.finish().is_err());
+        rig.now - from
+    };
+    assert_eq!(duration(true), duration(false));
+}
+
 #[test]
 fn a_blocked_axis_fails_the_move() {
     for link in LINKS {

@@ -92,6 +92,8 @@ pub struct Session<'g, P: Port> {
 
 /// Longest time between two checks of the interrupt flag.
 const INTERRUPT_POLL: Span = Span::from_millis(20);
+/// A loop that is so late shows that the machine did not run this program.
+const HOST_DELAY: Span = Span::from_millis(20);
 /// Attempts of a stop before it counts as failed; each takes some tenths of a second.
 const STOP_TRIES: u32 = 5;
 /// Time that a session dropped in motion waits for the axis to stop.
@@ -225,6 +227,7 @@ impl<'g, P: Port> Session<'g, P> {
         until: Option<Stamp<Host>>,
     ) -> Result<Ended, SessionError> {
         let mut buffer = [0; 512];
+        let mut last_read = self.port.now();
         loop {
             match self.guardian.as_mut().map(|guardian| guardian.heartbeat()) {
                 Some(Err(error)) if error.may_move() || matches!(error, GuardianError::Lost) => {
@@ -238,6 +241,7 @@ impl<'g, P: Port> Session<'g, P> {
                 }
                 Some(Ok(())) | None => {}
             }
+            self.report_delay(last_read);
             while let Some(frame) = self.client.poll_transmit(self.port.now()) {
                 self.port.write_frame(&frame)?;
             }
@@ -260,14 +264,26 @@ impl<'g, P: Port> Session<'g, P> {
                 .poll_timeout()
                 .map_or(INTERRUPT_POLL, |at| at.saturating_since(now))
                 .clamp(Span::ZERO, INTERRUPT_POLL);
-            match self.port.read(&mut buffer, wait)? {
+            let received = self.port.read(&mut buffer, wait)?;
+            self.report_delay(now.saturating_add(wait));
+            last_read = self.port.now();
+            match received {
                 // The stamp of these bytes comes from a clock that may step; the log has it.
                 Some((count, _)) => {
                     let bytes = buffer.get(..count).unwrap_or_default();
-                    self.client.handle_input(bytes, self.port.now());
+                    self.client.handle_input(bytes, last_read);
                 }
-                None => self.client.handle_timeout(self.port.now()),
+                None => self.client.handle_timeout(last_read),
             }
+        }
+    }
+
+    /// Reports to the client if the loop is later than it should be.
+    fn report_delay(&mut self, due: Stamp<Host>) {
+        let now = self.port.now();
+        let delay = now.saturating_since(due);
+        if delay >= HOST_DELAY {
+            self.client.handle_host_delay(delay, now);
         }
     }
 }

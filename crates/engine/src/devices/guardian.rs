@@ -22,7 +22,7 @@ use thiserror::Error;
 use units::Span;
 
 use super::drive_session::{Session, SessionError};
-use super::process_threads::ProcessThreads;
+use super::process_threads::{self, ProcessThreads};
 use super::profile;
 use crate::config::AxisSettings;
 
@@ -33,16 +33,20 @@ const HEARTBEAT: Duration = Duration::from_millis(50);
 /// Silence of an armed axis after which the guardian stops it. A quick stop from the highest speed
 /// takes 200 ms more, standstill and brake 100 ms: together less than a second.
 pub const SILENCE_LIMIT: Duration = Duration::from_millis(500);
-/// The same while the program waits for a processor or for the system: it is neither stopped nor
-/// stuck. The drive client rides through a second of silence; the rest is for what the machine
-/// delays before and after it.
-const OVERLOAD_LIMIT: Duration = Duration::from_millis(1_500);
-/// Between two checks whether the program still waits.
-const OVERLOAD_CHECK: Duration = Duration::from_millis(20);
+/// The same with the time in which the machine did not let the drive loop run: it is neither
+/// stopped nor stuck. With two busy loops per processor poll(2) of a terminal waits for the
+/// kernel's own threads for up to 2.2 s, as measured.
+const OVERLOAD_LIMIT: Duration = Duration::from_secs(3);
+/// Between two looks at a silent program.
+const LOOK: Duration = Duration::from_millis(20);
+/// Time that counts at most between two of them: a guardian that did not run itself knows nothing
+/// about the rest.
+const LONGEST_LOOK: Duration = Duration::from_millis(40);
 /// Gap in the drive loop after which the parent asks before it uses the port.
 const ASK_AFTER: Duration = Duration::from_millis(200);
-/// Longest wait for an answer of the guardian; its start takes some tens of milliseconds.
-const ANSWER_TIMEOUT: Duration = Duration::from_secs(2);
+/// Longest wait for an answer of the guardian; its start takes some tens of milliseconds, and a
+/// loaded machine did not run it for 2 s.
+const ANSWER_TIMEOUT: Duration = Duration::from_secs(5);
 /// Longest wait until a guardian at work has stopped the axis.
 const STOP_TIMEOUT: Duration = Duration::from_secs(10);
 /// Time in which a guardian reads what is left on the line before it stops the axis: longer than a
@@ -53,7 +57,9 @@ const SEND_TIMEOUT: Duration = Duration::from_millis(20);
 
 /// Messages of the parent.
 mod request {
+    /// The id of the thread that drives the axis follows, in decimal, and [`ARM_END`].
     pub const ARM: u8 = b'A';
+    pub const ARM_END: u8 = b';';
     pub const DISARM: u8 = b'D';
     pub const HEARTBEAT: u8 = b'H';
     pub const ASK: u8 = b'?';
@@ -182,7 +188,10 @@ impl Guardian {
     /// # Errors
     /// [`GuardianError::Lost`].
     pub fn arm(&mut self) -> Result<(), GuardianError> {
-        self.send(request::ARM)?;
+        let mut arm = vec![request::ARM];
+        arm.extend(process_threads::own_id().to_string().into_bytes());
+        arm.push(request::ARM_END);
+        self.send(&arm)?;
         self.armed = Some(Instant::now());
         self.ask()
     }
@@ -191,7 +200,7 @@ impl Guardian {
     pub fn disarm(&mut self) {
         if self.armed.take().is_some() {
             // A guardian that is gone is noticed when it is armed again.
-            let _ = self.send(request::DISARM);
+            let _ = self.send(&[request::DISARM]);
         }
     }
 
@@ -208,16 +217,16 @@ impl Guardian {
             return Ok(());
         }
         if gap < ASK_AFTER {
-            self.send(request::HEARTBEAT)?;
+            self.send(&[request::HEARTBEAT])?;
             self.armed = Some(Instant::now());
             return Ok(());
         }
         self.ask()
     }
 
-    fn send(&self, request: u8) -> Result<(), GuardianError> {
+    fn send(&self, request: &[u8]) -> Result<(), GuardianError> {
         (&self.child.socket)
-            .write_all(&[request])
+            .write_all(request)
             .map_err(|_| GuardianError::Lost)
     }
 
@@ -225,7 +234,7 @@ impl Guardian {
     fn ask(&mut self) -> Result<(), GuardianError> {
         let gap = self.armed.map_or(Duration::ZERO, |last| last.elapsed());
         // A guardian that acts no longer reads.
-        let sent = self.send(request::ASK);
+        let sent = self.send(&[request::ASK]);
         match self.receive(ANSWER_TIMEOUT) {
             Some(answer::IDLE) if sent.is_ok() => {
                 self.armed = self.armed.map(|_| Instant::now());
@@ -306,14 +315,19 @@ fn drain(port: &mut impl Port) {
 }
 
 /// Reads a line, and nothing beyond it.
-fn read_line(mut socket: &UnixStream) -> io::Result<String> {
-    let mut line = Vec::new();
+fn read_line(socket: &UnixStream) -> io::Result<String> {
+    read_until(socket, b'\n')
+}
+
+/// Reads up to a byte, which is dropped, and nothing beyond it.
+fn read_until(mut socket: &UnixStream, end: u8) -> io::Result<String> {
+    let mut text = Vec::new();
     let mut byte = [0];
     loop {
         socket.read_exact(&mut byte)?;
         match byte {
-            [b'\n'] => return String::from_utf8(line).map_err(io::Error::other),
-            [byte] => line.push(byte),
+            [byte] if byte == end => return String::from_utf8(text).map_err(io::Error::other),
+            [byte] => text.push(byte),
         }
     }
 }
@@ -321,21 +335,21 @@ fn read_line(mut socket: &UnixStream) -> io::Result<String> {
 /// Waits for the end of the heartbeats while armed: true if the parent has died. `None` if it ends
 /// while not armed.
 fn wait_for_alarm(socket: &mut UnixStream) -> io::Result<Option<bool>> {
-    let parent = ProcessThreads::of(parent_id());
+    let mut threads = ProcessThreads::of(parent_id());
     let mut armed = false;
-    let mut received = Instant::now();
+    let mut silence = Silence::default();
     loop {
-        let rest = SILENCE_LIMIT
-            .saturating_sub(received.elapsed())
-            .max(OVERLOAD_CHECK);
-        socket.set_read_timeout(armed.then_some(rest))?;
+        socket.set_read_timeout(armed.then_some(LOOK))?;
         let mut byte = [0];
         match socket.read(&mut byte) {
             Ok(0) => return Ok(armed.then_some(true)),
             Ok(_) => {
-                received = Instant::now();
+                silence = Silence::default();
                 match byte {
-                    [request::ARM] => armed = true,
+                    [request::ARM] => {
+                        armed = true;
+                        threads.drive_loop = read_until(socket, request::ARM_END)?.parse().ok();
+                    }
                     [request::DISARM] => armed = false,
                     [request::ASK] => socket.write_all(&[answer::IDLE])?,
                     // A heartbeat.
@@ -345,13 +359,9 @@ fn wait_for_alarm(socket: &mut UnixStream) -> io::Result<Option<bool>> {
             Err(error) => match error.kind() {
                 io::ErrorKind::Interrupted => {}
                 io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut => {
-                    let is_delayed = parent.is_any_delayed();
-                    let limit = if is_delayed {
-                        OVERLOAD_LIMIT
-                    } else {
-                        SILENCE_LIMIT
-                    };
-                    if received.elapsed() >= limit {
+                    let elapsed = silence.looked.elapsed();
+                    silence.add(elapsed, threads.is_delayed(elapsed));
+                    if silence.is_alarm() {
                         return Ok(Some(false));
                     }
                 }
@@ -359,6 +369,42 @@ fn wait_for_alarm(socket: &mut UnixStream) -> io::Result<Option<bool>> {
                 _ => return Ok(armed.then_some(true)),
             },
         }
+    }
+}
+
+/// Time without heartbeats.
+#[derive(Clone, Copy, Debug)]
+struct Silence {
+    /// The latest look at the parent.
+    looked: Instant,
+    /// In all.
+    total: Duration,
+    /// Time in which the drive loop could run.
+    counted: Duration,
+}
+
+impl Default for Silence {
+    fn default() -> Self {
+        Self {
+            looked: Instant::now(),
+            total: Duration::ZERO,
+            counted: Duration::ZERO,
+        }
+    }
+}
+
+impl Silence {
+    /// Adds the time since the latest look, in which the machine may have delayed the parent.
+    fn add(&mut self, elapsed: Duration, is_delayed: bool) {
+        self.looked += elapsed;
+        self.total += elapsed;
+        if !is_delayed {
+            self.counted += elapsed.min(LONGEST_LOOK);
+        }
+    }
+
+    fn is_alarm(&self) -> bool {
+        self.counted >= SILENCE_LIMIT || self.total >= OVERLOAD_LIMIT
     }
 }
 

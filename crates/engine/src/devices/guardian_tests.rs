@@ -86,6 +86,42 @@ fn the_guardian_sends_the_quick_stop_after_a_read_error() {
     assert_eq!(bytes[..10], [0x90, 2, 0x11, 4, 0x40, 0x60, 0, 1, 0x0B, 0]);
 }
 
+/// Silence until the alarm, in looks of this length, of which the machine delays some.
+fn silence_until_alarm(look_ms: u64, is_delayed: impl Fn(Duration) -> bool) -> Duration {
+    let mut silence = Silence::default();
+    while !silence.is_alarm() {
+        let elapsed = Duration::from_millis(look_ms);
+        silence.add(elapsed, is_delayed(silence.total));
+    }
+    silence.total
+}
+
+#[test]
+fn a_silent_program_is_found_after_half_a_second() {
+    let found = silence_until_alarm(20, |_| false);
+    assert_eq!(found, SILENCE_LIMIT);
+}
+
+/// 2.2 s, the longest measured; the program is stuck after that.
+#[test]
+fn time_in_which_the_machine_delays_the_program_does_not_count() {
+    let stall = Duration::from_millis(2_200);
+    let found = silence_until_alarm(20, |at| at < stall);
+    assert_eq!(found, stall + SILENCE_LIMIT);
+    let endless = silence_until_alarm(20, |_| true);
+    assert_eq!(endless, OVERLOAD_LIMIT);
+}
+
+/// The whole machine stands still, and with it the guardian: one look of 2 s is no silence of 2 s.
+#[test]
+fn a_guardian_that_did_not_run_is_no_witness() {
+    let found = silence_until_alarm(1_000, |_| false);
+    assert_eq!(found, OVERLOAD_LIMIT);
+    let mut silence = Silence::default();
+    silence.add(Duration::from_secs(2), false);
+    assert!(!silence.is_alarm());
+}
+
 /// A guardian that is asked a third time, in the move, answers with these words of a shell.
 fn script(answer: &str) -> String {
     format!(
