@@ -172,9 +172,9 @@ impl DriveClient {
         self.advance(now);
     }
 
-    /// Reports that the host did not run for this time, up to `now`: replies may wait to be read, so
-    /// deadlines move. A machine that delays one program delays others, such as the system's part
-    /// of the link or a simulated drive: for some seconds silence is tolerated where only an
+    /// Reports that the host did not run for this time, up to `now`: replies may wait to be read,
+    /// so deadlines move. A machine that delays one program delays others, such as the system's
+    /// part of the link or a simulated drive: for some seconds silence is tolerated where only an
     /// unloaded machine proves the link lost.
     pub fn handle_host_delay(&mut self, delay: Span, now: Stamp<Host>) {
         let mut core = lock(&self.core);
