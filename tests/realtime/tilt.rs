@@ -7,6 +7,7 @@ use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::PathBuf;
 use std::process::{Child, Command, Output, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
 use std::time::Duration;
 
 /// A software drive that runs until dropped, and a configuration that names it.
@@ -79,6 +80,22 @@ impl Bench {
 }
 
 impl Bench {
+    /// Starts a command that moves the axis and waits until the axis moves. A thread reads the rest
+    /// of its messages.
+    pub fn start_move(&self, line: &str) -> (Child, JoinHandle<usize>) {
+        let mut moving = self.command(&format!("{line} -vv"));
+        moving.stderr(Stdio::piped()).stdout(Stdio::null());
+        let mut moving = moving.spawn().unwrap();
+        let mut printed = BufReader::new(moving.stderr.take().unwrap());
+        let mut line = String::new();
+        while !line.contains("Moving(") {
+            line.clear();
+            assert!(printed.read_line(&mut line).unwrap() > 0, "no motion");
+        }
+        let rest = std::thread::spawn(move || printed.lines().count());
+        (moving, rest)
+    }
+
     /// Ends the drive, whose port disappears.
     pub fn unplug(&mut self) {
         drop(self.drive.stdin.take());
@@ -177,19 +194,7 @@ fn an_axis_with_a_coarse_encoder_comes_to_rest() {
 fn tilt_stop_stops_a_move_of_another_process() {
     let bench = Bench::new("--usb");
     bench.json("tilt home");
-    let mut moving = bench.command("tilt goto -40 --speed 1 -vv");
-    let mut moving = moving
-        .stderr(Stdio::piped())
-        .stdout(Stdio::null())
-        .spawn()
-        .unwrap();
-    let mut printed = BufReader::new(moving.stderr.take().unwrap());
-    let mut line = String::new();
-    while !line.contains("Moving(") {
-        line.clear();
-        assert!(printed.read_line(&mut line).unwrap() > 0, "no motion");
-    }
-    let rest = std::thread::spawn(move || printed.lines().count());
+    let (mut moving, rest) = bench.start_move("tilt goto -40 --speed 1");
     let live = bench.json("tilt status");
     assert_eq!(
         (&live["state"], &live["power"], &live["activity"]),

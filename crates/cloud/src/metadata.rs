@@ -15,6 +15,8 @@ pub struct Metadata {
     pub time_reference: String,
     /// Whether the lidar reported two returns of each pulse. LAS numbers them.
     pub dual_return: bool,
+    /// Whether the points are in the sensor's own frame, without tilt.
+    pub sensor_frame: bool,
     /// Further comments; several lines become several comments.
     pub comments: Vec<String>,
 }
@@ -42,10 +44,13 @@ impl Metadata {
                 text.push(format!("{name}: {value}"));
             }
         }
-        text.push(
-            "frame: x right, y forward, z up in metres from the tilt axis; tilt in degrees"
-                .to_owned(),
-        );
+        let origin = match self.sensor_frame {
+            true => "the sensor, not tilted",
+            false => "the tilt axis; tilt in degrees",
+        };
+        text.push(format!(
+            "frame: x right, y forward, z up in metres from {origin}"
+        ));
         text.extend(self.comments.iter().cloned());
         text.iter().flat_map(|text| printable(text)).collect()
     }

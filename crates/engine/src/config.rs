@@ -60,14 +60,14 @@ pub fn load(file: Option<&Path>) -> Result<Config, Failure> {
                 error.to_string().trim_end()
             ),
         )
-        .help("correct that line; docs/src/wiring.md shows every key")
+        .help("correct that line; velomotion help wiring shows every key")
     })?;
     config.check().map_err(|what| {
         Failure::new(
             Kind::BadInput,
             format!("the configuration {}: {what}", path.display()),
         )
-        .help("correct that value; docs/src/wiring.md describes every key")
+        .help("correct that value; velomotion help wiring describes every key")
     })?;
     Ok(config)
 }

@@ -173,14 +173,12 @@ pub fn log_is_file(log: &Path, with: &str, extensions: &[&str]) -> Result<(), Fa
 /// [`Kind::Usage`].
 pub fn two_files(log: &Path, cloud: &Path) -> Result<(), Failure> {
     if same_file(log, cloud) {
+        let log = log.display();
         return Err(Failure::new(
             Kind::Usage,
-            format!(
-                "the cloud would overwrite its own recording {}",
-                log.display()
-            ),
+            format!("{log} cannot be both the cloud and its recording"),
         )
-        .help("give the cloud another name with -o"));
+        .help("give the cloud another name with -o, with the extension of a cloud such as .ply"));
     }
     Ok(())
 }
@@ -300,6 +298,9 @@ pub fn file_failure(error: &FileError) -> Failure {
         ),
         FileError::Directory { .. } => (Kind::Usage, "name a file in it"),
         FileError::NoFolder { .. } => (Kind::Usage, "create the folder, or name another"),
+        FileError::Io { source, .. } if source.kind() == stdio::ErrorKind::InvalidFilename => {
+            (Kind::Usage, "choose a shorter name")
+        }
         FileError::Io { .. } => (
             Kind::BadInput,
             "check the free space and the write permission of the folder",

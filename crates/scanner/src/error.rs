@@ -58,7 +58,7 @@ pub enum ScanError {
     UnreachableTolerance(UnreachableTolerance),
     /// A tolerance for angles of unknown accuracy.
     #[error(
-        "a tolerance was asked for, but the tilt angles are not of the log: nothing says how accurate they are"
+        "a tolerance was requested, but the tilt angles are not of the log: nothing says how accurate they are"
     )]
     NoBound,
     /// A gearing with a zero.

@@ -167,7 +167,7 @@ impl fmt::Display for MethodChoice {
         };
         write!(
             f,
-            "{}: within {:.2} mm at {} m, {:.2} mm asked for",
+            "{}: within {:.2} mm at {} m, {:.2} mm requested",
             method.name(),
             bound.0 * 1e3,
             self.tolerance.at.0,

@@ -176,7 +176,7 @@ pub struct Replay {
     #[arg(long, value_name = "FILE")]
     pub mount: Option<PathBuf>,
     /// Emit points at the recorded times, or FACTOR times as fast
-    #[arg(long, value_name = "FACTOR", num_args = 0..=1, default_missing_value = "1", value_parser = number)]
+    #[arg(long, value_name = "FACTOR", num_args = 0..=1, default_missing_value = "1", allow_negative_numbers = true, value_parser = number)]
     pub realtime: Option<f64>,
     /// Clock of the point times: the recording host's, or UTC from the lidar's satellite receiver
     #[arg(long, value_enum, default_value_t = TimeArgument::Host)]

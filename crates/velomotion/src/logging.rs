@@ -8,7 +8,7 @@ use tracing::{Level, Metadata};
 use tracing_subscriber::EnvFilter;
 use tracing_subscriber::fmt::MakeWriter;
 
-use crate::terminal::{self, to_stderr};
+use crate::terminal::{self, to_stderr, width_of, wrapped};
 use engine::failure::Failure;
 
 /// Priority of an error (syslog(3)).
@@ -55,8 +55,7 @@ pub fn failed(failure: &Failure) {
         let text = with_priority(ERROR, &format!("{}\n{help}", failure.message));
         to_stderr(text.trim_end());
     } else {
-        let width = terminal_size::terminal_size_of(io::stderr()).map(|(width, _)| width.0);
-        to_stderr(&text(failure, width.map(usize::from)));
+        to_stderr(&text(failure, width_of(io::stderr())));
     }
 }
 
@@ -66,19 +65,9 @@ fn text(failure: &Failure, width: Option<usize>) -> String {
     let first = [("error: ", failure.message.as_str())].into_iter();
     let helps = help.lines().enumerate();
     let helps = helps.map(|(n, line)| (if n == 0 { " help: " } else { "       " }, line));
-    let lines = first.chain(helps).map(|(label, line)| match width {
-        None => format!("{label}{line}"),
-        // Breaks at spaces only, since messages contain paths and units.
-        Some(width) => textwrap::fill(
-            line,
-            textwrap::Options::new(width)
-                .word_separator(textwrap::WordSeparator::AsciiSpace)
-                .word_splitter(textwrap::WordSplitter::NoHyphenation)
-                .break_words(false)
-                .initial_indent(label)
-                .subsequent_indent("       "),
-        ),
-    });
+    let lines = first
+        .chain(helps)
+        .map(|(label, line)| wrapped(line, width, label, "       "));
     lines.collect::<Vec<_>>().join("\n")
 }
 

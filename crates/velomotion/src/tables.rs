@@ -1,10 +1,12 @@
 //! Reports as tables for the terminal.
 
 use comfy_table::presets::NOTHING;
-use comfy_table::{CellAlignment, Table};
+use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, Table};
 use engine::reconstruct::report::{
     Contents, InfoReport, LiveReport, Reception, ScanReport, SensorReport, SweepReport,
 };
+
+use crate::terminal::width_of;
 
 /// Label and value of a table row.
 type Row = (&'static str, String);
@@ -236,11 +238,16 @@ fn frames(frames: Option<f64>) -> String {
 pub fn table(rows: Vec<(&'static str, String)>) -> String {
     let mut table = Table::new();
     table.load_style(NOTHING);
+    if let Some(width) = width_of(std::io::stdout()) {
+        table.set_content_arrangement(ContentArrangement::Dynamic);
+        table.set_width(u16::try_from(width).unwrap_or(u16::MAX));
+    }
     for (name, value) in rows {
         table.add_row(vec![name.to_owned(), value]);
     }
     if let Some(names) = table.column_mut(0) {
         names.set_cell_alignment(CellAlignment::Right);
+        names.set_constraint(ColumnConstraint::ContentWidth);
     }
     table.trim_fmt()
 }

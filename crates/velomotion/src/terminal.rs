@@ -5,6 +5,7 @@
 //! does not fit is dropped.
 
 use std::io::{IsTerminal, Write};
+use std::os::fd::AsFd;
 use std::sync::LazyLock;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::Duration;
@@ -99,6 +100,29 @@ pub fn flush() {
     }
 }
 
+/// Columns of a terminal; `None` for a pipe or a file.
+#[must_use]
+pub fn width_of(output: impl AsFd) -> Option<usize> {
+    terminal_size::terminal_size_of(output).map(|(width, _)| width.0.into())
+}
+
+/// A line after `label`, wrapped at a width if there is one, with an indentation from the second
+/// line. A line that begins with a space is a command for the user and stays whole.
+#[must_use]
+pub fn wrapped(line: &str, width: Option<usize>, label: &str, indentation: &str) -> String {
+    let Some(width) = width.filter(|_| !line.starts_with(' ')) else {
+        return format!("{label}{line}");
+    };
+    // Breaks at spaces only, since messages contain paths and units.
+    let options = textwrap::Options::new(width)
+        .word_separator(textwrap::WordSeparator::AsciiSpace)
+        .word_splitter(textwrap::WordSplitter::NoHyphenation)
+        .break_words(false)
+        .initial_indent(label)
+        .subsequent_indent(indentation);
+    textwrap::fill(line, options)
+}
+
 /// Progress on the terminal.
 pub struct Progress {
     quiet: bool,
@@ -137,7 +161,7 @@ impl Progress {
     pub fn begin_move(&mut self, plan: &MovePlan) {
         self.end_move();
         let length = plan.duration.as_nanos() / MILLISECONDS;
-        if self.begin_bar(length.unsigned_abs(), "{bar:40} {msg}") {
+        if self.begin_bar(length.unsigned_abs(), "{bar:30} {msg}") {
             self.sweep = Some(MoveBar {
                 plan: *plan,
                 started: None,

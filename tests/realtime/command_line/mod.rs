@@ -266,6 +266,13 @@ fn stops_a_sweep(signal: &str) {
         place.path("scan.ply").is_file(),
         "the cloud of the part is gone"
     );
+    // The log is well formed, but its sweep is cut short.
+    for quiet in ["", " -q"] {
+        let replayed = place.run(&format!("replay scan.pcapng -o part.ply --force{quiet}"));
+        let printed = String::from_utf8_lossy(&replayed.stderr).into_owned();
+        assert_eq!(replayed.status.code(), Some(6), "{printed}");
+        assert!(printed.contains("sweep 1 was cut short at -"), "{printed}");
+    }
 }
 
 #[test]
@@ -556,6 +563,16 @@ fn angles_of_another_device_can_be_attached() {
     ));
     assert!(lower.status.success());
     assert!(cloud != std::fs::read(place.path("cloud.ply")).unwrap());
+    // It also comes before the mount of a log.
+    place.run("capture --speed 90 --from 0 --to -5 -o scan.ply");
+    std::fs::write(place.path("turned.csv"), "0,-1\n60,-61\n").unwrap();
+    let of_log = place.run("replay scan.pcapng --tilt turned.csv -o own.ply");
+    assert!(of_log.status.success());
+    let given = place.run("replay scan.pcapng --tilt turned.csv --config other.toml -o given.ply");
+    let printed = String::from_utf8_lossy(&given.stderr).into_owned();
+    assert!(printed.contains("mount of other.toml"), "{printed}");
+    let clouds = ["own.ply", "given.ply"].map(|name| std::fs::read(place.path(name)).unwrap());
+    assert!(clouds[0] != clouds[1]);
     let points = scan["points"].as_u64().unwrap();
     let left_out = scan["left_out"].as_u64().unwrap();
     // The table covers 0.02 s of 0.0345 s: only points within it are placed.

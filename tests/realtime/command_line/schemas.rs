@@ -6,6 +6,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use super::{Place, json, recording};
+use crate::tilt::Bench;
 
 /// Commands that print their object once they serve, and run on.
 const SERVICES: [&str; 2] = [
@@ -70,6 +71,14 @@ fn what_commands_print_follows_the_schemas() {
     for line in SERVICES {
         input.push_str(&announced(&place, line));
     }
+    let bench = Bench::new("--usb");
+    let bring_up = bench.run("doctor --bring-up --yes --report report.md --json");
+    input.push_str(&format!("{}\n", json(&bring_up)));
+    bench.json("tilt home");
+    let (mut moving, rest) = bench.start_move("tilt goto -40 --speed 1");
+    input.push_str(&format!("{}\n", bench.json("tilt stop")));
+    assert_eq!(moving.wait().unwrap().code(), Some(130));
+    rest.join().unwrap();
     let python = std::env::var_os("VELOMOTION_PYTHON").unwrap_or_else(|| "python3".into());
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let mut validator = Command::new(python)
@@ -85,12 +94,13 @@ fn what_commands_print_follows_the_schemas() {
     let output = validator.wait_with_output().unwrap();
     assert!(output.status.success());
     let printed = String::from_utf8(output.stdout).unwrap();
-    assert_eq!(printed.lines().count(), lines.len() + SERVICES.len());
+    assert_eq!(printed.lines().count(), lines.len() + SERVICES.len() + 2);
     let schemas: BTreeSet<&str> = printed.lines().collect();
     let expected = [
         "analyze-1",
         "analyze-sweep-1",
         "axis-1",
+        "bring-up-1",
         "daemon-1",
         "doctor-1",
         "error-1",
@@ -100,6 +110,7 @@ fn what_commands_print_follows_the_schemas() {
         "pcap-1",
         "scan-1",
         "simulate-1",
+        "stopped-1",
         "tradeoff-1",
     ];
     assert_eq!(schemas, expected.into());

@@ -2,7 +2,7 @@
 
 use std::net::SocketAddr;
 
-use super::rig::{Answer, Rig, printed, request, run};
+use super::rig::{self, Answer, Rig, printed, request, run};
 
 const TOKEN: &str = "0123456789abcdef-secret";
 
@@ -195,4 +195,35 @@ fn a_host_with_many_wrong_tokens_has_to_wait() {
         with("0123456789abcdef-guessed").refused(401, "wrong");
     }
     with(TOKEN).refused(429, "right, too late");
+}
+
+/// The administrator finds the host in the log, but no token.
+#[test]
+fn wrong_tokens_are_logged_without_the_token() {
+    let folder = rig::place();
+    let path = folder.path().join("stderr");
+    let config = folder.path().join("velomotion.toml");
+    let text = std::fs::read_to_string(&config).unwrap();
+    std::fs::write(&config, format!("{text}token = '{TOKEN}'\n")).unwrap();
+    let mut command = rig::velomotion(folder.path(), "daemon --listen 127.0.0.1:0 --json");
+    command.stderr(std::fs::File::create(&path).unwrap());
+    let daemon = rig::Process::of(command);
+    let guess = "0123456789abcdef-guessed";
+    let header = format!("authorization: Bearer {guess}\r\n");
+    for _ in 0..2 {
+        status(daemon.address, &header).refused(401, "wrong");
+    }
+    rig::wait("two lines", || {
+        let logged = std::fs::read_to_string(&path).unwrap();
+        assert!(
+            !logged.contains(guess) && !logged.contains(TOKEN),
+            "{logged}"
+        );
+        let is_logged = |tries: u32| {
+            logged.contains(&format!(
+                "wrong token from this machine, {tries} in the last minute"
+            ))
+        };
+        (is_logged(1) && is_logged(2)).then_some(())
+    });
 }

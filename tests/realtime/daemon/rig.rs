@@ -247,10 +247,12 @@ pub struct Process {
 impl Process {
     /// Starts a daemon in `folder` with the configuration there.
     pub fn start(folder: &Path) -> Self {
-        let mut child = velomotion(folder, "daemon --listen 127.0.0.1:0 --json")
-            .stdout(Stdio::piped())
-            .spawn()
-            .unwrap();
+        Self::of(velomotion(folder, "daemon --listen 127.0.0.1:0 --json"))
+    }
+
+    /// Starts this command of a daemon that prints JSON.
+    pub fn of(mut command: Command) -> Self {
+        let mut child = command.stdout(Stdio::piped()).spawn().unwrap();
         let mut line = String::new();
         let mut printed = BufReader::new(child.stdout.take().unwrap());
         printed.read_line(&mut line).unwrap();

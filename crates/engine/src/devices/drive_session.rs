@@ -60,7 +60,7 @@ impl SessionError {
                 error => error.help(),
             }),
             Self::Guardian(error) if !error.may_move() => Some(
-                "the move is not resumed: begin again; docs/src/tilt.md describes the guardian"
+                "the move is not resumed: begin again; velomotion help tilt describes the guardian"
                     .to_owned(),
             ),
             Self::NotStopped(_) | Self::Port(_) | Self::Guardian(_) => Some(

@@ -49,9 +49,7 @@ pub fn axis(axis: &AxisSettings) -> Result<drive::AxisConfig, Failure> {
             Kind::BadInput,
             format!("the configuration's [axis]: {error}"),
         )
-        .help(
-            "correct that value in the configuration; docs/src/wiring.md says what each one means",
-        )
+        .help("correct that value in the configuration; velomotion help wiring describes every key")
     };
     let gearing = axis.scan().gearing().map_err(|error| wrong(&error))?;
     let rpm = |deg_s: f64| gearing.rpm(DegPerS(deg_s));

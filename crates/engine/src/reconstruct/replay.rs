@@ -444,10 +444,6 @@ fn sync(alignment: &Alignment, tilt: &TiltSource) -> SyncReport {
 /// same bytes.
 fn metadata(first_pass: &FirstPass, request: &Reconstruction<'_>) -> Metadata {
     let config = &first_pass.config;
-    let mut comments = Vec::new();
-    if request.tilt == TiltSource::None {
-        comments.push("not tilted: the sensor's own frame".to_owned());
-    }
     Metadata {
         simulated: config.simulated,
         source: format!("device {}", config.device),
@@ -458,6 +454,7 @@ fn metadata(first_pass: &FirstPass, request: &Reconstruction<'_>) -> Metadata {
         }
         .to_owned(),
         dual_return: first_pass.dual_return,
-        comments,
+        sensor_frame: request.tilt == TiltSource::None,
+        comments: Vec::new(),
     }
 }

@@ -310,7 +310,7 @@ impl Source {
         if let Some(offset) = counts.second_section.filter(|_| self.is_own(&recording)) {
             let file = self.path.display();
             return Err(self.joined(format!("a second one begins at byte {offset}")).help(format!(
-                "cut it apart there: head -c {offset} {file} > first.pcapng; tail -c +{} {file} > second.pcapng",
+                "cut it apart there:\n  head -c {offset} {file} > first.pcapng\n  tail -c +{} {file} > second.pcapng",
                 offset.saturating_add(1)
             )));
         }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use scanner::{AngleTable, TiltSource};
+use scanner::{AngleTable, AngleTableError, TiltSource};
 
 use crate::failure::{Failure, Kind};
 
@@ -28,13 +28,16 @@ fn angle_table(path: &Path) -> Result<AngleTable, Failure> {
     };
     let text =
         std::fs::read_to_string(path).map_err(|error| wrong(format!("cannot read: {error}")))?;
-    let mut rows = Vec::new();
+    let (mut rows, mut lines) = (Vec::new(), Vec::new());
     let mut heading = false;
     for (number, line) in text.lines().enumerate() {
         let line = line.trim();
         let blank = line.is_empty() || line.starts_with('#');
         match parse_row(line) {
-            Some(row) => rows.push(row),
+            Some(row) => {
+                rows.push(row);
+                lines.push(number + 1);
+            }
             None if blank => {}
             None if rows.is_empty() && !heading => heading = true,
             None => {
@@ -45,7 +48,13 @@ fn angle_table(path: &Path) -> Result<AngleTable, Failure> {
             }
         }
     }
-    AngleTable::new(rows).map_err(|error| wrong(error.to_string()))
+    AngleTable::new(rows).map_err(|error| match error {
+        AngleTableError::Range { row } | AngleTableError::Order { row } => {
+            let line = lines.get(row.saturating_sub(1)).copied().unwrap_or(row);
+            wrong(format!("line {line}: {error}"))
+        }
+        error => wrong(error.to_string()),
+    })
 }
 
 fn parse_row(line: &str) -> Option<(f64, f64)> {

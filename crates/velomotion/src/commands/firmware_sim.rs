@@ -154,7 +154,14 @@ struct Link(PathBuf);
 
 impl Link {
     fn make(link: &Path, port: &Path) -> Result<Self, Failure> {
-        // A link of an earlier run is replaced; any other file is not ours.
+        // A link that an earlier run left is replaced; any other file is not ours.
+        if let Ok(used) = link.canonicalize() {
+            let (link, used) = (link.display(), used.display());
+            return Err(
+                Failure::new(Kind::Usage, format!("{link} exists already: {used}"))
+                    .help("end the simulated drive that has it, or choose another name"),
+            );
+        }
         if link.is_symlink() {
             let _ = std::fs::remove_file(link);
         }

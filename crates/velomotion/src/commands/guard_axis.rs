@@ -41,7 +41,7 @@ pub fn run() -> Result<CommandOutput, Failure> {
             Kind::Usage,
             format!("not started by a command that moves the axis: {error}"),
         )
-        .help("this command is internal; see docs/src/tilt.md")
+        .help("this command is internal; velomotion help tilt describes it")
     })?;
     // stdout is the drive's port.
     if let Some(report) = report {

@@ -218,10 +218,17 @@ fn conclude(
         _ => format!("{problems} problems, {unchecked} open checks"),
     };
     report.write(&format!("\n## Result\n\n{result}\n"))?;
-    let failure = (problems > 0).then(|| {
-        Failure::new(Kind::DeviceFault, format!("{problems} problems found"))
-            .help("correct them before the head is coupled; the report has the advice")
-    });
+    let failure = match (problems, unchecked) {
+        (0, 0) => None,
+        (0, _) => Some(
+            Failure::new(Kind::Incomplete, format!("{unchecked} checks are open"))
+                .help("run the steps again that the report marks OPEN"),
+        ),
+        _ => Some(
+            Failure::new(Kind::DeviceFault, format!("{problems} problems found"))
+                .help("correct them before the head is coupled; the report has the advice"),
+        ),
+    };
     let text = format!("{result}; report {}", report.path.display());
     let output = BringUpReport {
         report: report.path,

@@ -13,6 +13,7 @@ use utoipa::ToSchema;
 
 use super::CommandOutput;
 use crate::cli::{Common, Doctor};
+use crate::terminal::{width_of, wrapped};
 use engine::config::{self, AxisSettings, Config, DeviceKind};
 use engine::devices::profile;
 use engine::failure::{Failure, Kind};
@@ -148,7 +149,7 @@ fn epos2(unit: &Epos2Found, read: Sysfs<'_>) -> Finding {
     let what = format!("EPOS2 on USB {}", unit.bus_place);
     let Some(port) = &unit.port else {
         return finding(what, Verdict::Problem, "no serial port: the driver ftdi_sio does not know its id").todo(
-            "as root: modprobe ftdi_sio && echo 0403 a8b0 > /sys/bus/usb-serial/drivers/ftdi_sio/new_id\n\
+            "as root:\n  modprobe ftdi_sio && echo 0403 a8b0 > /sys/bus/usb-serial/drivers/ftdi_sio/new_id\n\
              for good, in /etc/udev/rules.d/99-epos2.rules:\n\
              ACTION==\"add\", SUBSYSTEM==\"usb\", ATTR{idVendor}==\"0403\", ATTR{idProduct}==\"a8b0\", \
              RUN+=\"/bin/sh -c 'modprobe ftdi_sio; echo 0403 a8b0 > /sys/bus/usb-serial/drivers/ftdi_sio/new_id'\"",
@@ -167,7 +168,7 @@ fn epos2(unit: &Epos2Found, read: Sysfs<'_>) -> Finding {
                 port.display()
             ),
         )
-        .todo(format!("as root: echo 1 > {}", timer.display())),
+        .todo(format!("as root:\n  echo 1 > {}", timer.display())),
         _ => finding(what, Verdict::Ok, port.display().to_string()),
     }
 }
@@ -181,8 +182,10 @@ fn can_interfaces(interfaces: &[CanInterface]) -> Vec<Finding> {
                 finding(what, Verdict::Ok, "up")
             } else {
                 // A problem of the device that uses it alone.
-                finding(what, Verdict::Warning, "down")
-                    .todo(format!("as root: {}", io::can::up_command(&interface.name)))
+                finding(what, Verdict::Warning, "down").todo(format!(
+                    "as root:\n  {}",
+                    io::can::up_command(&interface.name)
+                ))
             }
         })
         .collect()
@@ -228,7 +231,7 @@ fn can_profile(what: String, name: &str, interfaces: &[CanInterface]) -> Finding
     }
     finding(what, Verdict::Problem, format!("there is no CAN interface {name}")).todo(format!(
         "connect the adapter, or correct `interface` in the configuration;\n\
-         without an adapter, as root: modprobe vcan && ip link add {name} type vcan && ip link set {name} up"
+         without an adapter, as root:\n  modprobe vcan && ip link add {name} type vcan && ip link set {name} up"
     ))
 }
 
@@ -236,7 +239,7 @@ fn axis(configured: &AxisSettings) -> Finding {
     match profile::axis(configured) {
         Ok(_) => finding("[axis]", Verdict::Ok, "axis configuration is valid"),
         Err(failure) => finding("[axis]", Verdict::Problem, failure.to_string()).todo(
-            "correct that value in the configuration; docs/src/wiring.md describes every key",
+            "correct that value in the configuration; velomotion help wiring describes every key",
         ),
     }
 }
@@ -257,23 +260,27 @@ fn receive_buffer(read: Sysfs<'_>) -> Finding {
                 limit >> 10
             ),
         )
-        .todo(format!("as root: sysctl -w net.core.rmem_max={WANTED}")),
+        .todo(format!("as root:\n  sysctl -w net.core.rmem_max={WANTED}")),
         Some(limit) => finding(what, Verdict::Ok, format!("up to {} KiB", limit >> 10)),
         None => finding(what, Verdict::Ok, "limit not known"),
     }
 }
 
 fn text(report: &DoctorReport) -> String {
+    /// Width of the marks.
+    const INDENTATION: &str = "         ";
+    let width = width_of(std::io::stdout());
     let mut lines = Vec::new();
     for finding in &report.findings {
         let mark = match finding.verdict {
-            Verdict::Ok => "ok     ",
-            Verdict::Warning => "warning",
-            Verdict::Problem => "PROBLEM",
+            Verdict::Ok => "ok       ",
+            Verdict::Warning => "warning  ",
+            Verdict::Problem => "PROBLEM  ",
         };
-        lines.push(format!("{mark}  {}: {}", finding.what, finding.found));
+        let found = format!("{}: {}", finding.what, finding.found);
+        lines.push(wrapped(&found, width, mark, INDENTATION));
         for line in finding.todo.iter().flat_map(|todo| todo.lines()) {
-            lines.push(format!("         {line}"));
+            lines.push(wrapped(line, width, INDENTATION, INDENTATION));
         }
     }
     lines.join("\n")
