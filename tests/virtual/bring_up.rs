@@ -69,6 +69,7 @@ fn a_healthy_drive_has_no_problem_on_any_link() {
         let value = |name: &str| &found.iter().find(|found| found.name == name).unwrap().value;
         assert!(value("onto the other switch").starts_with("method 17"));
         assert!(value("in a move").starts_with("at rest after 0."));
+        assert!(value("ready to switch on").starts_with("at rest after 0.000"));
         let by = match attached {
             Attachment::Can => "positions by SYNC at rest",
             _ => "positions by polls at rest",

@@ -36,7 +36,7 @@ pub(super) const OTHER_SWITCH: BringUpStep = BringUpStep {
 
 pub(super) const QUICK_STOP: BringUpStep = BringUpStep {
     title: "stops",
-    plan: "MOVES: stops the drive with its power off, with power at rest, while homing, and in a move of 20 deg/s",
+    plan: "MOVES: stops the drive with its power off, ready to switch on, with power at rest, while homing, and in a move of 20 deg/s",
     moves: true,
     run: stops,
 };
@@ -187,6 +187,14 @@ fn stops(bring_up: &mut BringUp<'_>, _: &mut dyn Operator) -> Result<(), Session
     }
     let axis = bring_up.axis.clone();
     let prepare = [DriveCommand::Connect, DriveCommand::Home];
+    // The client passes through this state when it switches the power on.
+    let recording = bring_up.run_as(axis.clone(), &prepare, &mut |event| {
+        let DriveEvent::Progress(CommandProgress::Statusword(word)) = event else {
+            return false;
+        };
+        DeviceState::from_statusword(*word) == Some(DeviceState::ReadyToSwitchOn)
+    })?;
+    judge_stop(bring_up, "ready to switch on", &recording, 0.0);
     let across = across(bring_up, STOP_SPEED);
     let mut sweeps = false;
     // The first positions of a sweep are those before it moves.
