@@ -107,7 +107,7 @@ seen["tpdo_positions_distinct"] = len(set(positions))
 # Two SYNCs may reach the drive in one microsecond where the machine was busy.
 seen["tpdo_times_never_fall"] = all(b >= a for a, b in zip(times, times[1:]))
 
-# An emergency: a target outside the software limits. Heard, and in the history.
+# An emergency: a target outside the software limits. It is received, and in the history.
 received = []
 node.emcy.add_callback(lambda error: received.append(error.code))
 write(0x607D, -100, 4, 1)

@@ -1,5 +1,5 @@
-//! Quotas of disk space for clouds. A cloud made for a download leaves the reserve and what
-//! captures may still need; a scan's own cloud may use the reserve.
+//! Quotas of disk space for clouds. A cloud made for a download must not use the reserve, nor the
+//! space that captures may still need; a scan's own cloud may use the reserve.
 
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::sync::{Arc, OnceLock};
@@ -12,11 +12,12 @@ use crate::plan;
 use crate::state::DaemonState;
 
 /// Bytes that a scan's own cloud leaves for records of scans.
-const RECORDS: u64 = 1 << 20;
+const RECORDS_RESERVE: u64 = 1 << 20;
 /// Bytes written between two checks of the disk.
-const STEP: u64 = 1 << 20;
+const CHECK_INTERVAL: u64 = 1 << 20;
 /// Most bytes of a point with all columns: as text, about 8 columns of 20 characters.
 const TEXT_ROW_BYTES: u64 = 160;
+/// The same in binary: 11 columns of at most 8 bytes, most of them shorter.
 const ROW_BYTES: u64 = 64;
 /// Most bytes of a file's header.
 const HEAD_BYTES: u64 = 64 << 10;
@@ -26,7 +27,9 @@ const HEAD_BYTES: u64 = 64 << 10;
 pub fn most_bytes(format: Format, points: u64) -> u64 {
     let row = match format {
         Format::Csv => TEXT_ROW_BYTES,
-        _ => ROW_BYTES,
+        Format::Ply | Format::Pcd | Format::Las | Format::Laz | Format::E57 | Format::Mcap => {
+            ROW_BYTES
+        }
     };
     points.saturating_mul(row).saturating_add(HEAD_BYTES)
 }
@@ -38,7 +41,7 @@ pub struct DiskQuota {
     refused: OnceLock<Failure>,
 }
 
-/// Purpose of the file.
+/// What the file is made for, which decides how much of the disk it may use.
 #[derive(Clone, Copy)]
 enum Purpose {
     Download,
@@ -79,7 +82,7 @@ impl DiskQuota {
             return plan::check_room(state, bytes, &need);
         }
         match (state.free_bytes)(state.scans.folder()) {
-            Ok(free) if free.saturating_sub(RECORDS) < bytes => Err(full(free)),
+            Ok(free) if free.saturating_sub(RECORDS_RESERVE) < bytes => Err(full(free)),
             _ => Ok(()),
         }
     }
@@ -133,7 +136,7 @@ impl<F: Write> Write for QuotaFile<F> {
         if self.left < wanted {
             let checked = self.quota.check(wanted);
             checked.map_err(|failure| self.refuse(failure))?;
-            self.left = STEP.max(wanted);
+            self.left = CHECK_INTERVAL.max(wanted);
         }
         let written = match self.file.write(bytes) {
             // Other programs wrote meanwhile.

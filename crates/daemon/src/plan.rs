@@ -140,7 +140,7 @@ pub fn most_cloud_bytes(log_bytes: u64) -> u64 {
 fn still_needed(state: &DaemonState) -> u64 {
     let under_way = state.scans.under_way();
     let needed = under_way.iter().map(|scan| {
-        let asked = scan.head.asked.as_ref();
+        let asked = scan.head.request.as_ref();
         let planned = asked.and_then(|asked| {
             let plan = state
                 .service

@@ -125,21 +125,21 @@ impl Scans {
     /// # Errors
     /// Returns [`Kind::Usage`] for an invalid name, and the failure of a folder that is not
     /// writable.
-    pub fn begin(&self, asked: &CaptureRequest, simulated: bool) -> Result<ScanRecord, Failure> {
-        if let Some(name) = &asked.name {
+    pub fn begin(&self, request: &CaptureRequest, simulated: bool) -> Result<ScanRecord, Failure> {
+        if let Some(name) = &request.name {
             check_name(name)?;
         }
         let now = std::time::SystemTime::now();
-        let (id, place) = self.new_place(asked.name.as_deref(), now, simulated)?;
+        let (id, place) = self.new_place(request.name.as_deref(), now, simulated)?;
         let started = now.duration_since(std::time::UNIX_EPOCH);
         let record = ScanRecord {
             head: ScanHead {
                 id: id.clone(),
-                name: asked.name.clone(),
+                name: request.name.clone(),
                 // Whole milliseconds survive JSON exactly.
                 started_s: started.map_or(0.0, |since| since.as_millis() as f64 / 1e3),
                 simulated,
-                asked: Some(asked.clone()),
+                request: Some(request.clone()),
                 ..ScanHead::default()
             },
             number: next_number(&self.scans()),
@@ -421,7 +421,7 @@ fn next_number(scans: &BTreeMap<String, ScanRecord>) -> u64 {
 fn number_those_without(scans: &mut BTreeMap<String, ScanRecord>) {
     let next = next_number(scans);
     for record in scans.values_mut() {
-        if record.number == 0 && record.state == ScanState::Making && record.asked.is_none() {
+        if record.number == 0 && record.state == ScanState::Making && record.request.is_none() {
             record.number = next;
         }
     }

@@ -88,12 +88,12 @@ pub enum CommandProgress {
     PowerCut,
     /// An axis at rest moved by this after its power was switched off: its head fell, or the brake
     /// slipped.
-    Dropped(Degrees),
+    MovedAfterPowerOff(Degrees),
     /// The drive was silent for so long at the end of a move that the axis was stopped; it rests at
     /// its target.
     StoppedAtTarget(Span),
     /// A command failed and the axis was stopped; the failure follows.
-    MadeSafe(StopReport),
+    StoppedAfterFailure(StopReport),
 }
 
 /// Result of a successful command.

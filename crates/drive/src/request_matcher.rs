@@ -1,8 +1,8 @@
 //! Matches replies to requests.
 //!
 //! A serial reply of the EPOS2 names neither object nor request. Order and format must do: replies
-//! come in the order of the requests, some are lost, and the reply to a read has four words where
-//! that to a write has two. An SDO response names its object (segments do not), but not which of
+//! come in the order of the requests, and some are lost. The reply to a read has four words, two of
+//! them the error code; that to a write has these two. An SDO response names its object (segments do not), but not which of
 //! two reads of one object it belongs to. A reply that fits more than one outstanding request is
 //! matched to none; the newest of them stays outstanding, as the reply may be to an older one.
 //!

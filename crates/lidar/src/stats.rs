@@ -5,7 +5,7 @@ use core::fmt;
 use protocol::vlp16::{Model, PacketError, Pps, Product, ReturnMode};
 use units::Span;
 
-/// Statistics of all payloads up to the packet emitted last.
+/// Statistics of all payloads so far; firings and returns are those of emitted packets.
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
 pub struct Stats {
@@ -96,12 +96,12 @@ impl Stats {
         }
     }
 
-    /// Takes back one of `lost` packets, which arrived after its successor, and what was counted
-    /// after the first `gaps` gaps.
+    /// Corrects the count after a packet that arrived behind its successor: `lost` packets were
+    /// missing then, at the first `gaps` places.
     pub(crate) fn take_back_lost(&mut self, lost: u64, gaps: usize) {
         self.lost_packets = lost.saturating_sub(1);
         self.gaps.truncate(gaps);
-        // Beyond the kept gaps the last one is another.
+        // With more gaps than are kept, the last one kept may not be the one to correct.
         let kept: u64 = self.gaps.iter().map(|gap| gap.packets).sum();
         if kept > self.lost_packets
             && let Some(last) = self.gaps.last_mut()

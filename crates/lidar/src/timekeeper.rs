@@ -20,6 +20,8 @@ pub struct PacketTiming {
     /// Time from the first firing to the completion of the packet: 24 firings of 55.296 us for a
     /// VLP-16, 12 with dual returns. The gap of a limited field of view is not included.
     pub fill: Span,
+    /// Name of the sensor's model.
+    pub model: &'static str,
 }
 
 /// Unwraps packet times of one sensor in order of arrival.
@@ -55,18 +57,20 @@ impl Timekeeper {
     /// Time of a payload that arrived at `host`; `None` unless it is a valid data packet of a known
     /// model.
     ///
-    /// If the factory byte is wrong, the model is known from the second packet on; the first
-    /// packet's fill is that of the named model.
+    /// If the factory byte is wrong, the model is known after some packets; until then it is that
+    /// of the byte.
     pub fn packet(&mut self, host: Stamp<Host>, payload: &[u8]) -> Option<PacketTiming> {
         if payload.len() != DATA_LEN {
             return None;
         }
         let packet = DataPacket::new(payload).ok()?;
         let known = self.observe(host, &packet);
-        let fill = known.model?.packet_period_ns(known.dual);
+        let model = known.model?;
+        let fill = model.packet_period_ns(known.dual);
         Some(PacketTiming {
             first_firing: known.start,
             fill: Span::from_nanos(i64::from(fill)),
+            model: model.name,
         })
     }
 

@@ -205,7 +205,8 @@ impl<'a> DataBlock<'a> {
     #[must_use]
     pub fn raw_channels(self) -> &'a [[u8; CHANNEL_LEN]; CHANNELS] {
         let (_, channels) = self.0.split_at(FLAG_LEN + AZIMUTH_LEN);
-        // The assertion above proves that a block is long enough; the compiler removes the default.
+        // The assertion at the top of the file proves that a block is long enough; the compiler
+        // removes the default.
         channels.as_chunks().0.first_chunk().unwrap_or(&NO_CHANNELS)
     }
 }

@@ -51,13 +51,13 @@ def verdict(row):
     """
     beyond = any((row.get(name) or 0.0) > 1.0 for name in RATIOS)
     beyond |= bool(row.get("unmatched"))
-    said = row["exit"] != 0 or bool(row["warnings"])
+    has_message = row["exit"] != 0 or bool(row["warnings"])
     if row["exit"] not in (0, 3, 6):
         return "FAILED"
     if (row.get("angle_bound_deg") or 0.0) > 90.0:
         return "ABSURD"
     if beyond:
-        return "wrong" if said else "SILENT"
+        return "wrong" if has_message else "SILENT"
     if row["exit"] == 3 and row["joined"]:
         return "refused"
     possible = max(GOOD_DEG, 1.5 * (row.get("possible_deg") or 0.0))
@@ -67,10 +67,10 @@ def verdict(row):
         return "LOST"
     if row["kept"] > row["most"]:
         return "DOUBLED" if row["kept"] > 1.0 else "UNFOUNDED"
-    if row["group"] == "plain" and said:
+    if row["group"] == "plain" and has_message:
         return "ALARM"
     if poor:
-        return "poor" if said else "unsaid"
+        return "poor" if has_message else "unsaid"
     return "ok"
 
 

@@ -159,7 +159,7 @@ impl World {
         let path = format!("/api/v1/scans/{}", scan.id);
         let whole: Value = self.daemon.client.get(&path).map_err(|f| f.to_string())?;
         let report = &whole["report"];
-        let request = scan.asked.as_ref().ok_or("the request is unknown")?;
+        let request = scan.request.as_ref().ok_or("the request is unknown")?;
         let sweeps = report["sweeps"].as_array().map_or(0, Vec::len);
         let far = report["sweeps"]
             .as_array()

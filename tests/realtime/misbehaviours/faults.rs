@@ -198,7 +198,7 @@ pub struct Faults {
     /// Copies of each answer.
     pub copies: u8,
     pub is_unplugged: bool,
-    /// The client's output is read by nobody.
+    /// No program reads the client's output.
     pub unread: bool,
     pub(crate) held: Option<i32>,
     pub(crate) kept: Option<f64>,

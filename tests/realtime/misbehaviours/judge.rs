@@ -66,7 +66,7 @@ impl Verdict {
             row.expect,
             Expect::Stopped | Expect::Unseen | Expect::Braked | Expect::HomingStopped
         );
-        let is_held_up = is_shown && !row.name.contains("nobody reads");
+        let is_held_up = is_shown && !row.name.contains("output unread");
         let speed = drive.record.highest_speed().max(56.25);
         let mut verdict = Self {
             travel: drive.record.travel(began),

@@ -222,7 +222,7 @@ pub const ROWS: &[Misbehaviour] = &[
         d.faults.ignores_quick_stop = true;
     })),
     // SIGTERM in mid-sweep.
-    row("SIGTERM, nobody reads the output", Stopping, Stopped, |d| d.faults.unread = true),
+    row("SIGTERM, output unread", Stopping, Stopped, |d| d.faults.unread = true),
     row("SIGTERM, quick stop is ignored", Stopping, Braked, |d| d.faults.ignores_quick_stop = true),
     row("SIGTERM, it moves on whatever quick stop says", Stopping, Braked, |d| {
         unguarded(d);

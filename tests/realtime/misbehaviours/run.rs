@@ -211,8 +211,8 @@ fn client(
     shared: &Shared,
 ) -> Result<Option<i32>, String> {
     let mut client = velomotion(folder, line);
-    // A pipe that nobody reads is full after a moment of -vv.
-    let is_unread = row.name.contains("nobody reads");
+    // An unread pipe is full after a moment of -vv.
+    let is_unread = row.name.contains("output unread");
     if is_unread {
         client
             .arg("-vv")
@@ -262,7 +262,7 @@ fn be_drive(
     let mut drive = Drive::new(-8.0);
     drive.record.can = transport == Transport::Slcan;
     drive.arm(row);
-    let (mut buffer, mut last, mut heard) = ([0; 512], 0.0, 0.0);
+    let (mut buffer, mut last, mut received) = ([0; 512], 0.0, 0.0);
     let (mut longest, mut silence) = (0.0_f64, 0.0_f64);
     while !shared.end.load(Ordering::Acquire) {
         let read = match &mut pty {
@@ -289,12 +289,12 @@ fn be_drive(
             .get(..read.map_or(0, |(count, _)| count))
             .unwrap_or_default();
         if !bytes.is_empty() {
-            heard = now;
+            received = now;
         }
         if let Some(began) = drive.record.began
             && drive.record.first_stop(began).is_none()
         {
-            silence = silence.max(now - heard);
+            silence = silence.max(now - received);
         }
         let is_dead = drive.boots_at.is_some() || drive.faults.is_deaf;
         if is_dead && transport != Transport::Slcan {

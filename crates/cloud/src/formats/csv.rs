@@ -6,7 +6,7 @@
 
 use std::io::{self, Write};
 
-use super::file_sink::{EncodeFault, Encoder, FileSink};
+use super::file_sink::{EncodeError, Encoder, FileSink};
 use crate::{Column, Fields, Metadata, Point, Points, Summary};
 
 /// Writes CSV. Each batch is one write: the output needs no buffer.
@@ -69,7 +69,7 @@ impl<W: Write> Encoder for CsvEncoder<W> {
         "csv"
     }
 
-    fn begin(&mut self, metadata: &Metadata) -> Result<(), EncodeFault> {
+    fn begin(&mut self, metadata: &Metadata) -> Result<(), EncodeError> {
         for line in metadata.lines() {
             writeln!(self.text, "# {line}")?;
         }
@@ -81,7 +81,7 @@ impl<W: Write> Encoder for CsvEncoder<W> {
         Ok(self.output.write_all(&self.text)?)
     }
 
-    fn points(&mut self, batch: &Points) -> Result<(), EncodeFault> {
+    fn points(&mut self, batch: &Points) -> Result<(), EncodeError> {
         self.text.clear();
         for point in batch.iter() {
             let [x, y, z] = point.position_m;
@@ -95,7 +95,7 @@ impl<W: Write> Encoder for CsvEncoder<W> {
         Ok(self.output.write_all(&self.text)?)
     }
 
-    fn finish(&mut self, _: &Summary) -> Result<(), EncodeFault> {
+    fn finish(&mut self, _: &Summary) -> Result<(), EncodeError> {
         Ok(self.output.flush()?)
     }
 }

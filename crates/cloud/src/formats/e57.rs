@@ -24,7 +24,7 @@ use units::{Host, Stamp};
 use self::attributes::PointAttributes;
 use self::worker::{FileEnding, WorkerCommand};
 use super::fallible::{FallibleOutput, WriteFault};
-use super::file_sink::{EncodeFault, Encoder, FileSink};
+use super::file_sink::{EncodeError, Encoder, FileSink};
 use super::gps_time;
 use crate::{Fields, Metadata, Points, Summary};
 
@@ -75,7 +75,7 @@ impl<W: Read + Write + Seek + Send + 'static> E57Writer<W> {
 
 impl<W: Read + Write + Seek + Send + 'static> E57Encoder<W> {
     /// Sends a command to the thread; if it has ended, returns its error.
-    fn command(&mut self, command: WorkerCommand) -> Result<(), EncodeFault> {
+    fn command(&mut self, command: WorkerCommand) -> Result<(), EncodeError> {
         self.fault.outcome(Ok::<_, e57::Error>(()))?;
         let sent = self
             .worker
@@ -85,13 +85,13 @@ impl<W: Read + Write + Seek + Send + 'static> E57Encoder<W> {
             Some(Ok(())) => Ok(()),
             Some(Err(_)) | None => {
                 self.wait()?;
-                Err(EncodeFault::library("the encoder has ended"))
+                Err(EncodeError::library("the encoder has ended"))
             }
         }
     }
 
     /// Waits for the end of the thread.
-    fn wait(&mut self) -> Result<(), EncodeFault> {
+    fn wait(&mut self) -> Result<(), EncodeError> {
         let ended = self.worker.take().map_or(Ok(()), |worker| {
             drop(worker.commands);
             match worker.thread.join() {
@@ -124,7 +124,7 @@ impl<W: Read + Write + Seek + Send + 'static> Encoder for E57Encoder<W> {
         Some(f32::MAX.into())
     }
 
-    fn begin(&mut self, metadata: &Metadata) -> Result<(), EncodeFault> {
+    fn begin(&mut self, metadata: &Metadata) -> Result<(), EncodeError> {
         self.description = metadata.lines();
         let Some(output) = self.output.take() else {
             return Ok(());
@@ -135,18 +135,18 @@ impl<W: Read + Write + Seek + Send + 'static> Encoder for E57Encoder<W> {
         let thread = thread::Builder::new()
             .name(FORMAT.to_owned())
             .spawn(move || worker::run(output, &attributes, &about, &receiver))
-            .map_err(EncodeFault::library)?;
+            .map_err(EncodeError::library)?;
         self.worker = Some(EncoderThread { commands, thread });
         Ok(())
     }
 
-    fn points(&mut self, batch: &Points) -> Result<(), EncodeFault> {
+    fn points(&mut self, batch: &Points) -> Result<(), EncodeError> {
         self.note_times(batch);
         let start = self.start.unwrap_or(Stamp::from_nanos(0));
         self.command(WorkerCommand::Points(Box::new(batch.clone()), start))
     }
 
-    fn finish(&mut self, summary: &Summary) -> Result<(), EncodeFault> {
+    fn finish(&mut self, summary: &Summary) -> Result<(), EncodeError> {
         self.command(WorkerCommand::Finish(FileEnding {
             identity: identity::of(&self.description, *summary, [self.start, self.end]),
             start_gps_s: self.start.map(gps_time::gps_s),

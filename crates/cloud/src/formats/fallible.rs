@@ -8,7 +8,7 @@ use std::error::Error;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::file_sink::EncodeFault;
+use super::file_sink::EncodeError;
 
 /// The first error of a [`FallibleOutput`].
 #[derive(Clone, Default)]
@@ -29,10 +29,10 @@ impl WriteFault {
     pub(in crate::formats) fn outcome<T>(
         &self,
         result: Result<T, impl Into<Box<dyn Error + Send + Sync>>>,
-    ) -> Result<T, EncodeFault> {
+    ) -> Result<T, EncodeError> {
         match self.get() {
-            Some(source) => Err(EncodeFault::Output(source)),
-            None => result.map_err(EncodeFault::library),
+            Some(source) => Err(EncodeError::Output(source)),
+            None => result.map_err(EncodeError::library),
         }
     }
 

@@ -25,38 +25,38 @@ pub trait Encoder {
     /// Writes the header of a file with these columns.
     ///
     /// # Errors
-    /// [`EncodeFault`] if the output or the library fails.
-    fn begin(&mut self, metadata: &Metadata) -> Result<(), EncodeFault>;
+    /// [`EncodeError`] if the output or the library fails.
+    fn begin(&mut self, metadata: &Metadata) -> Result<(), EncodeError>;
 
     /// Writes a batch that has the columns.
     ///
     /// # Errors
-    /// [`EncodeFault`] if the output or the library fails; no batch follows.
-    fn points(&mut self, batch: &Points) -> Result<(), EncodeFault>;
+    /// [`EncodeError`] if the output or the library fails; no batch follows.
+    fn points(&mut self, batch: &Points) -> Result<(), EncodeError>;
 
     /// Completes the file.
     ///
     /// # Errors
-    /// [`EncodeFault`] if the output or the library fails.
-    fn finish(&mut self, summary: &Summary) -> Result<(), EncodeFault>;
+    /// [`EncodeError`] if the output or the library fails.
+    fn finish(&mut self, summary: &Summary) -> Result<(), EncodeError>;
 }
 
 /// Failure of an encoder.
 #[derive(Debug)]
-pub enum EncodeFault {
+pub enum EncodeError {
     /// The output refused bytes.
     Output(io::Error),
     /// The library of the format failed.
     Library(Box<dyn Error + Send + Sync>),
 }
 
-impl From<io::Error> for EncodeFault {
+impl From<io::Error> for EncodeError {
     fn from(error: io::Error) -> Self {
         Self::Output(error)
     }
 }
 
-impl EncodeFault {
+impl EncodeError {
     pub(super) fn library(error: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
         Self::Library(error.into())
     }
@@ -98,7 +98,7 @@ impl<E: Encoder> FileSink<E> {
         }
     }
 
-    fn error(&self, fault: EncodeFault) -> SinkError {
+    fn error(&self, fault: EncodeError) -> SinkError {
         fault.after(self.summary.points, self.encoder.format())
     }
 }

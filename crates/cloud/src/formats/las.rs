@@ -16,7 +16,7 @@ use las::{Builder, GpsTimeType, PointData, PointDataBuilder, Transform, Vector, 
 
 use self::extra_bytes::ExtraColumn;
 use super::fallible::{FallibleOutput, WriteFault};
-use super::file_sink::{EncodeFault, Encoder, FileSink};
+use super::file_sink::{EncodeError, Encoder, FileSink};
 use super::gps_time;
 use super::seconds::seconds;
 use crate::rows::{fill, fill_values};
@@ -213,10 +213,10 @@ impl<W: Write + Seek + Send + Sync + 'static> Encoder for LasEncoder<W> {
         Fields::ECHO
     }
 
-    fn begin(&mut self, metadata: &Metadata) -> Result<(), EncodeFault> {
+    fn begin(&mut self, metadata: &Metadata) -> Result<(), EncodeError> {
         self.flags = if metadata.simulated { SYNTHETIC } else { 0 };
         self.dual_return = metadata.dual_return;
-        let header = self.header(metadata).map_err(EncodeFault::library)?;
+        let header = self.header(metadata).map_err(EncodeError::library)?;
         let slab = PointDataBuilder::new().for_header(&header).build();
         if let Some(output) = self.output.take() {
             let writer = self.fault.outcome(las::Writer::new(output, header))?;
@@ -225,9 +225,9 @@ impl<W: Write + Seek + Send + Sync + 'static> Encoder for LasEncoder<W> {
         Ok(())
     }
 
-    fn points(&mut self, batch: &Points) -> Result<(), EncodeFault> {
+    fn points(&mut self, batch: &Points) -> Result<(), EncodeError> {
         let Some((writer, slab)) = &mut self.open else {
-            return Err(EncodeFault::library("the file is not open"));
+            return Err(EncodeError::library("the file is not open"));
         };
         let row_bytes = slab.record_len();
         let rows = slab.resize_for(batch.len());
@@ -237,7 +237,7 @@ impl<W: Write + Seek + Send + Sync + 'static> Encoder for LasEncoder<W> {
         self.fault.outcome(writer.write_points(slab))
     }
 
-    fn finish(&mut self, _: &Summary) -> Result<(), EncodeFault> {
+    fn finish(&mut self, _: &Summary) -> Result<(), EncodeError> {
         if let Some((writer, _)) = self.open.take() {
             let output = writer.into_inner().and_then(|mut output| {
                 output.flush()?;

@@ -23,7 +23,7 @@ use units::{Degrees, Host, Span, Stamp};
 
 use self::channels::McapChannels;
 use super::fallible::{FallibleOutput, WriteFault};
-use super::file_sink::EncodeFault;
+use super::file_sink::EncodeError;
 use super::stage::Stage;
 use crate::messages::cdr::Cdr;
 use crate::messages::{
@@ -125,7 +125,7 @@ impl<W: Write + Seek> McapLog<W> {
     }
 
     fn time(&self, stamp: Stamp<Host>) -> Result<Time, SinkError> {
-        Time::of(stamp).map_err(|error| EncodeFault::library(error).after(self.points, FORMAT))
+        Time::of(stamp).map_err(|error| EncodeError::library(error).after(self.points, FORMAT))
     }
 
     /// Writes the message in `self.cdr`.

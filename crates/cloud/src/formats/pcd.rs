@@ -5,7 +5,7 @@
 
 use std::io::{self, Seek, SeekFrom, Write};
 
-use super::file_sink::{EncodeFault, Encoder, FileSink};
+use super::file_sink::{EncodeError, Encoder, FileSink};
 use super::layout::RowLayout;
 use crate::rows::NumberType;
 use crate::{Fields, Metadata, Points, Summary};
@@ -66,7 +66,7 @@ impl<W: Write + Seek> Encoder for PcdEncoder<W> {
         "pcd"
     }
 
-    fn begin(&mut self, metadata: &Metadata) -> Result<(), EncodeFault> {
+    fn begin(&mut self, metadata: &Metadata) -> Result<(), EncodeError> {
         let mut head = String::from("# .PCD v0.7 - Point Cloud Data file format\n");
         for line in metadata.lines() {
             head += &format!("# {line}\n");
@@ -87,13 +87,13 @@ impl<W: Write + Seek> Encoder for PcdEncoder<W> {
         Ok(self.output.write_all(head.as_bytes())?)
     }
 
-    fn points(&mut self, batch: &Points) -> Result<(), EncodeFault> {
+    fn points(&mut self, batch: &Points) -> Result<(), EncodeError> {
         Ok(self.output.write_all(self.layout.encode(batch))?)
     }
 
-    fn finish(&mut self, summary: &Summary) -> Result<(), EncodeFault> {
+    fn finish(&mut self, summary: &Summary) -> Result<(), EncodeError> {
         if !summary.points.is_multiple_of(self.rows) {
-            return Err(EncodeFault::Output(io::Error::other(format!(
+            return Err(EncodeError::Output(io::Error::other(format!(
                 "an organised cloud of {} rows: expected as many points in each, got {} in all",
                 self.rows, summary.points
             ))));

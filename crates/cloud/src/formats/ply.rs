@@ -12,7 +12,7 @@
 
 use std::io::{self, Read, Seek, SeekFrom, Write};
 
-use super::file_sink::{EncodeFault, Encoder, FileSink};
+use super::file_sink::{EncodeError, Encoder, FileSink};
 use super::layout::RowLayout;
 use crate::rows::NumberType;
 use crate::{Fields, Metadata, Points, Summary};
@@ -96,18 +96,18 @@ impl<W: Write + Seek> Encoder for PlyEncoder<W> {
         "ply"
     }
 
-    fn begin(&mut self, metadata: &Metadata) -> Result<(), EncodeFault> {
+    fn begin(&mut self, metadata: &Metadata) -> Result<(), EncodeError> {
         let head = head(metadata);
         self.count_at = self.output.stream_position()? + head.len() as u64;
         let header = head + &count_lines(0) + &tail(&self.layout);
         Ok(self.output.write_all(header.as_bytes())?)
     }
 
-    fn points(&mut self, batch: &Points) -> Result<(), EncodeFault> {
+    fn points(&mut self, batch: &Points) -> Result<(), EncodeError> {
         Ok(self.output.write_all(self.layout.encode(batch))?)
     }
 
-    fn finish(&mut self, summary: &Summary) -> Result<(), EncodeFault> {
+    fn finish(&mut self, summary: &Summary) -> Result<(), EncodeError> {
         self.output.seek(SeekFrom::Start(self.count_at))?;
         self.output
             .write_all(count_lines(summary.points).as_bytes())?;
@@ -139,16 +139,16 @@ impl<W: Write, S: Read + Write + Seek> Encoder for PipeEncoder<W, S> {
         "ply"
     }
 
-    fn begin(&mut self, metadata: &Metadata) -> Result<(), EncodeFault> {
+    fn begin(&mut self, metadata: &Metadata) -> Result<(), EncodeError> {
         self.head = head(metadata);
         Ok(())
     }
 
-    fn points(&mut self, batch: &Points) -> Result<(), EncodeFault> {
+    fn points(&mut self, batch: &Points) -> Result<(), EncodeError> {
         Ok(self.scratch.write_all(self.layout.encode(batch))?)
     }
 
-    fn finish(&mut self, summary: &Summary) -> Result<(), EncodeFault> {
+    fn finish(&mut self, summary: &Summary) -> Result<(), EncodeError> {
         let count = format!("element vertex {}\n", summary.points);
         for part in [&self.head, &count, &tail(&self.layout)] {
             self.output.write_all(part.as_bytes())?;

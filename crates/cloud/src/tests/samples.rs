@@ -17,6 +17,7 @@ pub fn metadata() -> Metadata {
         software: "velomotion 0.1.0".into(),
         time_reference: "Unix seconds, host clock".into(),
         dual_return: false,
+        sensor_frame: false,
         comments: vec!["first\nsecond".into()],
     }
 }

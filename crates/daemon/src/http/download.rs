@@ -252,7 +252,7 @@ fn send(
     id: &str,
     extension: &str,
     permit: OwnedSemaphorePermit,
-    asked: Option<&HeaderMap>,
+    request_headers: Option<&HeaderMap>,
 ) -> Response {
     let length = metadata.len();
     let tag = tag_of(&metadata);
@@ -271,17 +271,17 @@ fn send(
     let name = format!("velomotion-{id}.{extension}");
     set(header::CONTENT_DISPOSITION, attachment(&name));
     // A token may protect it: only the client itself may keep it, and asks each time.
-    let cache = asked.map_or("no-store", |_| "private, no-cache");
+    let cache = request_headers.map_or("no-store", |_| "private, no-cache");
     set(header::CACHE_CONTROL, cache.to_owned());
     let mut status = StatusCode::OK;
     let mut range = 0..length;
-    if let Some(asked) = asked {
+    if let Some(request_headers) = request_headers {
         set(header::ETAG, tag.clone());
         set(header::ACCEPT_RANGES, "bytes".to_owned());
-        if is_known(asked, &tag) {
+        if is_known(request_headers, &tag) {
             return (StatusCode::NOT_MODIFIED, headers).into_response();
         }
-        match range_of(asked, &tag, length) {
+        match range_of(request_headers, &tag, length) {
             FileRange::Whole => {}
             FileRange::Bytes(bytes) if file.seek(SeekFrom::Start(bytes.start)).is_ok() => {
                 status = StatusCode::PARTIAL_CONTENT;

@@ -59,8 +59,8 @@ pub async fn list(
     (status = 200, body = ScanDetails), (status = 404, response = NotFound),
 ))]
 pub async fn one(State(api): State<Arc<Api>>, Path(id): Path<String>) -> Result<Response, Refusal> {
-    let (state, asked) = (Arc::clone(&api.state), id.clone());
-    let scan = super::with_disk(move || state.scans.whole(&asked)).await?;
+    let (state, scan_id) = (Arc::clone(&api.state), id.clone());
+    let scan = super::with_disk(move || state.scans.whole(&scan_id)).await?;
     let scan = scan.ok_or_else(|| Refusal::no_scan(&id))?;
     Ok(super::json(StatusCode::OK, &scan))
 }
@@ -73,9 +73,9 @@ pub async fn delete(
     State(api): State<Arc<Api>>,
     Path(id): Path<String>,
 ) -> Result<StatusCode, Refusal> {
-    let (state, asked) = (Arc::clone(&api.state), id.clone());
+    let (state, scan_id) = (Arc::clone(&api.state), id.clone());
     let deleted = super::with_disk(move || {
-        let deleted = state.scans.delete(&asked);
+        let deleted = state.scans.delete(&scan_id);
         state.refresh_disk();
         deleted
     });

@@ -71,7 +71,7 @@ fn unreadable_scans_are_listed_and_left_unchanged() {
     let again = Scans::open(folder.path()).unwrap();
     let view = |id: &str| again.view(id).unwrap();
     assert_eq!(
-        (view(&later).state, &view(&later).asked),
+        (view(&later).state, &view(&later).request),
         (ScanState::Whole, &None)
     );
     let why = view(&unknown).why.clone().unwrap();

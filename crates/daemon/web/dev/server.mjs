@@ -36,12 +36,12 @@ const status = () => ({
     : { doing: "idle", scan: null, step: 0, steps: 0, from_deg: null, to_deg: null, left_s: null },
   drive: {
     state: mode === "fault" ? "fault" : mode === "absent" ? "absent" : "connected",
-    problem: mode === "fault" ? { message: "the drive reports 0x8611: following error", help: "see whether something holds the platform; then clear the fault and home" }
+    problem: mode === "fault" ? { message: "the drive reports 8611: following error", help: "see whether something holds the platform; then clear the fault and home" }
       : mode === "absent" ? { message: "no drive found yet: looking for an EPOS2 (USB 0403:A8B0) with a serial port (serial ports: none)", help: "plug the EPOS2 in and switch it on: it is connected as soon as it is there\nvelomotion doctor lists what is there; a drive that is not on USB needs a [device.NAME] of the configuration", kind: "no-device" } : null,
     port: "/dev/pts/4", link: "usb", cia402: mode === "fault" ? "Fault" : mode === "live" ? "Operation Enabled" : "Switch On Disabled", referenced: true,
-    angle_deg: mode === "absent" ? null : angle, speed_deg_s: mode === "live" ? -5.625 : 0, faults: mode === "fault" ? [{ code: "0x8611", meaning: "following error" }] : [],
+    angle_deg: mode === "absent" ? null : angle, speed_deg_s: mode === "live" ? -5.625 : 0, faults: mode === "fault" ? [{ code: "8611", meaning: "following error" }] : [],
   },
-  lidar: { state: "connected", problem: null, model: "VLP-16", return_mode: "strongest", rpm: 600, packets: (packets += 754), packets_per_s: 753 + 2 * Math.random(), lost_packets: 0, dropped_by_kernel: 0 },
+  lidar: { state: "connected", problem: null, model: "VLP-16", return_mode: "strongest", rpm: 600, received: (packets += 754), packets_per_s: 753 + 2 * Math.random(), lost_packets: 0, dropped_by_kernel: 0 },
   axis: { min_deg: -45, max_deg: 0, max_speed_deg_s: 98, min_speed_deg_s: 0.05, max_accel_deg_s2: 10_000, accel_deg_s2: 5_000, home_deg: 0 },
   disk: { free_bytes: 34.1e9, reserve_bytes: 1e9, scans: scans.length, scans_bytes: 37e6, keep_scans: 100, keep_bytes: 5e10 },
   clients: { events: sockets.size, dropped: 0 },
@@ -92,7 +92,7 @@ setInterval(() => tell({ type: "status", status: status() }), 1_000);
 setInterval(() => {
   if (mode !== "live") return;
   points();
-  tell({ type: "motion", angle_deg: angle, speed_deg_s: -5.625, left_s: (45 + angle) / 5.625, packets: Math.round(sent / 320) });
+  tell({ type: "motion", angle_deg: angle, speed_deg_s: -5.625, left_s: (45 + angle) / 5.625, received: Math.round(sent / 320) });
 }, 50);
 
 function answer(request, response) {

@@ -149,7 +149,7 @@ impl RequestLink {
             self.state,
             LinkState::Desynchronised { .. } | LinkState::Probing { .. }
         );
-        let expedite = request.is_urgent && !active.expedited && is_desynchronised;
+        let expedite = request.is_urgent && !active.is_sent_early && is_desynchronised;
         if is_desynchronised {
             self.budget.handle_request_waiting(now);
         }
@@ -259,7 +259,7 @@ impl RequestLink {
         let Some(mut active) = self.active else {
             return Vec::new();
         };
-        active.expedited = true;
+        active.is_sent_early = true;
         active.attempts = active.attempts.saturating_add(u8::from(counts));
         let bytes = self.send(&active.request, now);
         active.id = Some(self.last_id);
@@ -271,7 +271,7 @@ impl RequestLink {
     fn send_unsolicited(&mut self, bytes: Vec<u8>) -> Vec<u8> {
         self.stats.requests += 1;
         if let Some(active) = self.active.as_mut() {
-            active.expedited = true;
+            active.is_sent_early = true;
         }
         if let LinkState::Probing { .. } = self.state {
             self.state = LinkState::Desynchronised { probes: 0 };

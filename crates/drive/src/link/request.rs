@@ -77,7 +77,7 @@ pub(super) struct ActiveRequest {
     /// When the link first processed it.
     pub started: Option<Stamp<Host>>,
     /// A copy was sent since the link was last synchronised.
-    pub expedited: bool,
+    pub is_sent_early: bool,
 }
 
 /// Repeats of a request that the drive rejected for its checksum.
@@ -94,7 +94,7 @@ impl ActiveRequest {
             rejections: 0,
             damaged: false,
             started: None,
-            expedited: false,
+            is_sent_early: false,
         }
     }
 

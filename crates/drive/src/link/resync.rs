@@ -13,7 +13,7 @@ use super::{LinkState, RequestLink};
 
 /// Unanswered probes before a request is given up.
 pub(super) const MAX_PROBES: u8 = 2;
-/// Time limit of probes after that: a machine that was busy for long has few to work off.
+/// Time limit of probes after that: a machine that was busy has few replies to catch up with.
 pub(super) const SILENT_PROBE_TIMEOUT: Span = Span::from_millis(100);
 /// Time limit of the rest of a reply: longer than a serial adapter's latency timer of 16 ms.
 const REST_TIMEOUT: Span = Span::from_millis(20);
@@ -132,7 +132,7 @@ impl RequestLink {
         self.codec.cancel(now);
         if let Some(active) = self.active.as_mut() {
             active.damaged = damaged;
-            active.expedited = false;
+            active.is_sent_early = false;
         }
         self.state = LinkState::Desynchronised { probes: 0 };
     }
@@ -144,14 +144,14 @@ impl RequestLink {
             .active
             .and_then(|active| self.budget.damage_deadline(active.request.probe_timeout));
         let (may_retry, counted) = match damage_deadline {
-            // A unit that needs a longer silence is not expected to answer before that.
+            // An RS232 unit that needs a longer pause does not answer before its end.
             Some(end) => (
                 now.max(self.codec.deadline().unwrap_or(now)) < end,
                 probes.saturating_sub(1),
             ),
             None => (probes < MAX_PROBES, probes),
         };
-        // A unit that needs a longer silence is probed only after that.
+        // Such a unit is probed only after its pause.
         let next_probe = now.max(self.codec.deadline().unwrap_or(now));
         let may_be_silent = !self.has_input
             && !self.budget.has_damage()

@@ -58,7 +58,7 @@ pub(crate) struct Ops {
     pub is_moving: bool,
     /// Time without any input from the drive that an operation tolerates.
     pub silence_limit: Span,
-    /// The same on a loaded host, at least.
+    /// Time tolerated at least while the host is loaded.
     pub loaded_silence_limit: Span,
     /// An alarm of the CAN bus fails the operation in progress.
     pub aborts_on_alarm: bool,

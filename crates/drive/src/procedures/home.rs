@@ -13,7 +13,7 @@ use super::configure::verify_safety;
 use super::motion::{PeriodicCheck, SWITCH_CHECKS};
 use super::network;
 use super::power::{check_enabled, enable, is_held, is_referenced, set_mode};
-use super::stop::make_safe;
+use super::stop::stop_after_failure;
 use super::switches::SwitchWatch;
 
 /// Runs [`crate::DriveCommand::Home`].
@@ -21,7 +21,7 @@ pub(crate) async fn home(mut ops: Ops) -> Result<CommandOutcome, DriveError> {
     ops.aborts_on_alarm = true;
     match run(&mut ops).await {
         Ok(outcome) => Ok(outcome),
-        Err(cause) => Err(make_safe(&mut ops, cause).await),
+        Err(cause) => Err(stop_after_failure(&mut ops, cause).await),
     }
 }
 

@@ -18,7 +18,7 @@ use super::network;
 use super::power::{
     check_enabled, check_state, enable, is_fault, is_referenced, set_mode, wait_for,
 };
-use super::stop::make_safe;
+use super::stop::stop_after_failure;
 use super::switches::SwitchWatch;
 
 /// Runs [`crate::DriveCommand::Goto`].
@@ -37,7 +37,7 @@ pub(crate) async fn hold(mut ops: Ops, until: Stamp<Host>) -> Result<CommandOutc
     ops.aborts_on_alarm = true;
     match sample_until(&mut ops, until).await {
         Ok(()) => Ok(CommandOutcome::Held),
-        Err(cause) => Err(make_safe(&mut ops, cause).await),
+        Err(cause) => Err(stop_after_failure(&mut ops, cause).await),
     }
 }
 
@@ -67,7 +67,7 @@ async fn guarded_move(
     match run(&mut ops, target, hold, &mut begun).await {
         Ok(report) => Ok(CommandOutcome::Arrived(report)),
         Err(cause) => {
-            let error = make_safe(&mut ops, cause).await;
+            let error = stop_after_failure(&mut ops, cause).await;
             let arrived = arrived_in_silence(&mut ops, &error, begun).await;
             arrived.map(CommandOutcome::Arrived).ok_or(error)
         }
@@ -196,8 +196,8 @@ async fn guarded_sample(ops: &mut Ops, guard: &mut MotionGuard) -> Result<ShaftS
     Ok(sample)
 }
 
-/// From the end of silence that a move goes on through to the stop of the axis: a probe and a quick
-/// stop without reply.
+/// Time from giving up a silent link to the stop of the axis: a probe and a quick stop without
+/// reply.
 const BLIND_STOP: Span = Span::from_millis(250);
 
 /// Samples until the axis is at its target; returns its position and when.

@@ -39,13 +39,13 @@ pub(crate) async fn stop(mut ops: Ops) -> Result<CommandOutcome, DriveError> {
 pub(crate) async fn brake(mut ops: Ops) -> Result<CommandOutcome, DriveError> {
     match disable_at_standstill(&mut ops).await {
         Ok(report) => Ok(CommandOutcome::Stopped(report)),
-        Err(cause) => Err(make_safe(&mut ops, cause).await),
+        Err(cause) => Err(stop_after_failure(&mut ops, cause).await),
     }
 }
 
 /// Stops the axis after a failure; returns the error to report. The quick stop precedes any
 /// diagnosis.
-pub(super) async fn make_safe(ops: &mut Ops, cause: DriveError) -> DriveError {
+pub(super) async fn stop_after_failure(ops: &mut Ops, cause: DriveError) -> DriveError {
     ops.aborts_on_alarm = false;
     ops.silence_limit = Span::ZERO;
     ops.loaded_silence_limit = Span::ZERO;
@@ -58,7 +58,7 @@ pub(super) async fn make_safe(ops: &mut Ops, cause: DriveError) -> DriveError {
     match stopped {
         Ok(report) => {
             let cause = diagnose(ops, cause).await;
-            ops.report(CommandProgress::MadeSafe(report));
+            ops.report(CommandProgress::StoppedAfterFailure(report));
             cause
         }
         Err(stop) => DriveError::NotStopped {
@@ -225,7 +225,7 @@ async fn wait_without_power(ops: &mut Ops, at_rest: Quadcounts) -> Result<Quadco
     let qc = position.0.saturating_sub(at_rest.0);
     let moved = ops.config.gearing.degrees_per_qc() * f64::from(qc);
     if moved.abs() > ops.config.guard.ahead.0 {
-        ops.report(CommandProgress::Dropped(Degrees(moved)));
+        ops.report(CommandProgress::MovedAfterPowerOff(Degrees(moved)));
     }
     Ok(position)
 }

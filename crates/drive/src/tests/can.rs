@@ -260,7 +260,7 @@ fn a_missing_heartbeat_in_mid_sweep_stops_the_axis() {
     );
     let reaction = rig.quick_stop().unwrap() - at;
     assert!(reaction < Span::from_millis(1_015), "{reaction:?}");
-    let safe = |p: &CommandProgress| matches!(p, CommandProgress::MadeSafe(_));
+    let safe = |p: &CommandProgress| matches!(p, CommandProgress::StoppedAfterFailure(_));
     assert!(rig.progress().iter().any(safe));
 }
 

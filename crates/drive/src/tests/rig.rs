@@ -147,7 +147,7 @@ impl Rig {
     /// The client's report of the stopped axis.
     pub fn made_safe(&self) -> Option<StopReport> {
         self.progress().iter().find_map(|progress| match progress {
-            CommandProgress::MadeSafe(stopped) => Some(*stopped),
+            CommandProgress::StoppedAfterFailure(stopped) => Some(*stopped),
             _ => None,
         })
     }

@@ -159,11 +159,11 @@ fn listen(sockets: LidarSockets, mut tap: PacketTap, shared: &ReceiverState) {
             Some(_) => GATHER,
             None => UNRECORDED,
         });
-        let heard = receive_until_request(&mut listener, ports, log.as_ref(), &mut tap, shared);
+        let received = receive_until_request(&mut listener, ports, log.as_ref(), &mut tap, shared);
         // Reset before the requests are read: a later request sets it again.
         shared.turn.store(false, Ordering::Release);
         let mut requests = shared.requests();
-        let heard = heard.map_err(|error| Failure {
+        let received = received.map_err(|error| Failure {
             kind: Kind::Incomplete,
             ..lidar_failure(&error)
         });
@@ -172,9 +172,9 @@ fn listen(sockets: LidarSockets, mut tap: PacketTap, shared: &ReceiverState) {
                 log = wanted;
             }
             // A client that has ended needs no answer.
-            let _ = request.answer.send(heard.clone());
+            let _ = request.answer.send(received.clone());
         }
-        if let Err(failure) = heard {
+        if let Err(failure) = received {
             requests.failed = Some(failure);
             return;
         }

@@ -14,8 +14,8 @@ const HOMING_ACCELERATION: RpmPerS = RpmPerS(5_000);
 ///
 /// # Errors
 /// Returns [`Kind::Usage`] for an unknown name.
-pub fn choose(config: &Config, asked: Option<&str>) -> Result<(String, Device), Failure> {
-    let name = asked
+pub fn choose(config: &Config, requested: Option<&str>) -> Result<(String, Device), Failure> {
+    let name = requested
         .or(config.device.default.as_deref())
         .unwrap_or("auto")
         .to_owned();

@@ -1,6 +1,6 @@
 //! Statistics of the lidar's packets for the status: rate, losses, rotation.
 //!
-//! Every packet is examined, so only the first block of each is. Recordings have the decoder's
+//! This runs for every packet, so it reads only the first block. Recordings have the decoder's
 //! statistics instead.
 
 use std::sync::{Arc, Mutex};
@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use lidar::{Options, Timekeeper};
 use protocol::record::{Record, Wire};
-use protocol::vlp16::{DataPacket, Model};
+use protocol::vlp16::DataPacket;
 use units::{Lidar, Stamp};
 
 use super::status::LidarStatus;
@@ -18,6 +18,8 @@ use crate::devices::lidar_sockets::{LidarSockets, listen_config};
 use crate::failure::Failure;
 use crate::reconstruct::contents::return_mode_name;
 
+/// Packets between two looks at the return mode.
+const MODE_INTERVAL: u64 = 256;
 /// One revolution, hundredths of a degree.
 const REVOLUTION: i64 = 36_000;
 /// Longer gaps are a lidar that was off, not lost packets.
@@ -76,7 +78,7 @@ impl Default for LidarStats {
 }
 
 impl LidarStats {
-    /// Takes in a record of the lidar.
+    /// Handles a record of the lidar.
     pub(super) fn observe(&mut self, record: &Record<'_>) {
         let Wire::Lidar { payload, .. } = record.wire else {
             return;
@@ -85,6 +87,7 @@ impl LidarStats {
         let Some(timing) = self.timekeeper.packet(record.host, payload) else {
             return;
         };
+        self.model = Some(timing.model);
         let Ok(packet) = DataPacket::new(payload) else {
             return;
         };
@@ -105,9 +108,8 @@ impl LidarStats {
                 self.swept_ns += gap;
             }
         }
-        if self.packets % 256 == 1 {
+        if self.packets % MODE_INTERVAL == 1 {
             self.mode = Some(return_mode_name(packet.return_mode()));
-            self.model = Model::of(packet.product()).map(|model| model.name);
         }
     }
 

@@ -70,7 +70,7 @@ impl<'a> MotionReporter<'a> {
                     Some(help.to_owned()),
                 );
             }
-            DriveEvent::Progress(CommandProgress::Dropped(moved)) => {
+            DriveEvent::Progress(CommandProgress::MovedAfterPowerOff(moved)) => {
                 let help = "check the brake (brake_output, its polarity and supply); without one set \
                             without_brake = \"hold\" in [axis], or balance the head";
                 self.service.events().message(

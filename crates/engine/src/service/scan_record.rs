@@ -59,9 +59,9 @@ pub struct ScanHead {
     /// Whether the devices were software.
     pub simulated: bool,
     /// The request; absent where it is lost, or was written by a later version.
-    #[serde(default, deserialize_with = "if_understood")]
+    #[serde(default, deserialize_with = "if_understood", rename = "asked")]
     #[schema(inline)]
-    pub asked: Option<CaptureRequest>,
+    pub request: Option<CaptureRequest>,
     /// Points of the cloud.
     pub points: Option<u64>,
     /// Length of the recording, seconds.
@@ -72,9 +72,9 @@ impl ScanHead {
     /// The requested accuracy of its cloud.
     #[must_use]
     pub fn accuracy(&self) -> Accuracy {
-        let asked = self.asked.as_ref();
-        asked
-            .and_then(|asked| asked.accuracy().ok())
+        let request = self.request.as_ref();
+        request
+            .and_then(|request| request.accuracy().ok())
             .unwrap_or(Accuracy::Best)
     }
 }

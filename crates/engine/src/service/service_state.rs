@@ -16,7 +16,7 @@ use crate::capture::run;
 use crate::devices::lidar_sockets;
 use crate::failure::Failure;
 
-/// A report of the drive younger than this is not asked for again.
+/// A report of the drive younger than this is not requested again.
 const REPORT_LIFETIME: Duration = Duration::from_millis(500);
 /// A lidar that sends nothing for this long is absent: it sends 754 packets per second.
 const LIDAR_SILENCE: Duration = Duration::from_secs(2);
@@ -106,7 +106,7 @@ impl DeviceService {
         self.state.send_modify(|state| state.disk = disk);
     }
 
-    /// The drive's report where it need not be asked: while the axis is busy, and shortly after
+    /// The drive's report where it need not be requested: while the axis is busy, and shortly after
     /// the last report.
     #[must_use]
     pub fn known_report(&self) -> Option<AxisReport> {

@@ -79,11 +79,11 @@ pub enum DeviceHealth {
     Absent,
     /// Connected and without fault.
     Connected,
-    /// Connected, with a problem.
+    /// Connected, with a fault or another problem.
     Fault,
 }
 
-/// The drive.
+/// The drive as the status shows it: what it reported last, and whether it is connected.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, ToSchema)]
 #[non_exhaustive]
 pub struct DriveSnapshot {
@@ -168,9 +168,9 @@ pub struct DiskStatus {
     pub scans: u64,
     /// Bytes of the scans.
     pub scans_bytes: u64,
-    /// Most scans kept.
+    /// Limit of the number of scans.
     pub keep_scans: u64,
-    /// Most bytes of scans kept.
+    /// Limit of their bytes.
     pub keep_bytes: u64,
 }
 

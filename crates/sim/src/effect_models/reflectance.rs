@@ -5,8 +5,8 @@
 //! is normal with a standard deviation of `1 / threshold_snr` of it, so the probability is 1/2
 //! where the light equals the threshold. The sensor corrects the reflectivity for range (63-9243,
 //! section 6.1) but not for incidence. The manual gives 1 to 100 m without a target. By default a
-//! target of 10 % is detected half the time at 50 m, and one of 50 % always to the end of the
-//! range. Speckle is not included.
+//! target of 10 % is detected half the time at 50 m, and one of 50 % nine times of ten at 100 m.
+//! Speckle is not included.
 
 use crate::effects::{Needs, SurfaceEffect};
 use crate::firing::{Echo, Echoes, Firing};

@@ -1,7 +1,5 @@
-//! The makers' tables of lasers.
-//!
-//! Written by their rules: the place from below, the firing order, and the crossing of the beams
-//! where there is one.
+//! The makers' tables of lasers, computed from the rules in their manuals: elevation by ring,
+//! firing order, and the point where the beams cross.
 
 use super::LaserBeam;
 

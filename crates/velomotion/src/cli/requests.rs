@@ -98,8 +98,8 @@ impl Output {
     /// Columns of the cloud in addition to the position.
     #[must_use]
     pub fn fields(&self) -> Fields {
-        let asked = [(self.uncertainty, Fields::SD), (self.echo, Fields::ECHO)];
-        let asked = asked.into_iter().filter(|(asked, _)| *asked);
-        asked.fold(Fields::FILE, |fields, (_, field)| fields | field)
+        let fields = [(self.uncertainty, Fields::SD), (self.echo, Fields::ECHO)];
+        let requested = fields.into_iter().filter(|(is_requested, _)| *is_requested);
+        requested.fold(Fields::FILE, |fields, (_, field)| fields | field)
     }
 }

@@ -48,7 +48,7 @@ fn sweep_and_brake(
     assert_eq!(rig.run_for(Span::from_secs(1)), None);
     let fallen = rig.unit.world_qc(rig.now) - target;
     let dropped = rig.events.iter().find_map(|event| match event {
-        DriveEvent::Progress(CommandProgress::Dropped(moved)) => Some(moved.0),
+        DriveEvent::Progress(CommandProgress::MovedAfterPowerOff(moved)) => Some(moved.0),
         _ => None,
     });
     (stopped, fallen, dropped)
