@@ -2,9 +2,10 @@
 //!
 //! A serial reply of the EPOS2 names neither object nor request. Order and format must do: replies
 //! come in the order of the requests, and some are lost. The reply to a read has four words, two of
-//! them the error code; that to a write has these two. An SDO response names its object (segments do not), but not which of
-//! two reads of one object it belongs to. A reply that fits more than one outstanding request is
-//! matched to none; the newest of them stays outstanding, as the reply may be to an older one.
+//! them the error code; that to a write has these two. An SDO response names its object (segments
+//! do not), but not which of two reads of one object it belongs to. A reply that fits more than one
+//! outstanding request is matched to none; the newest of them stays outstanding, as the reply may
+//! be to an older one.
 //!
 //! After a loss the client sends a probe request, a read of an object that does not exist. Its
 //! error arrives after everything still under way and so resynchronises both sides. Two probes with
