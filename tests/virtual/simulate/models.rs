@@ -59,6 +59,15 @@ fn bound_m(range_m: f64, unit_mm: f64) -> f64 {
     (0.5e-3 * unit_mm).hypot(across) + 1e-6
 }
 
+/// A new model of the decoder needs a simulated sensor and a row above.
+#[test]
+fn every_model_of_the_decoder_is_simulated() {
+    for model in protocol::vlp16::models::ALL {
+        let is_named = MODELS.iter().any(|(_, name, _)| *name == model.name);
+        assert!(is_named, "{}", model.name);
+    }
+}
+
 #[test]
 fn every_model_round_trips() {
     for (model, name, unit_mm) in MODELS {

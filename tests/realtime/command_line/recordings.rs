@@ -1,0 +1,243 @@
+//! Recordings of sensors and logs: clouds, contents, angles of other devices.
+
+use super::*;
+
+#[test]
+fn files_other_than_recordings_are_refused() {
+    let place = Place::new();
+    std::fs::write(place.path("empty.pcap"), b"").unwrap();
+    std::fs::write(
+        place.path("text.pcap"),
+        b"this is no recording at all, but it is long enough",
+    )
+    .unwrap();
+    std::fs::write(place.path("other.pcap"), ping()).unwrap();
+    for verb in ["info", "replay --tilt none"] {
+        place.fails(&format!("{verb} missing.pcap"), 3, &["missing.pcap"]);
+        place.fails(&format!("{verb} empty.pcap"), 3, &["empty"]);
+        place.fails(&format!("{verb} text.pcap"), 3, &["pcap"]);
+    }
+    place.fails("replay --tilt none other.pcap", 3, &["no lidar"]);
+    place.fails("info .", 3, &["name one recording in it"]);
+    place.fails("replay --tilt missing.csv other.pcap", 3, &["missing.csv"]);
+}
+
+/// A classic pcap with one Ethernet frame of another protocol (ARP).
+fn ping() -> Vec<u8> {
+    let mut file = vec![0xD4, 0xC3, 0xB2, 0xA1, 2, 0, 4, 0];
+    file.extend([0; 8]);
+    file.extend(65_535u32.to_le_bytes());
+    file.extend(1u32.to_le_bytes());
+    let mut frame = vec![0xFF; 12];
+    frame.extend([0x08, 0x06]);
+    frame.extend([0; 46]);
+    file.extend(1_600_000_000u32.to_le_bytes());
+    file.extend([0; 4]);
+    file.extend((frame.len() as u32).to_le_bytes());
+    file.extend((frame.len() as u32).to_le_bytes());
+    file.extend(frame);
+    file
+}
+
+#[test]
+fn ros_recordings_are_bags_and_keep_the_metadata_of_others() {
+    let path = recording("vlp16-strongest-gps.pcap");
+    let place = Place::new();
+    let line = |options: &str| format!("replay {} --tilt none {options}", path.display());
+    let metadata = || std::fs::read_to_string(place.path("metadata.yaml")).unwrap();
+    assert!(place.run(&line("-o scan.mcap")).status.success());
+    let first = metadata();
+    assert!(first.contains("- \"scan.mcap\"\n"), "{first}");
+    let words = &["scan.mcap", "--force"];
+    place.fails(&line("-o scan.mcap"), 2, words);
+    std::fs::write(place.path("metadata.yaml"), "files:\n  - scan.mcap\n").unwrap();
+    assert!(place.run(&line("-o scan.mcap --force")).status.success());
+    assert_eq!(metadata(), first);
+    let output = place.run(&line("-o an.mcap"));
+    assert!(output.status.success() && place.path("an.mcap").is_file());
+    assert_eq!(metadata(), first);
+    let printed = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        printed.contains("belongs to another recording"),
+        "{printed}"
+    );
+}
+
+#[test]
+fn a_real_recording_becomes_a_cloud() {
+    let path = recording("vlp16-strongest-gps.pcap");
+    let place = Place::new();
+    let line = format!("replay {} --tilt none -o cloud.csv --json", path.display());
+    let output = place.run(&line);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let scan = json(&output);
+    assert_eq!(scan["points"], 7_747);
+    assert_eq!(scan["packets"]["data"], 26);
+    assert_eq!(scan["packets"]["position"], 5);
+    assert_eq!(scan["lost_packets"], 0);
+    assert_eq!(scan["simulated"], false);
+    // A plain recording has no tilt: an error, not a guess.
+    place.fails(
+        &format!("replay {}", path.display()),
+        3,
+        &["no tilt", "--tilt none"],
+    );
+}
+
+/// A calling program learns of lost packets by its exit code, with `-q` too.
+#[test]
+fn a_recording_with_missing_packets_is_incomplete() {
+    let whole = std::fs::read(recording("vlp16-strongest-gps.pcap")).unwrap();
+    // Records of a pcap: 16 bytes of times and lengths, then the packet; 24 bytes of file header.
+    let mut at = 24;
+    let mut ends = Vec::new();
+    while at < whole.len() {
+        let length = u32::from_le_bytes(whole[at + 8..at + 12].try_into().unwrap()) as usize;
+        at += 16 + length;
+        ends.push(at);
+    }
+    let place = Place::new();
+    let cut = [&whole[..ends[9]], &whole[ends[12]..]].concat();
+    std::fs::write(place.path("cut.pcap"), cut).unwrap();
+    for quiet in ["", " -q"] {
+        let line = format!("replay cut.pcap --tilt none -o cloud.ply --force{quiet}");
+        let output = place.run(&line);
+        let printed = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(6), "{printed}");
+        assert!(
+            printed.contains("3 of 26 lidar packets are missing at 0.01"),
+            "{printed}"
+        );
+        assert!(place.path("cloud.ply").is_file());
+    }
+}
+
+#[test]
+fn info_names_file_start_sensor_sweeps_configuration_and_position() {
+    let place = Place::new();
+    std::fs::write(
+        place.path("rig.toml"),
+        "device = \"sim\"\n[mount]\nd_m = 0.11\n",
+    )
+    .unwrap();
+    let line = "capture --speed 90 --from 0 --to -5 --config rig.toml -o scan.ply --json";
+    let scan = json(&place.run(line));
+    let info = json(&place.run("info scan.pcapng --json"));
+    assert_eq!(info["file"], "scan.pcapng");
+    assert_eq!(info["configuration"]["mount"]["d_m"], 0.11);
+    assert_eq!(info["sweeps"], scan["sweeps"]);
+    assert_eq!(info["sweeps"].as_array().unwrap().len(), 1);
+    let since_s = std::time::SystemTime::now()
+        .duration_since(std::time::UNIX_EPOCH)
+        .unwrap()
+        .as_secs_f64()
+        - info["start_s"].as_f64().unwrap();
+    assert!((0.0..600.0).contains(&since_s), "{info}");
+
+    let gps = recording("vlp16-strongest-gps.pcap");
+    let info = json(&place.run(&format!("info {} --json", gps.display())));
+    assert_eq!(info["configuration"], serde_json::Value::Null);
+    assert_eq!(info["sweeps"], serde_json::json!([]));
+    assert!(
+        info["sensor"].as_str().unwrap().ends_with(":2368"),
+        "{info}"
+    );
+    assert_eq!(info["gps"]["pps"], "locked");
+    for (key, range) in [
+        ("latitude_deg", -90.0..90.0),
+        ("longitude_deg", -180.0..180.0),
+    ] {
+        let value = info["gps"]["position"][key].as_f64().unwrap();
+        assert!(range.contains(&value) && value != 0.0, "{info}");
+    }
+}
+
+#[test]
+fn angles_of_another_device_can_be_attached() {
+    let path = recording("vlp16-strongest-gps.pcap");
+    let place = Place::new();
+    std::fs::write(
+        place.path("angles.csv"),
+        "time_s,angle_deg\n0.0,-10\n0.02,-20\n",
+    )
+    .unwrap();
+    // Where the lidar is above the axis is not known.
+    let line = format!(
+        "replay {} --tilt angles.csv -o cloud.ply --json",
+        path.display()
+    );
+    let own = place.path("velomotion.toml");
+    std::fs::rename(&own, place.path("other-name.toml")).unwrap();
+    place.fails(&line, 2, &["--mount"]);
+    std::fs::rename(place.path("other-name.toml"), &own).unwrap();
+    // This configuration has no mount, and an empty one does not say where the lidar is either.
+    place.fails(&line, 3, &["velomotion.toml: expected [mount] with d_m"]);
+    std::fs::write(place.path("empty.toml"), "[mount]\n").unwrap();
+    place.fails(&format!("{line} --mount empty.toml"), 3, &["d_m"]);
+    std::fs::write(place.path("other.toml"), "[mount]\nd_m = 0.25\n").unwrap();
+    let output = place.run(&format!("{line} --mount other.toml"));
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let printed = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(
+        printed.contains("mount of other.toml: the lidar is 0.25 m above"),
+        "{printed}"
+    );
+    let scan = json(&output);
+    assert_eq!(scan["sync"]["angle_bound_deg"], serde_json::Value::Null);
+    assert!(!scan["warnings"].to_string().contains("drive"), "{scan}");
+    place.fails(
+        &format!("replay {} --tilt none --mount other.toml", path.display()),
+        2,
+        &["--mount", "--tilt none"],
+    );
+    // The configuration has a mount, too: the cloud is the same.
+    let cloud = std::fs::read(place.path("cloud.ply")).unwrap();
+    let again = place.run(&format!("{line} --config other.toml --force"));
+    assert!(again.status.success());
+    assert!(cloud == std::fs::read(place.path("cloud.ply")).unwrap());
+    std::fs::write(place.path("low.toml"), "[mount]\nd_m = 0.05\n").unwrap();
+    let lower = place.run(&format!(
+        "{line} --mount low.toml --config other.toml --force"
+    ));
+    assert!(lower.status.success());
+    assert!(cloud != std::fs::read(place.path("cloud.ply")).unwrap());
+    // It also comes before the mount of a log.
+    place.run("capture --speed 90 --from 0 --to -5 -o scan.ply");
+    std::fs::write(place.path("turned.csv"), "0,-1\n60,-61\n").unwrap();
+    let of_log = place.run("replay scan.pcapng --tilt turned.csv -o own.ply");
+    assert!(of_log.status.success());
+    let given = place.run("replay scan.pcapng --tilt turned.csv --config other.toml -o given.ply");
+    let printed = String::from_utf8_lossy(&given.stderr).into_owned();
+    assert!(printed.contains("mount of other.toml"), "{printed}");
+    let clouds = ["own.ply", "given.ply"].map(|name| std::fs::read(place.path(name)).unwrap());
+    assert!(clouds[0] != clouds[1]);
+    let points = scan["points"].as_u64().unwrap();
+    let left_out = scan["left_out"].as_u64().unwrap();
+    // The table covers 0.02 s of 0.0345 s: only points within it are placed.
+    assert_eq!(points + left_out, 7_747);
+    assert!((3_500..5_500).contains(&points), "{points}");
+    std::fs::write(
+        place.path("late.csv"),
+        "time_s,angle_deg\n2e9,-10\n2.1e9,-20\n",
+    )
+    .unwrap();
+    place.fails(
+        &format!("replay {} --tilt late.csv --mount low.toml", path.display()),
+        3,
+        &["do not overlap"],
+    );
+    std::fs::write(place.path("bad.csv"), "time_s,angle_deg\n0.0,x\n").unwrap();
+    place.fails(
+        &format!("replay {} --tilt bad.csv", path.display()),
+        3,
+        &["bad.csv", "line 2"],
+    );
+}
