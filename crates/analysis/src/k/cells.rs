@@ -51,11 +51,11 @@ impl PointCell {
     }
 }
 
-/// A number in `0..below` from 32 random bits; its probability is off by at most `below / 2^32` in
+/// A number in `0..below` from 64 random bits; its probability is off by at most `below / 2^64` in
 /// total.
 #[inline]
 pub(super) const fn scaled(bits: u64, below: usize) -> usize {
-    (((bits & 0xFFFF_FFFF) * below as u64) >> 32) as usize
+    ((bits as u128 * below as u128) >> 64) as usize
 }
 
 /// A point to be sorted.

@@ -13,8 +13,10 @@ pub struct Estimate {
     /// Share of all pairs up to the upper edge of each bin, 0 to 1; the last is 1.
     pub shares: Vec<f64>,
     /// Bound on the error of each share, and so of `D`: 0 for exact counts. Those of samples hold
-    /// for all bins at once, except with the probability [`super::Sampling::risk`] over the draws.
+    /// for all bins at once, except with the probability [`Estimate::risk`] over the draws.
     pub bounds: Vec<f64>,
+    /// Probability that a bound does not hold: 0 for exact counts.
+    pub risk: f64,
     /// Number of directions.
     pub points: usize,
     /// Pairs on an inner edge within rounding ([`super::ON_EDGE`]), counted or estimated. If they
@@ -37,6 +39,7 @@ impl Estimate {
             shares: edges.upper_rad().iter().map(csr).collect(),
             edges: edges.clone(),
             bounds: vec![0.0; edges.bins()],
+            risk: 0.0,
             points,
             on_edges: 0,
         }
@@ -54,6 +57,7 @@ impl From<PairCounts> for Estimate {
             method: "exact",
             shares: shares.into_iter().map(|sum| sum as f64 / all).collect(),
             bounds: vec![0.0; counts.edges.bins()],
+            risk: 0.0,
             points: counts.points,
             on_edges: counts.on_edges,
             edges: counts.edges,

@@ -82,7 +82,10 @@ pub fn sampled(points: &[DVec3], edges: &Edges, sampling: &Sampling) -> Result<E
         let estimate = drawn(points, &cells, edges, draws, risk, &mut chance)?;
         let bound = estimate.largest_bound();
         if bound <= sampling.tolerance || round == MOST_ROUNDS {
-            return Ok(estimate);
+            return Ok(Estimate {
+                risk: sampling.risk,
+                ..estimate
+            });
         }
         // The next round has a tenth of the risk, which widens its bound.
         let more = (bound / sampling.tolerance).powi(2) * 1.3;
@@ -225,13 +228,14 @@ impl<'a> SamplingWorker<'a> {
     #[inline(always)]
     fn row<'c>(&mut self, a: &'c PointCell, b: &'c PointCell, is_same: bool) -> Row<'c> {
         let bits = self.chance.bits();
+        let other_bits = self.chance.bits();
         let from_a = scaled(bits, a.len);
         let (layout, from_b) = if is_same {
             // Another point of the cell in the same layout, so that no point is paired with itself.
-            let other = from_a + 1 + scaled(bits >> 32, a.len.saturating_sub(1));
+            let other = from_a + 1 + scaled(other_bits, a.len.saturating_sub(1));
             (0, other % a.len.max(1))
         } else {
-            (1, scaled(bits >> 32, b.len))
+            (1, scaled(other_bits, b.len))
         };
         let [(column_a, _), _] = a.layouts;
         let column_b = b.layouts.get(layout).map_or(0, |(column, _)| *column);
@@ -396,8 +400,8 @@ impl<'a> SamplingWorker<'a> {
             return Err(wrong);
         }
         let largest_cell = self.cells.cells.iter().map(|cell| cell.len).max();
-        // Errors of the distribution of 32-bit draws and of rounding in the sums.
-        let uneven = largest_cell.unwrap_or(0) as f64 / f64::from(1_u32 << 31) + 1e-9;
+        // Errors of the distribution of 64-bit draws and of rounding in the sums.
+        let uneven = 2.0 * largest_cell.unwrap_or(0) as f64 / 2.0_f64.powi(64) + 1e-9;
         let bins = self.edges.bins();
         // Three inequalities per edge: two sides of the sum, and one of the variance.
         let log = (3.0 * bins as f64 / risk).ln();
@@ -417,6 +421,7 @@ impl<'a> SamplingWorker<'a> {
             edges: self.edges.clone(),
             shares,
             bounds,
+            risk,
             points: self.points.len(),
             on_edges: (self.on_edges * self.all).round() as u64,
         })

@@ -154,6 +154,22 @@ fn the_cheapest_sufficient_method_is_chosen() {
     }
 }
 
+/// The draws of a row have more bits than a crowded cell has points: else their unevenness exceeds
+/// the tolerance, and every pair is counted for minutes.
+#[test]
+#[ignore = "needs 2 GB of memory"]
+fn twenty_million_points_are_sampled() {
+    let mut points = scattered(20_000_000, 9);
+    // Most of them around a pole.
+    for point in points.iter_mut().step_by(2) {
+        *point = (0.3 * *point + DVec3::Y).normalize();
+    }
+    let edges = Edges::equal(151).unwrap();
+    let found = estimate(&points, None, &edges, &Sampling::default(), ONE).unwrap();
+    assert_eq!(found.method, "sampled");
+    assert!(found.largest_bound() <= 1e-4, "{}", found.largest_bound());
+}
+
 #[test]
 fn estimates_of_zero_one_and_two_points() {
     let edges = Edges::equal(151).unwrap();

@@ -26,7 +26,8 @@ use glam::DVec3;
 use sim::patterns::{AXIS, FieldOfView, Pattern};
 
 pub use report::{
-    AnalyzeReport, Blind, Density, DeviceReport, GapReport, HoleReport, KReport, PatternReport,
+    AnalyzeReport, Blind, Density, DeviceReport, EmptiestBin, GapReport, HoleReport, KReport,
+    PatternReport,
 };
 pub use view::ViewReport;
 
@@ -143,7 +144,14 @@ struct Measure {
     tolerance: f64,
     /// Centres of the bins.
     places: Vec<DVec3>,
+    /// Directions from which gaps are measured.
+    gap_places: Vec<DVec3>,
 }
+
+/// Subdivisions of the icosahedron whose centres are the directions of gaps.
+const GAP_LEVEL: u32 = 5;
+/// Most bins listed as the emptiest.
+const MOST_EMPTIEST: usize = 10;
 
 impl Measure {
     fn new(arguments: &cli::Analyze) -> Result<Self, Failure> {
@@ -154,12 +162,16 @@ impl Measure {
         let icosahedron = Icosahedron::new(level).map_err(|error| {
             Failure::new(Kind::Usage, error.to_string()).help("the paper's is 4: 5120 bins")
         })?;
+        let centres = |grid: &Icosahedron| grid.bins().iter().map(|bin| bin.centre).collect();
+        let gap_grid = Icosahedron::new(GAP_LEVEL)
+            .map_err(|error| Failure::new(Kind::Usage, error.to_string()))?;
         Ok(Self {
+            gap_places: centres(&gap_grid),
+            places: centres(&icosahedron),
             level,
             locator: Locator::new(&icosahedron),
             edges,
             tolerance: arguments.k_error,
-            places: icosahedron.bins().iter().map(|bin| bin.centre).collect(),
         })
     }
 
@@ -201,6 +213,7 @@ impl Measure {
         let in_view = view.map(|view| self.in_view(&view));
         let in_view =
             in_view.map(|which| counts.statistics_of(|bin| which.get(bin) == Some(&true)));
+        let emptiest = self.emptiest(input, &counts).map_err(wrong)?;
         let hole = hole_report(&largest);
         go_on(interrupt)?;
         say("K function");
@@ -229,6 +242,7 @@ impl Measure {
             hole,
             hole_in_view: hole_in_view.as_ref().map(hole_report),
             gaps,
+            emptiest,
             blind,
             k,
             warnings,
@@ -289,6 +303,7 @@ impl Measure {
             k_minus_csr: has_pairs.then(|| curve.d.iter().map(|d| area * d).collect()),
             max_abs: has_pairs.then(|| area * curve.d_max.max(-curve.d_min)),
             d_error_bound: bound,
+            risk: has_pairs.then_some(estimate.risk),
             d: has_pairs.then(|| curve.d.clone()),
             d_max: has_pairs.then_some(curve.d_max),
             d_min: has_pairs.then_some(curve.d_min),
@@ -298,16 +313,67 @@ impl Measure {
         Ok((report, warnings))
     }
 
-    fn gaps(&self, input: &Input) -> Result<GapReport, DensityError> {
-        let mut places = self.places.clone();
-        if let Some(seen) = &input.view {
-            places.retain(|place| seen.view.depth_rad(*place) >= 0.0);
-        }
+    /// The bins with the fewest points; among equal ones those farthest from any point.
+    fn emptiest(
+        &self,
+        input: &Input,
+        counts: &BinCounts,
+    ) -> Result<Vec<EmptiestBin>, DensityError> {
+        let is_in_view = |place: &DVec3| match &input.view {
+            Some(seen) => seen.view.depth_rad(*place) >= 0.0,
+            None => true,
+        };
+        let bins = self.places.iter().zip(counts.by_bin());
+        let mut bins: Vec<(DVec3, u64)> = bins
+            .filter(|(place, _)| is_in_view(place))
+            .map(|(place, points)| (*place, *points))
+            .collect();
+        bins.sort_by_key(|(_, points)| *points);
+        // All bins as empty as the last of the list, since their gaps decide.
+        let most = bins.get(MOST_EMPTIEST.saturating_sub(1)).or(bins.last());
+        let most = most.map_or(0, |(_, points)| *points);
+        bins.retain(|(_, points)| *points <= most);
+        let places: Vec<DVec3> = bins.iter().map(|(place, _)| *place).collect();
         let gaps = gaps(&input.directions, &places)?;
+        let mut found: Vec<EmptiestBin> = bins
+            .iter()
+            .zip(gaps)
+            .map(|((place, points), gap)| EmptiestBin {
+                points: *points,
+                centre: place.to_array(),
+                from_axis_deg: place.dot(AXIS).clamp(-1.0, 1.0).acos().to_degrees(),
+                gap_deg: gap.to_degrees(),
+            })
+            .collect();
+        found.sort_by(|a, b| {
+            let by_gap = b.gap_deg.total_cmp(&a.gap_deg);
+            a.points.cmp(&b.points).then(by_gap)
+        });
+        found.truncate(MOST_EMPTIEST);
+        Ok(found)
+    }
+
+    /// Angle to the nearest point, radians, from the directions of gaps that are in view.
+    fn gaps_in_view(
+        &self,
+        directions: &[DVec3],
+        view: Option<&FieldOfView>,
+    ) -> Result<Vec<f64>, DensityError> {
+        let mut places = self.gap_places.clone();
+        if let Some(view) = view {
+            places.retain(|place| view.depth_rad(*place) >= 0.0);
+        }
+        gaps(directions, &places)
+    }
+
+    fn gaps(&self, input: &Input) -> Result<GapReport, DensityError> {
+        let view = input.view.as_ref().map(|seen| &seen.view);
+        let gaps = self.gaps_in_view(&input.directions, view)?;
         let of = |share: f64| quantile(&gaps, share).unwrap_or(0.0).to_degrees();
         Ok(GapReport {
             of: if input.view.is_some() { "view" } else { "all" },
             median_deg: of(0.5),
+            of_95_percent_deg: of(0.95),
             of_99_percent_deg: of(0.99),
         })
     }

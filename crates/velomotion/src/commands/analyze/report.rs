@@ -43,6 +43,9 @@ pub struct PatternReport {
     /// Distance to the nearest point, from directions in view, or from all directions if the view
     /// is unknown.
     pub gaps: GapReport,
+    /// The bins with the fewest points, of those in view, or of all if the view is unknown: up to
+    /// ten, the most isolated first.
+    pub emptiest: Vec<EmptiestBin>,
     /// Blind spots.
     pub blind: Blind,
     /// Evenness of the points by the angles between them.
@@ -67,6 +70,19 @@ pub struct Density {
     /// Points in each bin, for figures.
     #[serde(skip)]
     pub counts: BinCounts,
+}
+
+/// A bin with few points.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+pub struct EmptiestBin {
+    /// Its points.
+    pub points: u64,
+    /// Direction of its centre: x right, y along the tilt axis, z up.
+    pub centre: [f64; 3],
+    /// Angle of its centre from the tilt axis (+y), degrees.
+    pub from_axis_deg: f64,
+    /// Distance from its centre to the nearest point, degrees.
+    pub gap_deg: f64,
 }
 
 /// The largest circle without a point.
@@ -104,6 +120,8 @@ pub struct KReport {
     pub max_abs: Option<f64>,
     /// Error bound of `d`.
     pub d_error_bound: Option<f64>,
+    /// Probability that the bounds do not hold, by chance of the samples: 0 for exact counts.
+    pub risk: Option<f64>,
     /// D = (K - K_csr) / (4 pi R2), a share.
     pub d: Option<Vec<f64>>,
     /// The largest D.
@@ -118,14 +136,17 @@ pub struct KReport {
     pub curve: KCurve,
 }
 
-/// Distance to the nearest point, from the centres of bins.
+/// Distance to the nearest point, from 20,480 directions of the sphere that are spread evenly: the
+/// centres of level 5, whatever the level of the bins.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct GapReport {
-    /// Bins used: those in `view`, or `all`.
+    /// Directions used: those in `view`, or `all`.
     pub of: &'static str,
     /// Median distance, degrees.
     pub median_deg: f64,
-    /// Distance that 99 % of the bins do not exceed, degrees.
+    /// Distance that 95 % of the directions do not exceed, degrees.
+    pub of_95_percent_deg: f64,
+    /// Distance that 99 % of the directions do not exceed, degrees.
     pub of_99_percent_deg: f64,
 }
 

@@ -7,9 +7,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use analysis::density::{
-    BinCounts, DensityError, TOLERANCE_RAD, gaps, largest_hole_within, quantile,
-};
+use analysis::density::{BinCounts, DensityError, TOLERANCE_RAD, largest_hole_within, quantile};
 use analysis::tradeoff::front::front;
 use glam::DVec3;
 use serde::Serialize;
@@ -134,13 +132,7 @@ fn measured(
     let counts = BinCounts::new(&measure.locator, &directions)?;
     let statistics = counts.statistics_of(is_in_view);
     let hole = largest_hole_within(&directions, 100.0 * TOLERANCE_RAD, &depth)?;
-    let places = measure
-        .places
-        .iter()
-        .enumerate()
-        .filter(|(bin, _)| is_in_view(*bin));
-    let places: Vec<DVec3> = places.map(|(_, place)| *place).collect();
-    let gap = quantile(&gaps(&directions, &places)?, 0.99);
+    let gap = quantile(&measure.gaps_in_view(&directions, Some(&view))?, 0.99);
     Ok(SweepSetting {
         values,
         scan_s: pattern.scan_s(),

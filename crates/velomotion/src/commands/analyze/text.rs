@@ -121,6 +121,7 @@ impl PatternReport {
             (None, None) => "largest hole in view: not known, as nothing in a cloud says what its scanner could see".to_owned(),
         });
         lines.push(self.gaps_line());
+        lines.extend(self.emptiest_line());
         lines.extend(self.blind_line());
         lines.extend(self.band_line());
         lines.extend(bins_line("all", &self.density.bins));
@@ -142,10 +143,27 @@ impl PatternReport {
             _ => "directions (the whole sphere)",
         };
         format!(
-            "a point within {} deg of half of all {of}, within {} deg of 99 %",
+            "a point within {} deg of half of all {of}, within {} deg of 95 %, within {} deg of 99 %",
             number(gaps.median_deg, 6),
+            number(gaps.of_95_percent_deg, 6),
             number(gaps.of_99_percent_deg, 6)
         )
+    }
+
+    /// Where the emptiest bins are.
+    fn emptiest_line(&self) -> Option<String> {
+        let first = self.emptiest.first()?;
+        let angles = self.emptiest.iter().map(|bin| bin.from_axis_deg);
+        let (low, high) = angles.fold((f64::MAX, f64::MIN), |(low, high), angle| {
+            (low.min(angle), high.max(angle))
+        });
+        Some(format!(
+            "the {} emptiest bins have {} points and more, {} to {} deg from the tilt axis",
+            self.emptiest.len(),
+            first.points,
+            number(low, 4),
+            number(high, 4)
+        ))
     }
 
     fn blind_line(&self) -> Option<String> {
@@ -201,7 +219,11 @@ impl KReport {
         };
         let how = match bound {
             0.0 => "every pair counted".to_owned(),
-            bound => format!("{}, within {bound:.1e}", self.method),
+            bound => format!(
+                "{}, within {bound:.1e} but for a risk of 1 in {:.0}",
+                self.method,
+                self.risk.unwrap_or(1.0).recip()
+            ),
         };
         format!("K - K_csr from {d_min:.5} to {d_max:+.5} of the sphere's area ({how})")
     }
