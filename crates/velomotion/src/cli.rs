@@ -164,9 +164,9 @@ pub struct Capture {
 /// `replay`.
 #[derive(Clone, Debug, Args)]
 pub struct Replay {
-    /// Log of a capture, or any pcap or pcapng with lidar packets; - is stdin
-    #[arg(value_name = "LOG|PCAP")]
-    pub input: PathBuf,
+    /// Logs of captures, or any pcap or pcapng with lidar packets; - is stdin
+    #[arg(value_name = "LOG|PCAP", required = true)]
+    pub inputs: Vec<PathBuf>,
     /// Source of the tilt angles: the log, none (the sensor's own frame), or a CSV of
     /// time_s,angle_deg
     #[arg(long, value_name = "log|none|ANGLES.csv", default_value = "log")]
@@ -317,9 +317,9 @@ pub struct Output {
 /// `info`.
 #[derive(Clone, Debug, Args)]
 pub struct Info {
-    /// Log, pcap or pcapng; - is stdin
-    #[arg(value_name = "FILE")]
-    pub file: PathBuf,
+    /// Logs, pcap or pcapng files; - is stdin
+    #[arg(value_name = "FILE", required = true)]
+    pub files: Vec<PathBuf>,
     /// Model, if neither the factory byte nor the timing of the packets identifies it
     #[arg(long, value_enum)]
     pub model: Option<ModelName>,

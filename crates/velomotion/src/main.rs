@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use engine::document::{Document, ErrorReport};
 use engine::failure::{Failure, Kind};
+use serde_json::Value;
 use velomotion::cli::Common;
 use velomotion::commands::{CommandOutput, guard_axis, help};
 use velomotion::logging;
@@ -96,7 +97,13 @@ fn print(
                 (None, Some(failure)) => error_report(failure).to_json(),
                 (None, None) => return Ok(()),
             };
-            object.to_string()
+            match object {
+                Value::Array(objects) => {
+                    let lines: Vec<String> = objects.iter().map(Value::to_string).collect();
+                    lines.join("\n")
+                }
+                object => object.to_string(),
+            }
         }
         (false, Some(output)) if output.is_result || !common.quiet => output.text,
         (false, _) => return Ok(()),

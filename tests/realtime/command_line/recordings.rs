@@ -241,3 +241,47 @@ fn angles_of_another_device_can_be_attached() {
         &["bad.csv", "line 2"],
     );
 }
+
+/// Each file has its result and its error; one that fails does not stop the others.
+#[test]
+fn several_recordings_are_read_in_turn() {
+    let place = Place::new();
+    for name in ["vlp16-strongest-gps.pcap", "vlp16-dual.pcap"] {
+        std::fs::copy(recording(name), place.path(name)).unwrap();
+    }
+    std::fs::write(place.path("empty.pcap"), b"").unwrap();
+    let line = "info vlp16-strongest-gps.pcap empty.pcap vlp16-dual.pcap --json";
+    let output = place.run(line);
+    assert_eq!(output.status.code(), Some(3));
+    let printed = String::from_utf8(output.stdout).unwrap();
+    let objects: Vec<serde_json::Value> = printed
+        .lines()
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect();
+    let schemas: Vec<&str> = objects
+        .iter()
+        .map(|o| o["schema"].as_str().unwrap())
+        .collect();
+    assert_eq!(schemas, ["info-1", "error-1", "info-1"]);
+    assert_eq!(objects[2]["return_mode"], "dual");
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    for part in ["empty.pcap", "1 of 3 files failed"] {
+        assert!(message.contains(part), "{message}");
+    }
+
+    let line = "replay vlp16-strongest-gps.pcap vlp16-dual.pcap --tilt none";
+    place.fails(
+        &format!("{line} -o both.ply"),
+        2,
+        &["-o both.ply", "2 recordings"],
+    );
+    let output = place.run(line);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    for cloud in ["vlp16-strongest-gps.ply", "vlp16-dual.ply"] {
+        assert!(place.path(cloud).is_file(), "{cloud}");
+    }
+}

@@ -1,5 +1,7 @@
 //! `velomotion info`: what a log or recording holds.
 
+use std::path::Path;
+
 use engine::failure::{Failure, Kind};
 use engine::reconstruct::contents::read_contents;
 use engine::reconstruct::source::Source;
@@ -13,7 +15,11 @@ use crate::{cli, tables};
 /// # Errors
 /// [`Kind::BadInput`] for a file that is not a recording.
 pub fn run(arguments: &cli::Info) -> Result<CommandOutput, Failure> {
-    let source = Source::open(&arguments.file, None)?;
+    CommandOutput::of_each(&arguments.files, |file| info(arguments, file))
+}
+
+fn info(arguments: &cli::Info, file: &Path) -> Result<CommandOutput, Failure> {
+    let source = Source::open(file, None)?;
     let options = Options {
         model: arguments.model.map(cli::ModelName::model),
         ..Options::default()

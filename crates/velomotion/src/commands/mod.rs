@@ -14,14 +14,16 @@ pub mod simulate;
 pub mod tilt;
 pub mod tradeoff;
 
-use engine::document::Document;
-use engine::failure::Failure;
+use std::path::{Path, PathBuf};
+
+use engine::document::{Document, ErrorReport};
+use engine::failure::{Failure, Kind};
 use engine::reconstruct::report::ScanReport;
 
 /// Output of a command: one JSON object or text.
 #[derive(Default)]
 pub struct CommandOutput {
-    /// Output with `--json`.
+    /// Output with `--json`; of several files an array, printed as an object per line.
     pub json: serde_json::Value,
     /// Output without `--json`.
     pub text: String,
@@ -49,6 +51,58 @@ impl CommandOutput {
             is_result: true,
             ..Self::report(report, text)
         }
+    }
+
+    /// Runs a command for each file. The output for several is that of each, in their order: an
+    /// object per line, or the texts. A file that fails does not stop the others; its failure is
+    /// printed at once.
+    fn of_each(
+        files: &[PathBuf],
+        run: impl Fn(&Path) -> Result<Self, Failure>,
+    ) -> Result<Self, Failure> {
+        if let [file] = files {
+            return run(file);
+        }
+        let mut objects = Vec::new();
+        let mut all = Self::default();
+        let mut failed = Vec::new();
+        for file in files {
+            let mut output = run(file).unwrap_or_else(|error| {
+                let json = ErrorReport {
+                    error: error.clone(),
+                };
+                Self {
+                    failure: Some(error),
+                    ..Self::report(&json, String::new())
+                }
+            });
+            if let Some(failure) = output.failure.take() {
+                if failure.kind == Kind::Interrupted {
+                    return Err(failure);
+                }
+                if let Some(object) = output.json.as_object_mut() {
+                    object.insert("error".to_owned(), serde_json::json!(failure));
+                }
+                crate::logging::failed(&failure);
+                failed.push((file, failure.kind));
+            }
+            objects.push(output.json);
+            if !all.text.is_empty() && !output.text.is_empty() {
+                all.text.push_str("\n\n");
+            }
+            all.text.push_str(&output.text);
+            all.is_result |= output.is_result;
+        }
+        all.json = serde_json::Value::Array(objects);
+        all.failure = failed.first().map(|(file, kind)| {
+            let (count, all) = (failed.len(), files.len());
+            let what = format!(
+                "{count} of {all} files failed, the first is {}",
+                file.display()
+            );
+            Failure::new(*kind, what).help("the messages above say why")
+        });
+        Ok(all)
     }
 
     /// Report on a scan.

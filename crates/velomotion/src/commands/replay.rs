@@ -30,10 +30,27 @@ use crate::terminal::Progress;
 /// [`Failure`] without a cloud.
 pub fn run(arguments: &cli::Replay, common: &Common) -> Result<CommandOutput, Failure> {
     let interrupt = signals::interrupt_flag()?;
+    if let (Some(output), [_, _, ..]) = (&arguments.output.output, &*arguments.inputs) {
+        let (output, inputs) = (output.display(), arguments.inputs.len());
+        let what = format!("-o {output} names one cloud, and there are {inputs} recordings");
+        return Err(Failure::new(Kind::Usage, what)
+            .help("leave it out: each cloud gets the name of its recording"));
+    }
+    CommandOutput::of_each(&arguments.inputs, |input| {
+        replay(arguments, common, input, &interrupt)
+    })
+}
+
+fn replay(
+    arguments: &cli::Replay,
+    common: &Common,
+    input: &Path,
+    interrupt: &AtomicBool,
+) -> Result<CommandOutput, Failure> {
     // Check the input before an output is opened.
-    let mut source = Source::open(&arguments.input, arguments.lidar.sensor)?;
+    let mut source = Source::open(input, arguments.lidar.sensor)?;
     if let Some(pcap) = arguments.output.output.as_deref().filter(is_pcap) {
-        return copy(arguments, common, &source, pcap, &interrupt);
+        return copy(arguments, common, &source, pcap, interrupt);
     }
     let tilt = tilt_source(&arguments.tilt)?;
     let mount = mount(arguments, common, &tilt, &source)?;
@@ -50,7 +67,7 @@ pub fn run(arguments: &cli::Replay, common: &Common) -> Result<CommandOutput, Fa
         truth: None,
         live: arguments.live,
         lost_records: 0,
-        interrupt: &interrupt,
+        interrupt,
     };
     let progress = Progress::new(common);
     if let Some((mount, file)) = &mount {
@@ -73,8 +90,8 @@ pub fn run(arguments: &cli::Replay, common: &Common) -> Result<CommandOutput, Fa
         .output
         .output
         .clone()
-        .unwrap_or_else(|| default_paths::cloud_of(&arguments.input));
-    output::two_files(&arguments.input, &cloud)?;
+        .unwrap_or_else(|| default_paths::cloud_of(input));
+    output::two_files(input, &cloud)?;
     let plan = arguments.frames.map(|cut| FramePlan {
         cut: Degrees(cut),
         organised: arguments.organised,
@@ -98,11 +115,7 @@ pub fn run(arguments: &cli::Replay, common: &Common) -> Result<CommandOutput, Fa
             Some(_) => "copy the recording from its source again if you need the rest",
             None => "scan again if what is missing matters",
         };
-        Failure::new(
-            Kind::Incomplete,
-            format!("{}: {missing}", arguments.input.display()),
-        )
-        .help(format!(
+        Failure::new(Kind::Incomplete, format!("{}: {missing}", input.display())).help(format!(
             "the cloud of what is there is {}; {help}",
             cloud.display()
         ))
@@ -153,12 +166,12 @@ fn copy(
         let what = format!("a .pcap takes the lidar's packets as they are: {option} is for clouds");
         return Err(Failure::new(Kind::Usage, what).help("omit it, or name a cloud with -o"));
     }
-    output::refuse_overwrite(&arguments.input, pcap)?;
+    output::refuse_overwrite(source.path(), pcap)?;
     let report = lidar_copy::copy(source, pcap, arguments.output.force, interrupt)?;
     let failure = report.truncated.as_ref().map(|truncated| {
         let what = format!(
             "{}: the recording ends early ({truncated})",
-            arguments.input.display()
+            source.path().display()
         );
         Failure::new(Kind::Incomplete, what).help(format!("what is there is in {}", pcap.display()))
     });
