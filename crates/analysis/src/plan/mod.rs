@@ -16,6 +16,7 @@ pub use budget::{ErrorBudget, ErrorModel, LinkTiming};
 pub use figure::figure;
 pub use gaps::{PlannedRays, StartedSweep};
 pub use lidar::{PlanLaser, PlanLidar};
+pub use row::{DRIVE_BYTES_S, PACKET_BYTES, ROW_BYTES};
 pub use row::{GapQuantiles, PlanRow, PlannedScan, ScanPredictor, ScanSetting};
 pub use search::PlanLimits;
 pub use sweep::TiltSweep;

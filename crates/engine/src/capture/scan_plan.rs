@@ -13,7 +13,7 @@ use units::{Degrees, Rpm};
 use utoipa::ToSchema;
 
 use super::moves::{self, Step};
-use super::request::sweep_request;
+use super::request::{CapturePlan, sweep_request};
 use crate::capture_request::CaptureRequest;
 use crate::config::{Config, Device, DeviceKind};
 use crate::devices::{profile, simulated};
@@ -75,6 +75,10 @@ pub struct PlanReport {
     pub assumptions: Vec<String>,
 }
 
+/// Distance at which a capture reports gaps and errors, metres.
+pub const USUAL_M: f64 = 20.0;
+/// Rate of an unknown lidar, revolutions per minute: the factory setting of a VLP-16.
+pub const USUAL_RPM: u32 = 600;
 /// Time of homing besides the way: checks, ramps, and the edge of the switch; seconds. Measured in
 /// virtual time over USB, as `STEP_S`.
 const HOMING_S: f64 = 0.62;
@@ -131,7 +135,7 @@ impl ScanPlanner {
         request: PlanRequest,
     ) -> Result<Self, Failure> {
         let axis = profile::axis(&config.axis)?;
-        check(&request, device)?;
+        check(&request)?;
         let lidar = plan_lidar(request.model, config.mount.d_m);
         let configured = match profile::simulated(device) {
             true => simulated::lidar(),
@@ -159,11 +163,57 @@ impl ScanPlanner {
         })
     }
 
+    /// A planner for one capture, with gaps and errors at [`USUAL_M`].
+    ///
+    /// # Errors
+    /// [`Kind::BadInput`] for an invalid configuration.
+    pub fn of_capture(
+        config: &Config,
+        capture: &CapturePlan,
+        model: &'static Model,
+        rpm: u32,
+    ) -> Result<Self, Failure> {
+        let first = capture.steps.iter().find(|step| step.sweep);
+        let request = PlanRequest {
+            from_deg: first.map(|step| step.plan.from.0),
+            to_deg: first.map(|step| step.plan.to.0),
+            ..PlanRequest::new(USUAL_M, model, rpm)
+        };
+        Self::new(config, (&capture.name, &capture.device), request)
+    }
+
     /// What the moves of a capture give.
     #[must_use]
     pub fn row(&self, steps: &[Step]) -> PlanRow {
         let rpm = self.request.rpm.first().copied().unwrap_or_default();
         self.predictor.brief_row(&self.scan(steps, rpm))
+    }
+
+    /// What to expect of a capture, and a warning about its speed, for people.
+    #[must_use]
+    pub fn expectation(&self, request: &CaptureRequest, row: &PlanRow) -> Vec<String> {
+        let expected = format!(
+            "expected of a {} at {} rpm: {:.2} million points in {:.1} s with homing; 99 % of directions have a point within {:.2} deg; error \
+             of 95 % of points {:.1} mm at {} m",
+            self.predictor.lidar.name,
+            row.setting.rpm,
+            row.points as f64 * 1e-6,
+            row.scan_s,
+            row.gap_deg.p99,
+            row.error_mm.total,
+            self.request.at_m,
+        );
+        let warning = self.resonance(request, row);
+        let warning = warning.map(|warning| format!("warning: {warning}"));
+        [expected].into_iter().chain(warning).collect()
+    }
+
+    /// Time of homing from an angle, seconds.
+    #[must_use]
+    pub fn homing_s(&self, rest_deg: f64) -> f64 {
+        let homing = &self.config.axis.homing;
+        let way_deg = (rest_deg - homing.at_deg).abs() + (homing.at_deg - homing.to_deg).abs();
+        way_deg / homing.speed_deg_s + HOMING_S
     }
 
     /// A warning if a slightly slower sweep sees much more: the tilt per revolution is then close
@@ -178,10 +228,11 @@ impl ScanPlanner {
         let (gap, better) = (row.gap_deg.p99, slower.gap_deg.p99);
         (gap > RESONANCE * better).then(|| {
             format!(
-                "at {} deg/s and {} rpm lines of the lasers coincide: 99 % of directions have a point within \
+                "at {} deg/s and {} rpm many scan lines coincide ({:.2} deg of tilt per revolution): 99 % of directions have a point within \
                  {gap:.2} deg, at {} deg/s within {better:.2} deg",
                 trim(row.setting.speed_deg_s),
                 row.setting.rpm,
+                60.0 * row.setting.speed_deg_s / row.setting.rpm,
                 trim(slower.setting.speed_deg_s),
             )
         })
@@ -268,14 +319,12 @@ impl ScanPlanner {
             .iter()
             .map(|step| step.plan.duration.as_secs_f64())
             .sum();
-        let homing = &self.config.axis.homing;
+        let homed_deg = self.config.axis.homing.to_deg;
         let rest_deg = self
             .request
             .rest_deg
             .or(steps.last().map(|step| step.plan.to.0));
-        let way_deg = (rest_deg.unwrap_or(homing.to_deg) - homing.at_deg).abs()
-            + (homing.at_deg - homing.to_deg).abs();
-        let homing_s = way_deg / homing.speed_deg_s + HOMING_S;
+        let homing_s = self.homing_s(rest_deg.unwrap_or(homed_deg));
         PlannedScan {
             setting: ScanSetting {
                 speed_deg_s: first.map_or(0.0, |plan| gearing.rate(plan.speed).0),
@@ -394,7 +443,7 @@ impl ScanPlanner {
 }
 
 /// Refuses impossible limits.
-fn check(request: &PlanRequest, device: &Device) -> Result<(), Failure> {
+fn check(request: &PlanRequest) -> Result<(), Failure> {
     let limits = &request.limits;
     let positive = [
         ("--at", Some(request.at_m), "m"),
@@ -413,15 +462,7 @@ fn check(request: &PlanRequest, device: &Device) -> Result<(), Failure> {
         let message = format!("--at: expected at least {nearest} m, got {}", request.at_m);
         return Err(Failure::new(Kind::Usage, message));
     }
-    let simulated_rpm = sim::RigLidar::default().rpm;
-    match request.rpm.iter().find(|rpm| **rpm != simulated_rpm) {
-        Some(rpm) if profile::simulated(device) => Err(Failure::new(
-            Kind::Usage,
-            format!("the simulated lidar turns at {simulated_rpm} rpm, not at {rpm}"),
-        )
-        .help("name another device with --device")),
-        _ => Ok(()),
-    }
+    Ok(())
 }
 
 /// A model as the planner sees it.

@@ -30,6 +30,13 @@ pub fn run(arguments: &cli::Plan, common: &Common) -> Result<CommandOutput, Fail
     for file in files.iter().flatten() {
         check_free(file, arguments.force)?;
     }
+    let simulated_rpm = sim::RigLidar::default().rpm;
+    let other = arguments.rpm.iter().find(|rpm| **rpm != simulated_rpm);
+    if let Some(rpm) = other.filter(|_| profile::simulated(&device)) {
+        let message = format!("the simulated lidar turns at {simulated_rpm} rpm, not at {rpm}");
+        let help = "name another device with --device";
+        return Err(Failure::new(Kind::Usage, message).help(help));
+    }
     let report = ScanPlanner::new(&config, (&name, &device), request(arguments))?.plan();
     if let ([Some(drawing), Some(json)], Some(folder)) = (&files, &arguments.report) {
         make_folder(folder)?;
