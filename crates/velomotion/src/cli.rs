@@ -376,8 +376,8 @@ pub struct Plan {
 #[derive(Clone, Debug, Args)]
 pub struct Analyze {
     /// Patterns by name (vlp16, hdl32e, vlp32c, rmbl:SPEED, rsbl:SPEED, velomotion16:SPEED, each
-    /// with ,KEY=VALUE: rpm, step, start, seam, from, to, accel, tilt, frames, d), clouds (.ply .pcd
-    /// .las .laz .e57 .mcap .csv .xyz .txt .asc), logs or recordings
+    /// with ,KEY=VALUE: rpm, step, start, seam, from, to, accel, tilt, frames, d), clouds (.ply
+    /// .pcd .las .laz .e57 .mcap .csv .xyz .txt .asc), logs or recordings
     #[arg(value_name = "PATTERN|CLOUD|LOG", required = true)]
     pub inputs: Vec<String>,
     /// Subdivisions of the icosahedron whose faces are the bins: 20 x 4^N bins

@@ -189,6 +189,14 @@ impl ScanPlanner {
         self.predictor.brief_row(&self.scan(steps, rpm))
     }
 
+    /// What a capture gives.
+    ///
+    /// # Errors
+    /// [`Kind::Usage`] for a request outside the axis's limits.
+    pub fn of_request(&self, request: &CaptureRequest) -> Result<PlanRow, Failure> {
+        Ok(self.row(&self.steps(request)?))
+    }
+
     /// What to expect of a capture, and a warning about its speed, for people.
     #[must_use]
     pub fn expectation(&self, request: &CaptureRequest, row: &PlanRow) -> Vec<String> {
@@ -224,7 +232,7 @@ impl ScanPlanner {
             speed_deg_s: SLOWER * row.setting.speed_deg_s,
             ..request.clone()
         };
-        let slower = self.row(&self.steps(&slower).ok()?);
+        let slower = self.of_request(&slower).ok()?;
         let (gap, better) = (row.gap_deg.p99, slower.gap_deg.p99);
         (gap > RESONANCE * better).then(|| {
             format!(
