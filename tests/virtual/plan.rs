@@ -25,7 +25,7 @@ fn planner(at_m: f64, limits: PlanLimits) -> ScanPlanner {
 }
 
 fn plan(at_m: f64, limits: PlanLimits) -> PlanReport {
-    planner(at_m, limits).plan()
+    planner(at_m, limits).plan().unwrap()
 }
 
 /// What a capture measured.

@@ -38,13 +38,13 @@ pub fn figure(rows: &[PlanRow], chosen: Option<&PlanRow>, at_m: f64) -> String {
     };
     let finding = |from: &PlanRow, to: &PlanRow| {
         format!(
-            "{:.1} s, not {:.1} s: gap {:.2}, not {:.2} deg; error {:.1}, not {:.1} mm at {at_m} m",
-            to.scan_s,
+            "{:.1} to {:.1} s: {:.2} to {:.2} deg, {:.0} to {:.0} mm at {at_m} m",
             from.scan_s,
-            to.gap_deg.p99,
+            to.scan_s,
             from.gap_deg.p99,
-            to.error_mm.total,
-            from.error_mm.total
+            to.gap_deg.p99,
+            from.error_mm.total,
+            to.error_mm.total
         )
     };
     let title = match (rows.first(), chosen.or(rows.last())) {

@@ -85,10 +85,10 @@ pub const PACKET_BYTES: f64 = 1_320.0;
 pub const DRIVE_BYTES_S: f64 = 2e5;
 /// Bytes of a row of a PLY.
 pub const ROW_BYTES: f64 = 29.0;
-/// Points that a replay reads, places and writes per second, on 2 cores of an AMD EPYC.
-const REPLAY_POINTS_S: f64 = 1e7;
-/// Time that a replay takes without points, seconds.
-const REPLAY_S: f64 = 0.05;
+/// Points that a replay reads, places and writes per second, and its time without points, seconds:
+/// 2.34 million in 0.384 s and 0.21 million in 0.05 s, on 2 busy cores of an AMD EPYC.
+const REPLAY_POINTS_S: f64 = 6.5e6;
+const REPLAY_S: f64 = 0.02;
 
 /// Sweeps whose gaps are computed; of more, gaps are at most as wide.
 const MOST_SWEEPS: usize = 8;

@@ -247,9 +247,13 @@ impl ScanPlanner {
     }
 
     /// The table, and the setting within the limits.
-    #[must_use]
-    pub fn plan(&self) -> PlanReport {
+    ///
+    /// # Errors
+    /// [`Kind::Usage`] for ends of the sweep outside the axis's limits.
+    pub fn plan(&self) -> Result<PlanReport, Failure> {
         let limits = &self.request.limits;
+        // Ends that the axis refuses leave no setting.
+        self.steps(&self.capture(self.axis.max_speed, 1.0, 1))?;
         let rows = self.predictor.table(&self.scans(COARSE));
         let has_limits = *limits != PlanLimits::default();
         let scans = if has_limits {
@@ -259,7 +263,7 @@ impl ScanPlanner {
         };
         let unmet = has_limits.then(|| self.unmet(&scans));
         let chosen = self.predictor.choose(scans, limits);
-        PlanReport {
+        Ok(PlanReport {
             device: self.name.clone(),
             simulated: profile::simulated(&self.device),
             lidar: self.predictor.lidar.name.clone(),
@@ -268,7 +272,7 @@ impl ScanPlanner {
             unmet: unmet.filter(|_| chosen.is_none()),
             chosen: chosen.map(|row| self.with_command(row)),
             assumptions: self.assumptions(),
-        }
+        })
     }
 
     /// What predicts.
@@ -280,7 +284,7 @@ impl ScanPlanner {
     /// Every setting, with speeds in such a ratio.
     #[must_use]
     pub fn scans(&self, ratio: f64) -> Vec<PlannedScan> {
-        let (gearing, most) = (self.axis.gearing, self.axis.max_speed.0);
+        let most = self.axis.max_speed.0;
         let mut speeds = vec![most];
         let mut next = f64::from(most) / ratio;
         while next >= 1.0 {
@@ -294,15 +298,7 @@ impl ScanPlanner {
         let mut scans = Vec::new();
         for speed in speeds {
             for (ramp, sweeps) in RAMPS.iter().flat_map(|ramp| SWEEPS.map(|n| (ramp, n))) {
-                let request = CaptureRequest {
-                    speed_deg_s: gearing.rate(Rpm(speed)).0,
-                    accel_deg_s2: Some(ramp * self.device.accel_deg_s2),
-                    both_ways: sweeps > 1,
-                    sweeps: Some(sweeps),
-                    from_deg: self.request.from_deg,
-                    to_deg: self.request.to_deg,
-                    ..CaptureRequest::default()
-                };
+                let request = self.capture(Rpm(speed), *ramp, sweeps);
                 // A ramp that the axis refuses is no setting.
                 let Ok(steps) = self.steps(&request) else {
                     continue;
@@ -312,6 +308,19 @@ impl ScanPlanner {
             }
         }
         scans
+    }
+
+    /// A capture with a part of the device's ramps.
+    fn capture(&self, speed: Rpm, ramp: f64, sweeps: u32) -> CaptureRequest {
+        CaptureRequest {
+            speed_deg_s: self.axis.gearing.rate(speed).0,
+            accel_deg_s2: Some(ramp * self.device.accel_deg_s2),
+            both_ways: sweeps > 1,
+            sweeps: Some(sweeps),
+            from_deg: self.request.from_deg,
+            to_deg: self.request.to_deg,
+            ..CaptureRequest::default()
+        }
     }
 
     fn steps(&self, request: &CaptureRequest) -> Result<Vec<Step>, Failure> {

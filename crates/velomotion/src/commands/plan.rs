@@ -37,7 +37,7 @@ pub fn run(arguments: &cli::Plan, common: &Common) -> Result<CommandOutput, Fail
         let help = "name another device with --device";
         return Err(Failure::new(Kind::Usage, message).help(help));
     }
-    let report = ScanPlanner::new(&config, (&name, &device), request(arguments))?.plan();
+    let report = ScanPlanner::new(&config, (&name, &device), request(arguments))?.plan()?;
     if let ([Some(drawing), Some(json)], Some(folder)) = (&files, &arguments.report) {
         make_folder(folder)?;
         let rows: Vec<PlanRow> = report.rows.iter().map(|row| row.row.clone()).collect();
@@ -53,7 +53,7 @@ pub fn run(arguments: &cli::Plan, common: &Common) -> Result<CommandOutput, Fail
     Ok(CommandOutput {
         failure: report.unmet.as_ref().map(|unmet| {
             Failure::new(Kind::Incomplete, unmet.clone())
-                .help("see the table for what can be had, and give other limits")
+                .help("give other limits, by the table; --range-sd sets the noise of the ranges")
         }),
         ..CommandOutput::result(&report, text(&report, written(&files)))
     })
@@ -214,6 +214,7 @@ mod tests {
         ScanPlanner::new(&Config::default(), ("sim", &device), request)
             .unwrap()
             .plan()
+            .unwrap()
     }
 
     #[test]
@@ -238,6 +239,20 @@ mod tests {
             text.lines().all(|line| line.chars().count() <= 100),
             "{text}"
         );
+    }
+
+    #[test]
+    fn sweeps_outside_the_axis_are_refused() {
+        for to_deg in [0.0, -50.0, f64::NAN] {
+            let request = PlanRequest {
+                to_deg: Some(to_deg),
+                ..PlanRequest::new(20.0, &models::VLP_16, 600)
+            };
+            let device = Device::simulator();
+            let planner = ScanPlanner::new(&Config::default(), ("sim", &device), request);
+            let failure = planner.unwrap().plan().unwrap_err();
+            assert_eq!(failure.kind, Kind::Usage, "{to_deg}");
+        }
     }
 
     #[test]

@@ -99,7 +99,9 @@ fn values(row: &PlanRow) -> [f64; 6] {
 fn about(recommended: usize) -> Result<Vec<String>, StudyError> {
     let mut advice = Vec::new();
     for gap_deg in GAPS_DEG.into_iter().take(recommended) {
-        if let Some(chosen) = planner(Some(gap_deg))?.plan().chosen {
+        let plan = planner(Some(gap_deg))?.plan();
+        let plan = plan.map_err(|failure| StudyError::workload(failure.message))?;
+        if let Some(chosen) = plan.chosen {
             let command = chosen.command.replace(" --device auto", "");
             advice.push(format!(
                 "{gap_deg} deg: {command} ({:.1} s, {:.1} million points)",
