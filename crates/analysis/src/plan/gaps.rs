@@ -170,11 +170,18 @@ impl PlannedRays {
         let above = self
             .lasers
             .partition_point(|laser| laser.elevation_rad < elevation);
-        for laser in self.lasers.iter().skip(above.saturating_sub(1)).take(2) {
+        // Before the start and after the end a laser that is ahead in azimuth may be the nearest.
+        let (first, count) = match (0.0..=sweep.duration_s()).contains(&t) {
+            true => (above.saturating_sub(1), 2),
+            false => (0, self.lasers.len()),
+        };
+        for laser in self.lasers.iter().skip(first).take(count) {
             // A chord is at least so long as that of the elevations, which is shorter than the arc
-            // by less than a tenth below 90 degrees.
-            let apart = 0.9 * (laser.elevation_rad - elevation);
-            if apart * apart > *nearest {
+            // by less than a tenth below 90 degrees. The tilt moves on until the laser fires.
+            let until_s = laser.offset.abs() / self.revolutions_per_s + self.period_s;
+            let moved = (sweep.speed_deg_s * until_s).to_radians();
+            let apart = 0.9 * (laser.elevation_rad - elevation).abs() - moved;
+            if apart > 0.0 && apart * apart > *nearest {
                 continue;
             }
             let fires_s = t - laser.offset / self.revolutions_per_s - laser.delay_s;
@@ -294,7 +301,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(12))]
+        #![proptest_config(ProptestConfig::with_cases(48))]
 
         /// Against the density analysis of all rays: fast sweeps with few revolutions and slow ones
         /// with many, both ways, with ramps of all lengths.
