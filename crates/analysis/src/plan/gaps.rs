@@ -301,7 +301,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(48))]
+        #![proptest_config(ProptestConfig::with_cases(12))]
 
         /// Against the density analysis of all rays: fast sweeps with few revolutions and slow ones
         /// with many, both ways, with ramps of all lengths.
