@@ -34,7 +34,9 @@ use protocol::epos2::message::WriteObject;
 use protocol::epos2::rs232;
 use protocol::record::{DriveLink, Record, Wire};
 use scanner::TiltSource;
-use sim::{Attachment, Rig};
+use sim::cast::{Object, Sphere};
+
+use sim::{Attachment, Rig, Scene};
 use tempfile::TempDir;
 use units::{Degrees, Host, Span, Stamp};
 
@@ -113,6 +115,11 @@ impl Captured {
         config.rs232_baud = (setting.links.attached == Attachment::Rs232).then_some(115_200);
         let mut rig = simulated::rig(&axis, &config, setting.start);
         rig.lidar.clock_at_start_us = setting.lidar_clock_us;
+        rig.lidar.rpm = setting.lidar_rpm;
+        if let Some(radius_m) = setting.sphere_m {
+            let sphere = Object::new(Sphere { radius_m });
+            rig.scene = Arc::new(Scene::new().with(sphere, 50).unwrap());
+        }
         rig.attached = setting.links.attached;
         rig.drive.servo = setting.servo;
         rig.drive.latches_position = setting.latches_position;

@@ -6,5 +6,6 @@ mod data_path;
 mod faults;
 mod fuzz_regressions;
 mod patterns;
+mod plan;
 mod simulate;
 mod uncertainty;

@@ -1,5 +1,5 @@
 //! Scan patterns and their quality: density, gaps, the K function, accuracy against the simulated
-//! truth, and trade-offs of accuracy and time.
+//! truth, plans of scans, and trade-offs of accuracy and time.
 //!
 //! All functions are pure; files and clocks belong to the callers.
 //!
@@ -24,5 +24,6 @@ mod draw;
 pub mod figures;
 pub mod k;
 mod noise;
+pub mod plan;
 pub mod tradeoff;
 pub mod truth;

@@ -1,10 +1,12 @@
 //! Estimate of a capture before anything moves: time, resolution, bytes.
 
+use analysis::plan::{DRIVE_BYTES_S, PACKET_BYTES, ROW_BYTES};
 use protocol::vlp16::models;
 
 use crate::health_monitor::disk_full;
 use crate::state::DaemonState;
 use engine::capture::request::CapturePlan;
+use engine::capture::scan_plan::{ScanPlanner, USUAL_RPM};
 use engine::capture_request::CaptureRequest;
 use engine::failure::Failure;
 use serde::Serialize;
@@ -13,21 +15,14 @@ use utoipa::ToSchema;
 /// Bytes per second of the log of an unknown lidar: VLP-16 in dual return, 1508 packets of 1206
 /// bytes with headers, position packets, and the drive.
 const LOG_BYTES_S: f64 = 2.2e6;
-/// Bytes of a packet and its frames in a log.
-const PACKET_BYTES: f64 = 1_320.0;
 /// Bytes of a data packet alone.
 const PAYLOAD_BYTES: f64 = 1_206.0;
-/// Bytes per second of the drive's part of a log: up to 1000 polls of two frames.
-const DRIVE_BYTES_S: f64 = 2e5;
-/// Rows of a PLY, and channels of a packet.
-const ROW_BYTES: f64 = 29.0;
+/// Channels of a packet.
 const CHANNELS: f64 = 384.0;
 /// Packets per second in dual return.
 const PACKETS_S: f64 = 1_508.0;
 /// Homing and the pause before the first sweep, seconds.
 const BEFORE_S: f64 = 15.0;
-/// Revolutions per minute of an unknown lidar.
-const RPM: f64 = 600.0;
 
 /// Estimate of a capture.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
@@ -48,6 +43,12 @@ pub struct CaptureEstimate {
     pub step_deg: Option<f64>,
     /// Mean angle between rays that are neighbours in elevation.
     pub resolution_deg: Option<f64>,
+    /// Distance to the nearest point that 99 % of directions in view do not exceed, degrees.
+    pub gap_deg: Option<f64>,
+    /// Error that 95 % of points at 20 m do not exceed, millimetres.
+    pub error_mm: Option<f64>,
+    /// A slightly slower sweep that sees much more.
+    pub warning: Option<String>,
     /// Estimated time of homing, seconds; absent while the axis is not homed.
     pub homing_s: Option<f64>,
     /// Revolutions of the lidar per sweep.
@@ -66,21 +67,19 @@ pub fn estimate(
     plan: &CapturePlan,
 ) -> CaptureEstimate {
     let lidar = state.service.lidar();
-    let rpm = lidar.rpm.unwrap_or(RPM);
+    let rpm = lidar.rpm.unwrap_or(f64::from(USUAL_RPM));
     let sweeps = || plan.steps.iter().filter(|step| step.sweep);
     let seconds = |step: &engine::capture::moves::Step| step.plan.duration.as_secs_f64();
     let moves_s: f64 = plan.steps.iter().map(seconds).sum();
-    let sweeps_s: f64 = sweeps().map(seconds).sum();
     let first = sweeps().next().map(|step| step.plan);
-    let packets_s = match lidar.packets_per_s {
-        rate if rate > 0.0 => rate,
-        _ => PACKETS_S,
-    };
-    let log_s = match lidar.packets_per_s {
-        rate if rate > 0.0 => rate * PACKET_BYTES + DRIVE_BYTES_S,
-        _ => LOG_BYTES_S,
-    };
-    let bytes = (moves_s + BEFORE_S) * log_s + sweeps_s * packets_s * CHANNELS * ROW_BYTES;
+    // An unknown lidar counts as a VLP-16.
+    let mut known = models::ALL.into_iter();
+    let model = known.find(|known| Some(known.name) == lidar.model);
+    let model = model.unwrap_or(&models::VLP_16);
+    let config = state.service.config();
+    // The configuration has been checked with the moves.
+    let planner = ScanPlanner::of_capture(config, plan, model, rpm.round() as u32).ok();
+    let row = planner.as_ref().map(|planner| planner.row(&plan.steps));
     CaptureEstimate {
         asked: asked.clone(),
         motor_rpm: first.map_or(0, |plan| plan.speed.0),
@@ -88,40 +87,34 @@ pub fn estimate(
         sweep_s: first.map_or(0.0, |plan| plan.duration.as_secs_f64()),
         moves_s,
         step_deg: first.map(|plan| plan.cruise.0 * 60.0 / rpm),
-        resolution_deg: first.map(|plan| {
-            let tilt_deg = (plan.to.0 - plan.from.0).abs();
-            let turns = tilt_deg / plan.cruise.0.abs() * rpm / 60.0;
-            resolution_deg(lidar.model, tilt_deg, turns)
-        }),
-        homing_s: homing_s(state),
+        resolution_deg: row.as_ref().map(|row| row.resolution_deg),
+        gap_deg: row.as_ref().map(|row| row.gap_deg.p99),
+        error_mm: row.as_ref().map(|row| row.error_mm.total),
+        warning: match (&planner, &row) {
+            (Some(planner), Some(row)) => planner.resonance(asked, row),
+            _ => None,
+        },
+        homing_s: planner
+            .as_ref()
+            .and_then(|planner| Some(planner.homing_s(state.service.angle_deg()?))),
         frames: first.map(|plan| plan.duration.as_secs_f64() * rpm / 60.0),
-        bytes: bytes as u64,
+        bytes: bytes(state, plan),
         headline: plan.headline(),
     }
 }
 
-/// The paper's vertical resolution: the angle from the lowest laser at one end of a sweep to the
-/// highest at the other, divided by all lasers in all revolutions, without ramps. An unknown lidar
-/// counts as a VLP-16.
-fn resolution_deg(model: Option<&str>, tilt_deg: f64, turns: f64) -> f64 {
-    let known = models::ALL
-        .into_iter()
-        .find(|known| Some(known.name) == model);
-    let lasers = known.unwrap_or(&models::VLP_16).lasers;
-    let angles = lasers.iter().map(|laser| laser.elevation_deg);
-    let (low, high) = angles.fold((f64::MAX, f64::MIN), |(low, high), at| {
-        (low.min(at), high.max(at))
-    });
-    let count = u32::try_from(lasers.len()).unwrap_or(u32::MAX);
-    analysis::device::vertical_resolution_deg(tilt_deg + high - low, count, turns)
-}
-
-/// Time of homing from the present angle at the speed of the search, without the search of the
-/// edge.
-fn homing_s(state: &DaemonState) -> Option<f64> {
-    let homing = &state.service.config().axis.homing;
-    let angle_deg = state.service.angle_deg()?;
-    Some((angle_deg - homing.to_deg).abs() / homing.speed_deg_s)
+/// Bytes of disk space that a capture may need.
+fn bytes(state: &DaemonState, plan: &CapturePlan) -> u64 {
+    let seconds = |sweep: bool| -> f64 {
+        let steps = plan.steps.iter().filter(|step| step.sweep || !sweep);
+        steps.map(|step| step.plan.duration.as_secs_f64()).sum()
+    };
+    let (packets_s, log_s) = match state.service.lidar().packets_per_s {
+        rate if rate > 0.0 => (rate, rate * PACKET_BYTES + DRIVE_BYTES_S),
+        _ => (PACKETS_S, LOG_BYTES_S),
+    };
+    let log_bytes = (seconds(false) + BEFORE_S) * log_s;
+    (log_bytes + seconds(true) * packets_s * CHANNELS * ROW_BYTES) as u64
 }
 
 /// Largest number of points of a log: packets with a return in every channel.
@@ -146,7 +139,7 @@ fn still_needed(state: &DaemonState) -> u64 {
                 .service
                 .plan(asked, "cloud".into(), "log".into())
                 .ok()?;
-            Some(estimate(state, asked, &plan).bytes)
+            Some(bytes(state, &plan))
         });
         // The request of a log found on disk is unknown; its cloud is still to be made.
         match planned {

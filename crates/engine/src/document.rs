@@ -8,6 +8,7 @@ use utoipa::ToSchema;
 use utoipa::openapi::schema::{ObjectBuilder, SchemaType, Type};
 use utoipa::openapi::{RefOr, Schema};
 
+use crate::capture::scan_plan::PlanReport;
 use crate::failure::Failure;
 use crate::reconstruct::lidar_copy::LidarCopyReport;
 use crate::reconstruct::report::{InfoReport, ScanReport};
@@ -52,6 +53,10 @@ impl Document for AxisReport {
 
 impl Document for StoppedCommand {
     const SCHEMA: &'static str = "stopped-1";
+}
+
+impl Document for PlanReport {
+    const SCHEMA: &'static str = "plan-1";
 }
 
 impl Document for TradeoffReport {

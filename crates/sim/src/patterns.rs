@@ -15,7 +15,7 @@ use crate::sensor::{DetectionRange, LidarMount, LidarSensor, RayTable};
 use glam::DVec3;
 use thiserror::Error;
 
-use crate::motion::AxisState;
+use crate::motion::{AxisMotion, AxisState, Sweeps};
 
 pub use request::{NAMES, PatternRequest};
 pub use view::FieldOfView;
@@ -69,6 +69,8 @@ pub struct PatternTilt {
     pub speed_deg_s: f64,
     /// Motion of the axis.
     pub steps: TiltSteps,
+    /// Acceleration of the ramps at both ends, degrees per second squared; `None` without ramps.
+    pub accel_deg_s2: Option<f64>,
 }
 
 /// Parameters of a pattern.
@@ -102,6 +104,8 @@ pub struct Pattern {
     firings: u32,
     /// Signed tilt from frame to frame, degrees.
     step_deg: f64,
+    /// The motion with its ramps.
+    ramped: Option<AxisMotion>,
 }
 
 /// The rotation from each frame of a pattern to the next.
@@ -186,8 +190,13 @@ impl Pattern {
         let tilt = settings.tilt;
         let way_deg = tilt.to_deg - tilt.from_deg;
         let by_deg = tilt.speed_deg_s * 60.0 / settings.rpm;
+        let ramped = ramped(name, &settings)?;
         let frames = match settings.frames {
             Some(frames) => f64::from(frames),
+            None if let Some(motion) = &ramped => (motion.end_s * settings.rpm / 60.0
+                * (1.0 - WHOLE))
+                .ceil()
+                .max(1.0),
             None if by_deg > 0.0 => (way_deg.abs() / by_deg * (1.0 - WHOLE)).ceil().max(1.0),
             None => 1.0,
         };
@@ -203,6 +212,7 @@ impl Pattern {
             frames: frames as u32,
             firings: firings as u32,
             step_deg: by_deg.copysign(way_deg),
+            ramped,
         })
     }
 
@@ -229,7 +239,10 @@ impl Pattern {
     pub fn scan_s(&self) -> f64 {
         let tilt = self.settings.tilt;
         let all = f64::from(self.frames) * 60.0 / self.settings.rpm;
-        let way = (tilt.to_deg - tilt.from_deg).abs() / tilt.speed_deg_s;
+        let way = match &self.ramped {
+            Some(motion) => motion.end_s,
+            None => (tilt.to_deg - tilt.from_deg).abs() / tilt.speed_deg_s,
+        };
         if self.cut() { way.min(all) } else { all }
     }
 
@@ -238,12 +251,12 @@ impl Pattern {
         self.settings.frames.is_none() && self.step_deg != 0.0
     }
 
-    /// The rotation from frame to frame; `None` where the last is cut off.
+    /// The rotation from frame to frame; `None` where the last is cut off, and with ramps.
     #[must_use]
     pub fn frame_rotation(&self) -> Option<FrameRotation> {
         let last = f64::from(self.frames.saturating_sub(1));
         let all = self.firings.saturating_sub(1);
-        let whole = !self.cut() || self.tilt_deg(last, all).is_some();
+        let whole = !self.cut() || self.ramped.is_none() && self.tilt_deg(last, all).is_some();
         whole.then(|| FrameRotation {
             axis: AXIS,
             step_rad: self.step_deg.to_radians(),
@@ -311,6 +324,11 @@ impl Pattern {
             TiltSteps::Continuous => f64::from(firing) * self.settings.step_deg / 360.0,
             TiltSteps::Stepped => 0.0,
         };
+        if let Some(motion) = &self.ramped {
+            let time_s = (frame + within) * 60.0 / self.settings.rpm;
+            let over = time_s > motion.end_s * (1.0 + WHOLE);
+            return (!over).then(|| motion.at(time_s).angle_deg);
+        }
         let turned_deg = self.step_deg * (frame + within);
         let way_deg = (tilt.to_deg - tilt.from_deg).abs();
         let over = self.cut() && turned_deg.abs() > way_deg * (1.0 + WHOLE);
@@ -375,6 +393,28 @@ impl Pattern {
     }
 }
 
+/// The motion of a pattern with ramps.
+fn ramped(name: &str, settings: &PatternSettings) -> Result<Option<AxisMotion>, PatternError> {
+    let tilt = settings.tilt;
+    let Some(accel_deg_s2) = tilt.accel_deg_s2 else {
+        return Ok(None);
+    };
+    let motion = AxisMotion::sweeps(&Sweeps {
+        from_deg: tilt.from_deg,
+        to_deg: tilt.to_deg,
+        speed_deg_s: tilt.speed_deg_s,
+        accel_deg_s2: Some(accel_deg_s2),
+        count: 1,
+        both_ways: false,
+        rest_s: 0.0,
+    });
+    motion.map(Some).map_err(|error| PatternError::Option {
+        name: name.to_owned(),
+        expected: "a tilt with ramps".to_owned(),
+        got: error.what,
+    })
+}
+
 /// The direction from the centre of the hollow sphere to the point where a ray from within meets
 /// it.
 fn on_sphere(origin_m: DVec3, direction: DVec3) -> DVec3 {
@@ -403,6 +443,13 @@ fn check(name: &str, settings: &PatternSettings) -> Result<(), PatternError> {
         ("to", tilt.to_deg, -360.0, 360.0, "-360 to 360 deg"),
         ("speed", tilt.speed_deg_s, 0.0, 1e6, "0 to 1000000 deg/s"),
         ("d", settings.d_m, -5.0, 5.0, "-5 to 5 m"),
+        (
+            "accel",
+            tilt.accel_deg_s2.unwrap_or(1.0),
+            1e-3,
+            1e9,
+            "0.001 to 1000000000 deg/s2",
+        ),
         (
             "frames",
             f64::from(settings.frames.unwrap_or(1)),

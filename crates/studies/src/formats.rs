@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use crate::placing::worst_m;
 use ::cloud::formats::Format;
 use ::cloud::{Fields, Metadata, Points, read};
-use analysis::tradeoff::pattern::TiltSweep;
+use analysis::plan::TiltSweep;
 use analysis::tradeoff::{
     Bench, Measured, Row, SeededNoise, Study, StudyError, TimedChoice, Trade,
 };
@@ -34,7 +34,8 @@ pub(super) const FORMATS: Study = Study {
 
 /// A million points.
 const SWEEP: TiltSweep = TiltSweep {
-    way_deg: 45.0,
+    from_deg: 0.0,
+    to_deg: -45.0,
     speed_deg_s: 13.0,
     accel_deg_s2: 500.0,
 };

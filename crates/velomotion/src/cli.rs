@@ -14,8 +14,8 @@ mod requests;
 mod values;
 
 use values::{
-    acceleration, azimuth, deceleration, effect_or_all, number, place, seed, share, threads,
-    two_times,
+    acceleration, azimuth, deceleration, degrees, effect_or_all, metres, millimetres, number,
+    place, seconds, seed, share, threads, two_times,
 };
 
 /// Version, and the commit of the build.
@@ -82,6 +82,8 @@ pub enum Command {
     Simulate(Simulate),
     /// List what a file holds
     Info(Info),
+    /// Plan a capture: how fast may it be, and what does that cost in accuracy and density?
+    Plan(Plan),
     /// Measure how densely and evenly scan patterns, clouds or logs cover the surroundings
     Analyze(Analyze),
     /// Measure on this machine what accuracy costs in time
@@ -325,12 +327,57 @@ pub struct Info {
     pub model: Option<ModelName>,
 }
 
+/// `plan`.
+#[derive(Clone, Debug, Args)]
+pub struct Plan {
+    /// Device.
+    #[command(flatten)]
+    pub device: DeviceArgument,
+    /// Distance at which errors and gaps count, such as 20m
+    #[arg(long, value_name = "M", default_value = "20m", allow_hyphen_values = true, value_parser = metres)]
+    pub at: f64,
+    /// Tolerated error of 95 % of points there, ranges included, such as 5mm
+    #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = millimetres)]
+    pub error: Option<f64>,
+    /// Tolerated distance from a direction to the nearest point, for 99 % of directions in view,
+    /// such as 0.3deg
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = degrees)]
+    pub gap: Option<f64>,
+    /// Time for the scan with homing, such as 10s
+    #[arg(long, value_name = "S", allow_hyphen_values = true, value_parser = seconds)]
+    pub time: Option<f64>,
+    /// Lidar model
+    #[arg(long, value_enum, value_name = "MODEL", default_value_t = ModelName::Vlp16)]
+    pub lidar: ModelName,
+    /// Revolutions of the lidar per minute to choose from; they are set on the lidar's own page
+    #[arg(long, value_name = "N[,N]", value_delimiter = ',', default_value = "600", value_parser = clap::value_parser!(u32).range(60..=6_000))]
+    pub rpm: Vec<u32>,
+    /// Standard deviation of a range, such as 10mm [default: the configuration's range_sd_m]
+    #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = millimetres)]
+    pub range_sd: Option<f64>,
+    /// Standard deviation of mount and zero of the tilt, such as 0.05deg [default: not included]
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = degrees)]
+    pub mount_sd: Option<f64>,
+    /// Angle where the sweep starts [default: the axis's upper limit]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true, value_parser = number)]
+    pub from: Option<f64>,
+    /// Angle where the sweep ends [default: the axis's lower limit]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true, value_parser = number)]
+    pub to: Option<f64>,
+    /// Folder for a report: figure (plan.svg) and plan.json
+    #[arg(long, value_name = "DIR")]
+    pub report: Option<PathBuf>,
+    /// Overwrite existing files
+    #[arg(long, requires = "report")]
+    pub force: bool,
+}
+
 /// `analyze`.
 #[derive(Clone, Debug, Args)]
 pub struct Analyze {
     /// Patterns by name (vlp16, hdl32e, vlp32c, rmbl:SPEED, rsbl:SPEED, velomotion16:SPEED, each
-    /// with ,KEY=VALUE: rpm, step, start, seam, from, to, tilt, frames, d), clouds (.ply .pcd .las
-    /// .laz .e57 .mcap .csv .xyz .txt .asc), logs or recordings
+    /// with ,KEY=VALUE: rpm, step, start, seam, from, to, accel, tilt, frames, d), clouds (.ply
+    /// .pcd .las .laz .e57 .mcap .csv .xyz .txt .asc), logs or recordings
     #[arg(value_name = "PATTERN|CLOUD|LOG", required = true)]
     pub inputs: Vec<String>,
     /// Subdivisions of the icosahedron whose faces are the bins: 20 x 4^N bins

@@ -68,6 +68,7 @@ mod tests {
     use std::path::Path;
 
     use analysis::tradeoff::TradeoffReport;
+    use engine::capture::scan_plan::PlanReport;
     use engine::document::{ErrorReport, schema};
     use engine::reconstruct::lidar_copy::LidarCopyReport;
     use engine::reconstruct::report::{InfoReport, ScanReport};
@@ -88,6 +89,7 @@ mod tests {
             of::<StoppedCommand>(),
             of::<TradeoffReport>(),
             of::<ErrorReport>(),
+            of::<PlanReport>(),
             of::<AnalyzeReport>(),
             of::<SettingsReport>(),
             of::<SimulationReport>(),

@@ -235,6 +235,7 @@ fn missing_devices_are_named() {
         "replay log.pcapng",
         "info log.pcapng",
         "simulate hall",
+        "plan",
         "analyze vlp16",
         "tradeoff",
         "tilt status",

@@ -136,6 +136,12 @@ fn a_plan_describes_the_capture() {
     near("step_deg", 5.625, 0.05);
     // The paper's value: 75 deg shared by 16 lasers in 8 revolutions.
     near("resolution_deg", 0.586, 0.005);
+    near("gap_deg", 0.8, 0.4);
+    near("error_mm", 9.9, 0.3);
+    assert_eq!(plan["warning"], json!(null));
+    let plan = rig.get("/api/v1/plan?speed_deg_s=20").json();
+    let warning = plan["warning"].as_str().unwrap();
+    assert!(warning.contains("scan lines coincide"), "{warning}");
     assert_eq!(rig.get("/api/v1/plan?speed_deg_s=1").status, 200);
 }
 
@@ -156,9 +162,9 @@ fn homing_before_a_scan_is_planned_and_reported() {
         let moved = rig.post(&format!("/api/v1/tilt/{path}"), &body);
         assert_eq!(moved.status, 200, "{}", moved.text());
     }
-    // 30 deg at 10 deg/s.
+    // 31 deg to the switch and one back at 10 deg/s, and 0.62 s of checks.
     let homing_s = plan()["homing_s"].as_f64().unwrap();
-    assert!((homing_s - 3.0).abs() < 0.01, "{homing_s}");
+    assert!((homing_s - 3.82).abs() < 0.01, "{homing_s}");
     let answer = rig.post("/api/v1/captures", &json!({"speed_deg_s": 56.25}));
     assert_eq!(answer.status, 201, "{}", answer.text());
     // Status reports angles while the axis homes.

@@ -41,6 +41,10 @@ pub struct Setting {
     pub ripple: Option<GearRipple>,
     /// Least time between two polls; `None` is the axis's own.
     pub poll_period: Option<Span>,
+    /// Revolutions of the lidar per minute.
+    pub lidar_rpm: u32,
+    /// Radius in metres of a hollow sphere about the tilt axis; `None` is the hall.
+    pub sphere_m: Option<f64>,
 }
 
 /// Packets that the network loses.
@@ -110,6 +114,8 @@ impl Default for Setting {
             latches_position: false,
             ripple: None,
             poll_period: None,
+            lidar_rpm: 600,
+            sphere_m: None,
         }
     }
 }

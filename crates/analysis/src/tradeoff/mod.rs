@@ -2,7 +2,7 @@
 //!
 //! A [`Study`] measures every choice. [`StudyFindings`] are a table, the pairs of columns that are
 //! traded, and the choices on the Pareto front ([`front`]). [`svg`], [`Book`], [`html`] and
-//! [`TradeoffReport`] show them. [`K_FUNCTION`] and [`SCAN_SPEED`] are studies; others are in
+//! [`TradeoffReport`] show them. [`K_FUNCTION`] is a study; others are in
 //! `velomotion` and in `studies`. The clock is an argument.
 
 mod findings;
@@ -13,9 +13,7 @@ mod k_function;
 mod machine;
 mod markdown;
 mod panel;
-pub mod pattern;
 mod report;
-mod scan_speed;
 mod study;
 pub mod svg;
 mod timing;
@@ -27,7 +25,6 @@ pub use k_function::K_FUNCTION;
 pub use machine::Machine;
 pub use markdown::Book;
 pub use report::StudyReport;
-pub use scan_speed::SCAN_SPEED;
 pub use study::{
     Bench, Effort, Measured, Measurement, Row, Study, StudyError, TimedChoice, Trade, UnknownStudy,
     select,

@@ -19,6 +19,12 @@ const MARGIN: f64 = 14.0;
 /// The figure as a document.
 #[must_use]
 pub fn figure(findings: &StudyFindings) -> String {
+    titled(findings, findings.study.title)
+}
+
+/// The same with a title of its own.
+#[must_use]
+pub fn titled(findings: &StudyFindings, title: &str) -> String {
     let groups = findings.groups();
     let panels_end = TITLE + panel::HEIGHT * findings.study.trades.len() as f64;
     let (legend, legend_end) = legend(findings, &groups, panels_end);
@@ -28,7 +34,7 @@ pub fn figure(findings: &StudyFindings) -> String {
          role=\"img\">\n<title>{title}</title>\n<style>{STYLE}</style>\n\
          <rect class=\"tv-page\" width=\"{WIDTH}\" height=\"{height}\" rx=\"6\"/>\n\
          <text class=\"tv-ink tv-title\" x=\"{MARGIN}\" y=\"20\">{title}</text>\n",
-        title = escaped(findings.study.title)
+        title = escaped(title)
     );
     for (number, trade) in findings.study.trades.iter().enumerate() {
         let number = (findings.study.trades.len() > 1).then_some(number + 1);

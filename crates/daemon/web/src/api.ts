@@ -143,6 +143,12 @@ export interface Plan {
   step_deg?: number | null;
   /** Mean vertical resolution: the elevation range seen in a sweep over the number of scan lines. */
   resolution_deg?: number | null;
+  /** Distance to the nearest point for 99 % of directions in view. */
+  gap_deg?: number | null;
+  /** Error of 95 % of points at 20 m. */
+  error_mm?: number | null;
+  /** A slightly slower sweep that sees much more. */
+  warning?: string | null;
   /** Approximate duration of homing before the first move; null while the angle is unknown. */
   homing_s?: number | null;
   frames?: number | null;

@@ -6,3 +6,4 @@ pub mod log_recorder;
 pub mod moves;
 pub mod request;
 pub mod run;
+pub mod scan_plan;

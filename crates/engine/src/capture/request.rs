@@ -13,7 +13,7 @@ use crate::devices::simulated;
 use crate::failure::{Failure, Kind};
 
 /// The sweeps with the defaults of this axis and device filled in.
-fn sweep_request(
+pub(super) fn sweep_request(
     request: &CaptureRequest,
     config: &Config,
     device: &Device,

@@ -8,9 +8,11 @@ use super::{
 /// and multi-beam lidar); and velomotion's own sweep.
 pub const NAMES: [&str; 6] = ["vlp16", "hdl32e", "vlp32c", "rmbl", "rsbl", "velomotion16"];
 
-const KEYS: &str = "rpm, step, start, seam, from, to, speed, tilt, frames or d";
+const KEYS: &str = "rpm, step, start, seam, from, to, speed, accel, tilt, frames or d";
 /// Keys with numbers.
-const NUMBERS: [&str; 8] = ["rpm", "step", "start", "from", "to", "speed", "frames", "d"];
+const NUMBERS: [&str; 9] = [
+    "rpm", "step", "start", "from", "to", "speed", "accel", "frames", "d",
+];
 
 /// A requested pattern. Options may be set again before it is built.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,6 +62,7 @@ impl PatternRequest {
             to_deg: to_deg.unwrap_or(0.0),
             speed_deg_s: 0.0,
             steps: TiltSteps::Continuous,
+            accel_deg_s2: None,
         };
         let mut request = Self {
             name: text.to_owned(),
@@ -147,7 +150,8 @@ impl PatternRequest {
             "from" => settings.tilt.from_deg = value,
             "to" if !stands => settings.tilt.to_deg = value,
             "speed" if !stands => self.speed_deg_s = Some(value),
-            "to" | "speed" => {
+            "accel" if !stands => settings.tilt.accel_deg_s2 = Some(value),
+            "to" | "speed" | "accel" => {
                 let what =
                     "a sensor that stands still, without speed (rmbl:120 and velomotion16:50 turn)";
                 return Err(self.wrong(what, format!("{key}={value}")));
@@ -182,6 +186,12 @@ impl PatternRequest {
         if !self.stands() && tilt.to_deg == tilt.from_deg {
             let got = format!("both {}", tilt.from_deg);
             return Err(self.wrong("from and to that differ (vlp16 stands still)", got));
+        }
+        if tilt.accel_deg_s2.is_some()
+            && (settings.frames.is_some() || tilt.steps == TiltSteps::Stepped)
+        {
+            let what = "accel without frames and tilt=stepped, which have no ramps";
+            return Err(self.wrong(what, "both"));
         }
         if tilt.to_deg != tilt.from_deg {
             let Some(speed_deg_s) = self.speed_deg_s.filter(|speed| *speed > 0.0) else {

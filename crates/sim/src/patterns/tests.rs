@@ -87,6 +87,35 @@ fn a_partial_last_frame_ends_the_sweep() {
 }
 
 #[test]
+fn ramps_lengthen_a_pattern_and_are_denser() {
+    let (plain, ramped) = (
+        pattern("velomotion16:56.25,rpm=600"),
+        pattern("velomotion16:56.25,rpm=600,accel=500"),
+    );
+    assert!((plain.scan_s() - 0.8).abs() < 1e-12);
+    assert!(
+        (ramped.scan_s() - 0.9125).abs() < 1e-12,
+        "{}",
+        ramped.scan_s()
+    );
+    assert_eq!((plain.frames(), ramped.frames()), (8, 10));
+    assert!(ramped.frame_rotation().is_none());
+    assert_eq!(ramped.tilts_deg(), [-45.0, 0.0]);
+    // The first revolution tilts by a / 2 t^2 in 0.1 s, less than the 5.6 degrees of the cruise.
+    assert!((ramped.tilt_deg(1.0, 0).unwrap() + 2.5).abs() < 1e-9);
+    assert_eq!(ramped.tilt_deg(9.0, 300), None);
+    for refused in [
+        "rmbl:50,accel=0",
+        "vlp16,accel=5",
+        "rmbl:50,accel=5,frames=3",
+        "rmbl:50,accel=5,tilt=stepped",
+    ] {
+        let built = PatternRequest::parse(refused).and_then(|request| request.build());
+        assert!(built.is_err(), "{refused}");
+    }
+}
+
+#[test]
 fn rays_off_the_axis_hit_the_sphere_as_the_equation_gives() {
     let (level, lifted) = (
         pattern("velomotion16:50,frames=2"),

@@ -87,3 +87,43 @@ pub(super) fn azimuth(text: &str) -> Result<f64, String> {
         Err("expected an azimuth from -360 to 360 degrees".to_owned())
     }
 }
+
+/// Parses a length, metres: `20m`, `5mm` or `2cm`; a number alone is in metres.
+pub(super) fn metres(text: &str) -> Result<f64, String> {
+    quantity(text, &[("mm", 1e-3), ("cm", 1e-2), ("m", 1.0), ("", 1.0)])
+}
+
+/// The same; a number alone is in millimetres.
+pub(super) fn millimetres(text: &str) -> Result<f64, String> {
+    quantity(text, &[("mm", 1e-3), ("cm", 1e-2), ("m", 1.0), ("", 1e-3)])
+}
+
+/// Parses an angle, degrees: `0.3deg` or `0.3`.
+pub(super) fn degrees(text: &str) -> Result<f64, String> {
+    quantity(text, &[("deg", 1.0), ("", 1.0)])
+}
+
+/// Parses a time, seconds: `10s` or `10`.
+pub(super) fn seconds(text: &str) -> Result<f64, String> {
+    quantity(text, &[("s", 1.0), ("", 1.0)])
+}
+
+/// Parses a number above 0 with one of these units, the first that fits; the last is for a number
+/// alone.
+fn quantity(text: &str, units: &[(&str, f64)]) -> Result<f64, String> {
+    units
+        .iter()
+        .find_map(|(unit, factor)| {
+            let number = text.strip_suffix(unit)?.trim().parse::<f64>().ok()?;
+            Some(number * factor)
+        })
+        .filter(|number| (1e-9..=1e6).contains(number))
+        .ok_or_else(|| {
+            let names = units.iter().map(|(unit, _)| *unit);
+            let names: Vec<&str> = names.filter(|unit| !unit.is_empty()).collect();
+            format!(
+                "expected a number above 0 with its unit: {}",
+                names.join(", ")
+            )
+        })
+}

@@ -8,6 +8,7 @@ use daemon::client::Client;
 use daemon::local::LocalService;
 use engine::capture::request::CapturePlan;
 use engine::capture::run;
+use engine::capture::scan_plan::{ScanPlanner, USUAL_RPM};
 use engine::capture_request::CaptureRequest;
 use engine::config::{self, Config};
 use engine::default_paths;
@@ -16,6 +17,8 @@ use engine::failure::{Failure, Kind};
 use engine::output::{self, Backup, Target};
 use engine::reconstruct::report::ScanReport;
 use engine::service::CaptureEnd;
+
+use protocol::vlp16::models;
 
 use super::CommandOutput;
 use super::device_backend::{DaemonCapture, LocalCapture, record};
@@ -37,8 +40,10 @@ pub fn run(arguments: &cli::Capture, common: &Common) -> Result<CommandOutput, F
     output::check_free(&plan.log, plan.force)?;
     let interrupt = signals::motion_interrupt_flag()?;
     let mut progress = Progress::new(common);
-    for line in plan.headline() {
-        progress.say(&line);
+    let planner = ScanPlanner::of_capture(&config, &plan, &models::VLP_16, USUAL_RPM)?;
+    let expected = planner.expectation(&arguments.into(), &planner.row(&plan.steps));
+    for line in plan.headline().iter().chain(&expected) {
+        progress.say(line);
     }
     let client = Client::find(&plan.name, &plan.device);
     let mut by_daemon = match &client {

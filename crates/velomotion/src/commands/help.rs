@@ -12,7 +12,7 @@ use crate::cli::{self, Cli};
 use crate::documents::HelpText;
 
 /// Two examples of each command, and the page of the book about it.
-const EXAMPLES: [(&str, [&str; 2], &str); 12] = [
+const EXAMPLES: [(&str, [&str; 2], &str); 13] = [
     (
         "velomotion",
         ["capture --speed 56.25", "replay scan.pcapng -o scan.laz"],
@@ -25,6 +25,14 @@ const EXAMPLES: [(&str, [&str; 2], &str); 12] = [
             "capture --speed 20 --both-ways -o hall.e57 --device sim",
         ],
         "capture",
+    ),
+    (
+        "plan",
+        [
+            "plan --at 20m --error 9mm --gap 0.8deg",
+            "plan --time 10s --lidar vlp16 --rpm 300,600,1200 --device auto",
+        ],
+        "plan",
     ),
     (
         "replay",
@@ -93,9 +101,10 @@ macro_rules! pages {
 }
 
 /// The pages of the book for users, in its order.
-const PAGES: [(&str, &str); 22] = pages!(
+const PAGES: [(&str, &str); 23] = pages!(
     "quick-start",
     "install",
+    "plan",
     "capture",
     "replay",
     "tilt",

@@ -9,6 +9,7 @@ pub mod firmware_sim;
 pub mod guard_axis;
 pub mod help;
 pub mod info;
+pub mod plan;
 pub mod replay;
 pub mod simulate;
 pub mod tilt;

@@ -132,10 +132,15 @@ function draw(found: Plan): void {
   const homes = homing_s === null ? ", plus homing" : homing_s >= 0.1 ? `, including ${duration(homing_s)} to the home position` : "";
   const all = `${duration(found.moves_s + (homing_s ?? 0))} in total${homes}`;
   const step_words = step === null ? "" : `${digits(step)}\u00b0 of tilt per revolution \u00b7 `;
+  const { gap_deg: gap, error_mm: error, warning } = found;
+  const seen = gap == null || error == null ? [] : [h("p", {}, `99 % of directions have a point within ${digits(gap)}\u00b0 \u00b7 95 % of points within ${digits(error)} mm at 20 m`)];
+  const warned = warning == null ? [] : [h("p", { class: "wrong" }, warning)];
   out.replaceChildren(
     cell(duration(found.sweep_s), "per sweep"),
     resolution === null ? cell("\u2013", "mean vertical resolution") : cell(`${digits(resolution)}\u00b0`, "mean vertical resolution"),
     h("p", {}, all),
+    ...seen,
+    ...warned,
     h("p", {}, `${step_words}${digits(found.motor_rpm, 4)} rpm \u00b7 ${bytes(found.bytes)} at most`),
   );
 }

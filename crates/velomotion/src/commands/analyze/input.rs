@@ -151,7 +151,12 @@ pub fn device(pattern: &Pattern) -> Option<DeviceReport> {
     };
     let view = device.view();
     let [low, high] = view.forwards_deg;
-    let frames = pattern.scan_s() * settings.rpm / 60.0;
+    // Without the ramps, as in the paper.
+    let moving_s = match tilt.accel_deg_s2 {
+        Some(_) => (tilt.to_deg - tilt.from_deg).abs() / tilt.speed_deg_s,
+        None => pattern.scan_s(),
+    };
+    let frames = moving_s * settings.rpm / 60.0;
     Some(DeviceReport {
         view,
         mean_vertical_resolution_deg: vertical_resolution_deg(high - low, pattern.lasers(), frames),

@@ -3,14 +3,14 @@
 //! `analysis::tradeoff` has the studies, tables and pages; the clock and the files are here.
 //! Studies behind the program's own choices are in the crate `studies`.
 
+mod overview;
 mod text;
 mod trajectory;
 
 use std::path::{Path, PathBuf};
 
 use analysis::tradeoff::{
-    self, Bench, Book, Effort, K_FUNCTION, Machine, SCAN_SPEED, Study, StudyReport, TradeoffReport,
-    html, svg,
+    self, Bench, Book, Effort, K_FUNCTION, Machine, Study, StudyReport, TradeoffReport, html, svg,
 };
 
 use super::CommandOutput;
@@ -21,7 +21,7 @@ use engine::failure::{Failure, Kind};
 use engine::output::{check_free, make_folder, write_text};
 
 /// The studies in the order of the page.
-const STUDIES: [Study; 3] = [trajectory::TRAJECTORIES, K_FUNCTION, SCAN_SPEED];
+const STUDIES: [Study; 3] = [overview::SCAN_SPEED, trajectory::TRAJECTORIES, K_FUNCTION];
 
 /// The page of the book that `--markdown` writes.
 const BOOK: Book<'_> = Book {

@@ -3,7 +3,7 @@
 
 use std::hint::black_box;
 
-use analysis::tradeoff::pattern;
+use analysis::plan::TiltSweep;
 use analysis::tradeoff::{
     Bench, Measured, Row, SeededNoise, Study, StudyError, TimedChoice, Trade,
 };
@@ -48,8 +48,9 @@ const RATES_HZ: [(f64, &str); 3] = [
     (1000.0, "1000 polls a second"),
 ];
 /// The paper's fast scan with the drive's factory ramps.
-const SWEEP: pattern::TiltSweep = pattern::TiltSweep {
-    way_deg: 45.0,
+const SWEEP: TiltSweep = TiltSweep {
+    from_deg: 0.0,
+    to_deg: -45.0,
     speed_deg_s: 56.25,
     accel_deg_s2: 500.0,
 };
@@ -252,7 +253,7 @@ fn through(
 ) -> Result<Trajectory, StudyError> {
     let sweep = Sweep {
         from: Degrees(0.0),
-        to: Degrees(-SWEEP.way_deg),
+        to: Degrees(SWEEP.to_deg),
         cruise: DegPerS(-SWEEP.speed_deg_s),
         start: after(BEFORE_S),
         end: after(BEFORE_S + SWEEP.duration_s() + SETTLING_S),

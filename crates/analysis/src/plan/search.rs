@@ -1,0 +1,265 @@
+//! The search for a setting: a coarse grid for the table, and every setting in the order of its
+//! scan time for the choice.
+
+use rayon::prelude::*;
+
+use super::row::GapEffort;
+use super::{PlanRow, PlannedScan, ScanPredictor};
+use crate::tradeoff::front::front;
+
+/// Requested limits.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PlanLimits {
+    /// Error of 95 % of points at the range, millimetres.
+    pub error_mm: Option<f64>,
+    /// Distance from a direction to the nearest point, for 99 % of directions in view, degrees.
+    pub gap_deg: Option<f64>,
+    /// Time of the scan with homing, seconds.
+    pub time_s: Option<f64>,
+}
+
+/// Rows of a table, at most.
+const ROWS: usize = 12;
+/// Settings examined at a time.
+const BLOCK: usize = 64;
+/// Settings of which the densest is chosen by all directions.
+const FINALISTS: usize = 6;
+/// Share of a third of the directions that may be without a point: 1 %, and a quarter for chance.
+const NEAR: f64 = 0.0125;
+/// Part of the given time below which scans are not compared for their density.
+const SHORT: f64 = 0.6;
+
+impl ScanPredictor {
+    /// Rows that no other scan beats in time, 99 % gap and error at once, one for each of at most
+    /// 12 classes of scan time, in the order of time.
+    #[must_use]
+    pub fn table(&self, scans: &[PlannedScan]) -> Vec<PlanRow> {
+        let costs: Vec<Vec<f64>> = scans
+            .par_iter()
+            .map(|scan| {
+                let error = self.errors.budget(&self.lidar, &scan.sweeps).total;
+                vec![scan.scan_s, self.rough_p99_deg(scan), error]
+            })
+            .collect();
+        let kept = front(&costs);
+        let mut best: Vec<(&PlannedScan, f64)> = scans
+            .iter()
+            .zip(&costs)
+            .zip(kept)
+            .filter_map(|((scan, costs), kept)| Some((scan, *costs.get(1)?)).filter(|_| kept))
+            .collect();
+        best.sort_by(|a, b| a.0.scan_s.total_cmp(&b.0.scan_s));
+        let ends = best.first().zip(best.last());
+        let (low, high) = ends.map_or((1.0, 1.0), |(a, b)| (a.0.scan_s, b.0.scan_s));
+        let class = |scan_s: f64| {
+            let share = (scan_s / low).ln() / (high / low).ln().max(1e-9);
+            (share * (ROWS as f64 - 0.5)) as usize
+        };
+        let densest = best
+            .chunk_by(|a, b| class(a.0.scan_s) == class(b.0.scan_s))
+            .filter_map(|class| class.iter().min_by(|a, b| a.1.total_cmp(&b.1)));
+        let rows: Vec<PlanRow> = densest
+            .map(|(scan, _)| self.row_with(scan, GapEffort::ROW))
+            .collect();
+        let costs = rows
+            .iter()
+            .map(|row| vec![row.scan_s, row.gap_deg.p99, row.error_mm.total]);
+        let kept = front(&costs.collect::<Vec<_>>());
+        let kept = rows.into_iter().zip(kept).filter(|(_, kept)| *kept);
+        kept.map(|(row, _)| row).collect()
+    }
+
+    /// The fastest scan within the limits; with a limit of time only, the densest. `None` if there
+    /// is none, or no limit.
+    #[must_use]
+    pub fn choose(&self, mut scans: Vec<PlannedScan>, limits: &PlanLimits) -> Option<PlanRow> {
+        let within = |value: f64, limit: Option<f64>| limit.is_none_or(|limit| value <= limit);
+        scans.retain(|scan| {
+            let error = || self.errors.budget(&self.lidar, &scan.sweeps).total;
+            within(scan.scan_s, limits.time_s)
+                && (limits.error_mm.is_none() || within(error(), limits.error_mm))
+        });
+        scans.sort_by(|a, b| a.scan_s.total_cmp(&b.scan_s));
+        match (limits.gap_deg, limits.error_mm, limits.time_s) {
+            (Some(gap_deg), ..) => self.fastest_within(&scans, gap_deg),
+            (None, Some(_), _) => scans.first().map(|scan| self.row(scan)),
+            (None, None, Some(time_s)) => self.densest(scans, time_s),
+            (None, None, None) => None,
+        }
+    }
+
+    fn fastest_within(&self, scans: &[PlannedScan], gap_deg: f64) -> Option<PlanRow> {
+        const NO_MORE: usize = 0;
+        for block in scans.chunks(BLOCK) {
+            let hopeful: Vec<&PlannedScan> = block
+                .par_iter()
+                .filter(|scan| {
+                    // Three more than 1 % of few directions for chance.
+                    !self.exceeds(scan, gap_deg, GapEffort::ROUGH, (0.01, 3))
+                        && !self.exceeds(scan, gap_deg, GapEffort::ROW, (NEAR, NO_MORE))
+                })
+                .collect();
+            let kept = hopeful
+                .into_iter()
+                .find(|scan| !self.exceeds(scan, gap_deg, GapEffort::FULL, (0.01, NO_MORE)));
+            if let Some(scan) = kept {
+                return Some(self.row(scan));
+            }
+        }
+        None
+    }
+
+    fn densest(&self, mut scans: Vec<PlannedScan>, time_s: f64) -> Option<PlanRow> {
+        let longest_s = scans.last()?.scan_s.min(time_s);
+        scans.retain(|scan| scan.scan_s >= SHORT * longest_s);
+        let rough = scans.par_iter().map(|scan| self.rough_p99_deg(scan));
+        let rough: Vec<f64> = rough.collect();
+        let mut ranked: Vec<(&PlannedScan, f64)> = scans.iter().zip(rough).collect();
+        ranked.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let rows = ranked
+            .iter()
+            .take(FINALISTS)
+            .map(|(scan, _)| self.row(scan));
+        rows.min_by(|a, b| a.gap_deg.p99.total_cmp(&b.gap_deg.p99))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::lidar::tests::vlp_16;
+    use super::super::{ErrorModel, LinkTiming, ScanSetting, TiltSweep};
+    use super::*;
+
+    fn scan(speed_deg_s: f64, accel_deg_s2: f64, rpm: f64, sweeps: u32) -> PlannedScan {
+        let way = |back: bool| {
+            let (from_deg, to_deg) = if back { (-45.0, 0.0) } else { (0.0, -45.0) };
+            TiltSweep {
+                from_deg,
+                to_deg,
+                speed_deg_s,
+                accel_deg_s2,
+            }
+        };
+        let sweeps_: Vec<TiltSweep> = (0..sweeps).map(|number| way(number % 2 == 1)).collect();
+        PlannedScan {
+            setting: ScanSetting {
+                speed_deg_s,
+                accel_deg_s2,
+                rpm,
+                sweeps,
+            },
+            scan_s: 2.0 + sweeps_.iter().map(TiltSweep::duration_s).sum::<f64>(),
+            sweeps: sweeps_,
+        }
+    }
+
+    fn scans() -> Vec<PlannedScan> {
+        let speeds = (0..14).map(|step| 5.0 * 1.25_f64.powi(step));
+        let settings = speeds.flat_map(|speed| {
+            [500.0, 5_000.0].into_iter().flat_map(move |accel| {
+                [600.0, 1_200.0]
+                    .into_iter()
+                    .flat_map(move |rpm| [1, 2].map(|sweeps| scan(speed, accel, rpm, sweeps)))
+            })
+        });
+        settings.collect()
+    }
+
+    fn predictor(gap_deg: Option<f64>) -> ScanPredictor {
+        let errors = ErrorModel {
+            range_m: 20.0,
+            range_sd_m: 0.6e-3,
+            count_deg: 0.0015,
+            link: LinkTiming::USB,
+            mount_sd_deg: None,
+        };
+        ScanPredictor::new(vlp_16(), errors, gap_deg, [0.0, -45.0])
+    }
+
+    /// Against every setting at full effort.
+    #[test]
+    fn choices_agree_with_brute_force() {
+        let all: Vec<PlanRow> = {
+            let predictor = predictor(None);
+            scans().iter().map(|scan| predictor.row(scan)).collect()
+        };
+        for (error_mm, gap_deg) in [
+            (None, Some(2.0)),
+            (None, Some(0.8)),
+            (Some(6.0), Some(0.8)),
+            (Some(4.0), Some(0.4)),
+            (None, Some(0.25)),
+            (Some(4.0), None),
+            (Some(1.0), None),
+            (None, Some(0.05)),
+        ] {
+            let limits = PlanLimits {
+                error_mm,
+                gap_deg,
+                time_s: None,
+            };
+            let fits = |row: &&PlanRow| {
+                gap_deg.is_none_or(|limit| row.gap_deg.p99 <= limit)
+                    && error_mm.is_none_or(|limit| row.error_mm.total <= limit)
+            };
+            let best = all.iter().filter(fits).map(|row| row.scan_s);
+            let best_s = best.fold(f64::INFINITY, f64::min);
+            let chosen = predictor(gap_deg).choose(scans(), &limits);
+            println!("{limits:?}: {best_s} {chosen:?}");
+            match chosen {
+                Some(row) => {
+                    assert!(fits(&&row), "{row:?}");
+                    assert!(row.scan_s <= 1.05 * best_s, "{best_s} {row:?}");
+                }
+                None => assert_eq!(best_s, f64::INFINITY),
+            }
+        }
+        // The densest in a given time.
+        for time_s in [4.0, 8.0] {
+            let limits = PlanLimits {
+                time_s: Some(time_s),
+                ..PlanLimits::default()
+            };
+            let best = all.iter().filter(|row| row.scan_s <= time_s);
+            let best = best
+                .map(|row| row.gap_deg.p99)
+                .fold(f64::INFINITY, f64::min);
+            let row = predictor(None).choose(scans(), &limits).unwrap();
+            assert!(
+                row.scan_s <= time_s && row.gap_deg.p99 <= 1.05 * best,
+                "{best} {row:?}"
+            );
+        }
+        let free = predictor(None).choose(scans(), &PlanLimits::default());
+        assert_eq!(free, None);
+    }
+
+    #[test]
+    fn tables_are_fronts_in_the_order_of_time() {
+        let rows = predictor(None).table(&scans());
+        assert!((4..=ROWS).contains(&rows.len()), "{rows:?}");
+        for pair in rows.windows(2) {
+            let (a, b) = (&pair[0], &pair[1]);
+            assert!(a.scan_s < b.scan_s, "{a:?} {b:?}");
+            assert!(
+                b.gap_deg.p99 < a.gap_deg.p99 || b.error_mm.total < a.error_mm.total,
+                "{a:?} {b:?}"
+            );
+        }
+    }
+
+    /// At 20 deg/s and 600 rpm the tilt per revolution is the spacing of the lasers: all lines
+    /// coincide.
+    #[test]
+    fn resonances_show_as_gaps() {
+        let predictor = predictor(None);
+        let p99 = |speed: f64| predictor.row(&scan(speed, 5_000.0, 600.0, 1)).gap_deg.p99;
+        println!("{} {} {}", p99(19.0), p99(20.0), p99(21.0));
+        assert!(p99(20.0) > 1.2 * p99(19.0), "{} {}", p99(20.0), p99(19.0));
+        // Longer ramps fill the ends of the field of view.
+        let ramps = |accel: f64| predictor.row(&scan(56.25, accel, 600.0, 1)).gap_deg;
+        println!("{:?} {:?}", ramps(5_000.0), ramps(500.0));
+        assert!(ramps(500.0).p99 < 0.6 * ramps(5_000.0).p99);
+        assert!(ramps(500.0).worst < 0.6 * ramps(5_000.0).worst);
+    }
+}

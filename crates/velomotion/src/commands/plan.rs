@@ -1,0 +1,289 @@
+//! `velomotion plan`: accuracy, density and time of a capture before it is made.
+
+use std::path::PathBuf;
+
+use analysis::plan::{PlanLimits, PlanRow, figure};
+use comfy_table::presets::NOTHING;
+use comfy_table::{CellAlignment, Table};
+use engine::capture::scan_plan::{CommandRow, PlanReport, PlanRequest, ScanPlanner};
+use engine::config;
+use engine::devices::profile;
+use engine::document::Document;
+use engine::failure::{Failure, Kind};
+use engine::output::{check_free, make_folder, write_text};
+
+use super::CommandOutput;
+use crate::cli::{self, Common};
+
+/// Runs the command.
+///
+/// # Errors
+/// [`Kind::Usage`] for impossible limits or a file that exists, [`Kind::Incomplete`], with the
+/// table, if no setting meets the limits.
+pub fn run(arguments: &cli::Plan, common: &Common) -> Result<CommandOutput, Failure> {
+    let config = config::load(common.config.as_deref())?;
+    let (name, device) = profile::choose(&config, arguments.device.name.as_deref())?;
+    let files = ["plan.svg", "plan.json"].map(|file| {
+        let folder = arguments.report.as_ref();
+        folder.map(|folder| folder.join(file))
+    });
+    for file in files.iter().flatten() {
+        check_free(file, arguments.force)?;
+    }
+    let simulated_rpm = sim::RigLidar::default().rpm;
+    let other = arguments.rpm.iter().find(|rpm| **rpm != simulated_rpm);
+    if let Some(rpm) = other.filter(|_| profile::simulated(&device)) {
+        let message = format!("the simulated lidar turns at {simulated_rpm} rpm, not at {rpm}");
+        let help = "name another device with --device";
+        return Err(Failure::new(Kind::Usage, message).help(help));
+    }
+    let report = ScanPlanner::new(&config, (&name, &device), request(arguments))?.plan()?;
+    if let ([Some(drawing), Some(json)], Some(folder)) = (&files, &arguments.report) {
+        make_folder(folder)?;
+        let rows: Vec<PlanRow> = report.rows.iter().map(|row| row.row.clone()).collect();
+        let chosen = report.chosen.as_ref().map(|chosen| &chosen.row);
+        write_text(
+            drawing,
+            &figure(&rows, chosen, report.at_m),
+            arguments.force,
+        )?;
+        let object = format!("{:#}\n", report.to_json());
+        write_text(json, &object, arguments.force)?;
+    }
+    Ok(CommandOutput {
+        failure: report.unmet.as_ref().map(|unmet| {
+            Failure::new(Kind::Incomplete, unmet.clone())
+                .help("give other limits, by the table; --range-sd sets the noise of the ranges")
+        }),
+        ..CommandOutput::result(&report, text(&report, written(&files)))
+    })
+}
+
+fn request(arguments: &cli::Plan) -> PlanRequest {
+    PlanRequest {
+        limits: PlanLimits {
+            error_mm: arguments.error.map(|metres| 1e3 * metres),
+            gap_deg: arguments.gap,
+            time_s: arguments.time,
+        },
+        rpm: arguments.rpm.clone(),
+        range_sd_m: arguments.range_sd,
+        mount_sd_deg: arguments.mount_sd,
+        from_deg: arguments.from,
+        to_deg: arguments.to,
+        ..PlanRequest::new(arguments.at, arguments.lidar.model(), 0)
+    }
+}
+
+fn written(files: &[Option<PathBuf>]) -> Vec<String> {
+    let files = files.iter().flatten();
+    files
+        .map(|file| format!("wrote {}", file.display()))
+        .collect()
+}
+
+/// Table, choice and assumptions.
+fn text(report: &PlanReport, written: Vec<String>) -> String {
+    let mut lines = vec![
+        format!(
+            "{} on {}{}: gaps and errors at {} m, times with homing",
+            report.lidar,
+            report.device,
+            if report.simulated { " (SIMULATED)" } else { "" },
+            report.at_m
+        ),
+        String::new(),
+        table(&report.rows),
+        String::new(),
+        "gap: distance from a direction in view to the nearest point, for the given share of directions;".to_owned(),
+        "error: 95 % of points are within it".to_owned(),
+    ];
+    match &report.chosen {
+        Some(chosen) => lines.extend(choice(chosen, report.at_m)),
+        None => lines.extend(report.unmet.is_none().then(|| {
+            "\n--error, --gap or --time choose a setting and print its command".to_owned()
+        })),
+    }
+    lines.push("\nassumed".to_owned());
+    let assumptions = report.assumptions.iter();
+    lines.extend(assumptions.map(|line| wrapped(&format!("- {line}"))));
+    lines.extend(written);
+    lines.join("\n")
+}
+
+/// Lines of at most 80 columns, those after the first indented.
+fn wrapped(line: &str) -> String {
+    textwrap::fill(line, textwrap::Options::new(80).subsequent_indent("  "))
+}
+
+const HEADINGS: [&str; 11] = [
+    "deg/s", "deg/s2", "rpm", "sweeps", "scan s", "50 % deg", "95 %", "99 %", "worst", "error mm",
+    "points",
+];
+
+fn table(rows: &[CommandRow]) -> String {
+    let mut table = Table::new();
+    let cells = rows.iter().map(|CommandRow { row, .. }| {
+        let (setting, gap) = (&row.setting, &row.gap_deg);
+        [
+            format!("{:.2}", setting.speed_deg_s),
+            format!("{:.0}", setting.accel_deg_s2),
+            format!("{:.0}", setting.rpm),
+            setting.sweeps.to_string(),
+            format!("{:.1}", row.scan_s),
+            format!("{:.2}", gap.p50),
+            format!("{:.2}", gap.p95),
+            format!("{:.2}", gap.p99),
+            format!("{:.2}", gap.worst),
+            format!("{:.1}", row.error_mm.total),
+            row.points.to_string(),
+        ]
+    });
+    table
+        .load_style(NOTHING)
+        .set_header(HEADINGS)
+        .add_rows(cells);
+    for column in table.column_iter_mut() {
+        column
+            .set_padding((0, 1))
+            .set_cell_alignment(CellAlignment::Right);
+    }
+    table.trim_fmt()
+}
+
+/// The chosen row in words.
+fn choice(chosen: &CommandRow, at_m: f64) -> Vec<String> {
+    let row = &chosen.row;
+    let (gap, mm, error) = (&row.gap_deg, &row.gap_mm, &row.error_mm);
+    let mount = error
+        .mount
+        .map_or("not calibrated".to_owned(), |mm| format!("{mm:.2}"));
+    let megabytes = |bytes: u64| bytes as f64 * 1e-6;
+    let paragraphs = [
+        format!(
+            "{:.1} s with homing; at most {} points; replay {:.1} s; log {:.1} MB, cloud {:.1} MB; mean resolution {:.3} deg",
+            row.scan_s,
+            row.points,
+            row.replay_s,
+            megabytes(row.log_bytes),
+            megabytes(row.cloud_bytes),
+            row.resolution_deg,
+        ),
+        format!(
+            "gap at {at_m} m: 50 % of directions {:.2} deg ({:.0} mm), 95 % {:.2} deg ({:.0} mm), 99 % {:.2} deg ({:.0} mm), all {:.2} deg \
+             ({:.0} mm); without a point within the limit: {:.2} %",
+            gap.p50,
+            mm.p50,
+            gap.p95,
+            mm.p95,
+            gap.p99,
+            mm.p99,
+            gap.worst,
+            mm.worst,
+            100.0 * row.share_without_point,
+        ),
+        format!(
+            "error at {at_m} m in mm, one standard deviation: range {:.2}, its steps {:.2}, azimuth {:.2}, tilt angle {:.2}, clock {:.3}, \
+             common delay {:.2}, mount {mount}",
+            error.range, error.range_step, error.azimuth, error.tilt, error.clock, error.delay,
+        ),
+        format!(
+            "sum: {:.1} mm for 95 % of points; the cloud's column sd will state {:.2} mm, which leaves out constant errors (delay, mount)",
+            error.total, error.stated,
+        ),
+    ];
+    let paragraphs = paragraphs.iter().map(|line| wrapped(&format!("  {line}")));
+    std::iter::once(format!("\n{}", chosen.command))
+        .chain(paragraphs)
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use engine::config::{Config, Device};
+    use protocol::vlp16::models;
+
+    use super::*;
+
+    fn report(limits: PlanLimits) -> PlanReport {
+        let request = PlanRequest {
+            limits,
+            ..PlanRequest::new(20.0, &models::VLP_16, 600)
+        };
+        let device = Device::simulator();
+        ScanPlanner::new(&Config::default(), ("sim", &device), request)
+            .unwrap()
+            .plan()
+            .unwrap()
+    }
+
+    #[test]
+    fn the_command_of_the_choice_is_accepted() {
+        let report = report(PlanLimits {
+            error_mm: Some(9.0),
+            gap_deg: Some(0.8),
+            time_s: None,
+        });
+        let chosen = report.chosen.as_ref().unwrap();
+        let words = chosen.command.split(' ').map(std::ffi::OsString::from);
+        let cli = <cli::Cli as clap::Parser>::try_parse_from(words).unwrap();
+        let cli::Command::Capture(capture) = cli.command else {
+            panic!("{}", chosen.command);
+        };
+        let same = (capture.speed - chosen.row.setting.speed_deg_s).abs() < 1e-6;
+        assert!(same, "{} {chosen:?}", capture.speed);
+        let text = text(&report, Vec::new());
+        let words: Vec<&str> = text.split_whitespace().collect();
+        assert!(words.join(" ").contains("mount not calibrated"), "{text}");
+        assert!(
+            text.lines().all(|line| line.chars().count() <= 100),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn sweeps_outside_the_axis_are_refused() {
+        for to_deg in [0.0, -50.0, f64::NAN] {
+            let request = PlanRequest {
+                to_deg: Some(to_deg),
+                ..PlanRequest::new(20.0, &models::VLP_16, 600)
+            };
+            let device = Device::simulator();
+            let planner = ScanPlanner::new(&Config::default(), ("sim", &device), request);
+            let failure = planner.unwrap().plan().unwrap_err();
+            assert_eq!(failure.kind, Kind::Usage, "{to_deg}");
+        }
+    }
+
+    #[test]
+    fn limits_that_no_setting_meets_are_explained() {
+        for (limits, words) in [
+            (
+                PlanLimits {
+                    error_mm: Some(0.5),
+                    ..PlanLimits::default()
+                },
+                "the least is",
+            ),
+            (
+                PlanLimits {
+                    gap_deg: Some(0.01),
+                    ..PlanLimits::default()
+                },
+                "0.20 deg apart in azimuth",
+            ),
+            (
+                PlanLimits {
+                    time_s: Some(1.0),
+                    ..PlanLimits::default()
+                },
+                "the shortest takes",
+            ),
+        ] {
+            let report = report(limits);
+            assert!(report.chosen.is_none());
+            let unmet = report.unmet.unwrap();
+            assert!(unmet.contains(words), "{unmet}");
+        }
+    }
+}
