@@ -81,7 +81,7 @@ fn a_leap_second_in_mid_scan_is_corrected() {
     assert!(error.worst_m < 10e-3 && error.points > 180_000, "{error:?}");
     assert!(captured.cloud().time().is_sorted());
     let info = velomotion::commands::info::run(&velomotion::cli::Info {
-        file: captured.log(),
+        files: vec![captured.log()],
         model: None,
     });
     let text = info.unwrap().text;

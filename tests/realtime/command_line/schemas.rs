@@ -111,8 +111,8 @@ fn what_commands_print_follows_the_schemas() {
         "pcap-1",
         "scan-1",
         "simulate-1",
-        "stopped-1",
         "plan-1",
+        "stopped-1",
         "tradeoff-1",
     ];
     assert_eq!(schemas, expected.into());
