@@ -123,10 +123,7 @@ impl Survey {
 
     /// The drive's records, on the host clock as it was at the beginning.
     pub(crate) fn into_shaft_records(mut self, timeline: &HostTimeline) -> ShaftRecords {
-        for sample in &mut self.samples {
-            sample.request = timeline.host(sample.request);
-            sample.answer = timeline.host(sample.answer);
-        }
+        timeline.convert(&mut self.samples);
         let mut moves = MoveWatch::new(self.gearing);
         for access in self.accesses {
             let host = timeline.host(access.request);
