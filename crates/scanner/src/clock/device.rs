@@ -103,8 +103,8 @@ impl<C: Copy> DeviceClock<C> {
         }
     }
 
-    /// Fits a piece to each stretch, with what happened between them. Returns the clock and the step
-    /// of (arrival - device time) from each stretch to the next.
+    /// Fits a piece to each stretch, with what happened between them. Returns the clock and the
+    /// step of (arrival - device time) from each stretch to the next.
     pub(crate) fn fit_pieces(
         stretches: &[Stretch<C>],
         joints: &[Joint],

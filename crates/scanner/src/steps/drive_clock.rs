@@ -54,8 +54,8 @@ pub(super) fn step(samples: &[ShaftSample], at: usize, by: Span) -> Option<Range
     if difference >= DIFFERENCE * by.saturating_abs() as f64 {
         return None;
     }
-    // Delays of less than the step show the side of a sample. The least delay of many samples is not
-    // quite the smallest possible one.
+    // Delays of less than the step show the side of a sample. The least delay of many samples is
+    // not quite the smallest possible one.
     let apparent = rise.saturating_abs() / 4 * 3;
     let quick = sides.iter().zip([before, after]).map(|(side, least)| {
         let delays = side.clone().filter_map(late);

@@ -13,22 +13,17 @@ use std::borrow::Cow;
 
 use units::{Degrees, Host, Span, Stamp};
 
-use super::latch::{self, LatchEvidence, Renewals};
+use super::candidate::Candidate;
+use super::latch::{self, LatchEvidence};
 use super::noise::Noise;
+use super::observations::{condensed, observed};
 use super::pieces::PiecewiseCubic;
 use super::profile::Profile;
 use super::profile_fit::{self, Observed, ProfileFit, ServoModel};
-use super::{AngleSample, Method, Remark, kinks, spline};
+use super::renewals::Renewals;
+use super::{AngleSample, Method, Remark, kinks, profile_pieces, spline};
 use crate::clock::Moment;
 use crate::sweeps::Sweep;
-use error::Candidate;
-use observations::{condensed, observed};
-
-mod command;
-mod error;
-mod observations;
-mod pieces;
-mod renewed;
 
 /// A curve through a sweep.
 #[derive(Clone, Debug)]
@@ -72,17 +67,17 @@ const SPLINE_BIAS: f64 = 1.4;
 
 /// Candidate curves for one sweep.
 pub(super) struct Candidates<'a> {
-    sweep: &'a Sweep,
+    pub sweep: &'a Sweep,
     /// Samples of the sweep and of the rest around it, in strictly increasing time, for the curves.
-    samples: Cow<'a, [AngleSample]>,
+    pub samples: Cow<'a, [AngleSample]>,
     /// The same by their polls.
-    polled: &'a [AngleSample],
+    pub polled: &'a [AngleSample],
     /// How often the curves' samples were moved to the renewals of a latch.
-    renewed: usize,
-    renewals: Option<Renewals>,
-    origin: Stamp<Host>,
-    noise: Noise,
-    observed: Vec<Observed>,
+    pub renewed: usize,
+    pub renewals: Option<Renewals>,
+    pub origin: Stamp<Host>,
+    pub noise: Noise,
+    pub observed: Vec<Observed>,
 }
 
 impl<'a> Candidates<'a> {
@@ -188,7 +183,7 @@ impl<'a> Candidates<'a> {
 
     fn candidate(&self, fit: ProfileFit, method: Method) -> Option<Candidate> {
         let end_s = self.observed.last()?.at_s;
-        let pieces = pieces::of_profile(&fit, self.origin, end_s)?;
+        let pieces = profile_pieces::of_profile(&fit, self.origin, end_s)?;
         // Parameters that trade off against each other leave the curve as it is.
         let count_deg = self.noise.angle_sd_deg * f64::sqrt(12.0);
         let worst_sd_deg = pieces

@@ -10,14 +10,10 @@
 use units::Span;
 
 use super::bound::BOUND_SDS;
-pub(super) use renewals::Renewals;
-
-mod renewals;
-
 /// Control cycle of an EPOS2, and greatest age of a position.
 pub(super) const CYCLE_S: f64 = 1e-3;
 /// Samples per window: short, as the drive's clock drifts.
-const WINDOW: usize = 48;
+pub(super) const WINDOW: usize = 48;
 /// Mean resultant lengths above which instants lie on a grid, and below which they do not.
 const ON_GRID: f64 = 0.7;
 const OFF_GRID: f64 = 0.45;
@@ -34,7 +30,7 @@ const SHARPER: f64 = 8.0;
 /// Least circular variance of polls that scatter: by 7 us.
 const MIN_SCATTER: f64 = 1e-3;
 /// Greatest duration of an encoder count at which a grid is visible.
-const MAX_COUNT_S: f64 = 0.3e-3;
+pub(super) const MAX_COUNT_S: f64 = 0.3e-3;
 
 /// Where the samples cannot show a latch, the angles take the middle of the possible ages if that
 /// moves them by at most so many encoder counts.
@@ -53,7 +49,7 @@ pub(super) struct Residual {
 
 impl Residual {
     /// From the sample to the instant at which the curve has its angle, seconds.
-    fn late_s(&self) -> f64 {
+    pub fn late_s(&self) -> f64 {
         self.off_deg / self.rate_deg_s
     }
 }
@@ -157,7 +153,10 @@ fn resultant(residuals: &[Residual], instant: impl Fn(&Residual) -> f64) -> f64 
 }
 
 /// Sums of the directions of instants in the cycle.
-fn mean_direction(window: &[Residual], instant: impl Fn(&Residual) -> f64) -> (f64, f64) {
+pub(super) fn mean_direction(
+    window: &[Residual],
+    instant: impl Fn(&Residual) -> f64,
+) -> (f64, f64) {
     window.iter().fold((0.0, 0.0), |(cosine, sine), residual| {
         let phase = (instant(residual) / CYCLE_S).fract() * std::f64::consts::TAU;
         (cosine + phase.cos(), sine + phase.sin())

@@ -1,8 +1,8 @@
 //! Steps of the lidar's clock that the grid of its stamps shows.
 //!
 //! The lidar fires at an even rate, whatever its clock reads: its stamps lie on a grid of whole
-//! packets. A step of the clock shifts the grid for good, which gives its size up to whole packets to
-//! a microsecond, however late the network is. The delays of the nearest packets on either side
+//! packets. A step of the clock shifts the grid for good, which gives its size up to whole packets
+//! to a microsecond, however late the network is. The delays of the nearest packets on either side
 //! tell how many packets passed meanwhile.
 
 use units::Span;

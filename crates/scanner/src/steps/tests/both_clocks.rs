@@ -116,8 +116,8 @@ fn samples_with_the_drives_time_enclose_the_truth_across_a_step() {
     }
 }
 
-/// While the host's clock seems to be earlier than it is, each answer is matched with the SYNC after
-/// its own.
+/// While the host's clock seems to be earlier than it is, each answer is matched with the SYNC
+/// after its own.
 #[test]
 fn samples_matched_with_a_later_sync_are_matched_again() {
     let sent = |i: i64| i * 1_000_000;

@@ -5,13 +5,13 @@
 //! their renewals have no ages, and a fit through them has no error by them. The drift of the
 //! drive's clock cannot be told from an error of the curve's speed: it stays an error.
 
-use super::{CYCLE_S, MAX_COUNT_S, Residual, WINDOW, mean_direction};
+use super::latch::{CYCLE_S, MAX_COUNT_S, Residual, WINDOW, mean_direction};
 
 /// Relative drift of the drive's clock against the host's, one standard deviation: two crystals of
 /// 50 ppm.
 const DRIFT_SD: f64 = 50e-6;
 /// The instants at which the positions of samples were renewed.
-pub(in crate::trajectory) struct Renewals {
+pub(super) struct Renewals {
     /// Middle of the sweep and phase there, seconds, and growth of the phase per second.
     middle_s: f64,
     phase_s: f64,

@@ -2,10 +2,10 @@
 
 use units::{Host, Stamp};
 
-use super::super::AngleSample;
-use super::super::noise::{Noise, rates};
-use super::super::profile::Profile;
-use super::super::profile_fit::Observed;
+use super::AngleSample;
+use super::noise::{Noise, rates};
+use super::profile::Profile;
+use super::profile_fit::Observed;
 
 /// Settling time of a head's servo after a ramp, seconds.
 const SETTLED_S: f64 = 0.1;

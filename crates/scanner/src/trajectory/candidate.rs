@@ -2,12 +2,12 @@
 
 use units::{Host, Stamp};
 
-use super::super::bound::BOUND_SDS;
-use super::super::latch::{self, LatchEvidence, Residual};
-use super::super::noise::seconds;
-use super::super::pieces::{CubicPiece, PiecewiseCubic};
-use super::super::{AngleSample, Method};
-use super::{Candidates, SweepFit};
+use super::bound::BOUND_SDS;
+use super::choose::{Candidates, SweepFit};
+use super::latch::{self, LatchEvidence, Residual};
+use super::noise::seconds;
+use super::pieces::{CubicPiece, PiecewiseCubic};
+use super::{AngleSample, Method};
 use crate::clock::Moment;
 
 /// Residuals per batch mean.

@@ -2,8 +2,8 @@
 
 use units::{Host, Span, Stamp};
 
-use super::super::pieces::{CubicPiece, PiecewiseCubic};
-use super::super::profile_fit::ProfileFit;
+use super::pieces::{CubicPiece, PiecewiseCubic};
+use super::profile_fit::ProfileFit;
 
 /// Limit of pieces for one servo's response.
 const MAX_PIECES: usize = 4_000;

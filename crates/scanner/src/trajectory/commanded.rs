@@ -1,7 +1,7 @@
 //! The motion that was commanded.
 
-use super::super::profile::Profile;
-use super::Candidates;
+use super::choose::Candidates;
+use super::profile::Profile;
 
 impl Candidates<'_> {
     /// The commanded motion, completed by the sweep's ends.

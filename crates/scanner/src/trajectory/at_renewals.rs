@@ -4,11 +4,12 @@ use std::borrow::Cow;
 
 use units::Span;
 
-use super::super::AngleSample;
-use super::super::latch::{self, LatchEvidence, Renewals};
-use super::Candidates;
-use super::error::Candidate;
+use super::AngleSample;
+use super::candidate::Candidate;
+use super::choose::Candidates;
+use super::latch::{self, LatchEvidence};
 use super::observations::observed;
+use super::renewals::Renewals;
 
 /// Rounds in which samples are moved to the renewals that a curve shows: a better curve shows more.
 const RENEWED: usize = 3;
