@@ -116,7 +116,14 @@ impl<'a> Candidates<'a> {
         };
         let mut candidates: Vec<Candidate> = match method {
             Some(Method::Spline) => self.splines(None),
-            Some(method) => self.profile(servo(method)?, method).into_iter().collect(),
+            Some(fixed) => {
+                let only = self.profile(servo(fixed)?, fixed)?;
+                let renewed = self.at_renewals(&only);
+                if let Some(better) = renewed.and_then(|renewed| renewed.best(method)) {
+                    return Some(better);
+                }
+                vec![only]
+            }
             None => {
                 let mut all = self.profiles();
                 let best = least(&all).and_then(|best| all.get(best));
