@@ -137,7 +137,7 @@ impl<'a> Candidates<'a> {
                 let is_aged = |best: &Candidate| {
                     best.latch == LatchEvidence::Present && best.systematic_residual_deg < age_deg
                 };
-                if self.renewed > 0 || best.is_none_or(|best| !is_aged(best)) {
+                if best.is_none_or(|best| !is_aged(best)) {
                     let splines = self.splines(best);
                     all.extend(splines);
                 }
