@@ -12,12 +12,13 @@ mod endpoint;
 mod envelope;
 mod online;
 mod segment;
+mod stretches;
 
 pub use device::DeviceClock;
-pub(crate) use device::Stretch;
 pub use online::OnlineClock;
 pub use segment::Moment;
 pub(crate) use segment::{ClockSegment, ROUND_TO_INTEGER, round};
+pub(crate) use stretches::{Joint, Stretch};
 
 use units::{Host, Lidar, Stamp};
 

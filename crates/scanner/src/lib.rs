@@ -29,6 +29,7 @@ pub mod error;
 mod fast;
 mod live;
 mod placer;
+mod receive_order;
 mod sample_gaps;
 pub mod scanner;
 pub mod steps;

@@ -6,6 +6,7 @@ use lidar::{Decoder, Options, Stats};
 
 use crate::alignment::{Alignment, PlacementCounts};
 use crate::fast::{FiringBlockPlacer, MAX_PACKET_POINTS};
+use crate::receive_order::ReceiveOrder;
 
 /// Second pass: places every firing and hands the points to a sink in batches.
 pub struct Placer<'a> {
@@ -13,6 +14,7 @@ pub struct Placer<'a> {
     decoder: Decoder,
     batch: Points,
     counts: PlacementCounts,
+    receive_order: ReceiveOrder,
     sink: &'a mut dyn Sink,
 }
 
@@ -27,6 +29,7 @@ impl<'a> Placer<'a> {
             decoder: Decoder::new(options),
             batch: Points::with_capacity(sink.fields(), BATCH_POINTS + MAX_PACKET_POINTS),
             counts: PlacementCounts::default(),
+            receive_order: ReceiveOrder::default(),
             sink,
         }
     }
@@ -39,11 +42,11 @@ impl<'a> Placer<'a> {
         let Wire::Lidar { payload, .. } = record.wire else {
             return Ok(());
         };
+        let host = self.receive_order.distinct(record.host);
         let (blocks, batch, counts) = (&mut self.blocks, &mut self.batch, &mut self.counts);
-        self.decoder
-            .firing_blocks(record.host, payload, &mut |block| {
-                blocks.place(block, batch, counts);
-            });
+        self.decoder.firing_blocks(host, payload, &mut |block| {
+            blocks.place(block, batch, counts);
+        });
         if self.batch.len() >= BATCH_POINTS {
             self.flush()?;
         }

@@ -9,23 +9,26 @@
 //!
 //! All host stamps after a step of the host's clock, including the drive's (`monotonic`), are
 //! converted to the clock before it. After a step of the lidar's clock, that clock has another
-//! piece. The spacing of packets shows steps of the lidar's clock down to 0.1 ms if the delays
-//! confirm them; where whole packets seem to be missing, the delays show that none are. Steps of
-//! the host's clock from 1 ms to 10 ms are found where neither device was recorded for half a
-//! second, as on a host that sleeps, and where the samples of a moving axis jump too (`motion`); on
-//! a quiet network the latter shows steps from 0.1 ms on. Others, and steps undone within six
-//! seconds, are not; the clock's bound contains them. `lidar` unwraps hours.
+//! piece. The grid of the stamps shows steps of the lidar's clock down to 0.05 ms on any network;
+//! where whole packets seem to be missing, the delays show that none are. Steps of the host's clock
+//! from 1 ms to 10 ms are found where neither device was recorded for half a second, as on a host
+//! that sleeps, and where the samples show them: by the drive's own clock (`drive_clock`), or by
+//! the motion of the axis (`motion`). On a quiet network these show steps from 0.1 ms on. Others,
+//! and steps undone within six seconds, are not; the clock's bound contains them. `lidar` unwraps
+//! hours.
 
+mod drive_clock;
 mod jumps;
 mod monotonic;
 mod motion;
 
 use core::fmt;
+use core::ops::Range;
 
 use drive::ShaftSample;
 use units::{Host, Span, Stamp};
 
-use crate::clock::{Arrival, LidarClock, Stretch};
+use crate::clock::{Arrival, Joint, LidarClock, Stretch};
 use jumps::{Evidence, Jump};
 use monotonic::before;
 pub(crate) use monotonic::{ClockSteps, HostTimeline};
@@ -101,12 +104,13 @@ impl Timeline {
         let mut cuts: Vec<Cut> = found
             .jumps
             .iter()
-            .filter_map(|jump| attribute(*jump, &found, arrivals, samples, clock_steps))
+            .filter_map(|jump| attribute(*jump, &found, samples, clock_steps))
             .collect();
-        cuts.sort_by_key(|cut| cut.at);
+        cuts.sort_by_key(|cut| (cut.at, cut.clock == SetClock::Host));
+        separate(&mut cuts, arrivals.len());
         let pieces = pieces(arrivals, &cuts, &found.strays);
-        let host_was_set: Vec<bool> = cuts.iter().map(|cut| cut.clock == SetClock::Host).collect();
-        let (clock, rises) = LidarClock::fit_pieces(&pieces, &host_was_set)?;
+        let joints: Vec<Joint> = cuts.iter().map(Cut::joint).collect();
+        let (clock, rises) = LidarClock::fit_pieces(&pieces, &joints)?;
         let begin = arrivals.first()?.host;
         let mut line = HostTimeline::new(clock_steps);
         let mut steps = Vec::new();
@@ -124,7 +128,7 @@ impl Timeline {
                     arrival.host = before(arrival.host, by);
                 }
                 let boundary = cut.boundary.or_else(|| clock_steps.boundary(cut.at, by));
-                line.set(boundary, by);
+                line.set(boundary, by, cut.samples.clone());
             }
             steps.push(ClockStep {
                 clock: cut.clock,
@@ -147,29 +151,60 @@ impl Timeline {
 }
 
 /// A step of a clock among the packets.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Cut {
     /// First packet after it.
     at: usize,
     clock: SetClock,
+    /// By how much the lidar's clock was set forward, if its stamps show it.
+    known: Option<Span>,
     /// Monotonic time of the first record of the drive after it, if known.
     boundary: Option<Stamp<Host>>,
+    /// The samples around it, if the drive's clock shows it.
+    samples: Option<Range<usize>>,
+}
+
+impl Cut {
+    const fn joint(&self) -> Joint {
+        match (self.clock, self.known) {
+            (SetClock::Host, _) => Joint::HostWasSet,
+            (SetClock::Lidar, None) => Joint::DeviceWasSet,
+            (SetClock::Lidar, Some(by)) => Joint::DeviceWasSetBy(by),
+        }
+    }
+}
+
+/// Puts at least one packet between two cuts, and removes those for which there is none.
+fn separate(cuts: &mut Vec<Cut>, packets: usize) {
+    let mut least = 1;
+    for cut in cuts.iter_mut() {
+        cut.at = cut.at.max(least);
+        least = cut.at + 1;
+    }
+    cuts.retain(|cut| cut.at < packets);
 }
 
 /// The clock that jumped; `None` if packets were merely delayed.
 fn attribute(
     jump: Jump,
     found: &jumps::JumpReport,
-    arrivals: &[Arrival],
     samples: &[ShaftSample],
     clock_steps: &ClockSteps,
 ) -> Option<Cut> {
     let cut = |clock| Cut {
         at: jump.at,
         clock,
+        known: None,
         boundary: None,
+        samples: None,
     };
     match jump.evidence {
+        Evidence::Grid => {
+            return Some(Cut {
+                known: Some(Span::ZERO.saturating_sub(jump.by)),
+                ..cut(SetClock::Lidar)
+            });
+        }
         Evidence::Spacing => return Some(cut(SetClock::Lidar)),
         Evidence::Silence(silence) => {
             let sleeps = clock_steps.sleeps(jump.at, silence);
@@ -184,6 +219,13 @@ fn attribute(
         }
         Evidence::Regular => {
             let next = clock_steps.next_sample(jump.at);
+            if drive_clock::is_known(samples, next) {
+                return drive_clock::step(samples, next, jump.by).map(|around| Cut {
+                    boundary: samples.get(around.start).map(|sample| sample.request),
+                    samples: Some(around),
+                    ..cut(SetClock::Host)
+                });
+            }
             return motion::step(samples, next, jump.by).map(|boundary| Cut {
                 boundary: Some(boundary),
                 ..cut(SetClock::Host)
@@ -194,7 +236,7 @@ fn attribute(
     if clock_steps.shows(jump.at, jump.by) {
         return Some(cut(SetClock::Host));
     }
-    if found.device_jumped(arrivals, jump.at) {
+    if found.device_jumped(&found.level, jump.at) {
         return Some(cut(SetClock::Lidar));
     }
     (!clock_steps.is_dense(jump.at)).then(|| cut(SetClock::Host))
@@ -222,20 +264,22 @@ fn pieces(arrivals: &[Arrival], cuts: &[Cut], strays: &[usize]) -> Vec<Stretch> 
             to
         };
         let mut sure = sound(begin..end.max(begin));
-        if sure.len() < UNCERTAIN_PACKETS {
-            sure.clone_from(&whole);
-        }
         let devices = || whole.iter().map(|arrival| arrival.device);
         let begins = whole.first();
         if let (Some(first), Some(last), Some(begins)) = (devices().min(), devices().max(), begins)
         {
-            sure.sort_unstable_by_key(|a| (a.device, a.host));
+            let (join, received) = (begins.device, begins.host);
+            let mut all = whole;
+            for some in [&mut all, &mut sure] {
+                some.sort_unstable_by_key(|a| (a.device, a.host));
+            }
             pieces.push(Stretch {
-                arrivals: sure,
+                all,
+                sure,
                 first,
                 last,
-                join: begins.device,
-                received: begins.host,
+                join,
+                received,
             });
         }
         from = to;

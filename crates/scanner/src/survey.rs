@@ -10,6 +10,7 @@ use units::{Gearing, Host, Span, Stamp};
 use crate::clock::Arrival;
 use crate::config::ScanConfig;
 use crate::error::ScanError;
+use crate::receive_order::ReceiveOrder;
 use crate::steps::{ClockStep, ClockSteps, HostTimeline, Timeline};
 use crate::sweeps::MoveWatch;
 
@@ -22,6 +23,7 @@ pub struct Survey {
     /// Objects of moves that were written to the drive or read back.
     accesses: Vec<SettingAccess>,
     clock_steps: ClockSteps,
+    receive_order: ReceiveOrder,
     link: Option<DriveLink>,
 }
 
@@ -53,6 +55,7 @@ impl Survey {
             samples: Vec::new(),
             accesses: Vec::new(),
             clock_steps: ClockSteps::default(),
+            receive_order: ReceiveOrder::default(),
             link: None,
         })
     }
@@ -61,9 +64,9 @@ impl Survey {
     pub fn observe(&mut self, record: &Record<'_>) {
         match record.wire {
             Wire::Lidar { payload, .. } => {
-                if let Some(arrival) = self.reader.packet(record.host, payload) {
-                    self.clock_steps
-                        .packet(arrival.device.as_nanos(), record.host);
+                let host = self.receive_order.distinct(record.host);
+                if let Some(arrival) = self.reader.packet(host, payload) {
+                    self.clock_steps.packet(arrival.device.as_nanos(), host);
                     self.arrivals.push(arrival);
                 }
             }
@@ -123,10 +126,7 @@ impl Survey {
 
     /// The drive's records, on the host clock as it was at the beginning.
     pub(crate) fn into_shaft_records(mut self, timeline: &HostTimeline) -> ShaftRecords {
-        for sample in &mut self.samples {
-            sample.request = timeline.host(sample.request);
-            sample.answer = timeline.host(sample.answer);
-        }
+        timeline.convert(&mut self.samples);
         let mut moves = MoveWatch::new(self.gearing);
         for access in self.accesses {
             let host = timeline.host(access.request);

@@ -12,16 +12,22 @@ use crate::angles::AngleSample;
 use crate::clock::Moment;
 use crate::sweeps::Sweep;
 
+mod at_renewals;
 mod bound;
+mod candidate;
 mod choose;
+mod commanded;
 mod interpolate;
 mod kinks;
 mod latch;
 mod noise;
+mod observations;
 mod pieces;
 mod prior;
 mod profile;
 mod profile_fit;
+mod profile_pieces;
+mod renewals;
 mod spline;
 #[cfg(test)]
 mod tests;

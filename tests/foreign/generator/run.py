@@ -20,6 +20,7 @@ import compare
 import drive
 import scan
 from conditions import ALL
+from mechanism import COUNT_DEG
 
 
 def number(value, digits=4, scale=1.0):
@@ -153,12 +154,15 @@ EDGES = (0.0, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, float("inf"))
 def summary(results):
     """Histograms of truth over bound, and how much wider the bounds are than the truth."""
     labels = [f"to {b:g}" if b < 100 else "above" for b in EDGES[1:]]
-    titles = ("truth/bound", "scans", *labels, "median bound/truth, truths of 0 left out")
+    titles = (
+        "truth/bound", "scans", *labels, "median bound/truth, truths of 0 left out",
+        "median with the step in both, all scans",
+    )  # fmt: skip
     lines = ["| " + " | ".join(titles) + " |", "|" + "---|" * len(titles)]
-    for title, name in (
-        ("angle", "angle_ratio"),
-        ("clock", "clock_ratio"),
-        ("both", "total_ratio"),
+    for title, name, truth, bound, step in (
+        ("angle", "angle_ratio", "curve_worst_deg", "angle_bound_deg", COUNT_DEG),
+        ("clock", "clock_ratio", "clock_worst_us", "clock_bound_us", 1.0),
+        ("both", "total_ratio", None, None, None),
     ):
         ratios = [r[name] for r in results if r.get(name) is not None]
         if not ratios:
@@ -166,7 +170,11 @@ def summary(results):
         counts, _ = np.histogram(ratios, bins=EDGES)
         tight = [1.0 / r for r in ratios if r]
         middle = f"{np.median(tight):.1f}" if tight else "-"
-        lines.append("| " + " | ".join(map(str, (title, len(ratios), *counts, middle))) + " |")
+        pairs = [(r[truth], r[bound]) for r in results if r.get(truth) and r.get(bound)]
+        whole = [(allowed + step) / was for was, allowed in pairs]
+        whole = f"{np.median(whole):.1f}" if whole else "-"
+        cells = (title, len(ratios), *counts, middle, whole)
+        lines.append("| " + " | ".join(map(str, cells)) + " |")
     verdicts = Counter(r["verdict"] for r in results)
     lines.append("\n" + ", ".join(f"{k}: {v}" for k, v in verdicts.most_common()))
     return "\n".join(lines)

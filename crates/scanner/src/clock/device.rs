@@ -5,8 +5,9 @@ use core::marker::PhantomData;
 use units::{Host, Lidar, Span, Stamp};
 
 use super::Arrival;
-use super::envelope::{BOUND_SDS, Envelope};
+use super::envelope::BOUND_SDS;
 use super::segment::{ClockSegment, Moment, OffsetLine};
+use super::stretches::{Joint, Stretch, runs};
 
 /// Maps device time to host time.
 ///
@@ -18,19 +19,6 @@ pub struct DeviceClock<C = Lidar> {
     pieces: Vec<ClockPiece>,
     residual: Span,
     domain: PhantomData<fn() -> C>,
-}
-
-/// Arrivals between two steps of a clock.
-pub(crate) struct Stretch<C = Lidar> {
-    /// Arrivals used for the fit, in order of device time.
-    pub arrivals: Vec<Arrival<C>>,
-    /// First and last device time of all arrivals.
-    pub first: Stamp<C>,
-    pub last: Stamp<C>,
-    /// Device time where the stretch begins in the recording.
-    pub join: Stamp<C>,
-    /// Receive time there, by the host's clock of that time.
-    pub received: Stamp<Host>,
 }
 
 /// A stretch over which a device's clock runs without steps.
@@ -83,7 +71,8 @@ impl<C: Copy> DeviceClock<C> {
             last: sorted.last()?.device,
             join: sorted.first()?.device,
             received: sorted.iter().map(|arrival| arrival.host).min()?,
-            arrivals: sorted,
+            all: Vec::new(),
+            sure: sorted,
         };
         Self::fit_pieces(&[stretch], &[]).map(|(clock, _)| clock)
     }
@@ -114,27 +103,29 @@ impl<C: Copy> DeviceClock<C> {
         }
     }
 
-    /// Fits a piece to each stretch. Between stretches one of the two clocks was set; after a step
-    /// of the host's clock, host times continue from the stretch before. Returns the clock and the
+    /// Fits a piece to each stretch, with what happened between them. Returns the clock and the
     /// step of (arrival - device time) from each stretch to the next.
     pub(crate) fn fit_pieces(
         stretches: &[Stretch<C>],
-        host_was_set: &[bool],
+        joints: &[Joint],
     ) -> Option<(Self, Vec<Span>)> {
         let origin_ns = stretches.first()?.first.as_nanos();
+        let mut fitted: Vec<ClockPiece> = Vec::with_capacity(stretches.len());
+        for run in runs(stretches, joints) {
+            fitted.extend(run.fit(origin_ns)?);
+        }
         let mut pieces: Vec<ClockPiece> = Vec::with_capacity(stretches.len());
         let mut late: Vec<i64> = Vec::new();
         let mut rises = Vec::new();
         let mut set_by = 0i64;
         let mut uncertain_ns = 0.0;
-        for stretch in stretches {
-            let mut piece = ClockPiece::fit(stretch, origin_ns)?;
-            late.extend(stretch.arrivals.iter().map(|arrival| {
+        for (stretch, mut piece) in stretches.iter().zip(fitted) {
+            late.extend(stretch.sure.iter().map(|arrival| {
                 let host = piece.host(arrival.device, origin_ns);
                 arrival.host.saturating_since(host).as_nanos()
             }));
             if let Some(last) = pieces.last() {
-                let by_host = host_was_set.get(rises.len()).copied().unwrap_or(false);
+                let by_host = joints.get(rises.len()) == Some(&Joint::HostWasSet);
                 let (from, to) = if by_host {
                     (stretch.join, stretch.join)
                 } else {
@@ -333,31 +324,6 @@ impl<C: Copy> DeviceClock<C> {
 }
 
 impl ClockPiece {
-    fn fit<C>(stretch: &Stretch<C>, origin_ns: i64) -> Option<Self> {
-        let first = stretch.arrivals.first()?;
-        let whole = first.host.as_nanos().wrapping_sub(first.device.as_nanos());
-        let since_origin = |device: Stamp<C>| device.as_nanos().saturating_sub(origin_ns) as f64;
-        let points: Vec<(f64, f64)> = stretch
-            .arrivals
-            .iter()
-            .map(|a| {
-                let y = a.host.as_nanos().wrapping_sub(a.device.as_nanos());
-                (since_origin(a.device), y.wrapping_sub(whole) as f64)
-            })
-            .collect();
-        let Envelope { lines, cells } = Envelope::below(&points);
-        Some(Self {
-            from_ns: since_origin(stretch.first),
-            to_ns: since_origin(stretch.last),
-            end_ns: stretch.last.as_nanos(),
-            received: stretch.received,
-            whole,
-            set_by: 0,
-            lines,
-            cells,
-        })
-    }
-
     fn host<C>(&self, device: Stamp<C>, origin_ns: i64) -> Stamp<Host> {
         let x = device.as_nanos().saturating_sub(origin_ns) as f64;
         self.segment(x).moment(device, x).host

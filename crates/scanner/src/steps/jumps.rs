@@ -10,6 +10,7 @@
 //! spacing of packets, those of the host's clock by a silence, in which the host slept, or by the
 //! motion of the axis.
 
+mod grid;
 mod whole_packets;
 
 use std::collections::VecDeque;
@@ -70,6 +71,8 @@ pub(crate) struct Jump {
 pub(crate) enum Evidence {
     /// Nothing in the packets.
     Delays,
+    /// The grid of stamps: the lidar's clock, by exactly this much.
+    Grid,
     /// The spacing of packets: the lidar's clock.
     Spacing,
     /// A silence of this length in regular packets: the host's clock, if the host slept.
@@ -84,12 +87,17 @@ pub(crate) struct JumpReport {
     /// Packets that precede their earliest possible arrival: damaged stamps.
     pub strays: Vec<usize>,
     spacing_ns: i64,
+    /// The packets without the jumps that the grid shows.
+    pub level: Vec<Arrival>,
 }
 
 /// Searches packets in order of recording.
 pub(crate) fn find(arrivals: &[Arrival]) -> JumpReport {
-    let offsets = offsets(arrivals);
     let spacing_ns = spacing_ns(arrivals);
+    let shifts = grid::jumps(arrivals, spacing_ns);
+    let level = grid::without(arrivals, &shifts);
+    let arrivals = level.as_slice();
+    let offsets = offsets(arrivals);
     let window = usize::try_from(WINDOW_NS / spacing_ns.max(100_000)).unwrap_or(MIN_LEVEL_PACKETS);
     let ahead = least_ahead(&offsets, window);
     let mut search = JumpSearch {
@@ -103,6 +111,7 @@ pub(crate) fn find(arrivals: &[Arrival]) -> JumpReport {
         jumps: Vec::new(),
         strays: Vec::new(),
         spacing_ns,
+        level: Vec::new(),
     };
     for (at, offset) in offsets.iter().enumerate() {
         let (Some(before), Some(after)) = (search.behind.get(), ahead.get(at)) else {
@@ -132,7 +141,9 @@ pub(crate) fn find(arrivals: &[Arrival]) -> JumpReport {
     found.jumps.extend(across);
     let regular = found.jumps_of_regular_packets(arrivals, &offsets, window);
     found.jumps.extend(regular);
+    found.jumps.extend(shifts);
     found.jumps.sort_by_key(|jump| jump.at);
+    found.level = level;
     found
 }
 

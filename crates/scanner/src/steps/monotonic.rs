@@ -6,16 +6,24 @@
 //! known from the whole recording, [`HostTimeline`] converts each stamp to the recorded one, less
 //! the steps before it.
 
+use core::ops::Range;
+
+use drive::ShaftSample;
 use units::{Host, Span, Stamp};
+
+use super::drive_clock;
 
 /// Stamps that go back by more are of a clock that was set back.
 const BACK: Span = Span::from_millis(-2);
 /// Stamps that leap by more than the lidar's clock are of a clock that was set forward. Smaller
 /// leaps do not disturb pairing.
 const LEAP: Span = Span::from_millis(1_500);
-/// Monotonic time put between two clocks: the true interval is not known to a microsecond, and
+/// Monotonic time put between two clocks where the lidar's clock does not show the true interval:
 /// after so long a silence pairing restarts.
 const STEP_GAP: Span = Span::from_millis(2_500);
+/// Otherwise pairing goes on, as answers may be under way. By this much the time put between
+/// exceeds the true one, so that no request seems to be earlier than it was.
+const GAP_MARGIN: Span = Span::from_millis(20);
 /// The lidar's clock is compared only if its packets are this near.
 const MAX_PACKET_DISTANCE: Span = Span::from_millis(500);
 /// Pauses from this length on are recorded: a step may be hidden in them.
@@ -74,7 +82,10 @@ impl ClockSteps {
             let advance = self.lidar_advance(last, host);
             if length < BACK || advance.is_some_and(|advance| length.saturating_sub(advance) > LEAP)
             {
-                self.shift = self.shift.saturating_add(length).saturating_sub(STEP_GAP);
+                let gap = advance.map_or(STEP_GAP, |advance| {
+                    STEP_GAP.min(advance.saturating_add(GAP_MARGIN))
+                });
+                self.shift = self.shift.saturating_add(length).saturating_sub(gap);
                 let monotonic = before(host, self.shift);
                 self.shifts.push((monotonic, self.shift));
             }
@@ -179,7 +190,26 @@ fn packets(at: usize) -> u32 {
 #[derive(Clone, Debug)]
 pub(crate) struct HostTimeline {
     shifts: Vec<(Stamp<Host>, Span)>,
-    steps: Vec<(Stamp<Host>, Span)>,
+    steps: Vec<HostStep>,
+}
+
+/// A step of the host's clock.
+#[derive(Clone, Debug)]
+struct HostStep {
+    /// Monotonic time of the first record after it.
+    from: Stamp<Host>,
+    by: Span,
+    /// The samples of which a stamp may precede or follow it, if the drive's clock shows them.
+    samples: Option<Range<usize>>,
+}
+
+impl HostStep {
+    fn at(&self, monotonic: Stamp<Host>) -> Span {
+        match self.from <= monotonic {
+            true => self.by,
+            false => Span::ZERO,
+        }
+    }
 }
 
 impl HostTimeline {
@@ -191,23 +221,55 @@ impl HostTimeline {
         }
     }
 
-    /// Adds a step of the host's clock by `by` before the monotonic time `from`.
-    pub fn set(&mut self, from: Option<Stamp<Host>>, by: Span) {
+    /// Adds a step of the host's clock by `by` before the monotonic time `from`, within `samples`.
+    pub fn set(&mut self, from: Option<Stamp<Host>>, by: Span, samples: Option<Range<usize>>) {
         if let Some(from) = from {
-            let before = self.steps.last().map_or(Span::ZERO, |last| last.1);
-            self.steps.push((from, before.saturating_add(by)));
+            self.steps.push(HostStep { from, by, samples });
         }
     }
 
     /// The stamp by the host's clock as it was at the beginning.
     pub fn host(&self, monotonic: Stamp<Host>) -> Stamp<Host> {
-        let at = |line: &[(Stamp<Host>, Span)]| {
-            let past = line.partition_point(|(from, _)| *from <= monotonic);
-            let last = past.checked_sub(1).and_then(|i| line.get(i));
-            last.map_or(Span::ZERO, |last| last.1)
-        };
-        before(monotonic.saturating_add(at(&self.shifts)), at(&self.steps))
+        let by = self.steps.iter().map(|step| step.at(monotonic));
+        before(self.recorded(monotonic), sum(by))
     }
+
+    /// Converts the stamps of samples in order of recording. Of those near a step the request is
+    /// the earliest possible and the answer the latest.
+    pub fn convert(&self, samples: &mut [ShaftSample]) {
+        for (i, sample) in samples.iter_mut().enumerate() {
+            let (mut request, mut answer) = (Span::ZERO, Span::ZERO);
+            for step in &self.steps {
+                let by = step.by;
+                let (early, late) = match &step.samples {
+                    Some(around) if i < around.start => (Span::ZERO, Span::ZERO),
+                    Some(around) if around.contains(&i) => (by.max(Span::ZERO), by.min(Span::ZERO)),
+                    Some(_) => (by, by),
+                    None => (step.at(sample.request), step.at(sample.answer)),
+                };
+                request = request.saturating_add(early);
+                answer = answer.saturating_add(late);
+            }
+            sample.request = before(self.recorded(sample.request), request);
+            sample.answer = before(self.recorded(sample.answer), answer);
+        }
+        for step in &self.steps {
+            if let Some(around) = &step.samples {
+                drive_clock::rematch(samples, around);
+            }
+        }
+    }
+
+    /// The recorded stamp.
+    fn recorded(&self, monotonic: Stamp<Host>) -> Stamp<Host> {
+        let past = self.shifts.partition_point(|(from, _)| *from <= monotonic);
+        let last = past.checked_sub(1).and_then(|i| self.shifts.get(i));
+        monotonic.saturating_add(last.map_or(Span::ZERO, |last| last.1))
+    }
+}
+
+fn sum(spans: impl Iterator<Item = Span>) -> Span {
+    spans.fold(Span::ZERO, Span::saturating_add)
 }
 
 /// An instant by the clock before a step of `by`.

@@ -5,6 +5,8 @@ use units::{Lidar, Quadcounts, Span};
 
 use super::*;
 
+mod both_clocks;
+
 const EPOCH: i64 = 1_795_226_733_000_000_000;
 const PACKET_NS: i64 = 1_327_104;
 const S: i64 = 1_000_000_000;

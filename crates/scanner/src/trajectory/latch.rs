@@ -10,11 +10,10 @@
 use units::Span;
 
 use super::bound::BOUND_SDS;
-
 /// Control cycle of an EPOS2, and greatest age of a position.
 pub(super) const CYCLE_S: f64 = 1e-3;
 /// Samples per window: short, as the drive's clock drifts.
-const WINDOW: usize = 48;
+pub(super) const WINDOW: usize = 48;
 /// Mean resultant lengths above which instants lie on a grid, and below which they do not.
 const ON_GRID: f64 = 0.7;
 const OFF_GRID: f64 = 0.45;
@@ -22,6 +21,7 @@ const OFF_GRID: f64 = 0.45;
 const DECISIVE: f64 = 3.0;
 /// Error of instants by the drive's own timing, seconds.
 const UNCERTAINTY_S: f64 = 20e-6;
+pub(super) const RENEWAL_BOUND: Span = Span::from_micros(20);
 /// Samples whose bound exceeds the median by this factor are left out: their instant is unknown.
 const MAX_BOUND: f64 = 1.5;
 /// Instants lie on a grid about which polls scatter, if the circular variance of polls is greater
@@ -30,7 +30,11 @@ const SHARPER: f64 = 8.0;
 /// Least circular variance of polls that scatter: by 7 us.
 const MIN_SCATTER: f64 = 1e-3;
 /// Greatest duration of an encoder count at which a grid is visible.
-const MAX_COUNT_S: f64 = 0.3e-3;
+pub(super) const MAX_COUNT_S: f64 = 0.3e-3;
+
+/// Where the samples cannot show a latch, the angles take the middle of the possible ages if that
+/// moves them by at most so many encoder counts.
+const MAX_SHIFT_COUNTS: f64 = 2.0;
 
 /// Residual of a sample.
 #[derive(Clone, Copy, Debug)]
@@ -39,11 +43,13 @@ pub(super) struct Residual {
     pub off_deg: f64,
     pub rate_deg_s: f64,
     pub bound_s: f64,
+    /// Standard deviation of the curve there.
+    pub curve_sd_deg: f64,
 }
 
 impl Residual {
     /// From the sample to the instant at which the curve has its angle, seconds.
-    fn late_s(&self) -> f64 {
+    pub fn late_s(&self) -> f64 {
         self.off_deg / self.rate_deg_s
     }
 }
@@ -140,15 +146,21 @@ fn resultant(residuals: &[Residual], instant: impl Fn(&Residual) -> f64) -> f64 
     let windows = residuals.chunks_exact(WINDOW);
     let count = windows.len() as f64;
     let lengths = windows.map(|window| {
-        let (mut cosine, mut sine) = (0.0, 0.0);
-        for residual in window {
-            let phase = (instant(residual) / CYCLE_S).fract() * std::f64::consts::TAU;
-            cosine += phase.cos();
-            sine += phase.sin();
-        }
+        let (cosine, sine) = mean_direction(window, &instant);
         f64::hypot(cosine, sine) / WINDOW as f64
     });
     lengths.sum::<f64>() / count
+}
+
+/// Sums of the directions of instants in the cycle.
+pub(super) fn mean_direction(
+    window: &[Residual],
+    instant: impl Fn(&Residual) -> f64,
+) -> (f64, f64) {
+    window.iter().fold((0.0, 0.0), |(cosine, sine), residual| {
+        let phase = (instant(residual) / CYCLE_S).fract() * std::f64::consts::TAU;
+        (cosine + phase.cos(), sine + phase.sin())
+    })
 }
 
 /// A shift of the curve, and limits of the delay that remains common to all samples. Each was taken
@@ -162,7 +174,6 @@ pub(super) fn delay(
 ) -> (Span, (Span, Span)) {
     let quick = quick(residuals);
     let half_count_deg = angle_sd_deg * f64::sqrt(3.0);
-    let slack_deg = half_count_deg + BOUND_SDS * curve_sd_deg;
     // Samples without a bound are the truth.
     let is_bounded = quick.iter().any(|r| r.bound_s > 0.0);
     let age_s = if is_bounded && latch != LatchEvidence::Absent {
@@ -172,6 +183,8 @@ pub(super) fn delay(
     };
     let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
     for residual in &quick {
+        let curve_sd_deg = curve_sd_deg.max(residual.curve_sd_deg);
+        let slack_deg = half_count_deg + BOUND_SDS * curve_sd_deg;
         let reach_s = residual.bound_s + slack_deg / residual.rate_deg_s.abs();
         low = low.max(-reach_s - age_s - residual.late_s());
         high = high.min(reach_s - residual.late_s());
@@ -185,10 +198,12 @@ pub(super) fn delay(
         let bound = median_bound_s(&quick);
         (low, high) = (-bound - age_s - conflict, bound + conflict);
     }
-    let shift = if latch == LatchEvidence::Present {
-        f64::midpoint(low, high)
-    } else {
-        0.0
+    let fastest = quick.iter().map(|r| r.rate_deg_s.abs()).fold(0.0, f64::max);
+    let is_small = 0.5 * age_s * fastest <= MAX_SHIFT_COUNTS * 2.0 * half_count_deg;
+    let shift = match latch {
+        LatchEvidence::Present => f64::midpoint(low, high),
+        LatchEvidence::Unknown if is_small => f64::midpoint(low, high),
+        LatchEvidence::Unknown | LatchEvidence::Absent => 0.0,
     };
     let limits = (
         Span::from_secs_f64((low - shift).min(0.0)),
@@ -214,6 +229,7 @@ mod tests {
                 off_deg: 50.0 * (0.4e-3 - age_s),
                 rate_deg_s: 50.0,
                 bound_s: 0.2e-3,
+                curve_sd_deg: 0.0,
             }
         });
         polled.collect()

@@ -43,7 +43,7 @@ impl JumpReport {
                 found.push(Jump {
                     at,
                     by: Span::from_nanos(by),
-                    evidence: Evidence::Spacing,
+                    evidence: Evidence::Grid,
                 });
             }
         }

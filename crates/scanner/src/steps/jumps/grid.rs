@@ -1,0 +1,112 @@
+//! Steps of the lidar's clock that the grid of its stamps shows.
+//!
+//! The lidar fires at an even rate, whatever its clock reads: its stamps lie on a grid of whole
+//! packets. A step of the clock shifts the grid for good, which gives its size up to whole packets
+//! to a microsecond, however late the network is. The delays of the nearest packets on either side
+//! tell how many packets passed meanwhile.
+
+use units::Span;
+
+use super::{Evidence, Jump, MIN_IRREGULAR_NS, QUANTUM_NS, is_frequent, offsets, steps};
+use crate::clock::Arrival;
+
+/// Packets on either side whose stamps have to be on the grid, and the share of them.
+const SIDE: usize = 16;
+const MIN_ON_GRID: usize = SIDE * 3 / 4;
+/// The smallest step to look for.
+const SMALLEST_NS: i64 = 50_000;
+/// Packets that pass during a step, at most: after a longer pause the lidar may have restarted,
+/// with another grid.
+const MAX_PACKETS: i64 = 64;
+/// Packets on either side whose delays are compared. Few, as the host's clock may step too, but
+/// more where a few packets were held up together.
+const WINDOWS: [usize; 5] = [4, 8, 16, 32, 64];
+
+/// The shifts of the grid, in order.
+pub(super) fn jumps(arrivals: &[Arrival], spacing_ns: i64) -> Vec<Jump> {
+    let offsets = offsets(arrivals);
+    let inside = SIDE..arrivals.len().saturating_sub(SIDE);
+    let found = inside.filter_map(|at| {
+        let by = shift(arrivals, &offsets, at, spacing_ns.max(1))?;
+        Some(Jump {
+            at,
+            by: Span::from_nanos(-by),
+            evidence: Evidence::Grid,
+        })
+    });
+    found.collect()
+}
+
+/// The packets by the lidar's clock before the jumps.
+pub(super) fn without(arrivals: &[Arrival], jumps: &[Jump]) -> Vec<Arrival> {
+    let mut level = arrivals.to_vec();
+    for jump in jumps {
+        for arrival in level.get_mut(jump.at..).unwrap_or_default() {
+            arrival.device = arrival.device.saturating_add(jump.by);
+        }
+    }
+    level
+}
+
+/// By how much the lidar's clock was set forward before packet `at`; `None` if it was not.
+fn shift(arrivals: &[Arrival], offsets: &[i64], at: usize, spacing: i64) -> Option<i64> {
+    let device = steps(arrivals, at)?.0.as_nanos();
+    let tolerance = MIN_IRREGULAR_NS.saturating_add(device.saturating_abs() / spacing * 10);
+    if off_grid(device, spacing).abs() < tolerance {
+        return None;
+    }
+    let before = phase(arrivals, at - 1, at - SIDE..at, spacing)?;
+    let after = phase(arrivals, at, at..at + SIDE, spacing)?;
+    let device = device + after - before;
+    let mut packets = WINDOWS.map(|window| {
+        let rise = rise_at(offsets, at, window);
+        device
+            .saturating_add(rise)
+            .saturating_add(spacing / 2)
+            .div_euclid(spacing)
+    });
+    packets.sort_unstable();
+    // Packets are rarely lost just then.
+    let [_, _, median, _, _] = packets;
+    let passed = if packets.contains(&1) { 1 } else { median };
+    let by = device.saturating_sub(passed.saturating_mul(spacing));
+    let is_step = (1..=MAX_PACKETS).contains(&passed)
+        && by.abs() >= SMALLEST_NS
+        && !is_frequent(arrivals, at, device, MIN_IRREGULAR_NS / 2);
+    is_step.then_some(by)
+}
+
+/// Distance from the nearest multiple of the spacing.
+fn off_grid(device_ns: i64, spacing: i64) -> i64 {
+    device_ns.saturating_add(spacing / 2).rem_euclid(spacing) - spacing / 2
+}
+
+/// Mean distance of the grid from the stamp of packet `from`; `None` without a grid.
+fn phase(
+    arrivals: &[Arrival],
+    from: usize,
+    side: core::ops::Range<usize>,
+    spacing: i64,
+) -> Option<i64> {
+    let origin = arrivals.get(from)?.device;
+    let (mut sum, mut count) = (0, 0);
+    for arrival in arrivals.get(side)? {
+        let device = arrival.device.saturating_since(origin).as_nanos();
+        let off = off_grid(device, spacing);
+        if off.abs() <= QUANTUM_NS {
+            sum += off;
+            count += 1;
+        }
+    }
+    (count >= MIN_ON_GRID as i64).then(|| sum / count)
+}
+
+/// Rise of the least offset from the packets before `at` to those from it on.
+fn rise_at(offsets: &[i64], at: usize, window: usize) -> i64 {
+    let least = |from: usize, to: usize| {
+        let some = offsets.get(from..to.min(offsets.len()));
+        some.unwrap_or_default().iter().min().copied()
+    };
+    let sides = (least(at, at + window)).zip(least(at.saturating_sub(window), at));
+    sides.map_or(0, |(after, before)| after.saturating_sub(before))
+}
