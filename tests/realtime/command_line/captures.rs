@@ -203,7 +203,7 @@ fn invalid_speeds_and_angles_are_refused_before_anything_moves() {
     place.fails(
         "capture --speed 10 -o a.ply --log a.ply",
         2,
-        &["recording a.ply"],
+        &["a.ply cannot be both the cloud and its recording"],
     );
     place.fails("capture --speed 10 -o - --json", 2, &["stdout"]);
     place.fails(
