@@ -67,7 +67,9 @@ pub fn estimate(
     plan: &CapturePlan,
 ) -> CaptureEstimate {
     let lidar = state.service.lidar();
-    let rpm = lidar.rpm.unwrap_or(f64::from(USUAL_RPM));
+    // A head that has just begun to turn has no rate yet.
+    let rpm = lidar.rpm.filter(|rpm| *rpm >= 60.0);
+    let rpm = rpm.unwrap_or(f64::from(USUAL_RPM));
     let sweeps = || plan.steps.iter().filter(|step| step.sweep);
     let seconds = |step: &engine::capture::moves::Step| step.plan.duration.as_secs_f64();
     let moves_s: f64 = plan.steps.iter().map(seconds).sum();
@@ -104,7 +106,8 @@ pub fn estimate(
 }
 
 /// Bytes of disk space that a capture may need.
-fn bytes(state: &DaemonState, plan: &CapturePlan) -> u64 {
+#[must_use]
+pub fn bytes(state: &DaemonState, plan: &CapturePlan) -> u64 {
     let seconds = |sweep: bool| -> f64 {
         let steps = plan.steps.iter().filter(|step| step.sweep || !sweep);
         steps.map(|step| step.plan.duration.as_secs_f64()).sum()

@@ -105,6 +105,7 @@ fn print(
                 object => object.to_string(),
             }
         }
+        (false, Some(output)) if output.text.is_empty() => return Ok(()),
         (false, Some(output)) if output.is_result || !common.quiet => output.text,
         (false, _) => return Ok(()),
     };

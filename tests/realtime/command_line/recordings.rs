@@ -281,6 +281,8 @@ fn several_recordings_are_read_in_turn() {
         "{}",
         String::from_utf8_lossy(&output.stderr)
     );
+    let twice = "replay vlp16-dual.pcap ./vlp16-dual.pcap --tilt none --force";
+    place.fails(twice, 2, &["vlp16-dual.ply"]);
     for cloud in ["vlp16-strongest-gps.ply", "vlp16-dual.ply"] {
         assert!(place.path(cloud).is_file(), "{cloud}");
     }

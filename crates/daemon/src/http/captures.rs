@@ -89,7 +89,7 @@ pub fn start(state: &Arc<DaemonState>, request: &CaptureRequest) -> Result<Strin
     service.require_drive()?;
     service.require_lidar()?;
     let plan = service.plan(request, "cloud".into(), "log".into())?;
-    let bytes = plans::estimate(state, request, &plan).bytes;
+    let bytes = plans::bytes(state, &plan);
     let need = format!("this scan may need {} MB", bytes / 1_000_000);
     plans::check_room(state, bytes, &need)?;
     let lease = service.lease(AxisTask::Capturing)?;
@@ -161,11 +161,15 @@ pub async fn plan(
     query: Result<Query<CaptureRequest>, QueryRejection>,
 ) -> Result<Response, Refusal> {
     let Query(request) = query?;
-    let state = &api.state;
     if let Some(name) = &request.name {
         check_name(name)?;
     }
-    let plan = state.service.plan(&request, "cloud".into(), "log".into())?;
-    let estimate = plans::estimate(state, &request, &plan);
+    let plan = api
+        .state
+        .service
+        .plan(&request, "cloud".into(), "log".into())?;
+    let state = Arc::clone(&api.state);
+    // Tens of milliseconds of computing.
+    let estimate = super::with_disk(move || plans::estimate(&state, &request, &plan)).await?;
     Ok(super::json(StatusCode::OK, &estimate))
 }

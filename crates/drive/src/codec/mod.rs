@@ -16,7 +16,7 @@ use protocol::epos2::objects::Address;
 use protocol::epos2::usb::{self, UsbDecoder};
 use protocol::epos2::{SerialFrame, SerialFrameError};
 use protocol::record::DriveLink;
-use units::{Host, Stamp};
+use units::{Host, Span, Stamp};
 
 use crate::exchange::{
     MAX_SEGMENT, ObjectAccess, Reply, TransferRequest, TransferResponse, TransferSegment,
@@ -161,6 +161,13 @@ impl Codec {
     /// When [`Codec::expire`] is due.
     pub fn deadline(&self) -> Option<Stamp<Host>> {
         self.rs232()?.deadline()
+    }
+
+    /// Moves the deadline by a time in which the host read no input.
+    pub fn postpone(&mut self, delay: Span) {
+        if let Some(master) = self.rs232_mut() {
+            master.postpone(delay);
+        }
     }
 
     /// Acts on a deadline that has passed.

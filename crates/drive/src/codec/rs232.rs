@@ -202,6 +202,11 @@ impl Rs232Master {
         }
     }
 
+    /// Moves the deadline by a time in which the host read no input.
+    pub fn postpone(&mut self, delay: Span) {
+        self.deadline = self.deadline.saturating_add(delay);
+    }
+
     pub fn expire(&mut self, now: Stamp<Host>) {
         match self.state {
             // The quiet span starts after the flush is sent.

@@ -210,6 +210,8 @@ impl RequestLink {
 
     /// Moves the deadlines by a time in which the host read no input.
     pub fn postpone(&mut self, delay: Span) {
+        self.codec.postpone(delay);
+        self.budget.postpone(delay);
         match &mut self.state {
             LinkState::AwaitReply { deadline, limit } => {
                 *deadline = deadline.saturating_add(delay);

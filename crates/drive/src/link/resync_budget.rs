@@ -54,6 +54,13 @@ impl ResyncBudget {
         self.waiting_since.get_or_insert(now);
     }
 
+    /// Moves the limits by a time in which the host read no input.
+    pub fn postpone(&mut self, delay: Span) {
+        for since in [&mut self.damaged_since, &mut self.waiting_since] {
+            *since = since.map(|since| since.saturating_add(delay));
+        }
+    }
+
     /// Whether unmatched input arrived since the link last worked.
     pub fn has_damage(&self) -> bool {
         self.damaged_since.is_some()

@@ -177,6 +177,34 @@ fn a_delayed_host_still_reads_the_reply() {
     assert_eq!(value(&mut link), Some(7));
 }
 
+/// The same in the middle of an RS232 dialogue.
+#[test]
+fn a_delayed_host_continues_its_dialogue() {
+    let mut link = RequestLink::new(Codec::new(DriveLink::Rs232, 1));
+    link.submit(read(0x6064));
+    assert_eq!(link.transmit(at(0)).unwrap().len(), 1, "the opcode");
+    link.postpone(Span::from_millis(1_900));
+    assert_eq!(link.transmit(at(1_900)), None);
+    link.handle_input(b"O", at(1_900));
+    assert!(link.transmit(at(1_901)).unwrap().len() > 6, "the body");
+}
+
+/// And while a link is desynchronised: the delay uses up none of the time for probes.
+#[test]
+fn a_delayed_host_goes_on_probing() {
+    let mut link = RequestLink::new(Codec::usb(1));
+    link.submit(read(0x6064));
+    link.transmit(at(0)).unwrap();
+    assert_eq!(link.transmit(at(100)), Some(probe(0)));
+    link.postpone(Span::from_secs(2));
+    // The reply to the request was late, and the host read it after its delay.
+    link.handle_input(&answer(7), at(2_110));
+    assert_eq!(value(&mut link), Some(7));
+    link.submit(read(0x6064));
+    link.handle_input(&absent(0), at(2_120));
+    assert!(link.transmit(at(2_121)).is_some(), "the next request");
+}
+
 #[test]
 fn silence_is_reported_after_two_probes() {
     let mut link = RequestLink::new(Codec::usb(1));

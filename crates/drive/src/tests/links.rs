@@ -353,7 +353,7 @@ fn a_loaded_host_waits_at_the_end_of_a_move() {
     }
 }
 
-/// A stop is never patient.
+/// A stop waits no longer on a loaded host.
 #[test]
 fn a_loaded_host_does_not_delay_a_stop() {
     let duration = |is_loaded: bool| {

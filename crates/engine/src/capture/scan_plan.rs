@@ -377,7 +377,9 @@ impl ScanPlanner {
         ] {
             command += &end.map_or(String::new(), |end| format!(" {flag} {end}"));
         }
-        if self.config.device.default.as_deref() != Some(self.name.as_str()) {
+        // `capture` looks for a device, too, if none is configured.
+        let usual = self.config.device.default.as_deref().unwrap_or("auto");
+        if self.name != usual {
             command += &format!(" --device {}", self.name);
         }
         CommandRow { command, row }

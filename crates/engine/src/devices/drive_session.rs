@@ -242,6 +242,7 @@ impl<'g, P: Port> Session<'g, P> {
                 Some(Ok(())) | None => {}
             }
             self.report_delay(last_read);
+            let writes = self.port.now();
             while let Some(frame) = self.client.poll_transmit(self.port.now()) {
                 self.port.write_frame(&frame)?;
             }
@@ -253,6 +254,7 @@ impl<'g, P: Port> Session<'g, P> {
                     _ => {}
                 }
             }
+            self.report_delay(writes);
             let now = self.port.now();
             if (interruptible && self.interrupt.load(Ordering::Relaxed))
                 || until.is_some_and(|until| now >= until)

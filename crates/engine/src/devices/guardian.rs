@@ -37,11 +37,10 @@ pub const SILENCE_LIMIT: Duration = Duration::from_millis(500);
 /// stopped nor stuck. With two busy loops per processor poll(2) of a terminal waits for the
 /// kernel's own threads for up to 2.2 s, as measured.
 const OVERLOAD_LIMIT: Duration = Duration::from_secs(3);
-/// Between two looks at a silent program.
-const LOOK: Duration = Duration::from_millis(20);
-/// Time that counts at most between two of them: a guardian that did not run itself knows nothing
-/// about the rest.
-const LONGEST_LOOK: Duration = Duration::from_millis(40);
+/// Between two checks of a silent program.
+const CHECK_INTERVAL: Duration = Duration::from_millis(20);
+/// Time that counts at most between two checks: the machine may not have run the guardian either.
+const MAX_COUNTED: Duration = Duration::from_millis(40);
 /// Gap in the drive loop after which the parent asks before it uses the port.
 const ASK_AFTER: Duration = Duration::from_millis(200);
 /// Longest wait for an answer of the guardian; its start takes some tens of milliseconds, and a
@@ -339,7 +338,7 @@ fn wait_for_alarm(socket: &mut UnixStream) -> io::Result<Option<bool>> {
     let mut armed = false;
     let mut silence = Silence::default();
     loop {
-        socket.set_read_timeout(armed.then_some(LOOK))?;
+        socket.set_read_timeout(armed.then_some(CHECK_INTERVAL))?;
         let mut byte = [0];
         match socket.read(&mut byte) {
             Ok(0) => return Ok(armed.then_some(true)),
@@ -348,7 +347,9 @@ fn wait_for_alarm(socket: &mut UnixStream) -> io::Result<Option<bool>> {
                 match byte {
                     [request::ARM] => {
                         armed = true;
-                        threads.drive_loop = read_until(socket, request::ARM_END)?.parse().ok();
+                        // Without the id only the limit in all is shorter.
+                        let id = read_until(socket, request::ARM_END);
+                        threads.drive_loop = id.ok().and_then(|id| id.parse().ok());
                     }
                     [request::DISARM] => armed = false,
                     [request::ASK] => socket.write_all(&[answer::IDLE])?,
@@ -359,7 +360,7 @@ fn wait_for_alarm(socket: &mut UnixStream) -> io::Result<Option<bool>> {
             Err(error) => match error.kind() {
                 io::ErrorKind::Interrupted => {}
                 io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut => {
-                    let elapsed = silence.looked.elapsed();
+                    let elapsed = silence.checked.elapsed();
                     silence.add(elapsed, threads.is_delayed(elapsed));
                     if silence.is_alarm() {
                         return Ok(Some(false));
@@ -375,8 +376,8 @@ fn wait_for_alarm(socket: &mut UnixStream) -> io::Result<Option<bool>> {
 /// Time without heartbeats.
 #[derive(Clone, Copy, Debug)]
 struct Silence {
-    /// The latest look at the parent.
-    looked: Instant,
+    /// The latest check of the parent.
+    checked: Instant,
     /// In all.
     total: Duration,
     /// Time in which the drive loop could run.
@@ -386,7 +387,7 @@ struct Silence {
 impl Default for Silence {
     fn default() -> Self {
         Self {
-            looked: Instant::now(),
+            checked: Instant::now(),
             total: Duration::ZERO,
             counted: Duration::ZERO,
         }
@@ -394,12 +395,12 @@ impl Default for Silence {
 }
 
 impl Silence {
-    /// Adds the time since the latest look, in which the machine may have delayed the parent.
+    /// Adds the time since the latest check, in which the machine may have delayed the parent.
     fn add(&mut self, elapsed: Duration, is_delayed: bool) {
-        self.looked += elapsed;
+        self.checked += elapsed;
         self.total += elapsed;
         if !is_delayed {
-            self.counted += elapsed.min(LONGEST_LOOK);
+            self.counted += elapsed.min(MAX_COUNTED);
         }
     }
 

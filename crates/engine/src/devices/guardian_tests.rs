@@ -86,11 +86,11 @@ fn the_guardian_sends_the_quick_stop_after_a_read_error() {
     assert_eq!(bytes[..10], [0x90, 2, 0x11, 4, 0x40, 0x60, 0, 1, 0x0B, 0]);
 }
 
-/// Silence until the alarm, in looks of this length, of which the machine delays some.
-fn silence_until_alarm(look_ms: u64, is_delayed: impl Fn(Duration) -> bool) -> Duration {
+/// Silence until the alarm, with checks at this interval and a machine that delays some of them.
+fn silence_until_alarm(interval_ms: u64, is_delayed: impl Fn(Duration) -> bool) -> Duration {
     let mut silence = Silence::default();
     while !silence.is_alarm() {
-        let elapsed = Duration::from_millis(look_ms);
+        let elapsed = Duration::from_millis(interval_ms);
         silence.add(elapsed, is_delayed(silence.total));
     }
     silence.total
@@ -112,9 +112,9 @@ fn time_in_which_the_machine_delays_the_program_does_not_count() {
     assert_eq!(endless, OVERLOAD_LIMIT);
 }
 
-/// The whole machine stands still, and with it the guardian: one look of 2 s is no silence of 2 s.
+/// The whole machine stands still, and with it the guardian: one interval of 2 s is no silence of 2 s.
 #[test]
-fn a_guardian_that_did_not_run_is_no_witness() {
+fn a_delay_of_the_guardian_itself_counts_little() {
     let found = silence_until_alarm(1_000, |_| false);
     assert_eq!(found, OVERLOAD_LIMIT);
     let mut silence = Silence::default();

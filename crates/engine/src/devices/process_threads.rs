@@ -16,7 +16,7 @@ pub(super) struct ProcessThreads {
     folder: PathBuf,
     /// The thread that drives the axis.
     pub drive_loop: Option<u32>,
-    /// Time that each thread had run at the latest look.
+    /// Time that each thread had run at the latest call.
     run_times: HashMap<u32, Duration>,
 }
 
@@ -29,7 +29,7 @@ impl ProcessThreads {
         }
     }
 
-    /// Whether the machine delayed the process since the latest look, `elapsed` ago: its drive loop
+    /// Whether the machine delayed the process since the latest call, `elapsed` ago: its drive loop
     /// waits for the system (D), or a thread, the loop or one that it may wait for, waits for a
     /// processor. A thread that runs in an endless loop does not wait. The threads of a stopped
     /// program are in the state T, those of a stuck one sleep (S).
@@ -38,27 +38,26 @@ impl ProcessThreads {
             return false;
         };
         let mut is_delayed = false;
+        let mut run_times = HashMap::new();
         for thread in threads.flatten() {
             let Some(id) = thread.file_name().to_str().and_then(|id| id.parse().ok()) else {
                 continue;
             };
+            // A system without `schedstat` does not tell.
+            let run_time = run_time(&thread.path());
+            let ran = match (run_time, self.run_times.get(&id)) {
+                (Some(now), Some(before)) => now.saturating_sub(*before) * 2 > elapsed,
+                _ => false,
+            };
+            run_times.extend(run_time.map(|run_time| (id, run_time)));
             is_delayed |= match state(&thread.path()) {
                 Some(b'D') => self.drive_loop == Some(id),
-                Some(b'R') => !self.ran(id, &thread.path(), elapsed),
+                Some(b'R') => !ran,
                 _ => false,
             };
         }
+        self.run_times = run_times;
         is_delayed
-    }
-
-    /// Whether a thread ran for half of this time since the latest look. A system without
-    /// `schedstat` does not tell.
-    fn ran(&mut self, id: u32, thread: &Path, elapsed: Duration) -> bool {
-        let Some(run_time) = run_time(thread) else {
-            return false;
-        };
-        let previous = self.run_times.insert(id, run_time);
-        previous.is_some_and(|previous| run_time.saturating_sub(previous) * 2 > elapsed)
     }
 }
 
@@ -78,8 +77,6 @@ fn run_time(thread: &Path) -> Option<Duration> {
 
 #[cfg(test)]
 mod tests {
-    use std::process::{Command, Stdio};
-
     use super::*;
 
     #[test]
@@ -89,34 +86,63 @@ mod tests {
         assert_eq!(thread.spawn(own_state).unwrap().join().unwrap(), Some(b'R'));
     }
 
-    #[test]
-    fn a_sleeping_program_is_not_delayed() {
-        let mut stuck = Command::new("cat");
-        let mut stuck = stuck.stdin(Stdio::piped()).spawn().unwrap();
-        let mut threads = ProcessThreads::of(stuck.id());
-        // It starts first.
-        while threads.is_delayed(Duration::MAX / 4) {
-            std::thread::yield_now();
-        }
-        drop(stuck.stdin.take());
-        stuck.wait().unwrap();
-        // A process that has ended.
-        assert!(!threads.is_delayed(Duration::from_millis(20)));
+    /// A process with these threads: id, state, nanoseconds on a processor.
+    fn process(threads: &[(u32, char, u64)]) -> (tempfile::TempDir, ProcessThreads) {
+        let folder = tempfile::tempdir().unwrap();
+        let process = ProcessThreads {
+            folder: folder.path().to_owned(),
+            drive_loop: Some(1),
+            run_times: HashMap::new(),
+        };
+        update(folder.path(), threads);
+        (folder, process)
     }
 
-    /// This thread's own state is R whenever it looks; only its run time differs.
-    #[test]
-    fn a_thread_that_runs_is_not_delayed_and_one_that_waits_is() {
-        let mut threads = ProcessThreads::of(std::process::id());
-        let own = own_id();
-        let folder = threads.folder.join(own.to_string());
-        threads.ran(own, &folder, Duration::ZERO);
-        let began = run_time(&folder).unwrap();
-        // A slice of this thread's own time, however long the machine takes for it.
-        while run_time(&folder).unwrap() - began < Duration::from_millis(20) {
-            std::hint::spin_loop();
+    fn update(folder: &Path, threads: &[(u32, char, u64)]) {
+        for (id, state, ran) in threads {
+            let thread = folder.join(id.to_string());
+            std::fs::create_dir_all(&thread).unwrap();
+            std::fs::write(thread.join("stat"), format!("{id} (a name) {state} 1 1")).unwrap();
+            std::fs::write(thread.join("schedstat"), format!("{ran} 0 0")).unwrap();
         }
-        assert!(threads.ran(own, &folder, Duration::from_millis(20)));
-        assert!(!threads.ran(own, &folder, Duration::from_secs(20)));
+    }
+
+    const ELAPSED: Duration = Duration::from_millis(20);
+
+    #[test]
+    fn only_the_drive_loop_may_wait_for_the_system() {
+        let (_folder, mut loop_waits) = process(&[(1, 'D', 0), (2, 'S', 0)]);
+        assert!(loop_waits.is_delayed(ELAPSED));
+        let (_folder, mut other_waits) = process(&[(1, 'S', 0), (2, 'D', 0)]);
+        assert!(!other_waits.is_delayed(ELAPSED));
+    }
+
+    /// Stopped (T) and sleeping (S) threads, and one in an endless loop.
+    #[test]
+    fn a_stuck_program_is_not_delayed() {
+        for state in ['T', 'S'] {
+            let (_folder, mut stuck) = process(&[(1, state, 0), (2, 'S', 0)]);
+            assert!(!stuck.is_delayed(ELAPSED), "{state}");
+        }
+        let (folder, mut stuck) = process(&[(1, 'S', 0), (2, 'R', 1_000_000)]);
+        stuck.is_delayed(ELAPSED);
+        update(folder.path(), &[(2, 'R', 19_000_000)]);
+        assert!(!stuck.is_delayed(ELAPSED));
+    }
+
+    #[test]
+    fn a_program_that_waits_for_a_processor_is_delayed() {
+        let (folder, mut starved) = process(&[(1, 'S', 5_000_000)]);
+        starved.is_delayed(ELAPSED);
+        // It ran earlier, but hardly since.
+        update(folder.path(), &[(1, 'R', 5_100_000)]);
+        assert!(starved.is_delayed(ELAPSED));
+    }
+
+    #[test]
+    fn the_threads_of_this_process_are_found() {
+        let mut threads = ProcessThreads::of(std::process::id());
+        threads.is_delayed(ELAPSED);
+        assert!(threads.run_times.contains_key(&own_id()));
     }
 }

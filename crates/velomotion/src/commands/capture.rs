@@ -40,8 +40,12 @@ pub fn run(arguments: &cli::Capture, common: &Common) -> Result<CommandOutput, F
     output::check_free(&plan.log, plan.force)?;
     let interrupt = signals::motion_interrupt_flag()?;
     let mut progress = Progress::new(common);
-    let planner = ScanPlanner::of_capture(&config, &plan, &models::VLP_16, USUAL_RPM)?;
-    let expected = planner.expectation(&arguments.into(), &planner.row(&plan.steps));
+    // A scan that cannot be predicted can be made all the same.
+    let planner = ScanPlanner::of_capture(&config, &plan, &models::VLP_16, USUAL_RPM);
+    let expected = planner.map_or_else(
+        |_| Vec::new(),
+        |planner| planner.expectation(&arguments.into(), &planner.row(&plan.steps)),
+    );
     for line in plan.headline().iter().chain(&expected) {
         progress.say(line);
     }

@@ -78,11 +78,15 @@ impl CommandOutput {
                 }
             });
             if let Some(failure) = output.failure.take() {
-                if failure.kind == Kind::Interrupted {
-                    return Err(failure);
-                }
+                let is_interrupted = failure.kind == Kind::Interrupted;
                 if let Some(object) = output.json.as_object_mut() {
                     object.insert("error".to_owned(), serde_json::json!(failure));
+                }
+                if is_interrupted {
+                    objects.push(output.json);
+                    all.json = serde_json::Value::Array(objects);
+                    all.failure = Some(failure);
+                    return Ok(all);
                 }
                 crate::logging::failed(&failure);
                 failed.push((file, failure.kind));

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use analysis::plan::{PlanLimits, PlanRow, figure};
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, Table};
-use engine::capture::scan_plan::{CommandRow, PlanReport, PlanRequest, ScanPlanner};
+use engine::capture::scan_plan::{CommandRow, PlanReport, PlanRequest, ScanPlanner, USUAL_RPM};
 use engine::config;
 use engine::devices::profile;
 use engine::document::Document;
@@ -37,7 +37,12 @@ pub fn run(arguments: &cli::Plan, common: &Common) -> Result<CommandOutput, Fail
         let help = "name another device with --device";
         return Err(Failure::new(Kind::Usage, message).help(help));
     }
-    let report = ScanPlanner::new(&config, (&name, &device), request(arguments))?.plan()?;
+    let mut report = ScanPlanner::new(&config, (&name, &device), request(arguments))?.plan()?;
+    if let Some(file) = &common.config {
+        for row in report.rows.iter_mut().chain(&mut report.chosen) {
+            row.command += &format!(" --config {}", quoted(&file.to_string_lossy()));
+        }
+    }
     if let ([Some(drawing), Some(json)], Some(folder)) = (&files, &arguments.report) {
         make_folder(folder)?;
         let rows: Vec<PlanRow> = report.rows.iter().map(|row| row.row.clone()).collect();
@@ -72,6 +77,15 @@ fn request(arguments: &cli::Plan) -> PlanRequest {
         from_deg: arguments.from,
         to_deg: arguments.to,
         ..PlanRequest::new(arguments.at, arguments.lidar.model(), 0)
+    }
+}
+
+/// A word for a shell.
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "/._-".contains(c);
+    match word.chars().all(is_plain) {
+        true => word.to_owned(),
+        false => format!("'{}'", word.replace('\'', r"'\''")),
     }
 }
 
@@ -193,7 +207,11 @@ fn choice(chosen: &CommandRow, at_m: f64) -> Vec<String> {
         ),
     ];
     let paragraphs = paragraphs.iter().map(|line| wrapped(&format!("  {line}")));
+    let rpm = row.setting.rpm;
+    let other_rate = (rpm != f64::from(USUAL_RPM))
+        .then(|| format!("  the lidar must turn at {rpm} rpm: set it on its own page first"));
     std::iter::once(format!("\n{}", chosen.command))
+        .chain(other_rate)
         .chain(paragraphs)
         .collect()
 }

@@ -36,6 +36,15 @@ pub fn run(arguments: &cli::Replay, common: &Common) -> Result<CommandOutput, Fa
         return Err(Failure::new(Kind::Usage, what)
             .help("leave it out: each cloud gets the name of its recording"));
     }
+    let mut clouds: Vec<PathBuf> = Vec::new();
+    for input in &arguments.inputs {
+        let cloud = default_paths::cloud_of(input);
+        if clouds.contains(&cloud) {
+            let what = format!("two recordings would have the cloud {}", cloud.display());
+            return Err(Failure::new(Kind::Usage, what).help("replay them one by one, with -o"));
+        }
+        clouds.push(cloud);
+    }
     CommandOutput::of_each(&arguments.inputs, |input| {
         replay(arguments, common, input, &interrupt)
     })

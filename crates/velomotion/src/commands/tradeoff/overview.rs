@@ -102,7 +102,7 @@ fn about(recommended: usize) -> Result<Vec<String>, StudyError> {
         let plan = planner(Some(gap_deg))?.plan();
         let plan = plan.map_err(|failure| StudyError::workload(failure.message))?;
         if let Some(chosen) = plan.chosen {
-            let command = chosen.command.replace(" --device auto", "");
+            let command = chosen.command.clone();
             advice.push(format!(
                 "{gap_deg} deg: {command} ({:.1} s, {:.1} million points)",
                 chosen.row.scan_s,
