@@ -230,8 +230,8 @@ async fn health(State(api): State<Arc<Api>>) -> Response {
     response
 }
 
-/// Runs what may wait for a disk, or computes for long, on a thread that answers no requests: a stop is answered whatever
-/// the disk does.
+/// Runs what may wait for a disk, or computes for long, on a thread that answers no requests: a
+/// stop is answered whatever the disk does.
 ///
 /// # Errors
 /// [`Refusal`] after a panic in it.

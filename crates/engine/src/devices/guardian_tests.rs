@@ -86,7 +86,8 @@ fn the_guardian_sends_the_quick_stop_after_a_read_error() {
     assert_eq!(bytes[..10], [0x90, 2, 0x11, 4, 0x40, 0x60, 0, 1, 0x0B, 0]);
 }
 
-/// Silence until the alarm, with checks at this interval and a machine that delays some of them.
+/// Silence until the alarm, with checks at this interval, and a machine that delays the program at
+/// some of them.
 fn silence_until_alarm(interval_ms: u64, is_delayed: impl Fn(Duration) -> bool) -> Duration {
     let mut silence = Silence::default();
     while !silence.is_alarm() {
