@@ -113,7 +113,8 @@ fn time_in_which_the_machine_delays_the_program_does_not_count() {
     assert_eq!(endless, OVERLOAD_LIMIT);
 }
 
-/// The whole machine stands still, and with it the guardian: one interval of 2 s is no silence of 2 s.
+/// The whole machine stands still, and with it the guardian: one interval of 2 s is no silence of
+/// 2 s.
 #[test]
 fn a_delay_of_the_guardian_itself_counts_little() {
     let found = silence_until_alarm(1_000, |_| false);
