@@ -56,7 +56,7 @@ pub struct ErrorModel {
     /// The link to the drive.
     pub link: LinkTiming,
     /// Standard deviation of the lidar's seat on the axis and of the zero of the tilt, degrees;
-    /// `None` where nobody has measured it.
+    /// `None` where it has not been measured.
     pub mount_sd_deg: Option<f64>,
 }
 

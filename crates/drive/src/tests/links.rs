@@ -276,10 +276,7 @@ fn a_gap_of_most_of_a_second_does_not_end_a_move() {
             rig.client.start(DriveCommand::Sweep(slow)).unwrap();
             assert_eq!(rig.run_for(Span::from_millis(600)), None, "{link:?}");
             let until = rig.now + Span::from_millis(silent_ms);
-            rig.unit.distort = Box::new(move |at, bytes| match at < until {
-                true => Vec::new(),
-                false => bytes,
-            });
+            rig.unit.lose_replies_until(until);
             let end = rig.finish();
             assert!(
                 matches!(end, Ok(CommandOutcome::Arrived(_))),
@@ -304,10 +301,7 @@ fn silence_at_the_end_of_a_move_does_not_fail_it() {
             let before = took - Span::from_millis(10 * k);
             assert_eq!(rig.run_for(before), None, "{link:?} {k}");
             let until = rig.now + Span::from_millis(190);
-            rig.unit.distort = Box::new(move |at, bytes| match at < until {
-                true => Vec::new(),
-                false => bytes,
-            });
+            rig.unit.lose_replies_until(until);
             let end = rig.finish();
             if let Err(error) = end {
                 // The stop came before the target was reached.
@@ -335,10 +329,7 @@ fn a_loaded_host_waits_at_the_end_of_a_move() {
             rig.client.start(DriveCommand::Sweep(to(-15.0))).unwrap();
             assert_eq!(rig.run_for(Span::from_millis(15 * k)), None, "{link:?} {k}");
             let until = rig.now + Span::from_millis(900);
-            rig.unit.distort = Box::new(move |at, bytes| match at < until {
-                true => Vec::new(),
-                false => bytes,
-            });
+            rig.unit.lose_replies_until(until);
             let end = rig.finish();
             assert!(
                 matches!(end, Ok(CommandOutcome::Arrived(_))),

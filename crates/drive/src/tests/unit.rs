@@ -160,6 +160,14 @@ impl Unit {
         }
     }
 
+    /// Loses every reply until this time.
+    pub fn lose_replies_until(&mut self, until: Stamp<Host>) {
+        self.distort = Box::new(move |at, bytes| match at < until {
+            true => Vec::new(),
+            false => bytes,
+        });
+    }
+
     /// Sends bytes to the unit.
     pub fn input(&mut self, bytes: &[u8], now: Stamp<Host>) {
         if self.is_cut {

@@ -122,7 +122,7 @@ fn quantity(text: &str, units: &[(&str, f64)]) -> Result<f64, String> {
             let names = units.iter().map(|(unit, _)| *unit);
             let names: Vec<&str> = names.filter(|unit| !unit.is_empty()).collect();
             format!(
-                "expected a number above 0 with its unit: {}",
+                "expected a number above 0, up to a million, without or with a unit: {}",
                 names.join(", ")
             )
         })

@@ -25,7 +25,7 @@ use super::device_backend::{DaemonCapture, LocalCapture, record};
 use super::guard_axis::environment;
 use crate::cli::{self, Common};
 use crate::signals;
-use crate::terminal::Progress;
+use crate::terminal::{Progress, width_of, wrapped};
 
 /// Runs the command.
 ///
@@ -47,7 +47,7 @@ pub fn run(arguments: &cli::Capture, common: &Common) -> Result<CommandOutput, F
         |planner| planner.expectation(&arguments.into(), &planner.row(&plan.steps)),
     );
     for line in plan.headline().iter().chain(&expected) {
-        progress.say(line);
+        progress.say(&wrapped(line, width_of(std::io::stderr()), "", "  "));
     }
     let client = Client::find(&plan.name, &plan.device);
     let mut by_daemon = match &client {

@@ -109,7 +109,7 @@ fn text(report: &PlanReport, written: Vec<String>) -> String {
         String::new(),
         table(&report.rows),
         String::new(),
-        "gap: distance from a direction in view to the nearest point, for the given share of directions;".to_owned(),
+        "gap: angle to the nearest point, for that share of the directions in view;".to_owned(),
         "error: 95 % of points are within it".to_owned(),
     ];
     match &report.chosen {
