@@ -36,19 +36,20 @@ pub fn figure(rows: &[PlanRow], chosen: Option<&PlanRow>, at_m: f64) -> String {
         about: Vec::new(),
         rows: rows_drawn.collect(),
     };
-    let finding = |from: &PlanRow, to: &PlanRow| {
-        format!(
-            "{:.1} to {:.1} s: {:.2} to {:.2} deg, {:.0} to {:.0} mm at {at_m} m",
-            from.scan_s,
-            to.scan_s,
-            from.gap_deg.p99,
-            to.gap_deg.p99,
-            from.error_mm.total,
-            to.error_mm.total
-        )
-    };
-    let title = match (rows.first(), chosen.or(rows.last())) {
-        (Some(fastest), Some(found)) => finding(fastest, found),
+    let title = match (chosen, rows.first(), rows.last()) {
+        (Some(found), ..) => format!(
+            "{:.1} s give gaps of {:.2} deg, errors of {:.1} mm at {at_m} m",
+            found.scan_s, found.gap_deg.p99, found.error_mm.total
+        ),
+        (None, Some(fast), Some(slow)) => format!(
+            "{:.1} to {:.0} s: gaps {:.2} to {:.2} deg, errors {:.0} to {:.1} mm",
+            fast.scan_s,
+            slow.scan_s,
+            fast.gap_deg.p99,
+            slow.gap_deg.p99,
+            fast.error_mm.total,
+            slow.error_mm.total
+        ),
         _ => STUDY.title.to_owned(),
     };
     svg::titled(&findings, &title)
