@@ -118,6 +118,7 @@ struct Measured {
 fn device(kind: DeviceKind) -> Device {
     Device {
         kind,
+        accel_deg_s2: 5_000.0,
         ..Device::simulator()
     }
 }

@@ -25,11 +25,15 @@ use units::{Gearing, Stamp};
 const ONE: &str = "--one";
 
 /// Typical settings of every effect.
-const TABLES: [(&str, &str); 18] = [
+const TABLES: [(&str, &str); 21] = [
     ("limited_field_of_view", "from_deg = 30.0\nto_deg = 330.0"),
     (
         "own_shadow",
         "sectors = [{ azimuth_from_deg = 170.0, azimuth_to_deg = 190.0 }]\nbelow_deg = -50.0",
+    ),
+    (
+        "base_drift",
+        "velocity_m_s = [0.02, 0.0, 0.0]\nturn_deg_s = [0.0, 0.1, 0.0]",
     ),
     (
         "moving_objects",
@@ -38,11 +42,16 @@ const TABLES: [(&str, &str); 18] = [
     ("divergence", ""),
     ("weather", "visibility_m = 200.0"),
     ("reflectance", ""),
+    (
+        "laser_errors",
+        "range_sd_m = 0.01\nelevation_sd_deg = 0.05\nazimuth_sd_deg = 0.05",
+    ),
     ("range_noise", "sd_m = 0.01"),
     ("lidar_clock", "drift_ppm = 12.0\nwander_us = 5.0"),
     ("servo_lag", "frequency_hz = 20.0\ndamping = 0.7"),
     ("tilt_limits", "from_deg = -44.0\nto_deg = 1.0"),
     ("gear_ripple", "amplitude_deg = 0.003"),
+    ("eccentricity", "amplitude_deg = 0.02"),
     ("backlash", "play_deg = 0.02"),
     ("encoder_quantisation", ""),
     ("duplicate", "share = 0.01"),

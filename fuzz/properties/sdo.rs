@@ -2,7 +2,7 @@
 //! every request, and both survive any frame of the bus at any time.
 
 use firmware_sim::epos2::{CanServer, Node, NodeConfig, UsbServer};
-use protocol::Bounded;
+use protocol::BoundedVec;
 use protocol::canopen::sdo::{
     Expedited, Initiate, SEGMENT_LEN, SdoRequest, SdoResponse, SdoSegment, SdoTransfer,
     TransferError, TransferStep,
@@ -429,7 +429,7 @@ fn dialogue(input: &mut Input<'_>) {
 }
 
 /// `None` if the unit is silent.
-type Exchanged = Option<Result<Bounded<u8, ROOM>, TransferError>>;
+type Exchanged = Option<Result<BoundedVec<u8, ROOM>, TransferError>>;
 
 fn exchange(
     (mut transfer, mut request): (SdoTransfer<ROOM>, SdoRequest),

@@ -3,7 +3,7 @@
 use firmware_sim::vlp16::{DataPacketBuilder, PacketModel, Pps, ReturnMode, position_packet};
 use io::log::{LogConfig, LogWriter};
 use protocol::canopen::NodeId;
-use protocol::canopen::sdo::Request;
+use protocol::canopen::sdo::SdoRequest;
 use protocol::epos2::message::ReadObject;
 use protocol::epos2::{objects, rs232, usb};
 use protocol::record::{Direction, DriveLink, Record, Wire};
@@ -104,7 +104,7 @@ fn log(link: DriveLink, ports: &[u16]) -> Vec<u8> {
             body
         }
         DriveLink::Can => {
-            let request = Request::InitiateUpload { address };
+            let request = SdoRequest::InitiateUpload { address };
             request.to_frame(NodeId::MAX).to_socketcan().to_vec()
         }
     };

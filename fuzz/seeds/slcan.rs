@@ -1,7 +1,7 @@
 //! SLCAN sessions: lines of both directions, and a host that opens the adapter and sends requests
 //! to the unit.
 
-use protocol::canopen::sdo::Request;
+use protocol::canopen::sdo::SdoRequest;
 use protocol::canopen::slcan::{Bitrate, SlcanCommand, SlcanReply};
 use protocol::canopen::{CanFrame, CobId, NodeId};
 use protocol::epos2::objects;
@@ -36,7 +36,7 @@ pub fn seeds() -> Vec<Seed> {
 
 fn request(node: NodeId) -> CanFrame {
     let address = objects::POSITION_ACTUAL.address;
-    Request::InitiateUpload { address }.to_frame(node)
+    SdoRequest::InitiateUpload { address }.to_frame(node)
 }
 
 fn host() -> Vec<u8> {

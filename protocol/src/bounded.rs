@@ -8,7 +8,7 @@ use thiserror::Error;
 
 /// A list of at most `N` values, read as a slice.
 #[derive(Clone, Copy)]
-pub struct Bounded<T, const N: usize> {
+pub struct BoundedVec<T, const N: usize> {
     items: [T; N],
     len: usize,
 }
@@ -21,7 +21,7 @@ pub struct CapacityError {
     pub capacity: usize,
 }
 
-impl<T: Copy + Default, const N: usize> Bounded<T, N> {
+impl<T: Copy + Default, const N: usize> BoundedVec<T, N> {
     /// An empty list.
     #[must_use]
     pub fn new() -> Self {
@@ -64,14 +64,14 @@ impl<T: Copy + Default, const N: usize> Bounded<T, N> {
     }
 }
 
-impl<T: Copy + Default, const N: usize> Default for Bounded<T, N> {
+impl<T: Copy + Default, const N: usize> Default for BoundedVec<T, N> {
     fn default() -> Self {
         let items = [T::default(); N];
         Self { items, len: 0 }
     }
 }
 
-impl<T, const N: usize> Deref for Bounded<T, N> {
+impl<T, const N: usize> Deref for BoundedVec<T, N> {
     type Target = [T];
 
     fn deref(&self) -> &[T] {
@@ -80,14 +80,14 @@ impl<T, const N: usize> Deref for Bounded<T, N> {
 }
 
 /// Appends up to the capacity and drops the rest.
-impl<T: Copy + Default, const N: usize> Extend<T> for Bounded<T, N> {
+impl<T: Copy + Default, const N: usize> Extend<T> for BoundedVec<T, N> {
     fn extend<I: IntoIterator<Item = T>>(&mut self, items: I) {
         items.into_iter().all(|item| self.push(item).is_ok());
     }
 }
 
 /// Takes values up to the capacity and drops the rest.
-impl<T: Copy + Default, const N: usize> FromIterator<T> for Bounded<T, N> {
+impl<T: Copy + Default, const N: usize> FromIterator<T> for BoundedVec<T, N> {
     fn from_iter<I: IntoIterator<Item = T>>(items: I) -> Self {
         let mut list = Self::default();
         list.extend(items);
@@ -95,7 +95,7 @@ impl<T: Copy + Default, const N: usize> FromIterator<T> for Bounded<T, N> {
     }
 }
 
-impl<T, const N: usize> IntoIterator for Bounded<T, N> {
+impl<T, const N: usize> IntoIterator for BoundedVec<T, N> {
     type Item = T;
     type IntoIter = core::iter::Take<core::array::IntoIter<T, N>>;
 
@@ -104,15 +104,15 @@ impl<T, const N: usize> IntoIterator for Bounded<T, N> {
     }
 }
 
-impl<T: PartialEq, const N: usize> PartialEq for Bounded<T, N> {
+impl<T: PartialEq, const N: usize> PartialEq for BoundedVec<T, N> {
     fn eq(&self, other: &Self) -> bool {
         **self == **other
     }
 }
 
-impl<T: Eq, const N: usize> Eq for Bounded<T, N> {}
+impl<T: Eq, const N: usize> Eq for BoundedVec<T, N> {}
 
-impl<T: fmt::Debug, const N: usize> fmt::Debug for Bounded<T, N> {
+impl<T: fmt::Debug, const N: usize> fmt::Debug for BoundedVec<T, N> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         (**self).fmt(f)
     }
@@ -124,22 +124,22 @@ mod tests {
 
     #[test]
     fn lists_hold_n_elements_and_refuse_more() {
-        let mut list = Bounded::<u8, 2>::new();
+        let mut list = BoundedVec::<u8, 2>::new();
         assert_eq!(list.push(1), Ok(()));
         assert_eq!(list.push(2), Ok(()));
         assert_eq!(list.push(3), Err(CapacityError { capacity: 2 }));
         assert_eq!(list.as_slice(), [1, 2]);
         assert_eq!(
-            Bounded::<u8, 2>::from_slice(&[1, 2, 3]),
+            BoundedVec::<u8, 2>::from_slice(&[1, 2, 3]),
             Err(CapacityError { capacity: 2 })
         );
     }
 
     #[test]
     fn equality_ignores_cleared_values() {
-        let mut list = Bounded::<u8, 4>::from_slice(&[9, 9]).unwrap();
+        let mut list = BoundedVec::<u8, 4>::from_slice(&[9, 9]).unwrap();
         list.clear();
         list.extend([1]);
-        assert_eq!(list, Bounded::from_slice(&[1]).unwrap());
+        assert_eq!(list, BoundedVec::from_slice(&[1]).unwrap());
     }
 }

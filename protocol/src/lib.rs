@@ -8,4 +8,4 @@ pub mod epos2;
 pub mod record;
 pub mod vlp16;
 
-pub use bounded::{Bounded, CapacityError};
+pub use bounded::{BoundedVec, CapacityError};

@@ -203,6 +203,8 @@ fn tilt_stop_stops_a_move_of_another_process() {
     );
     assert!(live["age_s"].as_f64().unwrap() < 1.0, "{live}");
     assert!(live["angle_deg"].as_f64().unwrap() <= 0.0, "{live}");
+    let faults = String::from_utf8(bench.run("tilt faults").stdout).unwrap();
+    assert!(faults.contains("has not been read"), "{faults}");
     let stopped = bench.json("tilt stop");
     assert_eq!(
         (&stopped["stopped"], &stopped["power"]),
@@ -374,6 +376,36 @@ fn a_stop_by_a_suspended_program_is_reported_as_not_confirmed() {
     ] {
         assert!(printed.contains(part), "{part}: {printed}");
     }
+}
+
+/// Each command opens the port, and waits for one that reads the state. None makes a move for
+/// another, which would end with it.
+#[test]
+fn moves_begin_while_other_commands_read_the_state() {
+    let bench = Bench::new("--usb");
+    bench.json("tilt home");
+    let done = AtomicBool::new(false);
+    std::thread::scope(|threads| {
+        let reads = threads.spawn(|| {
+            let mut refused = Vec::new();
+            while !done.load(Ordering::Relaxed) {
+                let status = bench.run("tilt status");
+                if !status.status.success() {
+                    refused.push(String::from_utf8_lossy(&status.stderr).into_owned());
+                }
+            }
+            refused
+        });
+        let moved: Vec<Output> = [-1, -2, -3, -4, -5, -6]
+            .map(|to| bench.run(&format!("tilt goto {to} --speed 50")))
+            .into();
+        done.store(true, Ordering::Relaxed);
+        assert_eq!(reads.join().unwrap(), Vec::<String>::new());
+        for goto in moved {
+            let printed = String::from_utf8_lossy(&goto.stderr);
+            assert!(goto.status.success(), "{printed}");
+        }
+    });
 }
 
 #[test]

@@ -96,6 +96,7 @@ impl Bench {
             port: Some(self.link()),
             data_port: Some(self.ports.0),
             position_port: Some(self.ports.1),
+            accel_deg_s2: 5_000.0,
             ..Device::simulator()
         };
         Config {

@@ -45,6 +45,10 @@ pub enum Fault {
     Unplugged,
     /// The port takes no more bytes.
     WriteBlocked,
+    /// A read ends this much later and without the bytes that arrived, as on a machine that runs
+    /// neither the program nor the kernel's work for the terminal; 30 ms after that answers are
+    /// lost for a second span.
+    ReadHeld(Span, Span),
     /// The drive loses and regains its supply.
     PowerCycle,
     /// The drive reports an error.
@@ -101,6 +105,12 @@ impl FaultInjector {
         self.from <= now && now < self.from + span
     }
 
+    /// Whether an answer is lost after a read that was held.
+    fn is_lost(&self, held: Span, lost: Span) -> bool {
+        let from = self.from + held + Span::from_millis(30);
+        from <= self.port.now() && self.port.now() < from + lost
+    }
+
     fn next(&mut self) -> u64 {
         self.random ^= self.random << 13;
         self.random ^= self.random >> 7;
@@ -117,7 +127,7 @@ impl FaultInjector {
 
     /// Applies faults of the drive itself once, when they are due.
     fn apply_drive_fault(&mut self) {
-        if self.done || self.port.now() < self.from {
+        if self.done || self.port.now() < self.from || matches!(self.fault, Fault::ReadHeld(..)) {
             return;
         }
         self.done = true;
@@ -152,6 +162,7 @@ impl FaultInjector {
         }
         match self.fault {
             Fault::AnswersLost(span) if self.on(span) => Vec::new(),
+            Fault::ReadHeld(held, lost) if self.is_lost(held, lost) => Vec::new(),
             Fault::AnswersLate(span, late) if self.on(span) => vec![(at + late, bytes)],
             Fault::AnswersFlipped(span) if self.on(span) => {
                 self.flip(&mut bytes);
@@ -201,6 +212,7 @@ impl FaultInjector {
     ) -> Vec<(Stamp<Host>, Vec<u8>)> {
         match self.fault {
             Fault::AnswersLost(span) if self.on(span) => Vec::new(),
+            Fault::ReadHeld(held, lost) if self.is_lost(held, lost) => Vec::new(),
             Fault::AnswersLate(span, late) if self.on(span) => vec![(at + late, frame)],
             Fault::AnswersFlipped(span) | Fault::AnswersCut(span) if self.on(span) => {
                 if span >= FOR_EVER {
@@ -267,6 +279,14 @@ impl Port for FaultInjector {
         buffer: &mut [u8],
         timeout: Span,
     ) -> Result<Option<(usize, Stamp<Host>)>, PortError> {
+        if let Fault::ReadHeld(span, _) = self.fault
+            && !self.done
+            && self.port.now() >= self.from
+        {
+            self.done = true;
+            self.port.skip(span);
+            return Ok(None);
+        }
         self.apply_drive_fault();
         self.unplugged()?;
         let until = self.port.now() + timeout;

@@ -117,6 +117,14 @@ impl VirtualPort {
         act(self.0.borrow_mut().rig.drive_mut());
     }
 
+    /// Lets time pass in which the program does not run.
+    pub fn skip(&self, span: Span) {
+        let mut world = self.0.borrow_mut();
+        let until = world.now + span;
+        world.advance(until);
+        world.now = until;
+    }
+
     /// Whether the axis moves.
     #[must_use]
     pub fn moves(&self) -> bool {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use drive::config::AxisConfig;
 use engine::bring_up::{BringUp, BringUpResult, Judgement, Operator, STEPS};
 use engine::config::AxisSettings;
-use engine::devices::drive_port::Opened;
+use engine::devices::drive_port::OpenPort;
 use engine::devices::{profile, simulated};
 use firmware_sim::epos2::AxisLoad;
 use scanner::ScanConfig;
@@ -34,7 +34,7 @@ fn bring_up(
     rig.attached = attached;
     change(&mut axis, &mut rig);
     let port = VirtualPort::new(Rig::new(rig), start, Links::usual(attached, 1));
-    let mut opened = Opened {
+    let mut opened = OpenPort {
         guardian: None,
         port: Box::new(port),
         link: link(attached),

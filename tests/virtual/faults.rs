@@ -44,7 +44,7 @@ const FOLLOWING: Requirement = Requirement::StopWithin(ms(220));
 /// A second of silence, to the end of the probe under way; on RS232 that takes 500 ms more.
 const SILENCE: Requirement = Requirement::StopWithin(ms(1_560));
 
-const FAULTS: [(&str, Fault, Requirement); 33] = [
+const FAULTS: [(&str, Fault, Requirement); 35] = [
     (
         "an answer lost",
         Fault::AnswersLost(ms(2)),
@@ -88,6 +88,16 @@ const FAULTS: [(&str, Fault, Requirement); 33] = [
     (
         "every answer 30 ms late",
         Fault::AnswersLate(Span::from_secs(1_000), ms(30)),
+        Requirement::Survive,
+    ),
+    (
+        "a read held for 150 ms",
+        Fault::ReadHeld(ms(150), Span::ZERO),
+        Requirement::Survive,
+    ),
+    (
+        "a read held for 1.3 s",
+        Fault::ReadHeld(ms(1_300), Span::ZERO),
         Requirement::Survive,
     ),
     (
@@ -208,6 +218,10 @@ fn must(attached: Attachment, fault: Fault, must: Requirement) -> Requirement {
         // Late frames delay those behind them: meanwhile neither positions nor heartbeats arrive.
         (Attachment::Slcan | Attachment::Can, Fault::AnswersLate(_, late)) if late > ms(100) => {
             Requirement::SurviveOrStop
+        }
+        // The drive watches its master's heartbeats, and stops the axis itself.
+        (Attachment::Slcan | Attachment::Can, Fault::ReadHeld(span, _)) if span > ms(500) => {
+            Requirement::StopWithin(span + ms(100))
         }
         _ => must,
     }
@@ -367,6 +381,27 @@ fn no_fault_at_any_moment_hangs_or_leaves_the_axis_uncontrolled() {
             });
         }
     });
+}
+
+/// Silence before the end of a sweep stops it, unless the program itself was delayed: then the
+/// machine may delay the answers too, and the sweep goes on.
+#[test]
+fn a_delayed_program_waits_for_answers_at_the_end_of_a_sweep() {
+    for attached in [Attachment::Usb, Attachment::Can] {
+        let usual = Captured::new(setting(attached));
+        let at = usual.sweep_span().1 - setting(attached).start - ms(150);
+        let ended = |fault| {
+            let (_, ended) = Captured::run(Setting {
+                fault: Some((fault, at)),
+                ..setting(attached)
+            });
+            ended
+        };
+        let silent = ended(Fault::AnswersLost(ms(730)));
+        assert!(silent.is_err(), "{attached:?}: {silent:?}");
+        let delayed = ended(Fault::ReadHeld(ms(40), ms(660)));
+        assert!(delayed.is_ok(), "{attached:?}: {delayed:?}");
+    }
 }
 
 /// Checks that the axis rests after the fault, or that the report warns that it may move.

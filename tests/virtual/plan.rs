@@ -2,11 +2,12 @@
 //! the requested distance, replayed and measured.
 
 use analysis::density::{gaps, quantile};
-use analysis::plan::{PlanLimits, PlanRow};
+use analysis::plan::{PlanLimits, PlanRow, ScanSetting};
 use engine::capture::scan_plan::{PlanReport, PlanRequest, ScanPlanner};
 use engine::config::{Config, Device};
 use glam::DVec3;
 use protocol::vlp16::models;
+use sim::patterns::PatternRequest;
 use units::{DegPerS, DegPerS2, Span};
 use velomotion_tests::capture::{Captured, Setting};
 use velomotion_tests::random::Random;
@@ -20,7 +21,11 @@ fn planner(at_m: f64, limits: PlanLimits) -> ScanPlanner {
         rest_deg: Some(REST_DEG),
         ..PlanRequest::new(at_m, &models::VLP_16, 600)
     };
-    let device = Device::simulator();
+    // A light head, so that there are four ramps of which one hardly counts.
+    let device = Device {
+        accel_deg_s2: 5_000.0,
+        ..Device::simulator()
+    };
     ScanPlanner::new(&Config::default(), ("sim", &device), request).unwrap()
 }
 
@@ -36,15 +41,22 @@ struct Truth {
     /// Error that 95 % of points are within, millimetres.
     error_mm: f64,
     /// Root mean square of the column `sd`, millimetres.
-    stated_mm: f64,
+    column_sd_mm: f64,
     p50_deg: f64,
     p99_deg: f64,
 }
 
-/// Captures a setting in a sphere, and measures.
-fn measure(row: &PlanRow, at_m: f64, places: &[DVec3], seed: u64) -> Truth {
+/// Captures a setting in a sphere, and measures. `late` is the share of the least round trip, 0.6
+/// ms, that the answers of the drive take: unless it is half, all positions are late or early
+/// alike, which no scan reveals.
+fn measure(row: &PlanRow, at_m: f64, places: &[DVec3], seed: u64, late: f64) -> Truth {
     let mut setting = Setting::default();
     setting.links.seed = 1_000 * seed + 7;
+    let links = &mut setting.links;
+    for (link, share) in [(&mut links.request, 1.0 - late), (&mut links.answer, late)] {
+        let least = Span::from_secs_f64(2.0 * share * link.min.as_secs_f64());
+        (link.min, link.max) = (least, link.max + (least - link.min));
+    }
     // Other phases of polls and rotor.
     setting.start += Span::from_micros(137_731 * seed as i64);
     setting.sphere_m = Some(at_m);
@@ -75,42 +87,49 @@ fn measure(row: &PlanRow, at_m: f64, places: &[DVec3], seed: u64) -> Truth {
         scan_s: (end - start).as_secs_f64(),
         points: cloud.len() as u64,
         error_mm: quantile(&errors, 0.95).unwrap(),
-        stated_mm: 1e3 * (squares / errors.len() as f64).sqrt(),
+        column_sd_mm: 1e3 * (squares / errors.len() as f64).sqrt(),
         p50_deg: gap(0.5),
         p99_deg: gap(0.99),
     }
 }
 
-/// Ten random requests: the chosen settings keep their limits, and the figures are those of the
-/// plan.
-#[test]
-fn chosen_settings_keep_their_limits_when_measured() {
-    let mut random = Random(20);
+/// Ten random requests: distance, and limits of error and gap.
+fn requests(seed: u64) -> Vec<(f64, PlanLimits)> {
+    let mut random = Random(seed);
     let mut between = |low: f64, high: f64| {
         let share = random.below(1_000) as f64 / 999.0;
         low * (high / low).powf(share)
     };
-    println!(
-        "|at m|error mm|gap deg|capture|scan s|measured|error mm|measured|stated mm|measured|50 % gap|measured|99 % gap|measured|"
-    );
-    for seed in 0..10 {
+    let request = |_| {
         let at_m = between(5.0, 60.0);
-        // The error in parts of 10 m, since it grows with the distance.
-        let error_mm = between(2.5, 12.0) * (at_m / 10.0).max(1.0);
-        let gap_deg = between(0.15, 2.0);
         let limits = PlanLimits {
-            error_mm: Some(error_mm),
-            gap_deg: Some(gap_deg),
+            // In parts of 10 m, since the error grows with the distance.
+            error_mm: Some(between(2.5, 12.0) * (at_m / 10.0).max(1.0)),
+            gap_deg: Some(between(0.15, 2.0)),
             time_s: None,
         };
+        (at_m, limits)
+    };
+    (0..10).map(request).collect()
+}
+
+/// The chosen settings keep their limits, and the figures are those of the plan.
+#[test]
+fn chosen_settings_keep_their_limits_when_measured() {
+    println!(
+        "|at m|error mm|gap deg|capture|scan s|measured|error mm|measured|sd mm|measured|50 % gap|measured|99 % gap|measured|"
+    );
+    for (seed, (at_m, limits)) in (0..).zip(requests(20)) {
+        let (error_mm, gap_deg) = (limits.error_mm.unwrap(), limits.gap_deg.unwrap());
         let report = plan(at_m, limits);
         let chosen = report
             .chosen
             .unwrap_or_else(|| panic!("{limits:?}: {:?}", report.unmet));
         let row = &chosen.row;
         let planner = planner(at_m, limits);
-        let truth = measure(row, at_m, planner.predictor().places(), seed);
-        let command = chosen.command.trim_start_matches("velomotion capture ");
+        let truth = measure(row, at_m, planner.predictor().places(), seed, 0.5);
+        let command = chosen.command.as_deref().unwrap();
+        let command = command.trim_start_matches("velomotion capture ");
         let (error, gap) = (&row.error_mm, &row.gap_deg);
         println!(
             "|{at_m:.1}|{error_mm:.1}|{gap_deg:.2}|`{}`|{:.2}|{:.2}|{:.1}|{:.1}|{:.2}|{:.2}|{:.3}|{:.3}|{:.3}|{:.3}|",
@@ -119,8 +138,8 @@ fn chosen_settings_keep_their_limits_when_measured() {
             truth.scan_s,
             error.total,
             truth.error_mm,
-            error.stated,
-            truth.stated_mm,
+            error.column_sd,
+            truth.column_sd_mm,
             gap.p50,
             truth.p50_deg,
             gap.p99,
@@ -137,12 +156,149 @@ fn chosen_settings_keep_their_limits_when_measured() {
             "{chosen:?} {truth:?}"
         );
         assert!(
-            (truth.stated_mm / error.stated - 1.0).abs() < 0.2,
+            (truth.column_sd_mm / error.column_sd - 1.0).abs() < 0.2,
             "{chosen:?} {truth:?}"
         );
         assert!(
             (truth.p50_deg / gap.p50 - 1.0).abs() < 0.1,
             "{chosen:?} {truth:?}"
         );
+    }
+}
+
+/// Twelve requests that few settings keep: the limits are what a random setting gives. The choice
+/// is as fast as that setting, and keeps the limits although answers of the drive take longer than
+/// requests, or less long.
+#[test]
+fn tight_limits_are_kept_when_measured() {
+    println!(
+        "|at m|error mm|gap deg|of|scan s|capture|scan s|late|measured|error mm|measured|99 % gap|measured|"
+    );
+    let mut random = Random(77);
+    for seed in 200..212 {
+        let at_m = 5.0 + 0.05 * random.below(1_000) as f64;
+        let free = planner(at_m, PlanLimits::default());
+        let mut scans = free.scans(1.1);
+        scans.retain(|scan| scan.scan_s < 12.0);
+        let scan = &scans[random.below(scans.len() as u64) as usize];
+        let drawn = free.predictor().row(scan);
+        let limits = PlanLimits {
+            error_mm: Some(drawn.error_mm.total),
+            gap_deg: Some(drawn.gap_deg.p99),
+            time_s: None,
+        };
+        let chosen = plan(at_m, limits)
+            .chosen
+            .unwrap_or_else(|| panic!("{drawn:?}"));
+        let row = &chosen.row;
+        let late = random.below(11) as f64 / 10.0;
+        let truth = measure(row, at_m, free.predictor().places(), seed, late);
+        println!(
+            "|{at_m:.1}|{:.2}|{:.3}|{}, {}, {}|{:.2}|{}, {}, {}|{:.2}|{late}|{:.2}|{:.2}|{:.2}|{:.3}|{:.3}|",
+            drawn.error_mm.total,
+            drawn.gap_deg.p99,
+            drawn.setting.speed_deg_s,
+            drawn.setting.accel_deg_s2,
+            drawn.setting.sweeps,
+            drawn.scan_s,
+            row.setting.speed_deg_s,
+            row.setting.accel_deg_s2,
+            row.setting.sweeps,
+            row.scan_s,
+            truth.scan_s,
+            row.error_mm.total,
+            truth.error_mm,
+            row.gap_deg.p99,
+            truth.p99_deg,
+        );
+        assert!(
+            truth.error_mm <= drawn.error_mm.total && truth.p99_deg <= drawn.gap_deg.p99,
+            "{chosen:?} {truth:?}"
+        );
+        // The search tries every 1 % of speed, and may reject a setting at the limit by chance.
+        assert!(
+            row.scan_s <= 1.05 * drawn.scan_s && truth.scan_s <= 1.05 * row.scan_s,
+            "{drawn:?} {chosen:?} {truth:?}"
+        );
+    }
+}
+
+/// Directions of all rays of a setting with the lidar at these azimuths at the start of the sweeps:
+/// patterns of `sim`, which knows nothing of the planner. The sphere of a pattern has 10 m, so the
+/// lidar's height is scaled.
+fn rays(setting: &ScanSetting, at_m: f64, starts_deg: [f64; 2]) -> Vec<DVec3> {
+    let ends = [(0.0, -45.0), (-45.0, 0.0)]
+        .into_iter()
+        .take(setting.sweeps as usize);
+    let sweeps = ends.zip(starts_deg).flat_map(|((from, to), start)| {
+        let (speed, accel, d) = (setting.speed_deg_s, setting.accel_deg_s2, 0.6 / at_m);
+        let text = format!(
+            "velomotion16:{speed},rpm=600,step=0.1990656,from={from},to={to},accel={accel},start={start},d={d}"
+        );
+        let pattern = PatternRequest::parse(&text).and_then(|request| request.build());
+        pattern.unwrap().directions()
+    });
+    sweeps.collect()
+}
+
+/// Ten other requests, against a slow search without the planner's gaps and short cuts: speeds 3 %
+/// apart in the order of scan time, the angle from every direction in view to the nearest of all
+/// rays, and the worst of four azimuths at the start of each sweep, which nothing controls. The
+/// choice is captured and measured.
+#[test]
+#[ignore = "takes a quarter of an hour"]
+fn choices_are_within_five_percent_of_the_best_by_brute_force() {
+    println!(
+        "|at m|error mm|gap deg|capture|scan s|best by brute force|settings tried|error mm|99 % gap|"
+    );
+    for (seed, (at_m, limits)) in (100..).zip(requests(2_018)) {
+        let (error_mm, gap_deg) = (limits.error_mm.unwrap(), limits.gap_deg.unwrap());
+        let planner = planner(at_m, limits);
+        let predictor = planner.predictor();
+        let mut scans = planner.scans(1.03);
+        scans.sort_by(|a, b| a.scan_s.total_cmp(&b.scan_s));
+        let mut tried = 0;
+        let best = scans.iter().find(|scan| {
+            let budget = predictor.errors.budget(&predictor.lidar, &scan.sweeps);
+            let keeps_gap = || {
+                let later = if scan.setting.sweeps > 1 { 4 } else { 1 };
+                let starts = (0..4).flat_map(|first| (0..later).map(move |other| (first, other)));
+                starts
+                    .map(|(a, b)| [a, b].map(|n| 90.0 * f64::from(n)))
+                    .all(|starts_deg| {
+                        let rays = rays(&scan.setting, at_m, starts_deg);
+                        let gaps = gaps(&rays, predictor.places()).unwrap();
+                        quantile(&gaps, 0.99).unwrap().to_degrees() <= gap_deg
+                    })
+            };
+            tried += 1;
+            budget.total <= error_mm && keeps_gap()
+        });
+        let chosen = planner.plan().unwrap().chosen;
+        let (Some(best), Some(chosen)) = (best, &chosen) else {
+            assert!(
+                best.is_none() && chosen.is_none(),
+                "{limits:?} {best:?} {chosen:?}"
+            );
+            continue;
+        };
+        let row = &chosen.row;
+        let truth = measure(row, at_m, predictor.places(), seed, 0.5);
+        let command = chosen.command.as_deref().unwrap();
+        println!(
+            "|{at_m:.1}|{error_mm:.1}|{gap_deg:.2}|`{}`|{:.2}|{:.2}|{tried}|{:.1}|{:.3}|",
+            command
+                .trim_start_matches("velomotion capture ")
+                .trim_end_matches(" --device sim"),
+            row.scan_s,
+            best.scan_s,
+            truth.error_mm,
+            truth.p99_deg,
+        );
+        assert!(
+            truth.error_mm <= error_mm && truth.p99_deg <= gap_deg,
+            "{chosen:?} {truth:?}"
+        );
+        assert!(row.scan_s <= 1.05 * best.scan_s, "{chosen:?} {best:?}");
     }
 }

@@ -18,6 +18,8 @@ pub struct TiltedSensor {
     pub d_m: f64,
     /// Smallest and largest tilt, degrees (gamma).
     pub tilt_deg: [f64; 2],
+    /// Whether its azimuths include the one towards -x, and the one towards +x.
+    pub sees: [bool; 2],
 }
 
 /// Ranges and elevations that a tilted sensor covers.
@@ -26,10 +28,10 @@ pub struct VisibleRange {
     /// Smallest and largest distance of a point from the origin of the base, metres.
     pub range_m: [f64; 2],
     /// Lowest and highest ray towards -x in degrees above the horizontal; the paper's forward
-    /// direction.
-    pub forwards_deg: [f64; 2],
+    /// direction. Null if there is none.
+    pub forwards_deg: Option<[f64; 2]>,
     /// The same towards +x, backward.
-    pub backwards_deg: [f64; 2],
+    pub backwards_deg: Option<[f64; 2]>,
 }
 
 impl TiltedSensor {
@@ -44,11 +46,13 @@ impl TiltedSensor {
             [low + least, high + most],
             [180.0 - high + least, 180.0 - low + most],
         ];
-        let [highest, lowest] = side(&fans, 180.0).map(|angle| 180.0 - angle);
+        let fans = fans.iter().zip(self.sees).filter(|(_, sees)| *sees);
+        let fans: Vec<[f64; 2]> = fans.map(|(fan, _)| *fan).collect();
+        let from_behind = |[highest, lowest]: [f64; 2]| [180.0 - lowest, 180.0 - highest];
         VisibleRange {
             range_m: self.range_m(),
             forwards_deg: side(&fans, 0.0),
-            backwards_deg: [lowest, highest],
+            backwards_deg: side(&fans, 180.0).map(from_behind),
         }
     }
 
@@ -73,7 +77,7 @@ impl TiltedSensor {
 }
 
 /// The outermost angles of fans within 90 degrees of `middle_deg`, modulo 360 degrees.
-fn side(fans: &[[f64; 2]; 2], middle_deg: f64) -> [f64; 2] {
+fn side(fans: &[[f64; 2]], middle_deg: f64) -> Option<[f64; 2]> {
     let (first, last) = (middle_deg - 90.0, middle_deg + 90.0);
     let mut found = [f64::INFINITY, f64::NEG_INFINITY];
     for [from, to] in fans {
@@ -84,7 +88,7 @@ fn side(fans: &[[f64; 2]; 2], middle_deg: f64) -> [f64; 2] {
             }
         }
     }
-    found
+    (found[0] <= found[1]).then_some(found)
 }
 
 /// The mean vertical angle between neighbouring rays in degrees: a field of view of `fov_deg`
@@ -106,13 +110,25 @@ mod tests {
         elevations_deg: [-15.0, 15.0],
         d_m: 0.06,
         tilt_deg: [-45.0, 0.0],
+        sees: [true; 2],
     };
 
     #[test]
     fn fields_of_view_match_the_paper() {
         let view = VELOMOTION.view();
-        assert_eq!(view.forwards_deg, [-60.0, 15.0]);
-        assert_eq!(view.backwards_deg, [-15.0, 60.0]);
+        assert_eq!(view.forwards_deg, Some([-60.0, 15.0]));
+        assert_eq!(view.backwards_deg, Some([-15.0, 60.0]));
+        // A planar scanner that looks towards -x.
+        let nodding = TiltedSensor {
+            elevations_deg: [0.0; 2],
+            sees: [true, false],
+            ..VELOMOTION
+        };
+        let view = nodding.view();
+        assert_eq!(
+            (view.forwards_deg, view.backwards_deg),
+            (Some([-45.0, 0.0]), None)
+        );
     }
 
     #[test]
@@ -194,6 +210,7 @@ mod tests {
                 reach_m: [0.0, 10.0],
                 elevations_deg: [-30.0, 0.0],
                 tilt_deg: [0.0, 45.0],
+                ..VELOMOTION
             },
         ];
         for device in devices {
@@ -203,7 +220,7 @@ mod tests {
                 (view.forwards_deg, forwards),
                 (view.backwards_deg, backwards),
             ] {
-                for (a, b) in exact.iter().zip(sampled) {
+                for (a, b) in exact.unwrap().iter().zip(sampled) {
                     // The step of tilt, if a side ends at the zenith.
                     let steps = if a.abs() == 90.0 { 1.3 } else { 1e-9 };
                     assert!((a - b).abs() < steps, "{device:?}: {exact:?} {sampled:?}");

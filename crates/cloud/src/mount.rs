@@ -1,21 +1,22 @@
 //! How the lidar sits on the tilt axis: Eq. 4-6 of "Analysis of 3D Scan Measurement Distribution
 //! with Application to a Multi-Beam Lidar on a Rotating Platform" (2018).
 //!
-//! Frames are x right, y forward, z up. The platform turns about Y, and the lidar's origin is at
-//! height d above that axis. Everything is f64: in f32 these equations are wrong by tens of
-//! micrometres at 100 m, as a test below measures.
-//!
-//! Left out until a calibration gives it: the rigid transforms before the rotation (boresight,
-//! offsets along x and y) and after it (pose of the axis). They would compose here, behind
-//! [`Mount::place`], and nowhere else.
+//! Frames are x right, y forward, z up. The platform turns about Y. The paper's lidar is upright at
+//! height d above that axis; a [`Mount`] may also shift and rotate it: p = Ry(g) (T + M p_v).
+//! Everything is f64: in f32 these equations are wrong by tens of micrometres at 100 m, as a test
+//! below measures.
 
 use units::{Degrees, Metres, Real};
 
-/// Position of the lidar's origin on the platform.
+/// Pose of the lidar on the platform.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mount {
-    /// Height of the lidar's origin above the tilt axis (d of Eq. 4-6); negative below it.
-    pub d: Metres,
+    position_m: [f64; 3],
+    rotation_deg: [f64; 3],
+    /// Rows of the rotation matrix.
+    rotation: [[f64; 3]; 3],
+    /// Neither rotated nor shifted sideways: Eq. 4-6 as printed, without further products.
+    is_upright: bool,
 }
 
 /// A tilt angle with its sine and cosine, shared by the points of a firing; or several of them.
@@ -55,11 +56,64 @@ impl Tilt {
     }
 }
 
+const IDENTITY: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
 impl Mount {
-    /// A mount with the lidar's origin `d` above the tilt axis.
+    /// An upright mount with the lidar's origin `d` above the tilt axis (negative below it).
     #[must_use]
     pub const fn new(d: Metres) -> Self {
-        Self { d }
+        Self {
+            position_m: [0.0, 0.0, d.0],
+            rotation_deg: [0.0; 3],
+            rotation: IDENTITY,
+            is_upright: true,
+        }
+    }
+
+    /// A mount with the lidar's origin at `position_m` on the level platform, rotated about the
+    /// platform's x, then y, then z.
+    #[must_use]
+    pub fn at(position_m: [f64; 3], rotation_deg: [f64; 3]) -> Self {
+        let upright = Self::new(Metres(position_m[2]));
+        if position_m[..2] == [0.0; 2] && rotation_deg == [0.0; 3] {
+            return upright;
+        }
+        let [(sx, cx), (sy, cy), (sz, cz)] = rotation_deg.map(|deg| deg.to_radians().sin_cos());
+        Self {
+            position_m,
+            rotation_deg,
+            rotation: [
+                [cz * cy, cz * sy * sx - sz * cx, cz * sy * cx + sz * sx],
+                [sz * cy, sz * sy * sx + cz * cx, sz * sy * cx - cz * sx],
+                [-sy, cy * sx, cy * cx],
+            ],
+            is_upright: false,
+        }
+    }
+
+    /// Position of the lidar's origin on the level platform, metres from the tilt axis.
+    #[must_use]
+    pub const fn position_m(&self) -> [f64; 3] {
+        self.position_m
+    }
+
+    /// Rotation about the platform's x, then y, then z, degrees.
+    #[must_use]
+    pub const fn rotation_deg(&self) -> [f64; 3] {
+        self.rotation_deg
+    }
+
+    /// The rotation as a unit quaternion x, y, z, w.
+    #[must_use]
+    pub fn quaternion(&self) -> [f64; 4] {
+        let half = |deg: f64| (0.5 * deg).to_radians().sin_cos();
+        let [(sx, cx), (sy, cy), (sz, cz)] = self.rotation_deg.map(half);
+        [
+            sx * cy * cz - cx * sy * sz,
+            cx * sy * cz + sx * cy * sz,
+            cx * cy * sz - sx * sy * cz,
+            cx * cy * cz + sx * sy * sz,
+        ]
     }
 
     /// A point of the lidar's frame (Eq. 1-3, metres) in the frame of the platform's base, whose
@@ -70,13 +124,27 @@ impl Mount {
     #[inline(always)]
     #[must_use]
     pub fn place<V: Real>(&self, position_m: [V; 3], tilt: Tilt<V>) -> [V; 3] {
-        let [x, y, z] = position_m;
-        let height = z + self.d.0;
+        let [x, y, height] = self.on_platform(position_m);
         [
             x * tilt.cos + height * tilt.sin,
             y,
             height * tilt.cos - x * tilt.sin,
         ]
+    }
+
+    /// A point of the lidar's frame (metres) in the frame of the platform, which tilts with it.
+    #[inline(always)]
+    #[must_use]
+    pub fn on_platform<V: Real>(&self, position_m: [V; 3]) -> [V; 3] {
+        let [x, y, z] = position_m;
+        if self.is_upright {
+            return [x, y, z + self.position_m[2]];
+        }
+        let along = |axis: usize| {
+            let row = &self.rotation[axis];
+            x * row[0] + y * row[1] + z * row[2] + self.position_m[axis]
+        };
+        [along(0), along(1), along(2)]
     }
 
     /// Squared distances of a placed point (Eq. 4-6, metres) from the tilt axis and from the
@@ -85,15 +153,27 @@ impl Mount {
     #[must_use]
     pub fn arms_m2<V: Real>(&self, placed_m: [V; 3], tilt: Tilt<V>) -> [V; 2] {
         let [x, y, z] = placed_m;
-        // Back into the lidar's frame, where the spin axis is z.
+        let from_tilt_axis = x * x + z * z;
+        // Back into the frame of the platform, where an upright spin axis is z.
         let across = x * tilt.cos - z * tilt.sin;
-        [x * x + z * z, across * across + y * y]
+        if self.is_upright {
+            return [from_tilt_axis, across * across + y * y];
+        }
+        let up = z * tilt.cos + x * tilt.sin;
+        let [px, py, pz] = self.position_m;
+        let (from_x, from_y, from_z) = (across + -px, y + -py, up + -pz);
+        let along = |axis: usize| {
+            let rows = &self.rotation;
+            from_x * rows[0][axis] + from_y * rows[1][axis] + from_z * rows[2][axis]
+        };
+        let (x, y) = (along(0), along(1));
+        [from_tilt_axis, x * x + y * y]
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use glam::{DMat4, DVec3};
+    use glam::{DMat3, DMat4, DQuat, DVec3};
     use proptest::prelude::*;
 
     use super::*;
@@ -116,7 +196,7 @@ mod tests {
         let (sin_w, cos_w) = elevation.to_radians().0.sin_cos();
         let (sin_a, cos_a) = azimuth.to_radians().0.sin_cos();
         let (sin_g, cos_g) = gamma.to_radians().0.sin_cos();
-        let d = PAPER.d.0;
+        let d = PAPER.position_m()[2];
         [
             range_m * (cos_w * sin_a * cos_g + sin_w * sin_g) + d * sin_g,
             range_m * cos_w * cos_a,
@@ -127,7 +207,7 @@ mod tests {
     /// Eq. 4-6 by composing matrices: lift by d, then rotate about Y.
     fn by_matrices(position_m: [f64; 3], gamma: Degrees) -> [f64; 3] {
         let matrix = DMat4::from_rotation_y(gamma.to_radians().0)
-            * DMat4::from_translation(DVec3::new(0.0, 0.0, PAPER.d.0));
+            * DMat4::from_translation(DVec3::new(0.0, 0.0, PAPER.position_m()[2]));
         matrix
             .transform_point3(DVec3::from_array(position_m))
             .to_array()
@@ -216,8 +296,40 @@ mod tests {
         assert!(distance(once, again) < 1e-12);
     }
 
+    /// Old configurations have a height alone: their clouds must not change by a bit.
+    #[test]
+    fn a_mount_with_a_height_alone_is_upright() {
+        assert_eq!(Mount::at([0.0, 0.0, 0.06], [0.0; 3]), PAPER);
+        assert_ne!(Mount::at([0.0, 1e-9, 0.06], [0.0; 3]), PAPER);
+        assert_ne!(Mount::at([0.0, 0.0, 0.06], [0.0, 0.0, 1e-9]), PAPER);
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(256))]
+
+        #[test]
+        fn general_mounts_compose_rotations_about_x_then_y_then_z(
+            point in prop::array::uniform3(-130.0..130.0),
+            position in prop::array::uniform3(-1.0..1.0),
+            rotation in prop::array::uniform3(-180.0..180.0),
+            gamma in -90.0..90.0,
+        ) {
+            let mount = Mount::at(position, rotation);
+            let [x, y, z] = rotation.map(f64::to_radians);
+            let turned = DMat3::from_rotation_z(z)
+                * DMat3::from_rotation_y(y)
+                * DMat3::from_rotation_x(x);
+            let on_platform = turned * DVec3::from_array(point) + DVec3::from_array(position);
+            let tilt = DMat3::from_rotation_y(f64::to_radians(gamma));
+            let placed = mount.place(point, Tilt::new(Degrees(gamma)));
+            prop_assert!(distance(placed, (tilt * on_platform).to_array()) < 1e-12);
+            let by_quaternion = DQuat::from_array(mount.quaternion()) * DVec3::from_array(point);
+            prop_assert!(distance(by_quaternion.to_array(), (turned * DVec3::from_array(point)).to_array()) < 1e-12);
+            let [from_tilt, from_spin] = mount.arms_m2(placed, Tilt::new(Degrees(gamma)));
+            let tilt_arm = on_platform.x * on_platform.x + on_platform.z * on_platform.z;
+            prop_assert!((from_tilt - tilt_arm).abs() < 1e-9);
+            prop_assert!((from_spin - (point[0] * point[0] + point[1] * point[1])).abs() < 1e-9);
+        }
 
         #[test]
         fn advancing_a_tilt_equals_adding_the_angles(

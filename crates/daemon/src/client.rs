@@ -222,12 +222,12 @@ impl Client {
     /// The failure in a refusal.
     fn refused(&self, answer: Answer) -> Failure {
         #[derive(Deserialize)]
-        struct Refused {
+        struct RefusalBody {
             error: Failure,
         }
         let status = answer.status;
         let length = answer.length.min(JSON);
-        match serde_json::from_reader::<_, Refused>(answer.body.take(length)) {
+        match serde_json::from_reader::<_, RefusalBody>(answer.body.take(length)) {
             Ok(refused) => refused.error,
             Err(_) => self.gone(&format!("it answers {status}")),
         }

@@ -19,7 +19,7 @@ use sim::Truth;
 use engine::capture::run;
 use engine::document::Document;
 use engine::failure::{Failure, Kind};
-use engine::output::{Buffered, Target, file_failure};
+use engine::output::{BufferedFile, Target, file_failure};
 use engine::reconstruct::report::ScanReport;
 use engine::service::events::MessageLevel;
 use engine::service::scan_record::ScanState;
@@ -215,7 +215,7 @@ fn cloud(
     thumbnail: &Thumbnail,
 ) -> Result<ScanReport, Failure> {
     let target = Target::file(&state.cloud(&job.id), true, |file| {
-        let file = Buffered::new(QuotaFile::new(file, Arc::clone(quota)));
+        let file = BufferedFile::new(QuotaFile::new(file, Arc::clone(quota)));
         Box::new((Format::Ply.writer(file, Fields::FILE), thumbnail.clone()))
     })?;
     let log = state.log(&job.id);

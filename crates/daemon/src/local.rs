@@ -14,6 +14,17 @@ use crate::http::server::{Server, UnixSocket};
 use crate::limits::{LOCAL_CONNECTIONS, Waits};
 use crate::sockets;
 
+/// What a command does with its devices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LocalTask {
+    /// Read the drive's state.
+    Read,
+    /// Move or stop the axis.
+    Jog,
+    /// Record the lidar while the axis moves.
+    Capture,
+}
+
 /// A device service of one command.
 pub struct LocalService {
     /// The service.
@@ -24,19 +35,20 @@ pub struct LocalService {
 }
 
 impl LocalService {
-    /// Opens the devices, and the lidar if it is needed. `interrupt` stops the axis.
+    /// Opens the devices that `task` needs. `interrupt` stops the axis.
     ///
     /// # Errors
     /// Returns the failure of a device that cannot be opened.
     pub fn start(
         config: Config,
         (name, device): (String, Device),
-        lidar: bool,
+        task: LocalTask,
         interrupt: &Arc<AtomicBool>,
         environment: Environment,
     ) -> Result<Self, Failure> {
-        // Software devices belong to their command alone.
-        let socket = match profile::simulated(&device) {
+        // Software devices belong to their command alone. A command that only reads ends at once,
+        // and others wait for the port.
+        let socket = match task == LocalTask::Read || profile::simulated(&device) {
             true => None,
             false => Some(sockets::folder().join(sockets::name(&name, &device)?)),
         };
@@ -45,7 +57,7 @@ impl LocalService {
             name,
             device,
             lifetime: Lifetime::Command {
-                lidar,
+                lidar: task == LocalTask::Capture,
                 interrupt: Arc::clone(interrupt),
             },
             environment,

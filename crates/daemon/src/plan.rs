@@ -6,7 +6,7 @@ use protocol::vlp16::models;
 use crate::health_monitor::disk_full;
 use crate::state::DaemonState;
 use engine::capture::request::CapturePlan;
-use engine::capture::scan_plan::{ScanPlanner, USUAL_RPM};
+use engine::capture::scan_plan::ScanPlanner;
 use engine::capture_request::CaptureRequest;
 use engine::failure::Failure;
 use serde::Serialize;
@@ -69,18 +69,18 @@ pub fn estimate(
     let lidar = state.service.lidar();
     // A head that has just begun to turn has no rate yet.
     let rpm = lidar.rpm.filter(|rpm| *rpm >= 60.0);
-    let rpm = rpm.unwrap_or(f64::from(USUAL_RPM));
+    let config = state.service.config();
+    let known_rpm = rpm.map(|rpm| rpm.round() as u32);
+    let rpm = rpm.unwrap_or(f64::from(config.lidar.rpm));
     let sweeps = || plan.steps.iter().filter(|step| step.sweep);
     let seconds = |step: &engine::capture::moves::Step| step.plan.duration.as_secs_f64();
     let moves_s: f64 = plan.steps.iter().map(seconds).sum();
     let first = sweeps().next().map(|step| step.plan);
-    // An unknown lidar counts as a VLP-16.
+    // A lidar that has sent nothing yet counts as the configured one.
     let mut known = models::ALL.into_iter();
     let model = known.find(|known| Some(known.name) == lidar.model);
-    let model = model.unwrap_or(&models::VLP_16);
-    let config = state.service.config();
     // The configuration has been checked with the moves.
-    let planner = ScanPlanner::of_capture(config, plan, model, rpm.round() as u32).ok();
+    let planner = ScanPlanner::of_capture(config, plan, model, known_rpm).ok();
     let row = planner.as_ref().map(|planner| planner.row(&plan.steps));
     CaptureEstimate {
         asked: asked.clone(),

@@ -15,6 +15,9 @@ const SERVICE: &str = "/run/velomotion";
 /// Folders of the sockets of logged-in users, named by user id (systemd's pam_systemd(8)).
 const USERS: &str = "/run/user";
 
+/// The files of this process belong to its user.
+const SELF: &str = "/proc/self";
+
 /// Name for a drive that is searched on USB.
 const LOOKED_FOR: &str = "-usb-epos2";
 
@@ -123,29 +126,31 @@ fn other_names(place: &Path) -> Vec<PathBuf> {
     names
 }
 
-/// Whether the socket belongs to this user or to root, or, for root, to the user of its folder. Any
-/// user can write to the temporary folder.
+/// Whether the socket exists and its owner is trusted.
 fn is_trusted(socket: &Path) -> bool {
-    let owner = std::fs::metadata(socket).map(|there| there.uid());
-    let own = std::fs::metadata("/proc/self").map(|there| there.uid());
-    match (owner, own) {
-        (Ok(owner), Ok(own)) => {
-            owner == own
-                || owner == 0
-                || socket.starts_with(SERVICE)
-                || own == 0 && socket.starts_with(Path::new(USERS).join(owner.to_string()))
-        }
+    match (owner(socket), owner(SELF)) {
+        (Some(owner), Some(own)) => is_trusted_owner(socket, owner, own),
         _ => false,
     }
 }
 
+/// Whether the owner is this user or root, or, for root, the user of the socket's folder. Any user
+/// can write to the temporary folder.
+fn is_trusted_owner(socket: &Path, owner: u32, own: u32) -> bool {
+    owner == own
+        || owner == 0
+        || socket.starts_with(SERVICE)
+        || own == 0 && socket.starts_with(Path::new(USERS).join(owner.to_string()))
+}
+
 /// Whether the listener at a trusted socket is its owner, this user or root.
 pub(crate) fn is_trusted_user(socket: &Path, user: u32) -> bool {
-    let owner = |path: &Path| std::fs::metadata(path).map(|there| there.uid());
-    user == 0
-        || [socket, Path::new("/proc/self")]
-            .iter()
-            .any(|path| owner(path).ok() == Some(user))
+    user == 0 || owner(socket) == Some(user) || owner(SELF) == Some(user)
+}
+
+/// The user id of a file's owner.
+fn owner(file: impl AsRef<Path>) -> Option<u32> {
+    Some(std::fs::metadata(file).ok()?.uid())
 }
 
 #[cfg(test)]
@@ -169,5 +174,46 @@ mod tests {
             name_of(Path::new("/dev/velomotion-epos2")),
             "velomotion-dev-velomotion-epos2.daemon.sock"
         );
+    }
+
+    #[test]
+    fn sockets_of_other_users_are_not_trusted() {
+        for (socket, owner, own, is_trusted) in [
+            ("/tmp/velomotion.sock", 1000, 1000, true),
+            ("/tmp/velomotion.sock", 0, 1000, true),
+            ("/tmp/velomotion.sock", 1001, 1000, false),
+            // Not even for root, unless it is in that user's own folder.
+            ("/tmp/velomotion.sock", 1001, 0, false),
+            ("/run/user/1001/velomotion.sock", 1001, 0, true),
+            ("/run/user/1000/velomotion.sock", 1001, 0, false),
+            ("/run/user/1001/velomotion.sock", 1001, 1000, false),
+            // The service's user; other users cannot write to its folder.
+            ("/run/velomotion/velomotion.sock", 998, 1000, true),
+            ("/run/velomotion-other/velomotion.sock", 998, 1000, false),
+        ] {
+            let found = is_trusted_owner(Path::new(socket), owner, own);
+            assert_eq!(found, is_trusted, "{socket} of {owner} for {own}");
+        }
+        let folder = tempfile::tempdir().unwrap();
+        assert!(is_trusted(folder.path()));
+        assert!(!is_trusted(&folder.path().join("absent")));
+    }
+
+    #[test]
+    fn a_listener_is_trusted_if_it_is_root_this_user_or_the_owner() {
+        let folder = tempfile::tempdir().unwrap();
+        let own = owner(SELF).unwrap();
+        let foreign = own + 4321;
+        let absent = folder.path().join("absent");
+        for socket in [folder.path(), &absent] {
+            assert!(is_trusted_user(socket, 0));
+            assert!(is_trusted_user(socket, own));
+            assert!(!is_trusted_user(socket, foreign));
+        }
+        // Only root can give a file away.
+        if std::os::unix::fs::chown(folder.path(), Some(foreign), None).is_ok() {
+            assert!(is_trusted_user(folder.path(), foreign));
+            assert!(!is_trusted(folder.path()));
+        }
     }
 }

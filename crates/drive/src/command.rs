@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use protocol::epos2::Bounded;
+use protocol::epos2::BoundedVec;
 use protocol::epos2::objects::Address;
 use units::{Degrees, Host, Rpm, RpmPerS, Stamp};
 
@@ -47,7 +47,7 @@ pub enum DriveCommand {
 
 /// Bytes of an object. Writable objects of an EPOS2 have at most eight, except for the memory of
 /// its data recorder.
-pub type ObjectBytes = Bounded<u8, 64>;
+pub type ObjectBytes = BoundedVec<u8, 64>;
 
 /// An absolute move.
 #[derive(Clone, Copy, Debug, PartialEq)]

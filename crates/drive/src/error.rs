@@ -28,7 +28,7 @@ pub enum DriveError {
         got: String,
     },
     /// The target is outside the configured limits or not a number; nothing was sent.
-    #[error("target {} deg is outside the axis' limits of {} to {} deg", target.0, min.0, max.0)]
+    #[error("target {} deg is outside the axis' limits of {} to {} deg", brief(target.0), min.0, max.0)]
     Limits {
         /// Requested angle.
         target: Degrees,
@@ -39,7 +39,7 @@ pub enum DriveError {
     },
     /// The speed is not within the axis' range; nothing was sent.
     #[error("speed {} deg/s is not between {} deg/s (1 rpm of the motor) and {} deg/s ({} rpm)",
-        requested.0, slowest.0, fastest.0, max_rpm.0)]
+        brief(requested.0), slowest.0, fastest.0, max_rpm.0)]
     Speed {
         /// Requested speed.
         requested: DegPerS,
@@ -51,7 +51,7 @@ pub enum DriveError {
         max_rpm: Rpm,
     },
     /// The acceleration is not within the axis' range; nothing was sent.
-    #[error("acceleration {} deg/s2 is not between {} and {} deg/s2", requested.0, slowest.0, fastest.0)]
+    #[error("acceleration {} deg/s2 is not between {} and {} deg/s2", brief(requested.0), slowest.0, fastest.0)]
     Acceleration {
         /// Requested acceleration.
         requested: DegPerS2,
@@ -84,6 +84,15 @@ pub enum DriveError {
         attempts: u8,
         /// Whether the last reply was damaged rather than missing.
         damaged: bool,
+    },
+    /// The drive's replies come too late to guard a move.
+    #[error("the drive link: expected replies within {:.0} ms, the quickest of several took {:.0} ms",
+        limit.as_secs_f64() * 1e3, took.as_secs_f64() * 1e3)]
+    SlowReplies {
+        /// The quickest reply.
+        took: Span,
+        /// The limit: 80 % of the time limit of a reply while the axis moves.
+        limit: Span,
     },
     /// The drive does not reply at all.
     #[error("{operation} on the drive link: expected an answer, got silence for {:.0} ms", silent.as_secs_f64() * 1e3)]
@@ -370,6 +379,14 @@ impl fmt::Display for Operation {
     }
 }
 
+/// A requested value; 1e300 and 1e-300 would have hundreds of digits.
+fn brief(value: f64) -> String {
+    match value.abs() {
+        0.0 | 1e-4..1e6 => value.to_string(),
+        _ => format!("{value:e}"),
+    }
+}
+
 fn state_text(statusword: u16) -> String {
     DeviceState::from_statusword(statusword)
         .map_or_else(|| "no known state".into(), |state| state.to_string())
@@ -387,67 +404,66 @@ fn fault_text(error: Option<DeviceError>) -> String {
 }
 
 impl DriveError {
-    /// Advice for the user, in one or two sentences.
+    /// Advice for the user: a phrase without a full stop.
     #[must_use]
     pub fn help(&self) -> String {
         let help = match self {
             Self::Config { field, .. } => {
-                return format!("Correct {field} in the axis configuration.");
+                return format!("correct {field} in the axis configuration");
             }
             Self::Limits { .. } => {
-                "Choose a target within the limits, or widen them if the mechanics allow it."
+                "choose a target within the limits, or widen them if the mechanics allow it"
             }
-            Self::Speed { .. } => {
-                "Choose a speed within the range; the upper end is the configured maximum motor speed."
+            Self::Speed { .. } | Self::Acceleration { .. } => {
+                "choose a value within the range; its upper end is the configured maximum"
             }
-            Self::Acceleration { .. } => {
-                "Choose an acceleration within the range; the upper end is the configured maximum."
-            }
-            Self::Busy { .. } => "Wait for it, or stop it first.",
-            Self::NotConnected { .. } => "Connect first.",
+            Self::Busy { .. } => "wait for it, or stop it first",
+            Self::NotConnected { .. } => "connect first",
             Self::NoAnswer { damaged: true, .. } => {
-                "Check the cable and its shield; on RS232 check the baud rate."
+                "check the cable and its shield; on RS232 check the baud rate"
             }
             Self::NoAnswer { .. } => {
-                "The link works but loses replies: check the cable, and that no other program uses \
-                 the port. A write may have been executed nevertheless."
+                "the link works but loses replies: check the cable, and that no other program uses \
+                 the port; a write may have been executed nevertheless"
             }
             Self::LinkLost { .. } => {
-                "Check the drive's supply, the cable, the port and the node id. If the axis was \
-                 moving, assume that it still is."
+                "check the drive's supply, the cable, the port and the node id; if the axis was \
+                 moving, assume that it still is"
             }
             Self::NodeAbsent { .. } => {
-                "Check that [axis] node of the configuration is the drive's node id (its DIP switch, \
-                 object 2000), and its supply and cable."
+                "check that [axis] node of the configuration is the drive's node id (its DIP switch, \
+                 object 2000), and its supply and cable"
             }
             Self::Handshake { .. } => {
-                "Check the baud rate, and the cable and its shield; no other program may use the port."
+                "check the baud rate, and the cable and its shield; no other program may use the port"
             }
             Self::Transfer {
                 error: TransferError::TooLong { .. },
                 ..
-            } => {
-                "Read the object with the drive's own tool; no object of a tilt axis is that long."
-            }
+            } => "read the object with the drive's own tool; no object of a tilt axis is that long",
             Self::Transfer { .. } => {
-                "A reply was lost or duplicated: try again. If it fails again, check that no other \
-                 master uses this drive."
+                "a reply was lost or duplicated: try again; if it fails again, check that no other \
+                 master uses this drive"
             }
-            Self::Reserved { .. } => "Use home, goto, sweep, stop or brake.",
+            Self::SlowReplies { .. } => {
+                "the axis was not moved; find what delays the link: the latency timer of a USB adapter, \
+                 a hub, a network between; connect the drive directly"
+            }
+            Self::Reserved { .. } => "use home, goto, sweep, stop or brake",
             Self::NodeSilent { .. } => {
-                "Check the drive's supply, the CAN wiring and termination. If the axis was moving, \
-                 assume that it still is until a stop is confirmed."
+                "check the drive's supply, the CAN wiring and termination; if the axis was moving, \
+                 assume that it still is until a stop is confirmed"
             }
             Self::NodeLeft { .. } => {
-                "Another master on the CAN bus changed the drive's state: stop it, then connect again."
+                "another master on the CAN bus changed the drive's state: stop it, then connect again"
             }
             Self::Restarted { .. } => {
-                "Check the drive's supply (a weak one resets the drive under load), then connect and \
-                 home again."
+                "check the drive's supply (a weak one resets the drive under load), then connect and \
+                 home again"
             }
             Self::Refused { .. } | Self::NotTaken { .. } => {
-                "Check the firmware version; the axis is left disabled. Another master (EPOS Studio) \
-                 on the drive must be closed."
+                "check the firmware version, and close any other master (EPOS Studio) of the drive; \
+                 the axis is left disabled"
             }
             Self::Contradiction { key, .. } => {
                 let ours = key.map_or(String::new(), |key| {
@@ -457,7 +473,7 @@ impl DriveError {
                     "{ours}set the object with the drive's own tool (EPOS Studio) and save it there"
                 );
             }
-            Self::WrongDevice { .. } => "Another device is on this port or node id: check both.",
+            Self::WrongDevice { .. } => "another device is on this port or node id: check both",
             Self::Fault { error } | Self::FaultStays { error } => {
                 error.and_then(DeviceError::meaning).map_or(
                     "clear the fault and try again; if it returns, restart the drive",
@@ -465,29 +481,29 @@ impl DriveError {
                 )
             }
             Self::State { .. } => {
-                "Check the enable input and the supply of the power stage, then try again."
+                "check the enable input and the supply of the power stage, then try again"
             }
-            Self::NotReferenced { .. } => "Home the axis first.",
+            Self::NotReferenced { .. } => "home the axis first",
             Self::OffPlan { .. } => {
-                "Check encoder, coupling and gear, their settings (2210), and that nothing blocks or \
-                 drives the axis; then home again. The tolerances are in [axis.guard] of the configuration."
+                "check encoder, coupling and gear, their settings (2210), and that nothing blocks or \
+                 drives the axis; then home again; the tolerances are in [axis.guard] of the configuration"
             }
             Self::LimitSwitch { .. } => {
-                "Check the switch, its input and the drive's limit settings (2071:4), then home again."
+                "check the switch, its input and the drive's limit settings (2071:4), then home again"
             }
             Self::Homing { .. } | Self::HomingTime { .. } | Self::HomingTravel { .. } => {
-                "Check the switch the method searches for and its input, the homing direction and \
-                 speeds, and that nothing blocks the axis."
+                "check the switch the method searches for and its input, the homing direction and \
+                 speeds, and that nothing blocks the axis"
             }
             Self::Outside { .. } => {
-                "Home again; if it persists, check the home position and limits of the configuration."
+                "home again; if it persists, check the home position and limits of the configuration"
             }
             Self::NotArrived { .. } => {
-                "Check that nothing blocks the axis or holds the brake, then home again."
+                "check that nothing blocks the axis or holds the brake, then home again"
             }
             Self::StillMoving { .. } | Self::NotStopped { .. } => {
-                "Cut the drive's supply if the axis moves. Do not trust its position before it is \
-                 homed again."
+                "cut the drive's supply if the axis moves; do not trust its position before it is \
+                 homed again"
             }
         };
         help.into()

@@ -4,7 +4,7 @@ use std::fmt;
 
 use protocol::epos2::cia402::DeviceState;
 use protocol::epos2::objects::Address;
-use protocol::epos2::{Bounded, DeviceError};
+use protocol::epos2::{BoundedVec, DeviceError};
 use units::{Degrees, Host, Quadcounts, Span, Stamp};
 
 use crate::command::CommandKind;
@@ -151,7 +151,7 @@ pub struct DriveIdentity {
 
 /// Name of a device: up to 16 ASCII characters, empty if unknown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct DeviceName(Bounded<u8, 16>);
+pub struct DeviceName(BoundedVec<u8, 16>);
 
 impl DeviceName {
     /// The name in an object's bytes, up to the first that is not printable ASCII.

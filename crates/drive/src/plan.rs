@@ -274,6 +274,26 @@ mod tests {
     }
 
     #[test]
+    fn errors_print_huge_and_tiny_requests_briefly() {
+        for (error, message) in [
+            (plan(1e300, 10.0, 100.0), "target 1e300 deg is"),
+            (plan(-61.25, 10.0, 100.0), "target -61.25 deg is"),
+            (plan(f64::NAN, 10.0, 100.0), "target NaN deg is"),
+            (plan(1.0, 1e300, 100.0), "speed 1e300 deg/s is"),
+            (plan(1.0, 1e-300, 100.0), "speed 1e-300 deg/s is"),
+            (plan(1.0, 0.0, 100.0), "speed 0 deg/s is"),
+            (plan(1.0, 10.0, 1e6), "acceleration 1e6 deg/s2 is"),
+            (
+                plan(1.0, 10.0, 999_999.5),
+                "acceleration 999999.5 deg/s2 is",
+            ),
+        ] {
+            let error = error.unwrap_err().to_string();
+            assert!(error.starts_with(message), "{error}");
+        }
+    }
+
+    #[test]
     fn the_distance_travelled_is_the_area_under_the_speed() {
         for to in [45.0, 1.0] {
             let plan = plan(to, 56.25, 500.0).unwrap();

@@ -6,16 +6,19 @@
 mod axis;
 pub mod daemon;
 mod device;
+mod lidar;
+mod mount;
 pub mod origin;
 pub mod ros2;
 
 use std::path::{Path, PathBuf};
 
-use scanner::config::{LidarConfig, MountConfig};
 use serde::Deserialize;
 
 pub use axis::{AxisSettings, HomingSettings, LimitSwitchSettings, WithoutBrake};
 pub use device::{Device, DeviceKind, Devices};
+pub use lidar::{LidarName, LidarSettings};
+pub use mount::{MountSettings, load_mount};
 
 use crate::config::daemon::DaemonConfig;
 use crate::failure::{Failure, Kind};
@@ -26,10 +29,10 @@ use crate::failure::{Failure, Kind};
 pub struct Config {
     /// `device = "NAME"`, or one `[device.NAME]` table per device and `[device] default = "NAME"`.
     pub device: Devices,
-    /// Position of the lidar on the tilt axis.
-    pub mount: MountConfig,
-    /// Accuracy of the lidar; simulated devices state their own.
-    pub lidar: LidarConfig,
+    /// Pose of the lidar on the tilt axis, or the file of a calibration.
+    pub mount: MountSettings,
+    /// The lidar; simulated devices have their own.
+    pub lidar: LidarSettings,
     /// The tilt axis.
     pub axis: AxisSettings,
     /// The daemon.
@@ -51,7 +54,7 @@ pub fn load(file: Option<&Path>) -> Result<Config, Failure> {
         )
         .help("name an existing text file with --config, or omit the option")
     })?;
-    let config: Config = toml::from_str(&text).map_err(|error| {
+    let mut config: Config = toml::from_str(&text).map_err(|error| {
         Failure::new(
             Kind::BadInput,
             format!(
@@ -69,45 +72,16 @@ pub fn load(file: Option<&Path>) -> Result<Config, Failure> {
         )
         .help("correct that value; velomotion help wiring describes every key")
     })?;
+    config.mount.load_file(&path)?;
     Ok(config)
-}
-
-/// The mount in a TOML file: its table `[mount]`.
-///
-/// # Errors
-/// [`Kind::BadInput`] for an unreadable file, or one without a valid mount.
-pub fn load_mount(path: &Path) -> Result<MountConfig, Failure> {
-    // A height that is not given is unknown, not the default.
-    #[derive(Deserialize)]
-    struct MountFile {
-        mount: Option<MountHeight>,
-    }
-    #[derive(Deserialize)]
-    #[serde(deny_unknown_fields)]
-    struct MountHeight {
-        d_m: Option<f64>,
-    }
-    let wrong = |what: String| {
-        Failure::new(
-            Kind::BadInput,
-            format!("the mount {}: {what}", path.display()),
-        )
-        .help("give a TOML file with the height of the lidar above the tilt axis:\n[mount]\nd_m = 0.06")
-    };
-    let text = std::fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
-    let file: MountFile =
-        toml::from_str(&text).map_err(|error| wrong(error.to_string().trim_end().to_owned()))?;
-    let d_m = file.mount.and_then(|mount| mount.d_m);
-    let d_m = d_m.ok_or_else(|| wrong("expected [mount] with d_m, found none".to_owned()))?;
-    between("mount.d_m", d_m, -10.0, 10.0).map_err(wrong)?;
-    Ok(MountConfig { d_m })
 }
 
 impl Config {
     /// Refuses impossible numbers (TOML allows nan and inf).
     fn check(&self) -> Result<(), String> {
-        between("mount.d_m", self.mount.d_m, -10.0, 10.0)?;
+        self.mount.check()?;
         between("lidar.range_sd_m", self.lidar.range_sd_m, 0.0, 10.0)?;
+        between("lidar.rpm", f64::from(self.lidar.rpm), 60.0, 6_000.0)?;
         self.axis.check()?;
         let mut devices = self.device.profiles.iter();
         devices.try_for_each(|(name, device)| device.check(name))

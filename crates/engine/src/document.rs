@@ -8,6 +8,8 @@ use utoipa::ToSchema;
 use utoipa::openapi::schema::{ObjectBuilder, SchemaType, Type};
 use utoipa::openapi::{RefOr, Schema};
 
+use crate::accuracy::AccuracyReport;
+use crate::calibrate::CalibrateReport;
 use crate::capture::scan_plan::PlanReport;
 use crate::failure::Failure;
 use crate::reconstruct::lidar_copy::LidarCopyReport;
@@ -43,6 +45,10 @@ impl Document for InfoReport {
     const SCHEMA: &'static str = "info-1";
 }
 
+impl Document for AccuracyReport {
+    const SCHEMA: &'static str = "accuracy-1";
+}
+
 impl Document for LidarCopyReport {
     const SCHEMA: &'static str = "pcap-1";
 }
@@ -57,6 +63,10 @@ impl Document for StoppedCommand {
 
 impl Document for PlanReport {
     const SCHEMA: &'static str = "plan-1";
+}
+
+impl Document for CalibrateReport {
+    const SCHEMA: &'static str = "calibrate-1";
 }
 
 impl Document for TradeoffReport {

@@ -3,7 +3,9 @@
 //! `devices` opens the drive and the lidar, `capture` plans and records a scan, `reconstruct` makes
 //! a cloud of a log or recording. The engine parses no arguments and prints nothing.
 
+pub mod accuracy;
 pub mod bring_up;
+pub mod calibrate;
 pub mod capture;
 pub mod capture_request;
 pub mod config;

@@ -17,7 +17,7 @@ use cloud::{Fields, Sink, SinkError};
 use self::companion::write_beside;
 use crate::failure::{Failure, Kind};
 
-pub use self::file::{Buffered, SharedFile};
+pub use self::file::{BufferedFile, SharedFile};
 pub use self::texts::{make_folder, write_text};
 
 /// A cloud's destination, opened before anything is measured.
@@ -41,7 +41,7 @@ impl Target {
                 Failure::new(Kind::BadInput, format!("cannot write to stdout: {error}"))
                     .help("set TMPDIR to a folder with enough space, or name a file with -o")
             })?;
-            let scratch = Buffered::new(scratch);
+            let scratch = BufferedFile::new(scratch);
             return Ok(Self {
                 path: path.to_owned(),
                 file: None,
@@ -53,7 +53,7 @@ impl Target {
                 .help("use one of those extensions with -o, or - for PLY on stdout")
         })?;
         Self::file(path, force, |file| {
-            format.writer(Buffered::new(file), fields)
+            format.writer(BufferedFile::new(file), fields)
         })
     }
 
@@ -63,7 +63,7 @@ impl Target {
     /// As [`Target::open`].
     pub fn organised(path: &Path, fields: Fields, force: bool, rows: u64) -> Result<Self, Failure> {
         Self::file(path, force, |file| {
-            Box::new(PcdWriter::organised(Buffered::new(file), rows, fields))
+            Box::new(PcdWriter::organised(BufferedFile::new(file), rows, fields))
         })
     }
 
@@ -73,7 +73,7 @@ impl Target {
     /// As [`Target::open`].
     pub fn by_revolution(path: &Path, fields: Fields, force: bool) -> Result<Self, Failure> {
         Self::file(path, force, |file| {
-            Box::new(McapWriter::new(Buffered::new(file), fields).by_revolution())
+            Box::new(McapWriter::new(BufferedFile::new(file), fields).by_revolution())
         })
     }
 

@@ -394,6 +394,18 @@ impl DeviceService {
         let _ = tokio::time::timeout(READ_WAIT, none).await;
     }
 
+    /// [`DeviceService::known_report`], after the first report of a drive that a command moves.
+    pub async fn wait_for_report(&self) -> Option<AxisReport> {
+        let mut state = self.state.subscribe();
+        let known = state.wait_for(|state| {
+            state.activity.doing == AxisTask::Idle
+                || state.reported_at.is_some()
+                || state.live_at.is_some()
+        });
+        let _ = tokio::time::timeout(READ_WAIT, known).await;
+        self.known_report()
+    }
+
     /// Waits for the first packet of a lidar that is not known to be silent.
     pub async fn wait_for_lidar(&self) {
         let unknown = || {

@@ -29,7 +29,7 @@ use std::path::{Path, PathBuf};
 use protocol::record::{Direction, DriveLink, Record, Wire};
 use units::{Host, Stamp};
 
-pub use counts::{Malformed, RecordingCounts};
+pub use counts::{MalformedPacket, RecordingCounts};
 pub use error::{End, PacketFault, RecordingError};
 pub use input::{RecordingInput, SPOOL_LIMIT};
 pub use lidar::DatagramKind;

@@ -91,7 +91,7 @@ pub(crate) fn run(context: &Context, link: &RouterLink, finished: Receiver<Arc<E
 
 fn send(context: &Context, link: &RouterLink, scan: &ScanView) -> Result<(), Failure> {
     let source = Source::open(&context.scans.log(&scan.id), None)?;
-    let request = Reconstruction::of_log(&source, scan.accuracy(), context.stop.flag());
+    let request = Reconstruction::of_log(&source, scan.accuracy(), context.stop.flag())?;
     let frames = Frames::with_prefix(&context.settings.frame_prefix);
     let mut sink = Clouds::new(frames, |cloud: Cloud<'_>| {
         match link.send(Topic::Points, cloud.bytes) {

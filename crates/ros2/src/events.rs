@@ -8,7 +8,7 @@ use cloud::messages::{
     CloudMessage, Frames, Time, Topic, diagnostic_array, joint_state, tf_message,
 };
 use cloud::{Diagnostic, DiagnosticLevel, Fields};
-use units::{Degrees, Host, Metres, Stamp};
+use units::{Degrees, Host, Stamp};
 
 use engine::failure::Failure;
 use engine::service::events::{Event, PointsRequest, RecvError};
@@ -83,7 +83,7 @@ pub(crate) fn run(context: &Context, link: &RouterLink, runtime: &Runtime) -> Re
 impl Publisher<'_> {
     /// Sends the mount of the lidar on the axis.
     fn send_mount(&mut self) -> Result<(), Error> {
-        let mount = Metres(self.context.devices().config().mount.d_m);
+        let mount = self.context.devices().config().mount.pose().mount();
         let stamp = Time::of(io::clock::now())?;
         tf_message(&mut self.cdr, stamp, &self.frames.fixed(Some(mount)));
         self.link.send(Topic::StaticTransforms, self.cdr.bytes())?;

@@ -23,13 +23,13 @@ struct LatchedMessage {
 }
 
 /// Answers later subscribers.
-pub struct Latched {
+pub struct LatchedMessages {
     kept: Arc<Mutex<LatchedMessage>>,
     _queryable: Queryable<()>,
     _token: LivelinessToken,
 }
 
-impl Latched {
+impl LatchedMessages {
     /// For messages that the session `zid` sends with `key`.
     pub fn declare(session: &Session, zid: &str, key: &str) -> Result<Self, Error> {
         let kept = Arc::new(Mutex::new(LatchedMessage::default()));

@@ -19,7 +19,7 @@ use engine::config::ros2::Ros2;
 use engine::service::events::PointsRequest;
 
 use crate::calls::{self, Service};
-use crate::latched::Latched;
+use crate::latched::LatchedMessages;
 use crate::rmw::{self, Entity, Gid, QualityOfService};
 use crate::{Context, Counts};
 
@@ -80,7 +80,7 @@ struct Channel {
     gid: Gid,
     /// Number of its last message.
     number: Mutex<i64>,
-    latched: Option<Latched>,
+    latched: Option<LatchedMessages>,
 }
 
 impl RouterLink {
@@ -213,7 +213,7 @@ impl Channel {
         let (name, quality) = (name(settings, topic), quality(topic));
         let key = rmw::key(settings, &name, &kind);
         let latched = match quality.latched {
-            true => Some(Latched::declare(session, zid, &key)?),
+            true => Some(LatchedMessages::declare(session, zid, &key)?),
             false => None,
         };
         let publisher = session

@@ -5,14 +5,16 @@
 //!
 //! The expected error of a point combines three independent errors that differ from point to point:
 //! tilt angle, range and azimuth. They act at right angles, up to the sine of small elevations, so
-//! their squares add ([`Point::sd_m`]). Errors common to a whole scan are not part of it: a delay
-//! that all angle samples or all packets share, the mount, and the constants of each laser.
+//! their squares add ([`Point::sd_m`]). Errors common to a whole scan (a delay that all angle
+//! samples or all packets share, the mount, the constants of each laser) are part of it if a
+//! calibration gives their covariance.
 
 use cloud::Point;
 use cloud::mount::{Mount, Tilt};
 use lidar::SensorPoint;
 use units::{Degrees, Host, Lidar, Stamp};
 
+use crate::calibration::PointCalibration;
 use crate::clock::{LidarClock, Moment};
 use crate::sample_gaps::SampleGaps;
 use crate::steps::ClockStep;
@@ -43,6 +45,8 @@ pub struct Alignment {
     pub ambiguous_motions: Vec<(Degrees, Degrees)>,
     /// Mount of the lidar on the axis.
     pub mount: Mount,
+    /// Calibration of axis and lasers.
+    pub(crate) calibration: Option<PointCalibration>,
     /// Shaft samples discarded as implausible.
     pub implausible: u64,
     /// Gaps between the angle samples within the sweeps.
@@ -86,6 +90,7 @@ impl Alignment {
             inferred_sweeps: Vec::new(),
             ambiguous_motions: Vec::new(),
             mount,
+            calibration: None,
             implausible: 0,
             sample_gaps: SampleGaps::default(),
             range_sd_m,
@@ -100,10 +105,19 @@ impl Alignment {
         self.trajectory.rms_deg(&self.spans)
     }
 
-    /// Greatest error of the tilt angle during the sweeps ([`Trajectory::bound_deg`]); `None`
-    /// without tilt.
+    /// Greatest error of the tilt angle during the sweeps: that of the trajectory, and the error of
+    /// the samples' stamps ([`LidarClock::host_bound`]) at the greatest speed. `None` without tilt.
     #[must_use]
     pub fn angle_bound_deg(&self) -> Option<f64> {
+        let fastest = self.trajectory.fastest(&self.spans).0.abs();
+        let stamps_deg = fastest * self.clock.host_bound().as_secs_f64();
+        self.trajectory_bound_deg().map(|deg| deg + stamps_deg)
+    }
+
+    /// The part of [`Alignment::angle_bound_deg`] without the host's clock
+    /// ([`Trajectory::bound_deg`]).
+    #[must_use]
+    pub fn trajectory_bound_deg(&self) -> Option<f64> {
         (self.trajectory.method() != Method::None).then(|| self.trajectory.bound_deg(&self.spans))
     }
 
@@ -130,6 +144,11 @@ impl Alignment {
             .trajectory
             .angle(moment)
             .filter(|_| self.spans.iter().any(in_span))?;
+        let sd_m = self.sd_m(point, moment, tilt, received);
+        let tilt = match &self.calibration {
+            Some(calibration) => calibration.tilt(tilt, self.rate_deg_s(moment)),
+            None => tilt,
+        };
         Some(Point {
             position_m: self.mount.place(point.position_m, Tilt::new(tilt)),
             intensity: point.reflectivity,
@@ -138,7 +157,7 @@ impl Alignment {
             time: moment.host,
             device_time: point.time,
             tilt,
-            sd_m: self.sd_m(point, moment, received),
+            sd_m,
             echo: point.echo.code(),
         })
     }
@@ -149,14 +168,32 @@ impl Alignment {
     /// (rate sd_clock)^2`,
     ///
     /// where rho is the distance from the tilt axis, r cos(w) the distance from the lidar's spin
-    /// axis, `sd_fit` that of the trajectory and `sd_clock` that of clock and stamps.
-    fn sd_m(&self, point: &SensorPoint, at: Moment, received: Option<Stamp<Host>>) -> f64 {
-        let [x, y, z] = point.position_m;
-        let height = z + self.mount.d.0;
+    /// axis, `sd_fit` that of the trajectory and `sd_clock` that of clock and stamps. A calibration
+    /// adds J C J', with C its covariance.
+    fn sd_m(
+        &self,
+        point: &SensorPoint,
+        at: Moment,
+        tilt: Degrees,
+        received: Option<Stamp<Host>>,
+    ) -> f64 {
+        let [x, y, _] = point.position_m;
+        let [across, _, height] = self.mount.on_platform(point.position_m);
         let clock_sd_ns = self.clock_sd_ns(point.time, received);
-        let by_tilt = (x * x + height * height) * self.trajectory.variance_rad2(at, clock_sd_ns);
+        let by_tilt =
+            (across * across + height * height) * self.trajectory.variance_rad2(at, clock_sd_ns);
         let by_azimuth = (x * x + y * y) * point.azimuth_variance_rad2;
-        (by_tilt + self.range_sd_m * self.range_sd_m + by_azimuth).sqrt()
+        let independent = by_tilt + self.range_sd_m * self.range_sd_m + by_azimuth;
+        let calibrated = self.calibration.as_ref().map_or(0.0, |calibration| {
+            calibration.variance_m2(&self.mount, point, tilt, self.rate_deg_s(at))
+        });
+        (independent + calibrated).sqrt()
+    }
+
+    /// Rate of the tilt, degrees per second; 0 for a fixed platform.
+    fn rate_deg_s(&self, at: Moment) -> f64 {
+        let piece = self.trajectory.piece(at);
+        piece.map_or(0.0, |piece| 1e9 * piece.rate(piece.since(at)))
     }
 
     /// Standard deviation of the instant of a firing, nanoseconds.

@@ -2,8 +2,12 @@
 
 use cloud::mount::Mount;
 use serde::{Deserialize, Serialize};
-use units::{Degrees, Gearing, GearingError, Metres, Span};
+use units::{Degrees, Gearing, GearingError, Span};
 use utoipa::ToSchema;
+
+pub use crate::calibration::{
+    AxisCorrection, DeviceCalibration, LaserCalibration, ParameterCovariance,
+};
 
 /// The configuration of a scan.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -25,6 +29,9 @@ pub struct ScanConfig {
     pub rs232_baud: Option<u32>,
     /// The planned sweeps; absent if none were planned.
     pub sweep: Option<SweepPlan>,
+    /// Calibration of axis and lasers; absent without one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub calibration: Option<DeviceCalibration>,
 }
 
 /// Bits of the body of a read request on RS232 (Communication Guide: length, two words, checksum),
@@ -49,6 +56,17 @@ impl ScanConfig {
 pub struct MountConfig {
     /// Height of the lidar's origin above the tilt axis, metres (d of Eq. 4-6).
     pub d_m: f64,
+    /// Offset from there on the level platform, metres: x right, y along the axis, z up.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub position_m: [f64; 3],
+    /// Rotation of the lidar about the platform's x, then y, then z, degrees.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub rotation_deg: [f64; 3],
+}
+
+/// Upright mounts are written as before rotations were known, so that their logs stay the same.
+fn is_zero(numbers: &[f64; 3]) -> bool {
+    *numbers == [0.0; 3]
 }
 
 /// Accuracy of the lidar.
@@ -101,6 +119,7 @@ impl Default for ScanConfig {
             axis: TiltAxisConfig::default(),
             rs232_baud: None,
             sweep: None,
+            calibration: None,
         }
     }
 }
@@ -108,7 +127,7 @@ impl Default for ScanConfig {
 impl Default for MountConfig {
     /// 6 cm: the Velomotion-16.
     fn default() -> Self {
-        Self { d_m: 0.06 }
+        Self::upright(0.06)
     }
 }
 
@@ -132,10 +151,28 @@ impl Default for TiltAxisConfig {
 }
 
 impl MountConfig {
+    /// An upright mount at a height of `d_m` metres.
+    #[must_use]
+    pub const fn upright(d_m: f64) -> Self {
+        Self {
+            d_m,
+            position_m: [0.0; 3],
+            rotation_deg: [0.0; 3],
+        }
+    }
+
     /// The mount's geometry.
     #[must_use]
     pub fn mount(self) -> Mount {
-        Mount::new(Metres(self.d_m))
+        let [x, y, z] = self.position_m;
+        Mount::at([x, y, self.d_m + z], self.rotation_deg)
+    }
+
+    /// Whether every number is finite.
+    #[must_use]
+    pub fn is_finite(self) -> bool {
+        let numbers = self.position_m.into_iter().chain(self.rotation_deg);
+        self.d_m.is_finite() && numbers.into_iter().all(f64::is_finite)
     }
 }
 

@@ -23,6 +23,7 @@
 
 mod alignment;
 mod angles;
+mod calibration;
 pub mod clock;
 pub mod config;
 pub mod error;

@@ -3,8 +3,12 @@
 //!
 //! Each packet waits until the angle is known for all of the packet before it; that one is then
 //! placed. The clock is Olson's online estimate, and the trajectory is straight lines between
-//! samples, as a fit needs the whole sweep. Clock steps are not undone. A replay of the same
-//! records places the same points more accurately.
+//! samples, as a fit needs the whole sweep. Steps of the lidar's clock (`stamp_grid`) and of the
+//! host's from 10 ms on (`host_steps`) are undone. A replay of the same records places the same
+//! points more accurately.
+
+mod host_steps;
+mod stamp_grid;
 
 use std::collections::VecDeque;
 
@@ -17,13 +21,16 @@ use units::{Gearing, Host, Lidar, Span, Stamp};
 
 use crate::alignment::{Alignment, PlacementCounts};
 use crate::angles::{SlowPollFilter, sample};
-use crate::clock::{DeviceClock, Moment, OnlineClock};
+use crate::calibration::PointCalibration;
+use crate::clock::{Arrival, DeviceClock, Moment, OnlineClock};
 use crate::config::{ScanConfig, SweepPlan};
 use crate::error::ScanError;
 use crate::fast::{FiringBlockPlacer, MAX_PACKET_POINTS, returns};
 use crate::survey::RecordReader;
 use crate::sweeps::{MoveWatch, SweepWatch};
 use crate::trajectory::{Method, StreamingFit, Trajectory};
+use host_steps::{HostSteps, Shown};
+use stamp_grid::StampGrid;
 
 /// Places points while records come in.
 pub struct Live<'a> {
@@ -31,16 +38,19 @@ pub struct Live<'a> {
     plan: Option<SweepPlan>,
     reader: RecordReader,
     clock: OnlineClock,
+    grid: StampGrid,
+    host_steps: HostSteps,
     slow_polls: SlowPollFilter,
     moves: MoveWatch,
     sweeps: SweepWatch,
     fit: StreamingFit,
     alignment: Option<Alignment>,
     mount: Mount,
+    calibration: Option<PointCalibration>,
     range_sd_m: f64,
     waiting: VecDeque<WaitingPacket>,
     /// First firing of the packet that the decoder holds back.
-    pending: Option<Stamp<Lidar>>,
+    pending: Option<Firing>,
     decoder: Decoder,
     batch: Points,
     counts: PlacementCounts,
@@ -52,9 +62,17 @@ pub struct Live<'a> {
 /// A packet whose angles are not known yet.
 struct WaitingPacket {
     received: Stamp<Host>,
-    /// First firing by the lidar's clock and the host's; `None` if it is not a data packet.
-    fired: Option<(Stamp<Lidar>, Stamp<Host>)>,
+    /// First firing; `None` if it is not a data packet.
+    fired: Option<Firing>,
     payload: Vec<u8>,
+}
+
+/// Time of a firing.
+#[derive(Clone, Copy)]
+struct Firing {
+    /// By the lidar's clock, and by that clock before all steps.
+    stamp: Stamp<Lidar>,
+    device: Stamp<Lidar>,
 }
 
 /// Angles older than this are dropped.
@@ -78,12 +96,18 @@ impl<'a> Live<'a> {
             plan: config.sweep,
             reader: RecordReader::new(config, options.clone()),
             clock: OnlineClock::default(),
+            grid: StampGrid::default(),
+            host_steps: HostSteps::default(),
             slow_polls: SlowPollFilter::default(),
             moves: MoveWatch::new(gearing),
             sweeps: SweepWatch::new(gearing),
             fit: StreamingFit::default(),
             alignment: None,
             mount: config.mount.mount(),
+            calibration: config
+                .calibration
+                .as_ref()
+                .map(|calibration| PointCalibration::new(calibration, gearing)),
             range_sd_m: config.lidar.range_sd_m,
             waiting: VecDeque::new(),
             pending: None,
@@ -101,32 +125,46 @@ impl<'a> Live<'a> {
     /// Returns the errors of the sink.
     pub fn observe(&mut self, record: &Record<'_>) -> Result<(), SinkError> {
         match record.wire {
-            Wire::Lidar { payload, .. } => self.packet(record.host, payload),
-            Wire::Drive { .. } => {
-                let (reader, moves) = (&mut self.reader, &mut self.moves);
-                let mut samples = Vec::new();
-                reader.frame(record.host, &record.wire, &mut |seen| match seen {
-                    Observation::Sample(sample) => samples.push(sample),
-                    Observation::Wrote {
-                        address,
-                        value,
-                        request,
-                        ..
-                    } => moves.wrote(address, value, request),
-                    Observation::Read {
-                        address,
-                        value,
-                        request,
-                        ..
-                    } => moves.read(address, value, request),
-                    _ => {}
-                });
-                for sample in samples {
-                    self.sample(&sample);
-                }
+            Wire::Lidar { payload, .. } => {
+                self.packet(record.host, payload);
+                self.frames(Some(record.host));
             }
+            Wire::Drive {
+                link,
+                direction,
+                frame,
+            } => self.host_steps.hold(record.host, link, (direction, frame)),
         }
         self.release()
+    }
+
+    /// Takes the frames of the drive that need not wait after a packet received at `recorded`, or
+    /// all.
+    fn frames(&mut self, recorded: Option<Stamp<Host>>) {
+        while let Some(frame) = self.host_steps.next_frame(recorded) {
+            let (reader, moves) = (&mut self.reader, &mut self.moves);
+            let mut samples = Vec::new();
+            let record = frame.record();
+            reader.frame(record.host, &record.wire, &mut |seen| match seen {
+                Observation::Sample(sample) => samples.push(sample),
+                Observation::Wrote {
+                    address,
+                    value,
+                    request,
+                    ..
+                } => moves.wrote(address, value, request),
+                Observation::Read {
+                    address,
+                    value,
+                    request,
+                    ..
+                } => moves.read(address, value, request),
+                _ => {}
+            });
+            for sample in samples {
+                self.sample(&sample);
+            }
+        }
     }
 
     /// Delay of the cloud: from the first firing not placed yet to the newest angle. `None` before
@@ -141,6 +179,8 @@ impl<'a> Live<'a> {
     /// # Errors
     /// Returns the errors of the sink.
     pub fn finish(mut self) -> Result<(PlacementCounts, Stats), SinkError> {
+        self.frames(None);
+        self.release()?;
         if let Some(alignment) = &self.alignment {
             let mut placer = FiringBlockPlacer::new(alignment);
             let (batch, counts) = (&mut self.batch, &mut self.counts);
@@ -159,9 +199,38 @@ impl<'a> Live<'a> {
 
     /// Clock: an arrival, and a packet that waits for its angles.
     fn packet(&mut self, received: Stamp<Host>, payload: &[u8]) {
-        let fired = self.reader.packet(received, payload).and_then(|arrival| {
-            self.clock.observe(arrival);
-            Some((arrival.device, self.clock.moment(arrival.device)?.host))
+        let fired = self.reader.packet(received, payload).map(|recorded| {
+            let arrival = self.host_steps.converted(recorded);
+            let mut arrival = self.grid.converted(arrival, &self.clock);
+            let due = self.clock.moment(arrival.device);
+            let late = due.map(|due| arrival.host.saturating_since(due.host));
+            match self.host_steps.packet(arrival, late) {
+                Shown::Packets(arrivals) => {
+                    for arrival in arrivals {
+                        self.clock.observe(arrival);
+                    }
+                }
+                Shown::LidarStep(by, arrivals) => {
+                    self.grid.set(by);
+                    arrival.device = arrival.device.saturating_add(by);
+                    let fired = self.waiting.iter_mut().rev();
+                    let fired = fired.filter_map(|packet| packet.fired.as_mut());
+                    for firing in fired.take(arrivals.len() - 1) {
+                        firing.device = firing.device.saturating_add(by);
+                    }
+                    for waited in arrivals {
+                        self.clock.observe(Arrival {
+                            device: waited.device.saturating_add(by),
+                            ..waited
+                        });
+                    }
+                }
+                Shown::Doubt => {}
+            }
+            Firing {
+                stamp: recorded.device,
+                device: arrival.device,
+            }
         });
         if self.waiting.len() >= MAX_WAITING
             && let Some(packet) = self.waiting.pop_front()
@@ -192,8 +261,9 @@ impl<'a> Live<'a> {
                 // The clock of each packet replaces this one.
                 let clock =
                     DeviceClock::through(Stamp::from_nanos(0), Moment::at(Stamp::from_nanos(0)));
-                self.alignment = trajectory.map(|trajectory| {
-                    Alignment::new(clock, trajectory, self.mount, self.range_sd_m, Vec::new())
+                self.alignment = trajectory.map(|trajectory| Alignment {
+                    calibration: self.calibration.take(),
+                    ..Alignment::new(clock, trajectory, self.mount, self.range_sd_m, Vec::new())
                 });
             }
         }
@@ -204,12 +274,20 @@ impl<'a> Live<'a> {
         let Some(newest) = self.fit.newest().copied() else {
             return Ok(());
         };
-        let is_ready =
-            |packet: &WaitingPacket| packet.fired.is_none_or(|(_, host)| host <= newest.host);
-        while self.waiting.front().is_some_and(is_ready)
-            && let Some(packet) = self.waiting.pop_front()
-        {
-            self.decode(&packet);
+        if self.host_steps.is_in_doubt() {
+            return Ok(());
+        }
+        let clock = &self.clock;
+        let host = |firing: Firing| Some(clock.moment(firing.device)?.host);
+        let is_ready = |packet: &WaitingPacket| {
+            let fired = packet.fired.and_then(host);
+            fired.is_none_or(|host| host <= newest.host)
+        };
+        let ready = self.waiting.iter().take_while(|packet| is_ready(packet));
+        for _ in 0..ready.count() {
+            if let Some(packet) = self.waiting.pop_front() {
+                self.decode(&packet);
+            }
         }
         if self.batch.is_empty() {
             return Ok(());
@@ -232,13 +310,14 @@ impl<'a> Live<'a> {
     fn decode(&mut self, packet: &WaitingPacket) {
         let (batch, counts) = (&mut self.batch, &mut self.counts);
         let pending = match packet.fired {
-            Some((device, host)) => {
-                self.placed_until = Some(host);
-                self.pending.replace(device)
+            Some(firing) => {
+                let moment = self.clock.moment(firing.device);
+                self.placed_until = moment.map(|moment| moment.host);
+                self.pending.replace(firing)
             }
             None => self.pending,
         };
-        let moment = pending.and_then(|device| Some((device, self.clock.moment(device)?)));
+        let moment = pending.and_then(|at| Some((at.stamp, self.clock.moment(at.device)?)));
         let (Some(alignment), Some((device, moment))) = (&mut self.alignment, moment) else {
             return self.omit(packet);
         };

@@ -83,6 +83,7 @@ impl Survey {
             inferred_sweeps,
             ambiguous_motions,
             mount: angles.mount,
+            calibration: angles.calibration,
             implausible: angles.implausible,
             sample_gaps,
             range_sd_m: config.lidar.range_sd_m,

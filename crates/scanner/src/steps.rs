@@ -29,7 +29,7 @@ use drive::ShaftSample;
 use units::{Host, Span, Stamp};
 
 use crate::clock::{Arrival, Joint, LidarClock, Stretch};
-use jumps::{Evidence, Jump};
+use jumps::{Evidence, Jump, shifted};
 use monotonic::before;
 pub(crate) use monotonic::{ClockSteps, HostTimeline};
 
@@ -114,7 +114,7 @@ impl Timeline {
         let begin = arrivals.first()?.host;
         let mut line = HostTimeline::new(clock_steps);
         let mut steps = Vec::new();
-        let mut corrected = arrivals.to_vec();
+        let mut host_steps = Vec::new();
         let mut total = Span::ZERO;
         for (cut, rise) in cuts.iter().zip(rises) {
             let first = arrivals.get(cut.at)?;
@@ -124,9 +124,7 @@ impl Timeline {
                 by = rise;
                 when = before(when, by);
                 total = total.saturating_add(by);
-                for arrival in corrected.get_mut(cut.at..).unwrap_or_default() {
-                    arrival.host = before(arrival.host, by);
-                }
+                host_steps.push((cut.at, by));
                 let boundary = cut.boundary.or_else(|| clock_steps.boundary(cut.at, by));
                 line.set(boundary, by, cut.samples.clone());
             }
@@ -145,7 +143,10 @@ impl Timeline {
             clock,
             steps,
             drive: line,
-            arrivals: corrected,
+            arrivals: shifted(arrivals, host_steps, |arrival, by| Arrival {
+                host: before(arrival.host, by),
+                ..arrival
+            }),
         })
     }
 }
@@ -160,7 +161,7 @@ struct Cut {
     known: Option<Span>,
     /// Monotonic time of the first record of the drive after it, if known.
     boundary: Option<Stamp<Host>>,
-    /// The samples around it, if the drive's clock shows it.
+    /// The samples around it, if they show it and their stamps do not tell its place.
     samples: Option<Range<usize>>,
 }
 
@@ -226,8 +227,10 @@ fn attribute(
                     ..cut(SetClock::Host)
                 });
             }
-            return motion::step(samples, next, jump.by).map(|boundary| Cut {
-                boundary: Some(boundary),
+            return motion::step(samples, next, jump.by).map(|first| Cut {
+                boundary: samples.get(first).map(|sample| sample.request),
+                // After a step back stamps are those of samples before it, too.
+                samples: (jump.by < Span::ZERO).then(|| first.saturating_sub(1)..first + 1),
                 ..cut(SetClock::Host)
             });
         }

@@ -124,7 +124,7 @@ const JUMP_DEG: f64 = 0.1;
 const JUMP_SPEEDS: f64 = 3.0;
 /// Twice the speed of the fastest sweep, 100 deg/s.
 const MAX_SPEED_DEG_S: f64 = 200.0;
-/// A sweep is not seen if so much of its way is between two samples.
+/// A sweep is not seen if so much of its way is between two samples, and little between others.
 const UNSEEN_SHARE: f64 = 0.75;
 /// Range of an axis at rest: an encoder at an edge flickers by one count.
 const REST_QC: f64 = 1.5;
@@ -204,7 +204,7 @@ impl MoveWatch {
     fn setting(&self, from: Stamp<Host>) -> Setting {
         Setting {
             from,
-            is_position_mode: self.mode == PROFILE_POSITION,
+            is_position_mode: self.is_position_mode(),
             target: self.target.map(|target| self.gearing.angle(target)),
             motion: Commanded {
                 speed: self.gearing.rate(self.speed),
@@ -233,9 +233,18 @@ impl MoveWatch {
         }
     }
 
-    /// Number of moves so far, and target of the newest if the log has it.
-    fn newest(&self) -> Option<(usize, Degrees)> {
-        Some((self.moves.len(), self.moves.last()?.target?))
+    /// Number of moves so far.
+    const fn count(&self) -> usize {
+        self.moves.len()
+    }
+
+    /// Target of the newest move, if the log has it.
+    fn newest_target(&self) -> Option<Degrees> {
+        self.moves.last()?.target
+    }
+
+    const fn is_position_mode(&self) -> bool {
+        self.mode == PROFILE_POSITION
     }
 
     /// The sweeps among the moves, from samples in order of time. Without a plan every commanded
@@ -343,16 +352,21 @@ fn motion(command: &Move, window: &[AngleSample], is_cut_off: bool, rest: f64) -
     if stop <= start {
         return None;
     }
-    let steps = window.windows(2).filter_map(|pair| match pair {
-        [a, b] => Some((b.angle.0 - a.angle.0).abs()),
-        _ => None,
-    });
-    let longest = steps.fold(0.0, f64::max);
     let moving = window
         .get(leaves..=moving_last.max(leaves))
         .unwrap_or_default();
-    // A target in another direction, or where the axis was, is that of an earlier move.
     let way = to.0 - from.0;
+    let around = window.get(leaves.saturating_sub(1)..=(moving_last + 1).min(window.len() - 1));
+    let (mut longest, mut travelled) = (0.0_f64, 0.0);
+    for pair in around.unwrap_or_default().windows(2) {
+        let &[a, b] = pair else { continue };
+        let step = (b.angle.0 - a.angle.0).abs();
+        longest = longest.max(step);
+        travelled += if step > rest { step } else { 0.0 };
+    }
+    // A head that is pushed may go farther between two samples than the whole sweep.
+    let has_other_steps = travelled - longest >= (1.0 - UNSEEN_SHARE) * way.abs();
+    // A target in another direction, or where the axis was, is that of an earlier move.
     let is_headed = |target: &Degrees| {
         (target.0 - from.0) * way.signum() > END_TOLERANCE_DEG.min(way.abs() / 2.0)
     };
@@ -370,7 +384,7 @@ fn motion(command: &Move, window: &[AngleSample], is_cut_off: bool, rest: f64) -
         has_no_target: target.is_none(),
         has_no_start: command.has_no_start,
         is_cut_off,
-        is_seen: longest <= END_TOLERANCE_DEG.max(UNSEEN_SHARE * (to.0 - from.0).abs()),
+        is_seen: has_other_steps || longest <= END_TOLERANCE_DEG.max(UNSEEN_SHARE * way.abs()),
     })
 }
 

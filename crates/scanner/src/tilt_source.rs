@@ -4,6 +4,7 @@ use cloud::mount::Mount;
 use units::{Degrees, Host, Metres, Span, Stamp};
 
 use crate::angles::{self, AngleSample, AngleTable};
+use crate::calibration::PointCalibration;
 use crate::clock::Arrival;
 use crate::config::{ScanConfig, SweepPlan};
 use crate::error::ScanError;
@@ -34,6 +35,8 @@ pub(crate) struct TiltAngles {
     /// Shaft samples discarded as implausible.
     pub implausible: u64,
     pub mount: Mount,
+    /// Calibration of the axis whose angles these are.
+    pub calibration: Option<PointCalibration>,
     /// The method where the source leaves no choice; the log's angles are known sweep by sweep.
     method: Option<Method>,
 }
@@ -56,6 +59,7 @@ impl TiltSource {
             shared_sd_ns: 0.0,
             implausible: 0,
             mount: config.mount.mount(),
+            calibration: None,
             method: None,
         };
         Ok(match self {
@@ -67,6 +71,10 @@ impl TiltSource {
                     samples,
                     step: Degrees(shaft.gearing.degrees_per_qc()),
                     shared_sd_ns,
+                    calibration: config
+                        .calibration
+                        .as_ref()
+                        .map(|calibration| PointCalibration::new(calibration, shaft.gearing)),
                     ..given
                 }
             }

@@ -13,6 +13,7 @@ use crate::clock::Moment;
 use crate::sweeps::Sweep;
 
 mod at_renewals;
+mod banded;
 mod bound;
 mod candidate;
 mod choose;
@@ -348,11 +349,11 @@ impl Trajectory {
         Some((squares / self.fits.len() as f64).sqrt())
     }
 
-    /// Greatest error of the angle within `spans`, degrees. For fits: three standard deviations,
-    /// the delay that all samples may share at the speed there, and the error of corners that the
-    /// samples do not determine. For connected samples: a step
-    /// of the encoder, half a poll's round trip at the speed there, and the error of a straight
-    /// line where the speed changes.
+    /// Greatest error of the angle within `spans`, degrees. For fits: three standard deviations or
+    /// half a step of the encoder, whichever is greater, the delay that all samples may share at
+    /// the speed there, and the error of corners that the samples do not determine, as of ramps
+    /// shorter than their interval. For connected samples: a step of the encoder, half a poll's
+    /// round trip at the speed there, and the error of a straight line where the speed changes.
     #[must_use]
     pub fn bound_deg(&self, spans: &[(Stamp<Host>, Stamp<Host>)]) -> f64 {
         let over = |(i, span): (usize, &(Stamp<Host>, Stamp<Host>))| {
@@ -361,11 +362,13 @@ impl Trajectory {
                 (Some(fit), Curve::Piecewise(pieces)) => {
                     let is_regularised = |remark: &Remark| matches!(remark, Remark::Regularised(_));
                     let is_open = fit.remarks.iter().any(is_regularised);
-                    let corner = match fit.profile.as_ref().filter(|_| is_open) {
-                        Some(profile) => bound::of_corner(within(&self.samples, *span), profile),
-                        None => 0.0,
-                    };
-                    bound::of_fit(pieces, *span, fit) + corner
+                    let samples = within(&self.samples, *span);
+                    let inner = bound::of_fit(pieces, *span, fit, self.step_deg);
+                    match &fit.profile {
+                        Some(profile) if is_open => inner + bound::of_corner(samples, profile),
+                        Some(profile) => inner.max(bound::of_short_ramps(samples, profile)),
+                        None => inner,
+                    }
                 }
                 _ => self.step_deg + bound::of_joined(&self.samples, *span, self.method),
             }

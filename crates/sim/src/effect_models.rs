@@ -45,12 +45,15 @@ macro_rules! effect {
 }
 
 mod backlash;
+mod base_drift;
 mod batching;
 mod divergence;
 mod duplicate;
+mod eccentricity;
 mod encoder_quantisation;
 mod explain;
 mod gear_ripple;
+mod laser_errors;
 mod lidar_clock;
 mod light;
 mod limited_field_of_view;
@@ -68,6 +71,7 @@ mod settings;
 #[cfg(test)]
 mod testing;
 mod tilt_limits;
+mod tolerance;
 mod weather;
 
 use serde::Deserialize;
@@ -79,6 +83,7 @@ pub use divergence::{Divergence, DivergenceSettings};
 pub use explain::{EffectExplanation, EffectLine, Explanation};
 pub use moving_objects::{Mover, MovingObjects};
 pub use settings::InvalidSetting;
+pub use tolerance::EffectTolerance;
 
 macro_rules! effects_config {
     ($($name:ident: $settings:ty,)*) => {
@@ -111,7 +116,11 @@ macro_rules! effects_config {
                 stopwatch: Stopwatch,
             ) -> Result<ConfiguredEffects, InvalidSetting> {
                 let mut effects = ConfiguredEffects::default();
-                $(if let Some(settings) = &self.$name {
+                let mut config = self.clone();
+                if let Some(weather) = &mut config.weather {
+                    weather.reflectance = self.reflectance;
+                }
+                $(if let Some(settings) = &config.$name {
                     settings.add(seed, stopwatch, &mut effects)?;
                 })*
                 Ok(effects)
@@ -123,15 +132,18 @@ macro_rules! effects_config {
 effects_config! {
     limited_field_of_view: limited_field_of_view::LimitedFieldOfViewSettings,
     own_shadow: own_shadow::OwnShadowSettings,
+    base_drift: base_drift::BaseDrift,
     moving_objects: moving_objects::MovingObjectsSettings,
     divergence: divergence::DivergenceSettings,
     weather: weather::WeatherSettings,
     reflectance: reflectance::ReflectanceSettings,
+    laser_errors: laser_errors::LaserErrorsSettings,
     range_noise: range_noise::RangeNoiseSettings,
     lidar_clock: lidar_clock::LidarClockSettings,
     servo_lag: servo_lag::ServoLagSettings,
     tilt_limits: tilt_limits::TiltLimits,
     gear_ripple: gear_ripple::GearRippleSettings,
+    eccentricity: eccentricity::Eccentricity,
     backlash: backlash::Backlash,
     encoder_quantisation: encoder_quantisation::EncoderQuantisationSettings,
     duplicate: duplicate::DuplicateSettings,

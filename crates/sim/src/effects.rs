@@ -26,6 +26,7 @@ mod listed;
 use units::{Degrees, Gearing};
 
 use crate::firing::{Echoes, Firing, Surroundings};
+use crate::sensor::LaserBeam;
 
 pub use listed::{ConfiguredEffects, EffectUsage, MeteredEffect, Stopwatch, UsageCounts};
 
@@ -111,6 +112,31 @@ pub trait ViewEffect: Effect {
     }
 }
 
+/// Only each `every`-th firing (0 as 1) sends pulses: a sample of a scene that keeps its packets
+/// and its time.
+#[derive(Clone, Copy, Debug)]
+pub struct FiringSample {
+    /// Firings from one to the next.
+    pub every: u64,
+}
+
+impl Effect for FiringSample {
+    fn name(&self) -> &'static str {
+        "firing_sample"
+    }
+}
+
+impl ViewEffect for FiringSample {
+    fn hide(&self, firing: &mut Firing) -> u32 {
+        if firing.number.is_multiple_of(self.every.max(1)) {
+            return 0;
+        }
+        let hidden = firing.alive.count_ones();
+        firing.alive = 0;
+        hidden
+    }
+}
+
 /// Acts on a pulse between sensor and surface.
 pub trait BeamEffect: Effect {
     /// Replaces the returns of each beam's axis by those of the whole pulse. `surroundings` casts
@@ -129,6 +155,16 @@ pub trait SurfaceEffect: Effect {
     fn reflect(&self, firing: &Firing, echoes: &mut Echoes) -> u32 {
         let _ = (firing, echoes);
         0
+    }
+
+    /// Variance of its random errors of a range, square metres.
+    fn range_variance_m2(&self) -> f64 {
+        0.0
+    }
+
+    /// Moves the lasers from where the sensor's tables have them, before the first firing.
+    fn misalign(&self, beams: &mut [LaserBeam]) {
+        let _ = beams;
     }
 }
 

@@ -8,98 +8,38 @@
 //! sphere of [`SPHERE_M`].
 
 mod request;
+mod sensor;
+mod settings;
 mod view;
 
-use crate::firing::Firing;
-use crate::sensor::{DetectionRange, LidarMount, LidarSensor, RayTable};
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use thiserror::Error;
 
-use crate::motion::{AxisMotion, AxisState, Sweeps};
+use crate::motion::{AxisMotion, Sweeps};
+use crate::sensor::DetectionRange;
 
 pub use request::{NAMES, PatternRequest};
+pub use sensor::PatternSensor;
+pub use settings::{PatternSettings, PatternTilt, PlanarFront, RevolutionEnds, TiltSteps};
 pub use view::FieldOfView;
 
 /// Radius of the hollow sphere, metres, as in the 2018 paper.
 pub const SPHERE_M: f64 = 10.0;
 /// The most points of a pattern.
-pub const MOST_POINTS: u64 = 100_000_000;
+pub const MOST_POINTS: u64 = 2_000_000_000;
 /// The tilt axis in the frame of the base.
 pub const AXIS: DVec3 = DVec3::Y;
-
-/// Sensors of patterns.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PatternSensor {
-    /// VLP-16, 16 lasers.
-    Vlp16,
-    /// HDL-32E, 32 lasers.
-    Hdl32e,
-    /// VLP-32C, 32 lasers.
-    Vlp32c,
-    /// One exactly level laser (laser 15 of the HDL-32E).
-    Single,
-}
-
-/// Motion of the tilt axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TiltSteps {
-    /// Continuous.
-    Continuous,
-    /// In steps from frame to frame.
-    Stepped,
-}
-
-/// Firings at the azimuth where a revolution begins, if a revolution is a whole number of steps.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RevolutionEnds {
-    /// At the begin and at the end, as in the 2018 paper: 901 firings of 0.4 degrees.
-    Twice,
-    /// At the begin only: 900 firings.
-    Once,
-}
-
-/// Tilt of a pattern.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PatternTilt {
-    /// First angle, degrees; the only one without motion.
-    pub from_deg: f64,
-    /// Last angle, degrees.
-    pub to_deg: f64,
-    /// Speed, degrees per second; 0 without motion.
-    pub speed_deg_s: f64,
-    /// Motion of the axis.
-    pub steps: TiltSteps,
-    /// Acceleration of the ramps at both ends, degrees per second squared; `None` without ramps.
-    pub accel_deg_s2: Option<f64>,
-}
-
-/// Parameters of a pattern.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PatternSettings {
-    /// The sensor.
-    pub head: PatternSensor,
-    /// Revolutions per minute.
-    pub rpm: f64,
-    /// Step of azimuth, degrees.
-    pub step_deg: f64,
-    /// Azimuth of the first firing of a frame, degrees.
-    pub start_deg: f64,
-    /// Whether the last firing of a frame repeats the first azimuth.
-    pub seam: RevolutionEnds,
-    /// The tilt.
-    pub tilt: PatternTilt,
-    /// Number of whole frames; `None` for as long as the tilt moves, with the last frame cut off.
-    pub frames: Option<u32>,
-    /// Height of the sensor's origin above the tilt axis, metres (d of Eq. 4-6).
-    pub d_m: f64,
-}
 
 /// A scan pattern.
 #[derive(Clone, Debug)]
 pub struct Pattern {
     name: String,
     settings: PatternSettings,
-    sensor: LidarSensor,
+    elevations_deg: Vec<f64>,
+    /// Directions of the lasers at azimuth 0.
+    aims: Vec<DVec3>,
+    /// Azimuth of the first firing of a frame, degrees.
+    start_deg: f64,
     frames: u32,
     firings: u32,
     /// Signed tilt from frame to frame, degrees.
@@ -160,32 +100,21 @@ pub enum PatternError {
     },
 }
 
-impl PatternSensor {
-    fn sensor(self) -> LidarSensor {
-        match self {
-            Self::Vlp16 => LidarSensor::vlp16(),
-            Self::Hdl32e => LidarSensor::hdl32e(),
-            Self::Vlp32c => LidarSensor::vlp32c(),
-            Self::Single => LidarSensor::hdl32e().only(15),
-        }
-        .ideal()
-    }
-}
-
 impl Pattern {
     /// A pattern from its parameters.
     ///
     /// # Errors
     /// [`PatternError`] for numbers out of range or too many points.
     pub fn new(name: &str, settings: PatternSettings) -> Result<Self, PatternError> {
-        check(name, &settings)?;
-        let sensor = settings.head.sensor();
-        let per_revolution = 360.0 / settings.step_deg;
-        let whole = (per_revolution - per_revolution.round()).abs() < WHOLE * per_revolution;
+        settings::check(name, &settings)?;
+        let elevations_deg = settings.head.elevations_deg();
+        let aperture_deg = settings.head.aperture_deg();
+        let steps = aperture_deg.unwrap_or(360.0) / settings.step_deg;
+        let whole = (steps - steps.round()).abs() < WHOLE * steps;
         let firings = match (whole, settings.seam) {
-            (true, RevolutionEnds::Twice) => per_revolution.round() + 1.0,
-            (true, RevolutionEnds::Once) => per_revolution.round(),
-            (false, _) => per_revolution.ceil(),
+            (true, RevolutionEnds::Twice) => steps.round() + 1.0,
+            (true, RevolutionEnds::Once) => steps.round(),
+            (false, _) => steps.ceil(),
         };
         let tilt = settings.tilt;
         let way_deg = tilt.to_deg - tilt.from_deg;
@@ -200,7 +129,7 @@ impl Pattern {
             None if by_deg > 0.0 => (way_deg.abs() / by_deg * (1.0 - WHOLE)).ceil().max(1.0),
             None => 1.0,
         };
-        let got = frames * firings * f64::from(sensor.used.count_ones());
+        let got = frames * firings * elevations_deg.len() as f64;
         if got > MOST_POINTS as f64 {
             let name = name.to_owned();
             return Err(PatternError::TooMany { name, got });
@@ -208,7 +137,14 @@ impl Pattern {
         Ok(Self {
             name: name.to_owned(),
             settings,
-            sensor,
+            aims: elevations_deg
+                .iter()
+                .map(|at| DMat3::from_rotation_x(at.to_radians()) * DVec3::Y)
+                .collect(),
+            elevations_deg,
+            start_deg: aperture_deg.map_or(settings.start_deg, |aperture_deg| {
+                settings.front.azimuth_deg() - 0.5 * aperture_deg
+            }),
             frames: frames as u32,
             firings: firings as u32,
             step_deg: by_deg.copysign(way_deg),
@@ -267,18 +203,29 @@ impl Pattern {
     /// Number of lasers.
     #[must_use]
     pub fn lasers(&self) -> u32 {
-        self.sensor.used.count_ones()
+        self.aims.len() as u32
     }
 
     /// The lowest and highest elevation of its lasers in the sensor's frame, degrees.
     #[must_use]
     pub fn elevations_deg(&self) -> [f64; 2] {
-        let used = self.sensor.beams.iter().enumerate();
-        let used = used.filter(|(laser, _)| self.sensor.used >> laser & 1 == 1);
-        used.fold(
-            [f64::INFINITY, f64::NEG_INFINITY],
-            |[low, high], (_, beam)| [low.min(beam.elevation_deg), high.max(beam.elevation_deg)],
-        )
+        let none = [f64::INFINITY, f64::NEG_INFINITY];
+        let elevations = self.elevations_deg.iter();
+        elevations.fold(none, |[low, high], at| [low.min(*at), high.max(*at)])
+    }
+
+    /// First and last azimuth of a planar scanner, degrees; `None` for a rotating head.
+    #[must_use]
+    pub fn azimuths_deg(&self) -> Option<[f64; 2]> {
+        let aperture_deg = self.settings.head.aperture_deg()?;
+        Some([self.start_deg, self.start_deg + aperture_deg])
+    }
+
+    /// Whether it sees an azimuth, degrees.
+    #[must_use]
+    pub fn sees_azimuth(&self, azimuth_deg: f64) -> bool {
+        self.azimuths_deg()
+            .is_none_or(|[first, last]| (azimuth_deg - first).rem_euclid(360.0) <= last - first)
     }
 
     /// The least and greatest tilt, degrees.
@@ -292,12 +239,14 @@ impl Pattern {
     /// The visible part of the hollow sphere, as directions from the origin of the base.
     #[must_use]
     pub fn view(&self) -> FieldOfView {
-        FieldOfView::new(
+        let mut view = FieldOfView::new(
             self.elevations_deg(),
             self.tilts_deg(),
             [self.settings.d_m; 2],
             [SPHERE_M; 2],
-        )
+        );
+        view.azimuths_deg = self.azimuths_deg();
+        view
     }
 
     /// Limits an angle to the range of the tilt, where that ends the scan.
@@ -314,7 +263,7 @@ impl Pattern {
     /// The sensor's range of detection.
     #[must_use]
     pub fn range(&self) -> DetectionRange {
-        self.sensor.range()
+        self.settings.head.range()
     }
 
     /// The tilt at a firing of a frame, degrees; `None` where the scan is over.
@@ -349,46 +298,78 @@ impl Pattern {
     /// All directions, frame by frame.
     #[must_use]
     pub fn directions(&self) -> Vec<DVec3> {
-        let shots = u64::from(self.frames)
-            * u64::from(self.firings)
-            * u64::from(self.sensor.used.count_ones());
-        let mut directions = Vec::with_capacity(shots.min(MOST_POINTS) as usize);
+        let mut directions = Vec::with_capacity(self.points() as usize);
         for frame in 0..self.frames {
             self.append(frame, &mut directions);
         }
         directions
     }
 
+    /// Number of points.
+    #[must_use]
+    pub fn points(&self) -> u64 {
+        let last = self.frames.saturating_sub(1);
+        let is_over = |firing: u32| self.tilt_deg(f64::from(last), firing).is_none();
+        // The tilt ends within the last frame.
+        let (mut fired, mut over) = (0, self.firings);
+        while fired < over {
+            let middle = fired.midpoint(over);
+            match is_over(middle) {
+                true => over = middle,
+                false => fired = middle + 1,
+            }
+        }
+        let firings = u64::from(last) * u64::from(self.firings) + u64::from(fired);
+        firings * self.aims.len() as u64
+    }
+
+    /// The direction of a point by its number in [`Pattern::directions`]; `None` beyond the last.
+    #[must_use]
+    pub fn direction(&self, point: u64) -> Option<DVec3> {
+        let lasers = self.aims.len().max(1) as u64;
+        let (firing, laser) = (point / lasers, point % lasers);
+        let firings = u64::from(self.firings);
+        let frame = u32::try_from(firing / firings)
+            .ok()
+            .filter(|frame| *frame < self.frames)?;
+        let pose = self.pose(frame, (firing % firings) as u32)?;
+        Some(pose.direction(*self.aims.get(laser as usize)?))
+    }
+
     fn append(&self, frame: u32, directions: &mut Vec<DVec3>) {
-        let PatternSettings {
-            start_deg,
-            step_deg,
-            d_m,
-            ..
-        } = self.settings;
-        // Lasers fire together, so the speed of the head does not matter.
-        let rays = RayTable::new(&self.sensor, 0.0);
-        let mount = LidarMount::above(d_m);
-        let mut firing = Firing::new(rays.count);
-        firing.alive = self.sensor.used;
         for number in 0..self.firings {
-            let Some(angle_deg) = self.tilt_deg(f64::from(frame), number) else {
+            let Some(pose) = self.pose(frame, number) else {
                 break;
             };
-            firing.azimuth_deg = start_deg + f64::from(number) * step_deg;
-            firing.tilt = AxisState {
-                angle_deg,
-                rate_deg_s: 0.0,
-            };
-            firing.aim(&rays, &mount);
-            let shots = firing.origins_m.iter().zip(&firing.directions).enumerate();
-            for (_, (origin, direction)) in shots.filter(|(laser, _)| firing.is_alive(*laser)) {
-                if d_m == 0.0 {
-                    directions.push(*direction);
-                } else {
-                    directions.push(on_sphere(*origin, *direction));
-                }
-            }
+            directions.extend(self.aims.iter().map(|aim| pose.direction(*aim)));
+        }
+    }
+
+    /// The sensor at a firing of a frame; `None` where the scan is over.
+    fn pose(&self, frame: u32, firing: u32) -> Option<SensorPose> {
+        let tilt_deg = self.tilt_deg(f64::from(frame), firing)?;
+        let azimuth_deg = self.start_deg + f64::from(firing) * self.settings.step_deg;
+        let platform = DMat3::from_rotation_y(tilt_deg.to_radians());
+        Some(SensorPose {
+            head: platform * DMat3::from_rotation_z(-azimuth_deg.to_radians()),
+            origin_m: self.settings.d_m * platform.z_axis,
+        })
+    }
+}
+
+/// A sensor at a firing. Lasers fire together, so the speed of the head does not matter.
+struct SensorPose {
+    head: DMat3,
+    origin_m: DVec3,
+}
+
+impl SensorPose {
+    fn direction(&self, aim: DVec3) -> DVec3 {
+        let direction = self.head * aim;
+        if self.origin_m == DVec3::ZERO {
+            direction
+        } else {
+            on_sphere(self.origin_m, direction)
         }
     }
 }
@@ -426,50 +407,6 @@ fn on_sphere(origin_m: DVec3, direction: DVec3) -> DVec3 {
 
 /// Relative difference below which two numbers are equal but for rounding.
 const WHOLE: f64 = 1e-9;
-
-fn check(name: &str, settings: &PatternSettings) -> Result<(), PatternError> {
-    let tilt = settings.tilt;
-    let rules = [
-        ("rpm", settings.rpm, 1.0, 100_000.0, "1 to 100000 rpm"),
-        ("step", settings.step_deg, 1e-3, 90.0, "0.001 to 90 deg"),
-        (
-            "start",
-            settings.start_deg,
-            -360.0,
-            360.0,
-            "-360 to 360 deg",
-        ),
-        ("from", tilt.from_deg, -360.0, 360.0, "-360 to 360 deg"),
-        ("to", tilt.to_deg, -360.0, 360.0, "-360 to 360 deg"),
-        ("speed", tilt.speed_deg_s, 0.0, 1e6, "0 to 1000000 deg/s"),
-        ("d", settings.d_m, -5.0, 5.0, "-5 to 5 m"),
-        (
-            "accel",
-            tilt.accel_deg_s2.unwrap_or(1.0),
-            1e-3,
-            1e9,
-            "0.001 to 1000000000 deg/s2",
-        ),
-        (
-            "frames",
-            f64::from(settings.frames.unwrap_or(1)),
-            1.0,
-            1e6,
-            "1 to 1000000 frames",
-        ),
-    ];
-    for (key, got, least, most, expected) in rules {
-        if !(least..=most).contains(&got) {
-            return Err(PatternError::Number {
-                name: name.to_owned(),
-                key,
-                expected,
-                got,
-            });
-        }
-    }
-    Ok(())
-}
 
 #[cfg(test)]
 mod tests;

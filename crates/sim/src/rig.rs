@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 use firmware_sim::epos2::{Node, NodeConfig};
 use firmware_sim::vlp16::{DATA_PORT, POSITION_PORT, firing_blocks};
-use units::{Degrees, Gearing, Host, Metres, Span, Stamp};
+use units::{Degrees, Gearing, Host, Span, Stamp};
 
 use crate::effects::{ClockEffect, FiringEffectSet};
 use crate::firing::Surroundings;
@@ -36,7 +36,7 @@ pub struct RigConfig {
     /// The scene of the lidar's beams.
     pub scene: Arc<Scene>,
     /// Height of the lidar's origin above the tilt axis (d of Eq. 4-6).
-    pub mount: Metres,
+    pub mount: LidarMount,
     /// The drive.
     pub drive: NodeConfig,
     /// The interface between host and drive.
@@ -86,7 +86,7 @@ impl RigConfig {
     pub fn new(start: Stamp<Host>) -> Self {
         Self {
             scene: Arc::new(scenes::hall()),
-            mount: Metres(0.06),
+            mount: LidarMount::above(0.06),
             drive: NodeConfig::default(),
             attached: Attachment::Usb,
             gearing: GEARING,
@@ -160,7 +160,7 @@ impl Rig {
                 rpm: lidar.rpm,
                 start_deg: lidar.azimuth_at_start.0,
             },
-            LidarMount::above(config.mount.0),
+            config.mount,
             start,
             clock.clone(),
         );

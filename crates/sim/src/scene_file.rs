@@ -4,6 +4,7 @@
 //! without a table is absent. The surroundings are the file's own objects or a shipped scene
 //! (`scene = "hall"`), see [`crate::scenery`]. Unknown keys are errors, and errors name the line.
 
+mod demands;
 mod sections;
 mod surroundings;
 
@@ -15,16 +16,18 @@ use thiserror::Error;
 use toml::Spanned;
 use units::{Host, Stamp};
 
-use crate::effect_models::{EffectsConfig, MovingObjects};
-use crate::effects::{ConfiguredEffects, MeteredEffect, Stopwatch};
+use crate::effect_models::{EffectsConfig, InvalidSetting, MovingObjects};
+use crate::effects::{ConfiguredEffects, FiringSample, MeteredEffect, Stopwatch};
 use crate::scenery::{
     FilePosition, InvalidValue, MaterialTable, ObjectTable, line_of_value, no_files,
 };
 use crate::simulate::Simulation;
+use demands::SceneFacts;
 use sections::{DriveSection, MotionSection, MountSection, SensorSection, invalid};
 
 pub use crate::effect_models::EffectLine;
 pub use crate::scenery::SHIPPED;
+pub use demands::EffectDemand;
 
 /// A scene file that is read.
 #[derive(Debug)]
@@ -36,6 +39,12 @@ pub struct SceneFile {
     pub effects: SceneEffects,
     /// Seed of all random draws.
     pub seed: u64,
+    /// Effects that the scene's facts call for, configured or not.
+    pub demands: Vec<EffectDemand>,
+    config: EffectsConfig,
+    file_lines: Vec<EffectLine>,
+    /// The objects of the scene that move.
+    movers: MovingObjects,
 }
 
 /// The effects of a scene.
@@ -98,10 +107,17 @@ const fn default_start() -> f64 {
 }
 
 impl SceneEffects {
-    /// Whether no effect is configured.
+    /// Whether there is no effect.
     #[must_use]
-    pub const fn is_none(&self) -> bool {
-        self.lines.is_empty()
+    pub fn is_none(&self) -> bool {
+        self.effects.usage().is_empty()
+    }
+
+    /// The line that configures an effect, from 1.
+    #[must_use]
+    pub fn line(&self, name: &str) -> Option<usize> {
+        let line = self.lines.iter().find(|line| line.name == name);
+        line.and_then(|line| line.line)
     }
 
     /// Removes effects by name. The others keep their random draws.
@@ -121,6 +137,7 @@ impl SceneEffects {
         }
         let rank = |name: &str| EffectsConfig::NAMES.iter().position(|known| *known == name);
         let place = (self.lines).partition_point(|other| rank(other.name) < rank(name));
+        let line = Some(line);
         self.lines.insert(place, EffectLine { name, line });
     }
 }
@@ -161,16 +178,37 @@ impl SceneFile {
                 what: error.what,
             })?;
         let boxes = sections.effects.moving_objects.clone().unwrap_or_default();
+        let is_ideal = sections.sensor.is_ideal();
+        let line = |name: &Spanned<String>| FilePosition::of(text, name.span().start).line;
+        let lines: BTreeMap<String, usize> = (sections.materials.keys())
+            .map(|name| (name.get_ref().clone(), line(name)))
+            .collect();
         let surroundings = surroundings::build(text, sections, seed, files)?;
         scene.simulation.scene = surroundings.scene;
-        if let Some(line) = surroundings.first_mover_line {
-            let boxes = MovingObjects::of(&boxes).map_err(|error| SceneFileError {
-                line,
+        let line = surroundings.first_mover_line;
+        scene.movers = MovingObjects::of(&boxes)
+            .map_err(|error| SceneFileError {
+                line: line.unwrap_or(1),
                 what: error.to_string(),
-            })?;
-            let all = boxes.and(surroundings.movers);
+            })?
+            .and(surroundings.movers);
+        if let Some(line) = line {
+            let all = scene.movers.clone();
             scene.effects.set_moving_objects(all, line, stopwatch);
         }
+        let of_boxes = scene.effects.line(MovingObjects::NAME);
+        scene.file_lines.clone_from(&scene.effects.lines);
+        let placed = scene.simulation.scene.placed();
+        let facts = SceneFacts {
+            is_ideal,
+            materials: (placed.materials.iter())
+                .map(|material| (material, lines.get(&material.name).copied()))
+                .collect(),
+            objects: placed.objects.len(),
+            movers: (scene.movers.count(), line.or(of_boxes)),
+            has_drive: scene.simulation.polls.is_some(),
+        };
+        scene.demands = facts.demands();
         Ok(scene)
     }
 
@@ -197,8 +235,9 @@ impl SceneFile {
         })?;
         let lines = sections.effects.configured().map(|name| EffectLine {
             name,
-            line: line_of_value(text, &format!("effects.{name}")),
+            line: Some(line_of_value(text, &format!("effects.{name}"))),
         });
+        let lines: Vec<EffectLine> = lines.collect();
         Ok(Self {
             simulation: Simulation {
                 scene: Arc::default(),
@@ -211,12 +250,63 @@ impl SceneFile {
                 start: Stamp::<Host>::from_nanos((start_s * 1e9).round() as i64),
                 clock_at_start_us: sections.lidar_clock_us,
             },
-            effects: SceneEffects {
-                effects,
-                lines: lines.collect(),
-            },
+            effects: SceneEffects { effects, lines },
             seed,
+            demands: Vec::new(),
+            config: sections.effects.clone(),
+            file_lines: Vec::new(),
+            movers: MovingObjects::default(),
         })
+    }
+
+    /// Those effects that `keep` selects, of the file's and those that the scene's facts call for,
+    /// which have usual settings if the file has none. They draw the same random numbers in every
+    /// selection.
+    ///
+    /// # Errors
+    /// [`InvalidSetting`] for the first setting that is invalid.
+    pub fn select(
+        &self,
+        keep: impl Fn(&str) -> bool,
+        stopwatch: Stopwatch,
+    ) -> Result<SceneEffects, InvalidSetting> {
+        let mut config = self.config.clone();
+        for demand in &self.demands {
+            config.add_usual(demand.effect);
+        }
+        let mut effects = config.build(self.seed, stopwatch)?;
+        if self.movers.count() > 0 {
+            let movers = Arc::new(self.movers.clone());
+            effects.firings.objects = vec![MeteredEffect::new(movers, stopwatch)];
+        }
+        effects.retain(&keep);
+        let lines = (effects.usage().iter())
+            .map(|used| {
+                let demand = self.demands.iter().find(|other| other.effect == used.name);
+                let line = self.file_lines.iter().find(|line| line.name == used.name);
+                let line = line.and_then(|line| line.line);
+                EffectLine {
+                    name: used.name,
+                    line: line.or(demand.and_then(|demand| demand.line)),
+                }
+            })
+            .collect();
+        Ok(SceneEffects { effects, lines })
+    }
+
+    /// Those effects, for a sample: of the firings only each `every`-th has returns.
+    ///
+    /// # Errors
+    /// As [`SceneFile::select`].
+    pub fn sampled(
+        &self,
+        keep: impl Fn(&str) -> bool,
+        every: u64,
+    ) -> Result<ConfiguredEffects, InvalidSetting> {
+        let mut effects = self.select(keep, None)?.effects;
+        let sample = Arc::new(FiringSample { every });
+        (effects.firings.view).push(MeteredEffect::new(sample, None));
+        Ok(effects)
     }
 }
 

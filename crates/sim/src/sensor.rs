@@ -6,7 +6,9 @@
 mod tables;
 
 pub use firmware_sim::vlp16::{PacketModel, ReturnMode};
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec3, EulerRot};
+
+use crate::scenery::rotation;
 
 /// The most lasers of any sensor.
 pub const MAX_LASERS: usize = 32;
@@ -64,6 +66,23 @@ impl LidarMount {
             position_m: DVec3::new(0.0, 0.0, d_m),
         }
     }
+
+    /// Its origin at `position_m` metres, rotated about the platform's x, then y, then z.
+    #[must_use]
+    pub fn at(position_m: [f64; 3], rotation_deg: [f64; 3]) -> Self {
+        Self {
+            rotation: rotation(rotation_deg),
+            position_m: DVec3::from_array(position_m),
+        }
+    }
+
+    /// The rotation about the platform's x, then y, then z, degrees.
+    #[must_use]
+    pub fn rotation_deg(&self) -> [f64; 3] {
+        let (z, y, x) = self.rotation.to_euler(EulerRot::ZYX);
+        // No negative zeros of an upright mount.
+        [x, y, z].map(|angle| angle.to_degrees() + 0.0)
+    }
 }
 
 impl LidarSensor {
@@ -112,12 +131,11 @@ impl LidarSensor {
     }
 
     /// The same sensor as theoretical scan patterns have it: all lasers of a firing start from one
-    /// point, at one azimuth and one instant.
+    /// point at one instant. Those of a VLP-32C keep their azimuths, which every reader adds.
     #[must_use]
     pub fn ideal(mut self) -> Self {
         for beam in &mut self.beams {
             beam.origin_m = 0.0;
-            beam.azimuth_deg = 0.0;
             beam.delay_ns = 0;
         }
         self

@@ -20,7 +20,9 @@ use std::sync::Arc;
 use thiserror::Error;
 use units::{Gearing, Host, Span, Stamp};
 
-use crate::effects::{Effects, EncoderEffect, FiringEffects, LinkEffect, MechanismEffect};
+use crate::effects::{
+    Effects, EncoderEffect, FiringEffects, LinkEffect, MechanismEffect, SurfaceEffect,
+};
 use crate::lidar_clock::LidarClock;
 use crate::motion::AxisMotion;
 use crate::packet_maker::{HeadRotation, Lidar, TruePoint};
@@ -228,9 +230,11 @@ impl Simulation {
         Ok(())
     }
 
-    fn lidar(&self) -> Lidar {
+    fn lidar(&self, surface: &impl SurfaceEffect) -> Lidar {
+        let mut sensor = self.sensor.clone();
+        surface.misalign(&mut sensor.beams);
         Lidar::new(
-            self.sensor.clone(),
+            sensor,
             self.returns,
             self.rotation,
             self.mount,

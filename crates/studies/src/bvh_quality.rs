@@ -5,7 +5,8 @@ use std::hint::black_box;
 use std::sync::Arc;
 
 use analysis::tradeoff::{
-    Bench, Measured, Measurement, Row, Study, StudyError, TimingSpread, Trade, Work, in_rounds,
+    Bench, Measurement, Row, Study, StudyError, StudyFindings, StudyRows, TimingSpread, Trade,
+    Work, in_rounds,
 };
 use glam::DVec3;
 use sim::cast::{Caster, Hit, Mesh, Object, Quality, Ray, Reach, Surface};
@@ -26,6 +27,7 @@ pub(crate) const BVH_QUALITY: Study = Study {
         ("hits_that_differ", "hits that differ"),
     ],
     trades: &[Trade::new(0, 1).by_group()],
+    finding: StudyFindings::ends_of_front,
     measure,
 };
 
@@ -62,7 +64,7 @@ const fn of(bins: usize, sharing: usize) -> Quality {
     Quality { bins, sharing }
 }
 
-fn measure(bench: &mut Bench<'_>) -> Result<Measured, StudyError> {
+fn measure(bench: &mut Bench<'_>) -> Result<StudyRows, StudyError> {
     let shots = Shots::of("quarry", bench.pick(48, 14_000))?;
     let rays = rays(&shots)?;
     let scenes = [

@@ -2,7 +2,9 @@
 
 use std::hint::black_box;
 
-use analysis::tradeoff::{Bench, Measured, Row, Study, StudyError, TimedChoice, Trade};
+use analysis::tradeoff::{
+    Bench, Row, Study, StudyError, StudyFindings, StudyRows, TimedChoice, Trade,
+};
 use scanner::clock::{Arrival, LidarClock, OnlineClock};
 use sim::packet_clock::{ArrivalLink, Oscillator, PACKET_NS, PacketClock, TimedPacket};
 use units::{Host, Lidar, Span, Stamp};
@@ -18,6 +20,7 @@ pub(crate) const CLOCKS: Study = Study {
         ("worst_error_us", "worst error, us"),
     ],
     trades: &[Trade::new(0, 2).by_group()],
+    finding: StudyFindings::ends_of_front,
     measure,
 };
 
@@ -39,7 +42,7 @@ const METHODS: [(&str, &str, Method); 4] = [
     ("of the whole: lower envelope", "whole", whole),
 ];
 
-fn measure(bench: &mut Bench<'_>) -> Result<Measured, StudyError> {
+fn measure(bench: &mut Bench<'_>) -> Result<StudyRows, StudyError> {
     let (seconds, seeds) = bench.pick((5, 1), (45, 4));
     let plan = bench.plan(&format!("{seconds} s of packets"), 3, 15);
     let recordings = ArrivalLink::ALL.map(|link| recordings(link, seconds, seeds));

@@ -8,7 +8,7 @@ use ::cloud::formats::Format;
 use ::cloud::{Fields, Metadata, Points, read};
 use analysis::plan::TiltSweep;
 use analysis::tradeoff::{
-    Bench, Measured, Row, SeededNoise, Study, StudyError, TimedChoice, Trade,
+    Bench, Row, SeededNoise, Study, StudyError, StudyFindings, StudyRows, TimedChoice, Trade,
 };
 use protocol::vlp16::models::VLP_16;
 use sim::scenes;
@@ -16,7 +16,7 @@ use sim::sensor::{LidarMount, LidarSensor};
 
 use crate::granularity::place_packets;
 use crate::workload::{SimulatedShot, Workload};
-use engine::output::Buffered;
+use engine::output::BufferedFile;
 
 /// The study.
 pub(super) const FORMATS: Study = Study {
@@ -29,6 +29,7 @@ pub(super) const FORMATS: Study = Study {
         ("worst_error_um", "worst error of a place, um"),
     ],
     trades: &[Trade::new(0, 2), Trade::new(1, 2)],
+    finding: StudyFindings::ends_of_front,
     measure,
 };
 
@@ -44,7 +45,7 @@ const BATCH_POINTS: usize = 1 << 12;
 /// Standard deviation of a range, metres: a third of the VLP-16's +-3 cm (Table 2 of the paper).
 const NOISE_M: f64 = 0.01;
 
-fn measure(bench: &mut Bench<'_>) -> Result<Measured, StudyError> {
+fn measure(bench: &mut Bench<'_>) -> Result<StudyRows, StudyError> {
     let cloud = hall(bench.pick(0.15, SWEEP.duration_s()))?;
     let batches = batches(&cloud);
     let points = cloud.len();
@@ -123,7 +124,7 @@ fn batches(cloud: &Points) -> Vec<Points> {
 
 fn write(format: Format, memory: &Memory, batches: &[Points]) -> Result<(), StudyError> {
     memory.clear();
-    let mut sink = format.writer(Buffered::new(memory.clone()), cloud::Fields::FILE);
+    let mut sink = format.writer(BufferedFile::new(memory.clone()), cloud::Fields::FILE);
     sink.begin(&Metadata::default())?;
     for batch in batches {
         sink.points(batch)?;

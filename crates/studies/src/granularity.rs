@@ -5,7 +5,9 @@ use std::hint::black_box;
 use crate::placing::{
     BLOCK, Exact, FIRING, PACKET, PlacedPoints, RETURN, SensorGeometry, Shot, place, worst_m,
 };
-use analysis::tradeoff::{Bench, Measured, Row, Study, StudyError, TimedChoice, Trade};
+use analysis::tradeoff::{
+    Bench, Row, Study, StudyError, StudyFindings, StudyRows, TimedChoice, Trade,
+};
 use cloud::{Fields, Points, Sink, SinkError};
 use lidar::Options;
 use scanner::{Alignment, Placer};
@@ -22,6 +24,7 @@ pub(crate) const GRANULARITY: Study = Study {
         ("worst_error_mm", "worst error, mm at 100 m"),
     ],
     trades: &[Trade::new(0, 1).joined()],
+    finding: StudyFindings::ends_of_front,
     measure,
 };
 
@@ -59,7 +62,7 @@ const WAYS: [GranularityChoice; 7] = [
     choice::<RETURN, RETURN>("both a return", "return", "tilt and azimuth"),
 ];
 
-fn measure(bench: &mut Bench<'_>) -> Result<Measured, StudyError> {
+fn measure(bench: &mut Bench<'_>) -> Result<StudyRows, StudyError> {
     let packets = Workload::new(cruise_deg, cruise_s(bench), all_at(RANGE_M));
     let alignment = packets.alignment()?;
     let (shots, truth) = (packets.shots(&alignment), definition(&packets, &alignment));

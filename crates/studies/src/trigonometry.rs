@@ -6,7 +6,9 @@ use crate::placing::{
     Addition, Exact, LASERS, PlacedPoints, RETURN, Real, SensorGeometry, Shot, Sine, SineTable,
     place,
 };
-use analysis::tradeoff::{Bench, Measured, Row, Study, StudyError, TimedChoice, Trade};
+use analysis::tradeoff::{
+    Bench, Row, Study, StudyError, StudyFindings, StudyRows, TimedChoice, Trade,
+};
 
 use crate::workload::{Workload, all_at, cruise_deg, cruise_s, head};
 
@@ -20,6 +22,7 @@ pub(crate) const TRIGONOMETRY: Study = Study {
         ("worst_error_mm", "worst error, mm at 100 m"),
     ],
     trades: &[Trade::new(0, 1)],
+    finding: StudyFindings::ends_of_front,
     measure,
 };
 
@@ -32,7 +35,7 @@ struct TrigonometrySetup {
     truth: PlacedPoints<f64>,
 }
 
-fn measure(bench: &mut Bench<'_>) -> Result<Measured, StudyError> {
+fn measure(bench: &mut Bench<'_>) -> Result<StudyRows, StudyError> {
     let packets = Workload::new(cruise_deg, cruise_s(bench), all_at(RANGE_M));
     let shots = packets.shots(&packets.alignment()?);
     let (head, points) = (head(), shots.len() * LASERS);

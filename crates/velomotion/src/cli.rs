@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use engine::reconstruct::source::SensorAddress;
 use scanner::Tolerance;
+use sim::effect_models::EffectTolerance;
 
 use crate::sweep_ranges::SweepRanges;
 
@@ -14,8 +15,8 @@ mod requests;
 mod values;
 
 use values::{
-    acceleration, azimuth, deceleration, degrees, effect_or_all, metres, millimetres, number,
-    place, seconds, seed, share, threads, two_times,
+    acceleration, address_and_port, azimuth, deceleration, degrees, effect_or_all, metres,
+    millimetres, number, place, seconds, share, threads, two_times, whole,
 };
 
 /// Version, and the commit of the build.
@@ -82,6 +83,10 @@ pub enum Command {
     Simulate(Simulate),
     /// List what a file holds
     Info(Info),
+    /// Calibrate mount, tilt axis and lasers by logs of ordinary scans, without targets
+    Calibrate(Calibrate),
+    /// Measure how accurate the points of logs are: residuals, sweeps, stations, error budget
+    Accuracy(AccuracyStudyArguments),
     /// Plan a capture: how fast may it be, and what does that cost in accuracy and density?
     Plan(Plan),
     /// Measure how densely and evenly scan patterns, clouds or logs cover the surroundings
@@ -147,7 +152,7 @@ pub struct Capture {
     #[arg(long, value_name = "DEG_PER_S2", allow_negative_numbers = true, value_parser = number)]
     pub accel: Option<f64>,
     /// Number of sweeps [default: 1, with --both-ways 2]
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u32>(1..=10_000))]
     pub sweeps: Option<u32>,
     /// Scan on the return move too; each direction counts as a sweep
     #[arg(long)]
@@ -173,8 +178,8 @@ pub struct Replay {
     /// time_s,angle_deg
     #[arg(long, value_name = "log|none|ANGLES.csv", default_value = "log")]
     pub tilt: String,
-    /// Mount of the lidar: a TOML file with d_m in its table `mount` (default: the log's; with
-    /// ANGLES.csv the configuration's)
+    /// Mount of the lidar: a TOML file with d_m in its table `mount`, such as calibrate writes
+    /// (default: the log's; with ANGLES.csv the configuration's)
     #[arg(long, value_name = "FILE")]
     pub mount: Option<PathBuf>,
     /// Emit points at the recorded times, or FACTOR times as fast
@@ -204,6 +209,62 @@ pub struct Replay {
     pub output: Output,
 }
 
+/// `calibrate`.
+#[derive(Clone, Debug, Args)]
+pub struct Calibrate {
+    /// Logs of one scanner; scan both ways, at two speeds
+    #[arg(value_name = "LOG", required = true)]
+    pub logs: Vec<PathBuf>,
+    /// Calibration to write, for `file` of the configuration's `mount` table and replay --mount
+    #[arg(short, long, value_name = "MOUNT.toml")]
+    pub output: Option<PathBuf>,
+    /// Mount to start from [default: the first log's]
+    #[arg(long, value_name = "FILE")]
+    pub mount: Option<PathBuf>,
+    /// Parameters to keep at their start: all whose names begin so, such as laser or play
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',')]
+    pub fix: Vec<String>,
+    /// Folder for a page that draws the residuals, and the JSON object
+    #[arg(long, value_name = "DIR")]
+    pub report: Option<PathBuf>,
+    /// Surface that sets the zero of the tilt
+    #[arg(long, value_enum)]
+    pub level: Option<LevelSurface>,
+    /// Overwrite existing files
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// `accuracy`.
+#[derive(Clone, Debug, Args)]
+pub struct AccuracyStudyArguments {
+    /// Logs of one scanner; of several stations in one place corners are compared
+    #[arg(value_name = "LOG", required = true)]
+    pub logs: Vec<PathBuf>,
+    /// Mount and calibration of the scanner [default: the first log's]
+    #[arg(long, value_name = "FILE")]
+    pub mount: Option<PathBuf>,
+    /// Scene with which the log was simulated, to compare points with the truth
+    #[arg(long, value_name = "SCENE")]
+    pub scene: Option<PathBuf>,
+    /// Seed with which it was simulated [default: the scene's]
+    #[arg(long, value_name = "N", requires = "scene", allow_negative_numbers = true, value_parser = whole::<u64>(0..=u64::MAX))]
+    pub seed: Option<u64>,
+    /// Folder for a page with the tables, and the JSON object
+    #[arg(long, value_name = "DIR")]
+    pub report: Option<PathBuf>,
+    /// Overwrite existing files
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// `--level`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum LevelSurface {
+    /// The floor.
+    Floor,
+}
+
 /// `simulate`.
 #[derive(Clone, Debug, Args)]
 pub struct Simulate {
@@ -217,7 +278,7 @@ pub struct Simulate {
     #[arg(long, value_name = "CLOUD")]
     pub truth: Option<PathBuf>,
     /// Random seed [default: the scene's]
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = seed)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u64>(0..=u64::MAX))]
     pub seed: Option<u64>,
     /// Effects of the scene to omit, by name, or all of them: docs, Effects
     #[arg(long, value_name = "EFFECT,..|all", value_delimiter = ',', value_parser = effect_or_all(), hide_possible_values = true)]
@@ -225,8 +286,12 @@ pub struct Simulate {
     /// Threads that make packets; the log does not depend on it [default: one per core]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = threads)]
     pub threads: Option<NonZeroUsize>,
-    /// Report what each effect changed and cost, the line that requested it, and effects without
-    /// influence
+    /// Run with as few effects as keep the cloud this close to one with all that the scene calls
+    /// for: so many percent of the points may be displaced farther, missing or added
+    #[arg(long, value_name = "LENGTH,SHARE", allow_hyphen_values = true)]
+    pub tolerance: Option<EffectTolerance>,
+    /// Report what each effect changes in the cloud and costs, the line that requested it, and
+    /// effects without influence
     #[arg(long)]
     pub explain: bool,
     /// Overwrite existing files
@@ -346,11 +411,12 @@ pub struct Plan {
     /// Time for the scan with homing, such as 10s
     #[arg(long, value_name = "S", allow_hyphen_values = true, value_parser = seconds)]
     pub time: Option<f64>,
-    /// Lidar model
-    #[arg(long, value_enum, value_name = "MODEL", default_value_t = ModelName::Vlp16)]
-    pub lidar: ModelName,
+    /// Lidar model [default: the configuration's, vlp16]
+    #[arg(long, value_enum, value_name = "MODEL")]
+    pub lidar: Option<ModelName>,
     /// Revolutions of the lidar per minute to choose from; they are set on the lidar's own page
-    #[arg(long, value_name = "N[,N]", value_delimiter = ',', default_value = "600", value_parser = clap::value_parser!(u32).range(60..=6_000))]
+    /// [default: the configuration's, 600]
+    #[arg(long, value_name = "N[,N]", value_delimiter = ',', allow_negative_numbers = true, value_parser = whole::<u32>(60..=6_000))]
     pub rpm: Vec<u32>,
     /// Standard deviation of a range, such as 10mm [default: the configuration's range_sd_m]
     #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = millimetres)]
@@ -375,20 +441,22 @@ pub struct Plan {
 /// `analyze`.
 #[derive(Clone, Debug, Args)]
 pub struct Analyze {
-    /// Patterns by name (vlp16, hdl32e, vlp32c, rmbl:SPEED, rsbl:SPEED, velomotion16:SPEED, each
-    /// with ,KEY=VALUE: rpm, step, start, seam, from, to, accel, tilt, frames, d), clouds (.ply
-    /// .pcd .las .laz .e57 .mcap .csv .xyz .txt .asc), logs or recordings
+    /// Patterns by name: a lidar (vlp16, hi-res, hdl32e, vlp32c, hdl64e, utm30lx, lms151), which
+    /// tilts with :SPEED and spins with ,spin; rmbl:SPEED, rsbl:SPEED, velomotion16:SPEED. Each
+    /// takes ,KEY=VALUE: rpm, step, start, seam, from, to, accel, tilt, frames, d, and planar
+    /// scanners ,roll or ,pitch. Clouds (.ply .pcd .las .laz .e57 .mcap .csv .xyz .txt .asc), logs
+    /// or recordings
     #[arg(value_name = "PATTERN|CLOUD|LOG", required = true)]
     pub inputs: Vec<String>,
     /// Subdivisions of the icosahedron whose faces are the bins: 20 x 4^N bins
-    #[arg(long, value_name = "N", default_value_t = 4, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=8))]
+    #[arg(long, value_name = "N", default_value_t = 4, allow_negative_numbers = true, value_parser = whole::<u32>(0..=8))]
     pub level: u32,
     /// Tolerated error of the K function as a share of all pairs: selects the cheapest sufficient
     /// method; 0 counts every pair
     #[arg(long, value_name = "X", default_value_t = 1e-4, allow_negative_numbers = true, value_parser = share)]
     pub k_error: f64,
     /// Bins of the K function, from 0 to 180 degrees
-    #[arg(long, value_name = "N", default_value_t = 151, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=3_600))]
+    #[arg(long, value_name = "N", default_value_t = 151, allow_negative_numbers = true, value_parser = whole::<u16>(1..=3_600))]
     pub bins: u16,
     /// Position of the scanner in cloud coordinates, metres: the origin of all directions [default:
     /// 0,0,0]
@@ -438,7 +506,7 @@ pub struct DaemonArguments {
     pub device: DeviceArgument,
     /// Address and port to listen on; port 0 selects a free one [default: the configuration's,
     /// 127.0.0.1:8016]
-    #[arg(long, value_name = "ADDRESS:PORT")]
+    #[arg(long, value_name = "ADDRESS:PORT", value_parser = address_and_port)]
     pub listen: Option<SocketAddr>,
 }
 
@@ -541,7 +609,7 @@ pub struct FirmwareSim {
     #[arg(long)]
     pub latch: bool,
     /// Let the encoder's count deviate by up to this many quadcounts at rest under power
-    #[arg(long, value_name = "QC", default_value_t = 0)]
+    #[arg(long, value_name = "QC", default_value_t = 0, allow_negative_numbers = true, value_parser = whole::<u8>(0..=255))]
     pub dither: u8,
 }
 

@@ -68,6 +68,8 @@ mod tests {
     use std::path::Path;
 
     use analysis::tradeoff::TradeoffReport;
+    use engine::accuracy::AccuracyReport;
+    use engine::calibrate::CalibrateReport;
     use engine::capture::scan_plan::PlanReport;
     use engine::document::{ErrorReport, schema};
     use engine::reconstruct::lidar_copy::LidarCopyReport;
@@ -88,6 +90,8 @@ mod tests {
             of::<AxisReport>(),
             of::<StoppedCommand>(),
             of::<TradeoffReport>(),
+            of::<CalibrateReport>(),
+            of::<AccuracyReport>(),
             of::<ErrorReport>(),
             of::<PlanReport>(),
             of::<AnalyzeReport>(),

@@ -27,6 +27,8 @@ pub fn run(cli: &Cli) -> Result<CommandOutput, Failure> {
         Command::Replay(arguments) => commands::replay::run(arguments, &cli.common),
         Command::Simulate(arguments) => commands::simulate::run(arguments, &cli.common),
         Command::Info(arguments) => commands::info::run(arguments),
+        Command::Calibrate(arguments) => commands::calibrate::run(arguments, &cli.common),
+        Command::Accuracy(arguments) => commands::accuracy::run(arguments, &cli.common),
         Command::Plan(arguments) => commands::plan::run(arguments, &cli.common),
         Command::Analyze(arguments) => commands::analyze::run(arguments, &cli.common),
         Command::Tradeoff(arguments) => commands::tradeoff::run(arguments, &cli.common),

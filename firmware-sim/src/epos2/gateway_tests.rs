@@ -10,7 +10,7 @@ use protocol::epos2::message::{
 };
 use protocol::epos2::objects;
 use protocol::epos2::usb::{UsbDecoder, to_bytes};
-use protocol::epos2::{Bounded, CommError, SerialFrame};
+use protocol::epos2::{BoundedVec, CommError, SerialFrame};
 
 use super::super::{Node, NodeConfig, UsbServer};
 
@@ -73,7 +73,7 @@ fn a_long_write_to_another_node_ends_in_a_timeout() {
     assert_eq!(bench.error(&begin(3, 9)), CommError::MEMORY);
     assert_eq!(bench.error(&begin(3, 4)), CommError::NONE);
     let segment = |toggle, bytes: &[u8]| {
-        let bytes = Bounded::from_slice(bytes).unwrap();
+        let bytes = BoundedVec::from_slice(bytes).unwrap();
         SegmentedWrite(WriteSegment { toggle, bytes }).to_frame()
     };
     assert_eq!(bench.error(&segment(false, &[1, 2, 3])), CommError::NONE);

@@ -7,7 +7,7 @@
 
 use protocol::canopen::CanId;
 use protocol::canopen::pdo::{CommunicationId, LayoutError, MAX_ENTRIES, MappedObject, PdoLayout};
-use protocol::epos2::Bounded;
+use protocol::epos2::BoundedVec;
 use protocol::epos2::objects::Address;
 
 use super::Abort;
@@ -38,8 +38,12 @@ pub(super) fn layout(dictionary: &Dictionary, index: u16) -> PdoLayout {
     PdoLayout::new(&entries(dictionary, mapping, count)).unwrap_or_default()
 }
 
-fn entries(dictionary: &Dictionary, mapping: u16, count: u8) -> Bounded<MappedObject, MAX_ENTRIES> {
-    let mut entries = Bounded::new();
+fn entries(
+    dictionary: &Dictionary,
+    mapping: u16,
+    count: u8,
+) -> BoundedVec<MappedObject, MAX_ENTRIES> {
+    let mut entries = BoundedVec::new();
     let raw = (1..=count).map(|sub| dictionary.raw(Address::new(mapping, sub)));
     entries.extend(raw.map(MappedObject::from_u32));
     entries

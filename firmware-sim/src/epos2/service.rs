@@ -10,7 +10,7 @@ use protocol::epos2::message::{
     SegmentedRead, SegmentedWrite, SerialAnswer, SerialRequest, WriteObject, WriteSegment,
 };
 use protocol::epos2::objects::Address;
-use protocol::epos2::{Bounded, CommError, SerialFrame};
+use protocol::epos2::{BoundedVec, CommError, SerialFrame};
 
 use super::Abort;
 use super::garbage::GarbageGenerator;
@@ -34,7 +34,7 @@ struct Download {
     address: Address,
     len: u32,
     toggle: bool,
-    bytes: Bounded<u8, LONGEST>,
+    bytes: BoundedVec<u8, LONGEST>,
 }
 
 impl CommandService {
@@ -119,7 +119,7 @@ impl CommandService {
             // The first segment is also the last and has the toggle bit clear.
             return Err(CommError::TOGGLE);
         }
-        let mut bytes = Bounded::new();
+        let mut bytes = BoundedVec::new();
         bytes.extend(value.bytes().iter().copied());
         Ok(SegmentedRead::answer(&Ok(ReadSegment {
             toggle: false,
@@ -145,7 +145,7 @@ impl CommandService {
             address: request.address,
             len: request.len,
             toggle: false,
-            bytes: Bounded::new(),
+            bytes: BoundedVec::new(),
         });
         Ok(())
     }

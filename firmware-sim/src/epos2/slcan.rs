@@ -7,7 +7,7 @@
 use protocol::canopen::CanFrame;
 use protocol::canopen::CanId;
 use protocol::canopen::slcan::{CommandDecoder, Line, SlcanCommand, SlcanReply};
-use protocol::epos2::Bounded;
+use protocol::epos2::BoundedVec;
 
 use super::can::CanServer;
 use super::node::Node;
@@ -128,7 +128,7 @@ fn receive(
 }
 
 fn reply(reply: &SlcanReply, out: &mut impl FnMut(&[u8])) {
-    let mut bytes = Bounded::<u8, LONGEST_REPLY>::new();
+    let mut bytes = BoundedVec::<u8, LONGEST_REPLY>::new();
     reply.encode(&mut bytes);
     out(&bytes);
 }

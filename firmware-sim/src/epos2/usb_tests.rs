@@ -11,7 +11,7 @@ use protocol::epos2::message::{
 };
 use protocol::epos2::objects::{self, Address};
 use protocol::epos2::usb::{UsbDecoder, to_bytes};
-use protocol::epos2::{Bounded, CommError, DeviceError, SerialFrame};
+use protocol::epos2::{BoundedVec, CommError, DeviceError, SerialFrame};
 
 use super::super::{Node, NodeConfig};
 use super::UsbServer;
@@ -245,7 +245,7 @@ fn a_number_is_written_in_segments() {
     let segment = |toggle, bytes: &[u8]| {
         SegmentedWrite(WriteSegment {
             toggle,
-            bytes: Bounded::from_slice(bytes).unwrap(),
+            bytes: BoundedVec::from_slice(bytes).unwrap(),
         })
         .to_frame()
     };

@@ -1,6 +1,6 @@
 //! The value of a dictionary entry as bytes, for serial answers and SDOs.
 
-use protocol::epos2::Bounded;
+use protocol::epos2::BoundedVec;
 
 use super::entry::Type;
 
@@ -9,7 +9,7 @@ pub(super) const LONGEST: usize = 8;
 
 /// A value, low byte first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ObjectValue(Bounded<u8, LONGEST>);
+pub struct ObjectValue(BoundedVec<u8, LONGEST>);
 
 impl ObjectValue {
     /// A number of type `ty`, from the low bytes of `raw`.

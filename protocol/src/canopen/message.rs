@@ -9,7 +9,7 @@ use super::heartbeat::Heartbeat;
 use super::nmt::Nmt;
 use super::sdo::{SdoRequest, SdoResponse};
 use super::sync::SyncMessage;
-use crate::Bounded;
+use crate::BoundedVec;
 
 /// A decoded frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,9 +21,9 @@ pub enum BusMessage {
     /// An error of a node, or its end.
     Emergency(Emergency),
     /// Process data from a node, in the layout of its mapping ([`super::pdo::PdoLayout`]).
-    TransmitPdo(PdoNumber, NodeId, Bounded<u8, 8>),
+    TransmitPdo(PdoNumber, NodeId, BoundedVec<u8, 8>),
     /// Process data to a node.
-    ReceivePdo(PdoNumber, NodeId, Bounded<u8, 8>),
+    ReceivePdo(PdoNumber, NodeId, BoundedVec<u8, 8>),
     /// A request to a node's SDO server.
     SdoRequest(NodeId, SdoRequest),
     /// An answer of a node's SDO server.
@@ -87,7 +87,7 @@ impl BusMessage {
 }
 
 /// Process data as a frame.
-pub(super) fn pdo(id: CobId, data: &Bounded<u8, 8>) -> CanFrame {
+pub(super) fn pdo(id: CobId, data: &BoundedVec<u8, 8>) -> CanFrame {
     // Both hold at most eight bytes, so the fallback is unreachable.
     CanFrame::new(id, data).unwrap_or_else(|_| CanFrame::of(id, []))
 }

@@ -16,7 +16,7 @@ use super::sync::SyncMessage;
 use super::{
     BusMessage, CanFrame, CanId, CanopenLayer, CobId, ExtendedId, MessageError, NodeId, PdoNumber,
 };
-use crate::Bounded;
+use crate::BoundedVec;
 use crate::canopen::AbortCode;
 
 fn node(id: u8) -> NodeId {
@@ -70,7 +70,7 @@ fn download(address: Address, data: &[u8]) -> SdoRequest {
 }
 
 fn segment(toggle: bool, last: bool, bytes: &[u8]) -> SdoSegment {
-    let bytes = Bounded::from_slice(bytes).unwrap();
+    let bytes = BoundedVec::from_slice(bytes).unwrap();
     SdoSegment {
         toggle,
         last,
@@ -225,7 +225,7 @@ fn other_messages() -> Vec<(&'static str, BusMessage)> {
             state,
         })
     };
-    let mut process = Bounded::new();
+    let mut process = BoundedVec::new();
     process.extend([0x37, 0x03]);
     std::vec![
         ("000#0101", nmt(Some(node(1)), NmtCommand::Start)),

@@ -2,14 +2,14 @@
 
 use super::crc::crc16;
 use super::error::{SerialFrameError, SerialLayer};
-use crate::Bounded;
+use crate::BoundedVec;
 
 /// Largest number of words accepted in a frame. The longest frame of the Communication Guide, the
 /// answer to a segmented read, has 34; the limit reveals a damaged length byte early.
 pub const MAX_WORDS: usize = 64;
 
 /// The data of a frame.
-pub type Words = Bounded<u16, MAX_WORDS>;
+pub type Words = BoundedVec<u16, MAX_WORDS>;
 
 /// A request (opcode of a command) or an answer (opcode 00).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -17,7 +17,7 @@ pub mod usb;
 
 /// The error code of a serial answer, equal to an SDO abort code.
 pub use crate::canopen::AbortCode as CommError;
-pub use crate::{Bounded, CapacityError};
+pub use crate::{BoundedVec, CapacityError};
 pub use device_error::DeviceError;
 pub use error::{SerialFrameError, SerialLayer};
 pub use frame::{MAX_WORDS, SerialFrame, Words};

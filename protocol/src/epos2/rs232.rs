@@ -7,7 +7,7 @@
 
 use super::error::{SerialFrameError, SerialLayer};
 use super::frame::{MAX_WORDS, PartialFrame, SerialFrame};
-use crate::Bounded;
+use crate::BoundedVec;
 
 /// Handshake: go on.
 pub const OKAY: u8 = b'O';
@@ -19,7 +19,7 @@ pub const FRAME_TIMEOUT_MS: u32 = 500;
 pub const MAX_BYTES: usize = 1 + 2 * MAX_WORDS + 2;
 
 /// The bytes of one body as on the wire.
-pub type Bytes = Bounded<u8, MAX_BYTES>;
+pub type Bytes = BoundedVec<u8, MAX_BYTES>;
 
 /// Writes the body of `frame` (without the opcode, which precedes it) to `out`.
 ///

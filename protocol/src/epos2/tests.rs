@@ -14,7 +14,7 @@ use super::message::{
 use super::objects::{self, Address};
 use super::rs232::{self, BodyDecoder};
 use super::usb::{self, UsbDecoder};
-use super::{Bounded, CommError, MAX_WORDS, SerialFrame, SerialFrameError, SerialLayer};
+use super::{BoundedVec, CommError, MAX_WORDS, SerialFrame, SerialFrameError, SerialLayer};
 
 fn hex(text: &str) -> Vec<u8> {
     text.split_whitespace()
@@ -280,8 +280,8 @@ fn address() -> impl Strategy<Value = Address> {
     (any::<u16>(), any::<u8>()).prop_map(|(index, sub)| Address { index, sub })
 }
 
-fn segment_bytes() -> impl Strategy<Value = Bounded<u8, 63>> {
-    prop::collection::vec(any::<u8>(), 0..=63).prop_map(|b| Bounded::from_slice(&b).unwrap())
+fn segment_bytes() -> impl Strategy<Value = BoundedVec<u8, 63>> {
+    prop::collection::vec(any::<u8>(), 0..=63).prop_map(|b| BoundedVec::from_slice(&b).unwrap())
 }
 
 fn request() -> impl Strategy<Value = SerialRequest> {

@@ -7,7 +7,7 @@
 
 use super::error::{SerialFrameError, SerialLayer};
 use super::frame::{MAX_WORDS, PartialFrame, SerialFrame};
-use crate::Bounded;
+use crate::BoundedVec;
 
 /// Data link escape: begins a frame, doubled inside.
 pub const DLE: u8 = 0x90;
@@ -17,7 +17,7 @@ pub const STX: u8 = 0x02;
 pub const MAX_BYTES: usize = 2 + 2 * (2 + 2 * MAX_WORDS + 2);
 
 /// The bytes of one frame as on the wire.
-pub type Bytes = Bounded<u8, MAX_BYTES>;
+pub type Bytes = BoundedVec<u8, MAX_BYTES>;
 
 /// `frame` as on the wire, stuffed and with its CRC.
 #[must_use]

@@ -6,7 +6,7 @@
 
 use io::can::{CanPort, SocketCan};
 use io::clock;
-use protocol::Bounded;
+use protocol::BoundedVec;
 use protocol::canopen::sdo::{
     Expedited, SEGMENT_LEN, SdoRequest, SdoResponse, SdoTransfer, TransferError, TransferStep,
 };
@@ -19,7 +19,7 @@ pub const TIME_LIMIT: Span = Span::from_secs(5);
 /// The longest object read here has 8 bytes.
 const MAX_OBJECT: usize = 16;
 type Transfer = SdoTransfer<MAX_OBJECT>;
-type ObjectData = Bounded<u8, MAX_OBJECT>;
+type ObjectData = BoundedVec<u8, MAX_OBJECT>;
 
 /// A frame other than an SDO answer, with the kernel's receive time.
 pub type ReceivedFrame = (CanFrame, Stamp<Host>);

@@ -108,7 +108,8 @@ fn on_transport(transport: &'static str, arguments: &Arguments, results: &Result
     }
 }
 
-/// Every signal meets every kind of motion, and the goto of a held axis.
+/// Every signal meets every kind of motion, and the goto of a held axis; a kill meets the other
+/// motions of a held axis.
 fn every_signal(transport: &str, bench: &Bench, results: &Results) {
     let check = |motion, signal: Signal, bench, held| {
         let case = Case {
@@ -130,6 +131,9 @@ fn every_signal(transport: &str, bench: &Bench, results: &Results) {
     results.check(transport, held.run("tilt home"));
     for signal in SIGNALS {
         check(Motion::Goto, signal, &held, true);
+    }
+    for motion in [Motion::Homing, Motion::Sweep, Motion::Daemon] {
+        check(motion, SIGNALS[0], &held, true);
     }
 }
 

@@ -1,13 +1,14 @@
 //! Captures on a loaded machine: busy loops take the processors from the program, its simulated
 //! drive (a process of its own) and its lidar. Every capture must be complete.
 //!
-//! `cargo test -p velomotion --test load -- [--captures N] [--loops N] [--link LINK]`: as many
+//! `cargo test -p velomotion --test load -- [--captures N] [--loops N] [--link LINK] [--page]`:
 //! captures by the command, and as many by a daemon. Without arguments 2 of each, 8 loops, and usb.
+//! `--page` shows the daemon's page meanwhile in Chromium, which draws without a graphics card.
 #![allow(clippy::unwrap_used, clippy::panic, clippy::expect_used)] // a test
 
 use std::fmt::Debug;
 use std::io::{BufRead, BufReader};
-use std::net::{Ipv4Addr, UdpSocket};
+use std::net::{Ipv4Addr, SocketAddr, TcpListener, UdpSocket};
 use std::os::unix::net::UnixStream;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -49,19 +50,24 @@ fn main() {
         lost += (0..captures)
             .filter(|number| !is_complete(folder.path(), "command", *number))
             .count();
-        let mut daemon = spawn(folder.path(), "daemon --listen 127.0.0.1:0", &[]);
+        let address = free_address();
+        let daemon = spawn(folder.path(), &format!("daemon --listen {address}"), &[]);
         wait_for_devices(folder.path());
+        let browser = has("--page").then(|| open_page(folder.path(), address));
         lost += (0..captures)
             .filter(|number| !is_complete(folder.path(), "daemon", *number))
             .count();
-        let _ = daemon.kill();
-        let _ = daemon.wait();
+        for mut process in browser.into_iter().chain([daemon]) {
+            let _ = process.kill();
+            let _ = process.wait();
+        }
         stop.store(true, Ordering::Relaxed);
     });
     drop(drive.stdin.take());
     let _ = drive.wait();
+    let page = if has("--page") { " and the page" } else { "" };
     println!(
-        "{lost} of {} captures over {link} incomplete with {loops} busy loops",
+        "{lost} of {} captures over {link} incomplete with {loops} busy loops{page}",
         2 * captures
     );
     assert_eq!(lost, 0);
@@ -71,6 +77,30 @@ fn main() {
 fn value_of<T: FromStr<Err: Debug>>(option: &str, default: T) -> T {
     let mut words = std::env::args().skip_while(|word| word != option).skip(1);
     words.next().map_or(default, |word| word.parse().unwrap())
+}
+
+fn has(option: &str) -> bool {
+    std::env::args().any(|word| word == option)
+}
+
+fn free_address() -> SocketAddr {
+    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
+    listener.local_addr().unwrap()
+}
+
+/// Shows the page as on a laptop whose graphics card the browser does not use.
+fn open_page(folder: &Path, address: SocketAddr) -> Child {
+    let profile = folder.join("browser");
+    Command::new("chromium")
+        .args(["--headless=new", "--no-sandbox", "--disable-dev-shm-usage"])
+        .args(["--use-angle=swiftshader", "--enable-unsafe-swiftshader"])
+        .arg("--window-size=1440,900")
+        .arg(format!("--user-data-dir={}", profile.display()))
+        .args(["--remote-debugging-port=0", &format!("http://{address}/")])
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap()
 }
 
 fn command(folder: &Path, line: &str) -> Command {

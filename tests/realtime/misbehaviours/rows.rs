@@ -45,6 +45,7 @@ pub const ROWS: &[Misbehaviour] = &[
     row("dither of 8 qc at rest", Start, Completes, |d| d.faults.dither = 8.0),
     row("velocity 606C lies", Start, Completes, |d| d.faults.speed_lies = true),
     row("encoder of 512 lines", Start, Refused, |d| d.set(0x2210, 1, 512)),
+    row("answers 150 ms late from the start", Start, Refused, |d| d.faults.damage = Damage::Late(0.15)),
     row("no position sensor (2210:2)", Start, Refused, |d| d.set(0x2210, 2, 0)),
     row("faults switch off at once (605E = 0)", Start, Refused, |d| d.set(0x605E, 0, 0)),
     row("velocity notation differs (608B)", Start, Refused, |d| d.set(0x608B, 0, 0xFD)),

@@ -1,5 +1,7 @@
 //! Simulated scenes through their logs, compared with the truth.
 
+mod accuracy;
+mod calibrate;
 mod light;
 mod models;
 mod round_trip;

@@ -98,7 +98,10 @@ fn both_returns_of_a_pulse_are_decoded() {
             let listed = MeteredEffect::new(Arc::new(Pane) as Arc<_>, None);
             scene.effects.effects.firings.beam.push(listed);
             let (name, line) = ("pane", 1);
-            scene.effects.lines.push(EffectLine { name, line });
+            scene.effects.lines.push(EffectLine {
+                name,
+                line: Some(line),
+            });
         });
         let (_, cloud) = replayed(&scene.log(), TiltSource::None);
         assert_eq!(cloud.len() as u64, scene.report.returns, "{name}");

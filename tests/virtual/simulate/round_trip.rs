@@ -117,19 +117,14 @@ fn lost_answers_of_the_drive_cost_only_samples() {
     }
 }
 
-/// Such a cloud would look correct and be wrong.
+/// The log has the whole mount, not its height alone.
 #[test]
-fn a_mount_that_a_log_cannot_store_gives_a_warning() {
-    for (mount, reported) in [
-        ("d_m = 0.1", true),
-        ("position_m = [0, 0, 0.2]", true),
-        ("position_m = [0.01, 0, 0.2]", false),
-        ("rotation_deg = [0, 0, 1]", false),
-    ] {
-        let text = format!(
-            "scene = \"hall\"\n[motion]\nkind = \"fixed\"\nduration_s = 0.1\n[mount]\n{mount}\n"
-        );
-        let scene = Simulated::new(&text, |_| {});
-        assert_eq!(scene.report.warnings.is_empty(), reported, "{mount}");
-    }
+fn a_rotated_and_shifted_mount_is_recovered_from_the_log() {
+    let text = "scene = \"hall\"\n[motion]\nkind = \"sweeps\"\nfrom_deg = -10.0\nto_deg = 30.0\nspeed_deg_s = 100.0\n\
+                [mount]\nd_m = 0.1\nposition_m = [0.01, -0.02, 0.03]\nrotation_deg = [2.0, -1.0, 170.0]\n";
+    let scene = Simulated::new(text, |_| {});
+    let (_, cloud) = replayed(&scene.log(), TiltSource::Log);
+    let (rms_m, worst_m) = rms_and_worst(&scene.errors(&cloud));
+    assert!(rms_m < 0.8e-3, "{rms_m}");
+    assert!(worst_m < 2.2e-3, "{worst_m}");
 }

@@ -57,6 +57,22 @@ impl BinCounts {
     /// # Errors
     /// [`DensityError::Direction`] for the first invalid direction.
     pub fn new(locator: &Locator, directions: &[DVec3]) -> Result<Self, DensityError> {
+        let mut counts = Self::empty(locator);
+        counts.add(locator, directions)?;
+        Ok(counts)
+    }
+
+    /// Bins without points.
+    #[must_use]
+    pub fn empty(locator: &Locator) -> Self {
+        Self(vec![0; locator.bins()])
+    }
+
+    /// Counts more directions.
+    ///
+    /// # Errors
+    /// [`DensityError::Direction`] for the first invalid direction; none is counted.
+    pub fn add(&mut self, locator: &Locator, directions: &[DVec3]) -> Result<(), DensityError> {
         check(directions)?;
         let bins = locator.bins();
         // One part per thread, since each needs its own row of bins.
@@ -76,13 +92,12 @@ impl BinCounts {
                 counts
             })
             .collect();
-        let mut all = vec![0; bins];
         for counts in parts {
-            for (sum, count) in all.iter_mut().zip(counts) {
+            for (sum, count) in self.0.iter_mut().zip(counts) {
                 *sum += count;
             }
         }
-        Ok(Self(all))
+        Ok(())
     }
 
     /// Points in each bin, in the order of [`super::Icosahedron::bins`].

@@ -19,19 +19,25 @@ const PLOT: f64 = 330.0;
 /// A curve: angles in degrees and values.
 type Curve = Vec<(f64, f64)>;
 
-/// The figure: two plots over the angle, one below the other.
+/// The figure: three plots over the angle, one below the other.
 #[must_use]
 pub fn curves(scans: &AnalyzedScans) -> String {
     let area = 4.0 * PI * SPHERE_M * SPHERE_M;
-    let mut about = "K - K_csr over the area of the sphere, and its first derivative, over the angle from 0 to 180 degrees. Above 0 points cluster, below they keep apart.".to_owned();
-    let (mut differences, mut slopes): (Vec<Curve>, Vec<Curve>) = (Vec::new(), Vec::new());
+    let mut about = "K - K_csr over the area of the sphere, its first derivative, and that of K beside that of K_csr, over the angle from 0 to 180 degrees. Above 0 points cluster, below they keep apart.".to_owned();
+    let (mut differences, mut slopes, mut all_slopes) = (Vec::new(), Vec::new(), Vec::new());
+    let mut csr: Curve = Vec::new();
     for scan in &scans.scans {
         let theta = scan.k.theta_rad.iter().map(|theta| theta.to_degrees());
         let points = theta.zip(scan.k.d.iter().copied());
         let start = scan.k.has_pairs().then_some((0.0, 0.0));
         differences.push(start.into_iter().chain(points).collect());
         let slope = scan.k.derivative_m2_rad.iter().map(|slope| slope / area);
-        slopes.push(middles_deg(&scan.k.theta_rad).zip(slope).collect());
+        let slope: Curve = middles_deg(&scan.k.theta_rad).zip(slope).collect();
+        let of_csr = middles_deg(&scan.k.theta_rad).zip(csr_slopes(&scan.k.theta_rad));
+        csr = of_csr.collect();
+        let whole = slope.iter().zip(&csr).map(|((at, a), (_, b))| (*at, a + b));
+        all_slopes.push(whole.collect());
+        slopes.push(slope);
         about += &match scan.k.has_pairs() {
             true => format!(
                 " {}: from {:.5} to {:.5}.",
@@ -40,10 +46,22 @@ pub fn curves(scans: &AnalyzedScans) -> String {
             false => format!(" {}: no pairs.", scan.name),
         };
     }
-    let mut body = plot("K - K_csr, share of the sphere's area", &differences, TITLE);
-    body += &plot("first derivative of it, a radian", &slopes, TITLE + PLOT);
+    let mut body = plot(
+        "K - K_csr, share of the sphere's area",
+        &differences,
+        &[],
+        TITLE,
+    );
+    body += &plot(
+        "first derivative of it, a radian",
+        &slopes,
+        &[],
+        TITLE + PLOT,
+    );
+    let title = "first derivative of K, and of K_csr (grey)";
+    body += &plot(title, &all_slopes, &csr, TITLE + 2.0 * PLOT);
     let names: Vec<&str> = scans.scans.iter().map(|scan| scan.name.as_str()).collect();
-    let (names, end) = legend(&names, TITLE + 2.0 * PLOT + 4.0);
+    let (names, end) = legend(&names, TITLE + 3.0 * PLOT + 4.0);
     document(
         "Ripley's K function against complete spatial randomness",
         &about,
@@ -59,9 +77,22 @@ pub(super) fn middles_deg(upper_rad: &[f64]) -> impl Iterator<Item = f64> {
     both.map(|(to, from)| f64::midpoint(*to, *from).to_degrees())
 }
 
-fn plot(title: &str, curves: &[Curve], top: f64) -> String {
+/// The derivative of K_csr over the area of the sphere in each bin, from their upper edges: the
+/// difference of its ends divided by its width, as [`crate::k::KCurve`] has that of K - K_csr.
+pub(super) fn csr_slopes(upper_rad: &[f64]) -> impl Iterator<Item = f64> {
+    let before = std::iter::once(&0.0).chain(upper_rad);
+    let csr = |theta: f64| (theta / 2.0).sin().powi(2);
+    let ends = upper_rad.iter().zip(before);
+    ends.map(move |(to, from)| (csr(*to) - csr(*from)) / (to - from))
+}
+
+fn plot(title: &str, curves: &[Curve], reference: &[(f64, f64)], top: f64) -> String {
     let PlotArea { left, right, .. } = AREA;
-    let values = curves.iter().flatten().map(|(_, value)| *value);
+    let values = curves
+        .iter()
+        .flatten()
+        .chain(reference)
+        .map(|(_, value)| *value);
     let y = PlotAxis::new(Scale::Linear, values.chain([0.0]), AREA.bottom, AREA.top);
     let x = |degrees: f64| left + (right - left) * degrees / 180.0;
     let ticks = [0, 30, 60, 90, 120, 150, 180].map(|degrees| AxisTick {
@@ -79,10 +110,16 @@ fn plot(title: &str, curves: &[Curve], top: f64) -> String {
         svg += &AREA.horizontal("tv-zero", zero);
     }
     svg += &AREA.frame();
-    for (number, curve) in curves.iter().enumerate() {
+    let places = |curve: &[(f64, f64)]| -> Vec<(f64, f64)> {
         let places = curve.iter();
         let places = places.filter_map(|(degrees, value)| Some((x(*degrees), y.position(*value)?)));
-        svg += &line(&stroke(number), places);
+        places.collect()
+    };
+    if !reference.is_empty() {
+        svg += &line("class=\"tv-zero tv-csr\"", places(reference));
+    }
+    for (number, curve) in curves.iter().enumerate() {
+        svg += &line(&stroke(number), places(curve));
     }
     svg + "</g>\n"
 }

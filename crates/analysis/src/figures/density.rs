@@ -3,7 +3,8 @@
 use glam::DVec3;
 
 use super::colour::Shades;
-use super::frame::{MARGIN, TITLE, WIDTH, document, heading, scale_name};
+use super::frame::{MARGIN, TITLE, document, heading, scale_name};
+use super::sides::{RADIUS, ROW, SIDES, Side, captions, centre};
 use super::{AnalyzedScan, AnalyzedScans};
 use crate::density::IcosahedronFace;
 use crate::draw::plot::{TextAnchor, small};
@@ -11,41 +12,8 @@ use crate::draw::plot::{TextAnchor, small};
 /// The finest level of bins that is drawn; finer bins are merged, since there are more of them than
 /// pixels.
 const FINEST: usize = 5;
-const RADIUS: f64 = 104.0;
 /// Path units per pixel.
 const FINE: f64 = 10.0;
-const ROW: f64 = 2.0 * RADIUS + 62.0;
-
-/// A viewing direction.
-struct Side {
-    caption: &'static str,
-    /// Direction towards the viewer.
-    to: DVec3,
-    /// Axes to the right and up, and their names.
-    right: (DVec3, &'static str),
-    up: (DVec3, &'static str),
-}
-
-const SIDES: [Side; 3] = [
-    Side {
-        caption: "from +x",
-        to: DVec3::X,
-        right: (DVec3::Y, "y"),
-        up: (DVec3::Z, "z"),
-    },
-    Side {
-        caption: "from -y, along the tilt axis",
-        to: DVec3::NEG_Y,
-        right: (DVec3::X, "x"),
-        up: (DVec3::Z, "z"),
-    },
-    Side {
-        caption: "from +z, above",
-        to: DVec3::Z,
-        right: (DVec3::X, "x"),
-        up: (DVec3::Y, "y"),
-    },
-];
 
 /// The figure: a row per scan, a column per side.
 #[must_use]
@@ -101,20 +69,10 @@ fn row(
         scan.points, s.mean, s.sd, s.min, s.max, s.empty
     );
     let mut svg = heading(&scan.name, &more, top + 14.0);
-    let column = (WIDTH - 2.0 * MARGIN) / 3.0;
     for (number, side) in SIDES.iter().enumerate() {
-        let x = MARGIN + column * (number as f64 + 0.5);
-        let y = top + 30.0 + RADIUS;
-        svg += &sphere(side, faces, counts, shades, (x, y));
-        let below = y + RADIUS + 18.0;
-        svg += &small(x, below, TextAnchor::Middle, side.caption);
-        let names = [
-            (x + RADIUS + 5.0, y + 4.0, side.right.1),
-            (x - 3.0, y - RADIUS - 3.0, side.up.1),
-        ];
-        for (x, y, name) in names {
-            svg += &small(x, y, TextAnchor::Start, name);
-        }
+        let at = centre(number, top);
+        svg += &sphere(side, faces, counts, shades, at);
+        svg += &captions(side, at);
     }
     svg
 }

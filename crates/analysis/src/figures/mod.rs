@@ -1,10 +1,10 @@
 //! Figures, tables and a page on scan patterns side by side, after Figures 2-7 and 11 of the 2018
 //! paper.
 //!
-//! All functions turn data into text: [`density()`] on the sphere from three sides, [`planes()`]
-//! around the scanner, [`histogram()`] and [`curves()`] as SVG; [`mod@csv`] of every curve;
-//! [`page()`] with all of it. All patterns of a figure share one colour scale. Darker means more,
-//! so that it works in print without colour.
+//! All functions turn data into text: [`points()`] and [`density()`] on the sphere from three
+//! sides, [`planes()`] around the scanner, [`histogram()`] and [`curves()`] as SVG; [`mod@csv`] of
+//! every curve; [`page()`] with all of it. All patterns of a figure share one colour scale. Darker
+//! means more, so that it works in print without colour.
 
 mod colour;
 mod conclusion;
@@ -15,6 +15,9 @@ mod frame;
 mod histogram;
 mod page;
 mod planes;
+mod points;
+mod sides;
+mod squares;
 #[cfg(test)]
 mod tests;
 
@@ -23,6 +26,7 @@ pub use density::density;
 pub use histogram::{class_width, histogram};
 pub use page::{FILES, page};
 pub use planes::{CELL_M, Planes, planes};
+pub use points::{SpherePoints, points};
 
 use crate::density::{BinCounts, Icosahedron, Statistics};
 use crate::k::KCurve;
@@ -53,6 +57,8 @@ pub struct AnalyzedScan {
     pub method: &'static str,
     /// Intersections of its rays with planes.
     pub planes: Planes,
+    /// Its points on the sphere.
+    pub sphere: SpherePoints,
 }
 
 /// Results for the directions that a scan could see.

@@ -3,13 +3,16 @@
 
 use super::conclusion::{conclusions, farthest};
 use super::frame::short_name;
-use super::{AnalyzedScan, AnalyzedScans, CELL_M, SPHERE_M, curves, density, histogram, planes};
+use super::{
+    AnalyzedScan, AnalyzedScans, CELL_M, SPHERE_M, curves, density, histogram, planes, points,
+};
 use crate::draw::escaped;
 use crate::draw::html::{self, Section, caution};
 use crate::draw::number::short;
 
 /// Files next to the page that it links to, and their descriptions.
-pub const FILES: [(&str, &str); 8] = [
+pub const FILES: [(&str, &str); 9] = [
+    ("points.svg", "points on the sphere"),
     ("density.svg", "density on the sphere"),
     ("histogram.svg", "histogram of the density"),
     ("planes.svg", "points on planes"),
@@ -65,6 +68,14 @@ fn sections(scans: &AnalyzedScans) -> Vec<Section> {
     vec![
         ("summary", "At a glance".to_owned(), summary(scans)),
         (
+            "points",
+            "Points on the sphere".to_owned(),
+            figure(
+                &points(scans),
+                "Every point is counted; points in the same square are drawn as one, in the colour of their number.",
+            ),
+        ),
+        (
             "density",
             "Density on the sphere".to_owned(),
             figure(
@@ -100,7 +111,8 @@ fn sections(scans: &AnalyzedScans) -> Vec<Section> {
             figure(
                 &curves(scans),
                 "Ripley's K function less that of points at random (complete spatial randomness), over the area of the sphere: so much larger is the share of \
-                 all pairs within an angle. Above 0 points cluster, below they keep apart. The derivative says at which angles pairs are too many or too few. \
+                 all pairs within an angle. Above 0 points cluster, below they keep apart. The derivative says at which angles pairs are too many or too few; \
+                 last the derivative of K itself, beside that of random points in grey. \
                  Curves that coincide show in turns, by their dashes.",
             ) + &extremes(scans)
                 + &k_table(scans),

@@ -42,6 +42,7 @@ fn scan(name: &str, directions: &[DVec3], level: u32) -> AnalyzedScan {
         k: KCurve::new(&counts.into(), SPHERE_M),
         method: "exact",
         planes: Planes::new(directions),
+        sphere: SpherePoints::new(directions),
     }
 }
 
@@ -58,8 +59,9 @@ fn scans(level: u32) -> AnalyzedScans {
     }
 }
 
-fn all_figures(scans: &AnalyzedScans) -> [String; 4] {
+fn all_figures(scans: &AnalyzedScans) -> [String; 5] {
     [
+        points(scans),
         density(scans),
         histogram(scans),
         planes(scans),
@@ -259,11 +261,11 @@ fn assert_page_complete(page: &str, scans: &AnalyzedScans) {
     assert!(head.contains("width=device-width") && head.contains("<html lang=\"en\">"));
     let body = format!("<body>{}", body.replace("</html>", ""));
     let names = elements(&body);
-    assert_eq!(names.iter().filter(|name| *name == "figcaption").count(), 4);
+    assert_eq!(names.iter().filter(|name| *name == "figcaption").count(), 5);
     assert_eq!(page.matches("<p class=\"caption\">").count(), 5);
     // Content wider than a phone scrolls in its own frame, with a hint.
     let frames = page.matches("<div class=\"scroll").count();
-    assert_eq!((frames, page.matches("class=\"hint\"").count()), (9, 9));
+    assert_eq!((frames, page.matches("class=\"hint\"").count()), (10, 10));
 }
 
 /// The page reports the known values of a view, omits unknown ones, and warns next to misleading
@@ -338,7 +340,7 @@ fn coinciding_curves_are_distinguishable() {
     assert_eq!(dashes.iter().filter(|dash| *dash == "none").count(), 1);
     assert_eq!(
         figure.matches("angle between two points, degrees").count(),
-        2
+        3
     );
 }
 

@@ -63,15 +63,15 @@ pub fn exact_by(
 }
 
 /// Pairs per bin, and pairs on edges.
-pub(super) type Counted = Result<(Vec<i64>, u64), KError>;
+pub(super) type CountResult = Result<(Vec<i64>, u64), KError>;
 
 /// Runs `work` on this thread and on as many others as the system starts, up to `threads` in all;
 /// the sum of their counts.
 pub(super) fn on_threads(
     threads: NonZeroUsize,
     bins: usize,
-    work: &(impl Fn() -> Counted + Sync),
-) -> Counted {
+    work: &(impl Fn() -> CountResult + Sync),
+) -> CountResult {
     let parts = std::thread::scope(|scope| {
         let start = |_| std::thread::Builder::new().spawn_scoped(scope, work).ok();
         let others: Vec<_> = (1..threads.get()).map_while(start).collect();
@@ -109,7 +109,7 @@ impl LaneWork for ExactWorker<'_> {
 }
 
 impl ExactWorker<'_> {
-    fn done(self) -> Counted {
+    fn done(self) -> CountResult {
         match self.exact_test.wrong {
             Some(wrong) => Err(wrong),
             None => Ok((

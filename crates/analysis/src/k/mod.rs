@@ -2,14 +2,16 @@
 //!
 //! [`exact()`] counts every pair in whole numbers; the side of an edge on which a pair lies is
 //! decided without rounding ([`Edges`]). [`turned()`] does the same for scans whose frames are
-//! rotated copies of one frame. [`sampled()`] is faster and has a confidence interval. [`choose()`]
-//! takes the cheapest that is good enough.
+//! rotated copies of one frame. [`sampled()`] is faster and has a confidence interval, and so has
+//! [`drawn()`], which needs no points in memory. [`choose()`] takes the cheapest that is good
+//! enough.
 
 mod cells;
 mod choose;
 mod counts;
 mod curve;
 mod dd;
+mod drawn;
 mod edges;
 mod error;
 mod estimate;
@@ -33,6 +35,7 @@ pub use choose::{EXACT_BELOW, KMethod, choose, estimate};
 pub use counts::PairCounts;
 pub use curve::KCurve;
 pub use dd::Dd;
+pub use drawn::drawn;
 pub use edges::{Edges, LEAST_COORDINATE, MOST_BINS, ON_EDGE};
 pub use error::{KError, UNIT_WITHIN};
 pub use estimate::Estimate;

@@ -60,11 +60,7 @@ const MOST_ROUNDS: i32 = 6;
 /// tolerance or a risk not between 0 and 1, [`KError::Undecided`].
 pub fn sampled(points: &[DVec3], edges: &Edges, sampling: &Sampling) -> Result<Estimate, KError> {
     check(points)?;
-    for (name, got) in [("tolerance", sampling.tolerance), ("risk", sampling.risk)] {
-        if !(got > 0.0 && got < 1.0) {
-            return Err(KError::Setting { name, got });
-        }
-    }
+    check_setting(sampling)?;
     let mut chance = SeededNoise(sampling.seed);
     if points.len() < 2 {
         return Ok(Estimate::without_pairs("sampled", edges, points.len()));
@@ -91,6 +87,16 @@ pub fn sampled(points: &[DVec3], edges: &Edges, sampling: &Sampling) -> Result<E
         let more = (bound / sampling.tolerance).powi(2) * 1.3;
         draws = (draws * more).min(1e4);
         round += 1;
+    }
+}
+
+/// Checks the ranges of tolerance and risk.
+pub(super) fn check_setting(sampling: &Sampling) -> Result<(), KError> {
+    let settings = [("tolerance", sampling.tolerance), ("risk", sampling.risk)];
+    let is_wrong = |(_, got): &(&str, f64)| !(*got > 0.0 && *got < 1.0);
+    match settings.into_iter().find(is_wrong) {
+        Some((name, got)) => Err(KError::Setting { name, got }),
+        None => Ok(()),
     }
 }
 

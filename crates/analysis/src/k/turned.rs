@@ -14,7 +14,7 @@ use fearless_simd::{f32x16, prelude::*, u32x16};
 use glam::{DQuat, DVec3};
 
 use super::error::check;
-use super::exact::{Counted, on_threads};
+use super::exact::{CountResult, on_threads};
 use super::lanes::{AlignedLanes, LANES};
 use super::leaf_pair::{F32_BAND, PairCounter, loaded};
 use super::leaves_by_edge_count::{Bits, LeavesByEdgeCount};
@@ -264,7 +264,7 @@ impl LaneWork for TurnedWorker<'_> {
 }
 
 impl TurnedWorker<'_> {
-    fn done(self) -> Counted {
+    fn done(self) -> CountResult {
         match self.wrong {
             Some(wrong) => Err(wrong),
             None => Ok((self.counter.counts(&[]), self.on_edges)),

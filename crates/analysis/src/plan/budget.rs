@@ -96,9 +96,8 @@ pub struct ErrorBudget {
     pub delay: f64,
     /// Mount and zero of the tilt; null where they are not calibrated: they count as exact.
     pub mount: Option<f64>,
-    /// Root sum of squares of the terms from range to clock, which the column `sd` of a cloud
-    /// states.
-    pub stated: f64,
+    /// Root sum of squares of the terms from range to clock: what the column `sd` of a cloud has.
+    pub column_sd: f64,
     /// 95 % of points are within it: 1.96 times the root sum of squares of all terms.
     pub total: f64,
 }
@@ -129,7 +128,7 @@ impl ErrorModel {
             clock: mm(speed * CLOCK_SD_S),
             delay: mm(speed * shared_s / 3_f64.sqrt()),
             mount: self.mount_sd_deg.map(mm),
-            stated: 0.0,
+            column_sd: 0.0,
             total: 0.0,
         };
         let known = [
@@ -139,10 +138,25 @@ impl ErrorModel {
             budget.tilt,
             budget.clock,
         ];
-        budget.stated = known.into_iter().fold(0.0, f64::hypot);
+        budget.column_sd = known.into_iter().fold(0.0, f64::hypot);
         let constant = budget.delay.hypot(budget.mount.unwrap_or(0.0));
-        budget.total = SDS_OF_95_PERCENT * budget.stated.hypot(constant);
+        budget.total = SDS_OF_95_PERCENT * budget.column_sd.hypot(constant);
         budget
+    }
+}
+
+impl ErrorBudget {
+    /// What 95 % of points are within by their ranges alone.
+    #[must_use]
+    pub fn of_ranges(&self) -> f64 {
+        SDS_OF_95_PERCENT * self.range.hypot(self.range_step)
+    }
+
+    /// What 95 % of points are within by everything but ranges and mount.
+    #[must_use]
+    pub fn without_ranges(&self) -> f64 {
+        let terms = [self.azimuth, self.tilt, self.clock, self.delay];
+        SDS_OF_95_PERCENT * terms.into_iter().fold(0.0, f64::hypot)
     }
 }
 

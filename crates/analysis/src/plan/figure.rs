@@ -1,7 +1,7 @@
 //! The figure of a plan: gap and error against scan time.
 
 use super::PlanRow;
-use crate::tradeoff::{Measured, Row, Study, StudyFindings, Trade, svg};
+use crate::tradeoff::{Row, Study, StudyFindings, StudyRows, Trade, svg};
 
 const STUDY: Study = Study {
     name: "plan",
@@ -13,7 +13,8 @@ const STUDY: Study = Study {
         ("error_total_mm", "error of 95 % of points, mm"),
     ],
     trades: &[Trade::new(0, 1), Trade::new(0, 2)],
-    measure: |_| Ok(Measured::default()),
+    finding: StudyFindings::ends_of_front,
+    measure: |_| Ok(StudyRows::default()),
 };
 
 /// The rows of a table, with the chosen one in a colour of its own. Its title is the finding.
@@ -29,7 +30,7 @@ pub fn figure(rows: &[PlanRow], chosen: Option<&PlanRow>, at_m: f64) -> String {
         let values = [row.scan_s, row.gap_deg.p99, row.error_mm.total];
         Row::new(name, label, group, values)
     };
-    let table = rows.iter().map(|found| row(found, "best for their time"));
+    let table = rows.iter().map(|found| row(found, "fastest for their gap"));
     let rows_drawn = table.chain(chosen.map(|found| row(found, "chosen")));
     let findings = StudyFindings {
         study: STUDY,

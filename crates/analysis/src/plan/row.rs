@@ -65,6 +65,8 @@ pub struct PlanRow {
     pub gap_mm: GapQuantiles,
     /// Smallest distance that 99 % of directions are within, at the best azimuth at the start.
     pub best_start_p99_deg: f64,
+    /// That azimuth of the lidar, degrees; a capture does not control it.
+    pub best_start_deg: f64,
     /// Share of directions in view without a point within the requested gap; 0.5 deg without one.
     pub share_without_point: f64,
     /// Error of a point at the range.
@@ -186,7 +188,7 @@ impl ScanPredictor {
             p99: 0.0,
             worst: 0.0,
         };
-        let (mut best_p99, mut without) = (f64::INFINITY, 0.0_f64);
+        let (mut best_p99, mut best_start_deg, mut without) = (f64::INFINITY, 0.0, 0.0_f64);
         for start in 0..effort.starts {
             let gaps = self.gaps_deg(scan, effort, start);
             let of = |share| quantile(&gaps, share).unwrap_or(180.0);
@@ -196,7 +198,10 @@ impl ScanPredictor {
                 p99: worst.p99.max(of(0.99)),
                 worst: worst.worst.max(of(1.0)),
             };
-            best_p99 = best_p99.min(of(0.99));
+            if of(0.99) < best_p99 {
+                best_p99 = of(0.99);
+                best_start_deg = 360.0 * f64::from(start) / f64::from(effort.starts);
+            }
             let unseen = gaps.iter().filter(|gap| **gap > limit_deg).count();
             without = without.max(unseen as f64 / gaps.len().max(1) as f64);
         }
@@ -219,6 +224,7 @@ impl ScanPredictor {
                 worst: mm(worst.worst),
             },
             best_start_p99_deg: best_p99,
+            best_start_deg,
             share_without_point: without,
             error_mm: self.errors.budget(&self.lidar, &scan.sweeps),
             replay_s: REPLAY_S + points / REPLAY_POINTS_S,

@@ -20,9 +20,12 @@ pub struct PlanLimits {
 
 /// Rows of a table, at most.
 const ROWS: usize = 12;
+/// Gap below which slower scans hit the same spots, degrees: a third of the beam's divergence of 3
+/// mrad (VLP-16 manual).
+const LEAST_GAP_DEG: f64 = 0.05;
 /// Settings examined at a time.
 const BLOCK: usize = 64;
-/// Settings of which the densest is chosen by all directions.
+/// Settings of which the densest is chosen by a third of the directions.
 const FINALISTS: usize = 6;
 /// Share of a third of the directions that may be without a point: 1 %, and a quarter for chance.
 const NEAR: f64 = 0.0125;
@@ -30,8 +33,8 @@ const NEAR: f64 = 0.0125;
 const SHORT: f64 = 0.6;
 
 impl ScanPredictor {
-    /// Rows that no other scan beats in time, 99 % gap and error at once, one for each of at most
-    /// 12 classes of scan time, in the order of time.
+    /// Rows that no other scan beats in time, 99 % gap and error at once: the fastest of each of at
+    /// most 12 classes of gap, down to a third of the beam, in the order of time.
     #[must_use]
     pub fn table(&self, scans: &[PlannedScan]) -> Vec<PlanRow> {
         let costs: Vec<Vec<f64>> = scans
@@ -49,18 +52,21 @@ impl ScanPredictor {
             .filter_map(|((scan, costs), kept)| Some((scan, *costs.get(1)?)).filter(|_| kept))
             .collect();
         best.sort_by(|a, b| a.0.scan_s.total_cmp(&b.0.scan_s));
-        let ends = best.first().zip(best.last());
-        let (low, high) = ends.map_or((1.0, 1.0), |(a, b)| (a.0.scan_s, b.0.scan_s));
-        let class = |scan_s: f64| {
-            let share = (scan_s / low).ln() / (high / low).ln().max(1e-9);
-            (share * (ROWS as f64 - 0.5)) as usize
+        let widest = best.iter().map(|(_, gap)| *gap).fold(0.0, f64::max);
+        let class = |gap_deg: f64| {
+            let share = (widest / gap_deg).ln() / (widest / LEAST_GAP_DEG).ln().max(1e-9);
+            (share * (ROWS as f64 - 1.0)) as usize
         };
-        let densest = best
-            .chunk_by(|a, b| class(a.0.scan_s) == class(b.0.scan_s))
-            .filter_map(|class| class.iter().min_by(|a, b| a.1.total_cmp(&b.1)));
-        let rows: Vec<PlanRow> = densest
-            .map(|(scan, _)| self.row_with(scan, GapEffort::ROW))
-            .collect();
+        let mut fastest: [Option<&PlannedScan>; ROWS] = [None; ROWS];
+        for (scan, gap_deg) in best {
+            if let Some(place) = fastest.get_mut(class(gap_deg)) {
+                place.get_or_insert(scan);
+            }
+        }
+        let mut fastest: Vec<&PlannedScan> = fastest.into_iter().flatten().collect();
+        fastest.sort_by(|a, b| a.scan_s.total_cmp(&b.scan_s));
+        let rows = fastest.into_iter().map(|scan| self.brief_row(scan));
+        let rows: Vec<PlanRow> = rows.collect();
         let costs = rows
             .iter()
             .map(|row| vec![row.scan_s, row.gap_deg.p99, row.error_mm.total]);
@@ -99,11 +105,14 @@ impl ScanPredictor {
                         && !self.exceeds(scan, gap_deg, GapEffort::ROW, (NEAR, NO_MORE))
                 })
                 .collect();
-            let kept = hopeful
-                .into_iter()
-                .find(|scan| !self.exceeds(scan, gap_deg, GapEffort::FULL, (0.01, NO_MORE)));
-            if let Some(scan) = kept {
-                return Some(self.row(scan));
+            // As many at a time as there are threads: later ones are rarely needed.
+            for few in hopeful.chunks(rayon::current_num_threads()) {
+                let kept = few.par_iter().find_first(|scan| {
+                    !self.exceeds(scan, gap_deg, GapEffort::FULL, (0.01, NO_MORE))
+                });
+                if let Some(scan) = kept {
+                    return Some(self.row(scan));
+                }
             }
         }
         None
@@ -116,11 +125,10 @@ impl ScanPredictor {
         let rough: Vec<f64> = rough.collect();
         let mut ranked: Vec<(&PlannedScan, f64)> = scans.iter().zip(rough).collect();
         ranked.sort_by(|a, b| a.1.total_cmp(&b.1));
-        let rows = ranked
-            .iter()
-            .take(FINALISTS)
-            .map(|(scan, _)| self.row(scan));
-        rows.min_by(|a, b| a.gap_deg.p99.total_cmp(&b.gap_deg.p99))
+        let finalists = ranked.into_iter().take(FINALISTS);
+        let gaps = finalists.map(|(scan, _)| (scan, self.brief_row(scan).gap_deg.p99));
+        let (scan, _) = gaps.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        Some(self.row(scan))
     }
 }
 

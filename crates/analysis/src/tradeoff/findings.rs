@@ -132,16 +132,45 @@ impl StudyFindings {
             .collect()
     }
 
-    fn verdict(&self, trade: &Trade, group: Option<&str>) -> String {
-        let middle =
-            |row: &Row, column: usize| row.values.get(column).map_or(f64::NAN, Measurement::middle);
+    /// Costs and losses of the cheapest and the best choice on the front of the first trade, for
+    /// each circumstance: the finding of a study without one of its own.
+    #[must_use]
+    pub fn ends_of_front(&self) -> String {
+        let Some(trade) = self.study.trades.first() else {
+            return self.study.title.to_owned();
+        };
+        let (cost, loss) = (self.column(trade.cost).1, self.column(trade.loss).1);
+        let ends = self.circumstances(trade).into_iter().filter_map(|group| {
+            let on = self.on_front(trade, group);
+            let (first, last) = (on.first()?, on.last()?);
+            let place = group.map_or(String::new(), |group| format!("{group}: "));
+            let values = |column: usize| {
+                let (a, b) = (middle(first, column), middle(last, column));
+                (short(a), short(b))
+            };
+            let ((cheap, dear), (worse, better)) = (values(trade.cost), values(trade.loss));
+            let (first, last) = (&first.label, &last.label);
+            Some(match on.len() {
+                1 => format!("{place}{first} is best: {cheap} {cost}, {loss} {worse}"),
+                _ => format!(
+                    "{place}{cheap} to {dear} {cost}, {loss} {worse} ({first}) to {better} ({last})"
+                ),
+            })
+        });
+        ends.collect::<Vec<String>>().join("; ")
+    }
+
+    /// Rows on the front of a trade, of one group or of all, in the order of cost.
+    fn on_front(&self, trade: &Trade, group: Option<&str>) -> Vec<&Row> {
         let rows = self.rows.iter().zip(self.front(trade));
-        let all = rows.filter(|(row, _)| group.is_none_or(|group| row.group == group));
-        let mut on: Vec<&Row> = all
-            .clone()
-            .filter_map(|(row, on)| on.then_some(row))
-            .collect();
+        let own = rows.filter(|(row, on)| *on && group.is_none_or(|group| row.group == group));
+        let mut on: Vec<&Row> = own.map(|(row, _)| row).collect();
         on.sort_by(|a, b| middle(a, trade.cost).total_cmp(&middle(b, trade.cost)));
+        on
+    }
+
+    fn verdict(&self, trade: &Trade, group: Option<&str>) -> String {
+        let on = self.on_front(trade, group);
         let named = on.iter().map(|row| {
             let cost = short(middle(row, trade.cost));
             let loss = short(middle(row, trade.loss));
@@ -150,6 +179,8 @@ impl StudyFindings {
         let named: Vec<String> = named.collect();
         let names = match named.as_slice() {
             [first, .., last] if named.len() > MOST_NAMED => {
+                let rows = self.rows.iter();
+                let all = rows.filter(|row| group.is_none_or(|group| row.group == group));
                 let (on, all) = (named.len(), all.count());
                 format!("{on} of {all} choices, from {first} to {last}")
             }
@@ -162,6 +193,10 @@ impl StudyFindings {
             group.map_or(String::new(), |group| format!(", {group}")),
         )
     }
+}
+
+fn middle(row: &Row, column: usize) -> f64 {
+    row.values.get(column).map_or(f64::NAN, Measurement::middle)
 }
 
 fn costs(rows: &[&Row], trade: &Trade, of: impl Fn(&Measurement) -> f64) -> Vec<Vec<f64>> {
@@ -185,6 +220,17 @@ mod tests {
             "Pareto front of ns per point and worst error, mm: coarse <&> way (2; 130), \
              fine <&> way (9; 1e-6), exact <&> way (20; 0)."
         );
+    }
+
+    #[test]
+    fn the_usual_finding_has_the_ends_of_the_front() {
+        let mut report = example();
+        let findings = &mut report.studies[0];
+        let found = "2 to 20 ns per point, worst error, mm 130 (coarse) to 0 (exact)";
+        assert_eq!(findings.ends_of_front(), found);
+        findings.rows.truncate(1);
+        let alone = "coarse is best: 2 ns per point, worst error, mm 130";
+        assert_eq!(findings.ends_of_front(), alone);
     }
 
     #[test]

@@ -7,7 +7,7 @@ use std::num::NonZeroUsize;
 
 use glam::DVec3;
 
-use super::{Bench, Measured, Row, Study, StudyError, TimedChoice, Trade};
+use super::{Bench, Row, Study, StudyError, StudyFindings, StudyRows, TimedChoice, Trade};
 use crate::k::{
     Edges, Estimate, FrameRotation, KError, Registers, Sampling, exact_by, sampled, turned,
 };
@@ -23,6 +23,7 @@ pub const K_FUNCTION: Study = Study {
         ("bound", "its bound"),
     ],
     trades: &[Trade::new(0, 1).joined(), Trade::new(0, 2).joined()],
+    finding: StudyFindings::ends_of_front,
     measure,
 };
 
@@ -75,7 +76,7 @@ fn sample(scan: &StudyScan, tolerance: f64) -> Result<Estimate, KError> {
     sampled(&scan.points, &scan.edges, &sampling)
 }
 
-fn measure(bench: &mut Bench<'_>) -> Result<Measured, StudyError> {
+fn measure(bench: &mut Bench<'_>) -> Result<StudyRows, StudyError> {
     let wrong = |error: KError| StudyError::Workload(Box::new(error));
     let scan = scan(bench.pick(2, 8)).map_err(wrong)?;
     let truth = every(&scan, Registers::Best).map_err(wrong)?;

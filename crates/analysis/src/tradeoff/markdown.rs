@@ -63,7 +63,7 @@ fn section(findings: &StudyFindings, folder: &str) -> String {
     section.extend(findings.about.iter().map(|paragraph| escaped(paragraph)));
     section.push(format!(
         "![{}]({folder}/{}.svg)",
-        escaped(findings.study.title),
+        escaped(&(findings.study.finding)(findings)),
         findings.study.name
     ));
     section.push(table(findings));
@@ -116,7 +116,8 @@ mod tests {
         let page = BOOK.page(&report);
         assert!(page.contains("`velomotion tradeoff` on Processor &lt;4&gt;, 2 cores, Linux."));
         assert!(page.contains("**A quick look"), "{page}");
-        assert!(page.contains("![Ways &amp; means](tradeoff/example.svg)"));
+        let finding = "2 to 20 ns per point, worst error, mm 130 (coarse) to 0 (exact)";
+        assert!(page.contains(&format!("![{finding}](tradeoff/example.svg)")));
         assert!(page.contains(
             "| way | ns per point | worst error, mm | bytes | front |\n|---|--:|--:|--:|:-:|\n"
         ));

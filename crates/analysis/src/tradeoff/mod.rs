@@ -26,7 +26,7 @@ pub use machine::Machine;
 pub use markdown::Book;
 pub use report::StudyReport;
 pub use study::{
-    Bench, Effort, Measured, Measurement, Row, Study, StudyError, TimedChoice, Trade, UnknownStudy,
-    select,
+    Bench, Effort, Measurement, Row, Study, StudyError, StudyRows, TimedChoice, Trade,
+    UnknownStudy, select,
 };
 pub use timing::{TimingPlan, TimingSpread, Work, in_rounds};

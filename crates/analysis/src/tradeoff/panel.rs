@@ -6,7 +6,7 @@ use crate::draw::Scale;
 use crate::draw::axis::PlotAxis;
 use crate::draw::labels::{self, LabelBox};
 use crate::draw::plot::{PlotArea, line};
-use crate::draw::{escaped, marks};
+use crate::draw::{escaped, marks, number};
 
 /// Height of a plot with its margins.
 pub(super) const HEIGHT: f64 = 322.0;
@@ -39,17 +39,21 @@ pub(super) fn draw(
     groups: &[&str],
     top: f64,
 ) -> String {
-    let x = axis(findings, trade.cost, AREA.left, AREA.right);
-    let y = axis(findings, trade.loss, AREA.bottom, AREA.top);
+    let x = axis(findings, trade.cost, None, (AREA.left, AREA.right));
+    let y = axis(findings, trade.loss, trade.least, (AREA.bottom, AREA.top));
+    let least = trade
+        .least
+        .map(|least| format!(" (less: at {})", number::short(least)));
     let number = number.map_or(String::new(), |n| format!("{n}: "));
     let mut svg = format!("<g transform=\"translate(0 {top})\">\n");
     svg += &AREA.verticals(&x.ticks(), 15.0);
     svg += &AREA.horizontals(&y);
     svg += &AREA.frame();
     svg += &format!(
-        "<text class=\"tv-ink\" x=\"14\" y=\"16\">{number}{}</text>\n\
+        "<text class=\"tv-ink\" x=\"14\" y=\"16\">{number}{}{}</text>\n\
          <text class=\"tv-ink\" x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>\n",
         escaped(findings.column(trade.loss).1),
+        least.unwrap_or_default(),
         AREA.right,
         AREA.bottom + 34.0,
         escaped(findings.column(trade.cost).1),
@@ -65,7 +69,9 @@ pub(super) fn draw(
         lines.extend(sides.filter_map(|pair| Some(LabelBox::along(*pair.first()?, *pair.last()?))));
     }
     if trade.joined {
-        svg += &joined(&points, groups);
+        let (joined, along) = joined(&points, groups);
+        svg += &joined;
+        lines.extend(along);
     }
     for point in &points {
         svg += &bars(point, trade, &x, &y, groups);
@@ -92,16 +98,30 @@ fn number_of(groups: &[&str], group: &str) -> usize {
     place.unwrap_or(0)
 }
 
-fn axis(findings: &StudyFindings, column: usize, from: f64, to: f64) -> PlotAxis {
+fn axis(
+    findings: &StudyFindings,
+    column: usize,
+    least: Option<f64>,
+    (from, to): (f64, f64),
+) -> PlotAxis {
     let values = findings
         .rows
         .iter()
         .filter_map(|row| row.values.get(column));
     let ends = values.flat_map(|value| {
         let (low, high) = ends(value);
-        [low, high]
+        [low, high].map(|end| at_least(end, least))
     });
     PlotAxis::new(Scale::Log, ends, from, to)
+}
+
+/// A value, or the least that is drawn.
+fn at_least(value: f64, least: Option<f64>) -> f64 {
+    // NaN stays.
+    match least {
+        Some(least) if value < least => least,
+        _ => value,
+    }
 }
 
 const fn ends(value: &Measurement) -> (f64, f64) {
@@ -123,7 +143,7 @@ fn points<'a>(
         Some(PlotPoint {
             row,
             x: x.position(row.values.get(trade.cost)?.middle())?,
-            y: y.position(row.values.get(trade.loss)?.middle())?,
+            y: y.position(at_least(row.values.get(trade.loss)?.middle(), trade.least))?,
             on,
             step,
         })
@@ -149,8 +169,12 @@ fn corners(points: &[PlotPoint<'_>], group: Option<&str>) -> Vec<(f64, f64)> {
     corners
 }
 
-fn joined(points: &[PlotPoint<'_>], groups: &[&str]) -> String {
-    let mut svg = String::new();
+/// Parts of a slanting line that labels keep clear of, each in a box of its own.
+const PARTS: u32 = 12;
+
+/// Lines through the rows of each group, and the boxes along them.
+fn joined(points: &[PlotPoint<'_>], groups: &[&str]) -> (String, Vec<LabelBox>) {
+    let (mut svg, mut boxes) = (String::new(), Vec::new());
     let mut names = groups.to_vec();
     names.sort_unstable();
     for group in names {
@@ -160,11 +184,18 @@ fn joined(points: &[PlotPoint<'_>], groups: &[&str]) -> String {
             marks::colour(number_of(groups, group))
         );
         let places: Vec<(f64, f64)> = own.map(|point| (point.x, point.y)).collect();
+        for (a, b) in places.iter().zip(places.iter().skip(1)) {
+            let at = |part: u32| {
+                let share = f64::from(part) / f64::from(PARTS);
+                (a.0 + share * (b.0 - a.0), a.1 + share * (b.1 - a.1))
+            };
+            boxes.extend((0..PARTS).map(|part| LabelBox::along(at(part), at(part + 1))));
+        }
         if places.len() > 1 {
             svg += &line(&class, places);
         }
     }
-    svg
+    (svg, boxes)
 }
 
 /// Horizontal and vertical lines from minimum to maximum, where they are longer than the mark.
@@ -203,8 +234,11 @@ fn bars(
         .collect()
 }
 
-/// The labels, those on the front first. They avoid marks, each other and, if there is room,
-/// `lines`. A label without a free place is left out; the table has it.
+/// Distance of marks of which one label of the same name suffices.
+const TOGETHER: f64 = 3.0 * marks::HALF;
+
+/// The labels, those on the front first. They avoid marks, each other and `lines`. A label without
+/// a free place is left out; the table has it.
 fn names(points: &[PlotPoint<'_>], lines: &[LabelBox]) -> String {
     let room = LabelBox {
         left: AREA.left + 2.0,
@@ -212,20 +246,24 @@ fn names(points: &[PlotPoint<'_>], lines: &[LabelBox]) -> String {
         right: AREA.right - 2.0,
         bottom: AREA.bottom - 2.0,
     };
-    let mut taken: Vec<LabelBox> = points
-        .iter()
-        .map(|point| LabelBox::about(point.x, point.y, marks::HALF + 1.0))
-        .collect();
+    let of_mark = |point: &PlotPoint<'_>| LabelBox::about(point.x, point.y, marks::HALF + 1.0);
+    let mut taken: Vec<LabelBox> = points.iter().map(of_mark).chain(lines.to_vec()).collect();
     let mut order: Vec<&PlotPoint<'_>> = points.iter().collect();
     order.sort_by_key(|point| !point.on);
     let mut svg = String::new();
+    let mut named: Vec<&PlotPoint<'_>> = Vec::new();
     for point in order {
         let (name, at) = (&point.row.label, (point.x, point.y));
-        let clear = [taken.as_slice(), lines].concat();
-        let placed = labels::place(name, at, &room, &clear)
-            .or_else(|| labels::place(name, at, &room, &taken));
-        if let Some((area, (x, y))) = placed {
+        let is_beside = |other: &&PlotPoint<'_>| {
+            let distance = (other.x - point.x).hypot(other.y - point.y);
+            other.row.label == *name && distance < TOGETHER
+        };
+        if named.iter().any(is_beside) {
+            continue;
+        }
+        if let Some((area, (x, y))) = labels::place(name, at, &room, &taken) {
             taken.push(area);
+            named.push(point);
             svg += &format!(
                 "<text class=\"tv-ink tv-small\" x=\"{x:.1}\" y=\"{y:.1}\">{}</text>\n",
                 escaped(name)

@@ -2,7 +2,7 @@
 
 use super::{Bench, Effort, Machine, Study, StudyError, StudyFindings};
 #[cfg(test)]
-use super::{Measured, Measurement, Row, TimingSpread, Trade};
+use super::{Measurement, Row, StudyRows, TimingSpread, Trade};
 
 /// All findings of one run.
 #[derive(Clone, Debug)]
@@ -108,7 +108,8 @@ pub(crate) fn example() -> StudyReport {
                     ("size_bytes", "bytes"),
                 ],
                 trades: const { &[Trade::new(0, 1).joined(), Trade::new(2, 1)] },
-                measure: |_| Ok(Measured::default()),
+                finding: StudyFindings::ends_of_front,
+                measure: |_| Ok(StudyRows::default()),
             },
             about: vec!["What is <measured> here, in a sentence that is long enough to need a second line of text.".to_owned()],
             rows: vec![

@@ -7,7 +7,7 @@ use serde::Serialize;
 use units::{Host, Span, Stamp};
 use utoipa::ToSchema;
 
-use super::{TimingPlan, TimingSpread, Work, in_rounds};
+use super::{StudyFindings, TimingPlan, TimingSpread, Work, in_rounds};
 use crate::draw::number::short;
 
 /// A comparison of several ways to do one thing.
@@ -23,12 +23,14 @@ pub struct Study {
     pub columns: &'static [(&'static str, &'static str)],
     /// The traded columns.
     pub trades: &'static [Trade],
+    /// The finding in a sentence: the title of the figure.
+    pub finding: fn(&StudyFindings) -> String,
     /// Measures the choices.
-    pub measure: fn(&mut Bench<'_>) -> Result<Measured, StudyError>,
+    pub measure: fn(&mut Bench<'_>) -> Result<StudyRows, StudyError>,
 }
 
 /// Paragraphs on the workload and the columns, and the choices.
-pub type Measured = (Vec<String>, Vec<Row>);
+pub type StudyRows = (Vec<String>, Vec<Row>);
 
 /// The studies of `all` with the names `only`, in their own order; all of them if `only` is empty.
 ///
@@ -219,7 +221,7 @@ impl Row {
 }
 
 /// Two columns that are traded: a plot with a Pareto front.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trade {
     /// Index of the column on the x axis.
     pub cost: usize,
@@ -229,6 +231,8 @@ pub struct Trade {
     pub joined: bool,
     /// Whether groups are circumstances that cannot be chosen, each with a front of its own.
     pub by_group: bool,
+    /// Loss below which differences do not matter: smaller ones are drawn there.
+    pub least: Option<f64>,
 }
 
 impl Trade {
@@ -240,6 +244,7 @@ impl Trade {
             loss,
             joined: false,
             by_group: false,
+            least: None,
         }
     }
 
@@ -248,6 +253,15 @@ impl Trade {
     pub const fn joined(self) -> Self {
         Self {
             joined: true,
+            ..self
+        }
+    }
+
+    /// The same with losses below `least` drawn there.
+    #[must_use]
+    pub const fn down_to(self, least: f64) -> Self {
+        Self {
+            least: Some(least),
             ..self
         }
     }

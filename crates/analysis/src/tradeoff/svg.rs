@@ -13,35 +13,58 @@ use crate::draw::{STYLE, escaped, labels, marks};
 /// Width of a figure. Text has its reading size at this width.
 pub(super) const WIDTH: f64 = 480.0;
 const TITLE: f64 = 30.0;
+/// Height of a line of the title, and characters that fit into one.
+const TITLE_LINE: f64 = 18.0;
+const MOST_IN_LINE: usize = 58;
 const LEGEND_LINE: f64 = 18.0;
 const MARGIN: f64 = 14.0;
 
-/// The figure as a document.
+/// The figure as a document, with the finding as its title.
 #[must_use]
 pub fn figure(findings: &StudyFindings) -> String {
-    titled(findings, findings.study.title)
+    titled(findings, &(findings.study.finding)(findings))
 }
 
-/// The same with a title of its own.
+/// The same with another title.
 #[must_use]
 pub fn titled(findings: &StudyFindings, title: &str) -> String {
     let groups = findings.groups();
-    let panels_end = TITLE + panel::HEIGHT * findings.study.trades.len() as f64;
+    let lines = wrapped(title);
+    let panels_top = TITLE + TITLE_LINE * (lines.len().max(1) - 1) as f64;
+    let panels_end = panels_top + panel::HEIGHT * findings.study.trades.len() as f64;
     let (legend, legend_end) = legend(findings, &groups, panels_end);
     let height = legend_end + MARGIN;
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"tv\" viewBox=\"0 0 {WIDTH} {height}\" width=\"{WIDTH}\" height=\"{height}\" \
          role=\"img\">\n<title>{title}</title>\n<style>{STYLE}</style>\n\
-         <rect class=\"tv-page\" width=\"{WIDTH}\" height=\"{height}\" rx=\"6\"/>\n\
-         <text class=\"tv-ink tv-title\" x=\"{MARGIN}\" y=\"20\">{title}</text>\n",
+         <rect class=\"tv-page\" width=\"{WIDTH}\" height=\"{height}\" rx=\"6\"/>\n",
         title = escaped(title)
     );
+    for (number, line) in lines.iter().enumerate() {
+        let (y, line) = (20.0 + TITLE_LINE * number as f64, escaped(line));
+        svg += &format!("<text class=\"tv-ink tv-title\" x=\"{MARGIN}\" y=\"{y}\">{line}</text>\n");
+    }
     for (number, trade) in findings.study.trades.iter().enumerate() {
         let number = (findings.study.trades.len() > 1).then_some(number + 1);
-        let top = TITLE + panel::HEIGHT * number.map_or(0.0, |n| (n - 1) as f64);
+        let top = panels_top + panel::HEIGHT * number.map_or(0.0, |n| (n - 1) as f64);
         svg += &panel::draw(findings, trade, number, &groups, top);
     }
     svg + &legend + "</svg>\n"
+}
+
+/// A title in lines that fit.
+fn wrapped(title: &str) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in title.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + word.chars().count() < MOST_IN_LINE => {
+                *line += " ";
+                *line += word;
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
 }
 
 /// A symbol of the legend.

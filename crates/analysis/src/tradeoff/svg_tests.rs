@@ -42,7 +42,9 @@ fn all_elements_are_inside_the_figure() {
     for x in [numbers("x"), numbers("cx")].concat() {
         assert!((0.0..=WIDTH).contains(&x), "{x}");
     }
-    assert!(numbers("cy").iter().all(|y| (0.0..=700.0).contains(y)));
+    // Two panels, the legend, and two lines of the title.
+    assert_eq!(svg.matches("tv-title\"").count(), 2);
+    assert!(numbers("cy").iter().all(|y| (0.0..=718.0).contains(y)));
     assert!(!svg.contains("NaN") && !svg.contains("inf"));
 }
 

@@ -215,6 +215,7 @@ impl<F: FnMut(Cloud<'_>) -> Result<(), SinkError>> Sink for Clouds<F> {
 mod tests {
     use std::io::Cursor;
 
+    use crate::mount::Mount;
     use mcap::MessageStream;
     use units::{Degrees, Metres};
 
@@ -226,7 +227,7 @@ mod tests {
     fn track() -> TiltTrack {
         let at = |ms: i64| Stamp::from_nanos(NOW_NS + ms * 1_000_000);
         TiltTrack {
-            mount: Some(Metres(0.06)),
+            mount: Some(Mount::new(Metres(0.06))),
             samples: vec![(at(0), Degrees(0.0)), (at(9), Degrees(-9.0))],
             sweeps: vec![(at(1), at(3)), (at(4), at(6))],
         }

@@ -1,9 +1,10 @@
 //! `tf2_msgs/TFMessage`: poses of frames.
 
-use units::{Degrees, Metres};
+use units::Degrees;
 
 use super::cdr::Cdr;
 use super::{Time, frames, header};
+use crate::mount::Mount;
 
 /// A rotation as a unit quaternion x, y, z, w.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,20 +89,22 @@ impl Frames {
         }
     }
 
-    /// Static transforms: ROS's axes, and for a tilting platform the lidar `mount` above the axis.
+    /// Static transforms: ROS's axes, and for a tilting platform the lidar's mount.
     #[must_use]
-    pub fn fixed(&self, mount: Option<Metres>) -> Vec<Transform<'_>> {
+    pub fn fixed(&self, mount: Option<Mount>) -> Vec<Transform<'_>> {
         let axes = Transform {
             parent: &self.root,
             child: self.of_clouds(mount.is_some()),
             translation_m: [0.0; 3],
             rotation: Rotation::to_ros(),
         };
-        let lidar = mount.map(|Metres(above)| Transform {
+        let lidar = mount.map(|mount| Transform {
             parent: &self.platform,
             child: &self.lidar,
-            translation_m: [0.0, 0.0, above],
-            rotation: Rotation::NONE,
+            translation_m: mount.position_m(),
+            rotation: Rotation {
+                quaternion: mount.quaternion(),
+            },
         });
         [axes].into_iter().chain(lidar).collect()
     }
@@ -137,9 +140,10 @@ pub fn tf_message(cdr: &mut Cdr, stamp: Time, transforms: &[Transform<'_>]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mount::{Mount, Tilt};
+    use crate::mount::Tilt;
     use crate::tests::cdr_reader::Reader;
     use glam::{DQuat, DVec3};
+    use units::Metres;
 
     fn turned(rotation: Rotation, v: [f64; 3]) -> [f64; 3] {
         let quaternion = DQuat::from_array(rotation.quaternion);
@@ -180,7 +184,7 @@ mod tests {
     fn the_prefix_precedes_every_frame_name() {
         let frames = Frames::with_prefix("left/");
         let mut names = vec![frames.of_clouds(true), frames.of_clouds(false)];
-        let fixed = frames.fixed(Some(Metres(0.06)));
+        let fixed = frames.fixed(Some(Mount::new(Metres(0.06))));
         assert_eq!(fixed[1].translation_m, [0.0, 0.0, 0.06]);
         names.extend(fixed.iter().flat_map(|t| [t.parent, t.child]));
         let tilted = frames.tilted(Degrees(-45.0));

@@ -31,7 +31,7 @@ use crate::disk_quota::{self, DiskQuota, QuotaFile};
 use crate::plan;
 use crate::scans::{LOG, THUMBNAIL};
 use engine::failure::{Failure, Kind};
-use engine::output::Buffered;
+use engine::output::BufferedFile;
 use engine::reconstruct::replay::{self, Reconstruction};
 use engine::reconstruct::source::Source;
 
@@ -135,7 +135,7 @@ fn make(
     fields: Fields,
     accuracy: Accuracy,
     interrupt: &AtomicBool,
-) -> Result<Opened, Refusal> {
+) -> Result<OpenFile, Refusal> {
     let cannot = |error: std::io::Error| {
         Failure::new(
             Kind::Incomplete,
@@ -151,10 +151,10 @@ fn make(
         ..failure
     };
     let source = Source::open(FilePath::new(&log_path), None).map_err(named)?;
-    let request = Reconstruction::of_log(&source, accuracy, interrupt);
+    let request = Reconstruction::of_log(&source, accuracy, interrupt)?;
     let mut file = io::files::scratch_in(folder).map_err(cannot)?;
     let out = QuotaFile::new(file.try_clone().map_err(cannot)?, Arc::clone(quota));
-    let out = Buffered::new(out);
+    let out = BufferedFile::new(out);
     let mut sink = format.writer(out, fields);
     let output = PathBuf::from(format!("cloud.{}", format.extension()));
     let made = replay::scan(&request, &mut *sink, &output).and_then(|_| {
@@ -213,13 +213,13 @@ fn downloading(api: &Api) -> Result<OwnedSemaphorePermit, Refusal> {
 }
 
 /// A file and what the system says of it.
-type Opened = (File, Metadata);
+type OpenFile = (File, Metadata);
 
 /// Opens a regular file.
 ///
 /// # Errors
 /// As [`super::with_disk`]; within, the disk's own.
-async fn open(path: PathBuf) -> Result<std::io::Result<Opened>, Refusal> {
+async fn open(path: PathBuf) -> Result<std::io::Result<OpenFile>, Refusal> {
     super::with_disk(move || {
         let file = io::files::open_regular(&path)?;
         let metadata = file.metadata()?;
@@ -248,7 +248,7 @@ fn attachment(name: &str) -> String {
 /// Sends a file as it is now, a piece at a time: as fast as the client takes it. Of a stored file
 /// the client may ask, by the headers of its request, for a part.
 fn send(
-    (mut file, metadata): Opened,
+    (mut file, metadata): OpenFile,
     id: &str,
     extension: &str,
     permit: OwnedSemaphorePermit,

@@ -205,7 +205,7 @@ pub async fn guard(
         }
         // A browser gets the page that signs in.
         Err(refusal) if wants_page(&request) && refusal.1 => {
-            super::page::sign_in(StatusCode::UNAUTHORIZED).into_response()
+            super::page::sign_in()
         }
         Err((refusal, _)) => refusal.into_response(),
     }

@@ -59,17 +59,25 @@ pub struct Api {
 
 type Routes<S> = Vec<(&'static str, MethodRouter<S>)>;
 
-/// Routes that need nothing but the devices.
-fn device_routes() -> Routes<Arc<DeviceService>> {
+/// Routes that read the state of the devices and stop the axis.
+fn stop_routes() -> Routes<Arc<DeviceService>> {
     vec![
         ("/api/v1/status", get(status)),
         ("/api/v1/captures/stop", post(captures::stop)),
         ("/api/v1/tilt", get(tilt::status)),
+        ("/api/v1/tilt/stop", post(tilt::stop)),
+    ]
+}
+
+/// Routes that need nothing but the devices.
+fn device_routes() -> Routes<Arc<DeviceService>> {
+    let mut routes = stop_routes();
+    routes.extend([
         ("/api/v1/tilt/home", post(tilt::home)),
         ("/api/v1/tilt/goto", post(tilt::goto)),
-        ("/api/v1/tilt/stop", post(tilt::stop)),
         ("/api/v1/tilt/clear", post(tilt::clear)),
-    ]
+    ]);
+    routes
 }
 
 /// Routes of a daemon.
@@ -115,9 +123,10 @@ fn daemon_router(api: &Arc<Api>, peer: Peer) -> Router {
         .with_state(Arc::clone(api))
 }
 
-/// The router of a command's own service.
+/// The router of a command's own service. It makes no moves for others: the command ends with its
+/// own.
 pub(crate) fn command_router(service: &Arc<DeviceService>, waits: Waits) -> Router {
-    router(device_routes())
+    router(stop_routes())
         .fallback(in_use)
         .method_not_allowed_fallback(no_method)
         .layer(from_fn_with_state(waits, guard::limits))

@@ -5,7 +5,7 @@ use std::io::Write;
 use std::sync::{Arc, LazyLock};
 use std::time::Instant;
 
-use axum::body::Bytes;
+use axum::body::{Body, Bytes};
 use axum::extract::{Request, State};
 use axum::http::{Extensions, HeaderMap, HeaderValue, Method, StatusCode, header};
 use axum::response::{IntoResponse, Response};
@@ -57,20 +57,20 @@ const ASSETS: [Asset; 6] = [
 ];
 
 /// What clients get of an asset.
-struct Packed {
+struct CompressedFile {
     tag: String,
     gzip: Vec<u8>,
 }
 
 /// The assets' packed forms, in their order.
-static PACKED: LazyLock<Vec<Packed>> = LazyLock::new(|| {
+static PACKED: LazyLock<Vec<CompressedFile>> = LazyLock::new(|| {
     let pack = |(_, _, bytes): &Asset| {
         let mut hasher = DefaultHasher::new();
         bytes.hash(&mut hasher);
         let mut gzip = GzEncoder::new(Vec::new(), Compression::best());
         // Writing to memory does not fail.
         let _ = gzip.write_all(bytes);
-        Packed {
+        CompressedFile {
             tag: format!("\"{:016x}\"", hasher.finish()),
             gzip: gzip.finish().unwrap_or_default(),
         }
@@ -148,7 +148,7 @@ pub async fn asset(request: Request) -> Response {
     }
 }
 
-fn html(status: StatusCode, content: &'static str, bytes: &'static [u8]) -> Response {
+fn html(status: StatusCode, content: &'static str, body: impl Into<Body>) -> Response {
     let headers = [
         (header::CONTENT_TYPE, content),
         (header::CONTENT_SECURITY_POLICY, POLICY),
@@ -156,13 +156,25 @@ fn html(status: StatusCode, content: &'static str, bytes: &'static [u8]) -> Resp
         (header::REFERRER_POLICY, "no-referrer"),
         (header::CACHE_CONTROL, "no-cache"),
     ];
-    (status, headers, bytes).into_response()
+    (status, headers, body.into()).into_response()
 }
 
-/// The sign-in page.
-pub fn sign_in(status: StatusCode) -> Response {
-    let page = include_bytes!("../../web/dist/sign-in.html");
-    html(status, HTML, page)
+/// The sign-in page, for a request without a valid token.
+pub fn sign_in() -> Response {
+    let page = include_str!("../../web/dist/sign-in.html");
+    html(StatusCode::UNAUTHORIZED, HTML, page)
+}
+
+/// The sign-in page that says that the token of its form was wrong.
+fn sign_in_again() -> Response {
+    static PAGE: LazyLock<String> = LazyLock::new(|| {
+        let page = include_str!("../../web/dist/sign-in.html");
+        page.replace(
+            "<!-- refused -->",
+            r#"<p class="refused" role="alert">The token was wrong.</p>"#,
+        )
+    });
+    html(StatusCode::UNAUTHORIZED, HTML, PAGE.as_str())
 }
 
 /// Body of `POST /login`.
@@ -209,7 +221,7 @@ pub async fn login(
         if let Err(refusal) = checked {
             let refusal = refusal.into_response();
             return Ok(match form && refusal.status() == StatusCode::UNAUTHORIZED {
-                true => sign_in(StatusCode::UNAUTHORIZED),
+                true => sign_in_again(),
                 false => refusal,
             });
         }

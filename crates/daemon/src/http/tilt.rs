@@ -1,4 +1,4 @@
-//! Jogs of the axis. A command's own service answers these requests, too.
+//! Jogs of the axis.
 
 use std::sync::Arc;
 
@@ -33,7 +33,7 @@ async fn jog(service: &Arc<DeviceService>, request: JogRequest) -> Result<Respon
     (status = 200, body = AxisReport), (status = 409, response = NotNow),
 ))]
 pub async fn status(State(service): Service) -> Result<Response, Refusal> {
-    match service.known_report() {
+    match service.wait_for_report().await {
         Some(report) => Ok(ok(&report)),
         None => jog(&service, JogRequest::Status).await,
     }

@@ -25,7 +25,7 @@ use rs232::Rs232Master;
 
 /// Result of decoding bytes from the device.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Decoded {
+pub(crate) enum DecodedFrame {
     Reply(Reply),
     /// RS232: an expected handshake byte.
     Handshake,
@@ -131,7 +131,7 @@ impl Codec {
     }
 
     /// Processes a byte, or on CAN a frame, from the device; `None` inside an incomplete frame.
-    pub fn push(&mut self, chunk: &[u8], now: Stamp<Host>) -> Option<Decoded> {
+    pub fn push(&mut self, chunk: &[u8], now: Stamp<Host>) -> Option<DecodedFrame> {
         match &mut self.transport {
             Transport::Can(node) => Some(decode_can(*node, chunk)),
             Transport::Usb(decoder) => decoder
@@ -266,27 +266,27 @@ pub(crate) fn parse_serial_request(
     })
 }
 
-fn decode_serial(frame: &Result<SerialFrame, SerialFrameError>) -> Decoded {
+fn decode_serial(frame: &Result<SerialFrame, SerialFrameError>) -> DecodedFrame {
     match frame.as_ref().map(Reply::parse) {
-        Ok(Ok(reply)) => Decoded::Reply(reply),
-        Ok(Err(SerialFrameError::Opcode { .. })) => Decoded::Foreign,
-        Ok(Err(_)) | Err(_) => Decoded::Damaged,
+        Ok(Ok(reply)) => DecodedFrame::Reply(reply),
+        Ok(Err(SerialFrameError::Opcode { .. })) => DecodedFrame::Foreign,
+        Ok(Err(_)) | Err(_) => DecodedFrame::Damaged,
     }
 }
 
 /// Decodes a `struct can_frame` for the client of `node`.
-fn decode_can(node: NodeId, bytes: &[u8]) -> Decoded {
+fn decode_can(node: NodeId, bytes: &[u8]) -> DecodedFrame {
     let Ok(frame) = CanFrame::from_socketcan(bytes) else {
-        return Decoded::Noise;
+        return DecodedFrame::Noise;
     };
     if frame.cob_id() != Some(CommunicationObject::SdoResponse(node).cob_id()) {
-        return Decoded::Bus(frame);
+        return DecodedFrame::Bus(frame);
     }
     match TransferResponse::parse(&frame) {
         // Block transfer, which this client never requests.
-        Ok((_, TransferResponse::Unknown(_))) => Decoded::Foreign,
-        Ok((_, response)) => Decoded::Reply(Reply::Sdo(response)),
-        Err(_) => Decoded::Damaged,
+        Ok((_, TransferResponse::Unknown(_))) => DecodedFrame::Foreign,
+        Ok((_, response)) => DecodedFrame::Reply(Reply::Sdo(response)),
+        Err(_) => DecodedFrame::Damaged,
     }
 }
 

@@ -17,7 +17,7 @@ use protocol::epos2::SerialFrame;
 use protocol::epos2::rs232::{self, BodyDecoder, FAILED, FRAME_TIMEOUT_MS, OKAY};
 use units::{Host, Span, Stamp};
 
-use super::{Decoded, Outgoing, decode_serial};
+use super::{DecodedFrame, Outgoing, decode_serial};
 
 /// The master's side of the dialogue.
 #[derive(Clone, Debug)]
@@ -122,14 +122,14 @@ impl Rs232Master {
     }
 
     /// Processes a byte from the unit.
-    pub fn push(&mut self, byte: u8, now: Stamp<Host>) -> Option<Decoded> {
+    pub fn push(&mut self, byte: u8, now: Stamp<Host>) -> Option<DecodedFrame> {
         use DialogueState::{Answer, AwaitAnswer, BodySent, Idle, OpcodeSent, Quiet};
         self.has_input = true;
         match (&mut self.state, byte) {
-            (Idle, _) => Some(Decoded::Noise),
+            (Idle, _) => Some(DecodedFrame::Noise),
             (Quiet { span, until }, _) => {
                 *until = now.saturating_add(*span);
-                Some(Decoded::Handshake)
+                Some(DecodedFrame::Handshake)
             }
             (OpcodeSent, OKAY) => {
                 self.state = BodySent;
@@ -137,16 +137,16 @@ impl Rs232Master {
                     bytes: std::mem::take(&mut self.body),
                     is_body: true,
                 });
-                Some(Decoded::Handshake)
+                Some(DecodedFrame::Handshake)
             }
             (BodySent, OKAY) => {
                 self.state = AwaitAnswer;
-                Some(Decoded::Handshake)
+                Some(DecodedFrame::Handshake)
             }
             (AwaitAnswer, SerialFrame::ANSWER) => {
                 self.state = Answer(BodyDecoder::new(SerialFrame::ANSWER));
                 self.send(vec![OKAY]);
-                Some(Decoded::Handshake)
+                Some(DecodedFrame::Handshake)
             }
             (Answer(decoder), _) => {
                 let frame = decoder.push(byte)?;
@@ -163,9 +163,9 @@ impl Rs232Master {
             (OpcodeSent | BodySent, FAILED) => {
                 // A desynchronised unit may refuse each byte of a body.
                 self.drain_stale(now);
-                Some(Decoded::Refused)
+                Some(DecodedFrame::Refused)
             }
-            (OpcodeSent | BodySent | AwaitAnswer, _) => Some(Decoded::Damaged),
+            (OpcodeSent | BodySent | AwaitAnswer, _) => Some(DecodedFrame::Damaged),
         }
     }
 

@@ -15,7 +15,7 @@ fn encode(codec: &mut Codec, address: Address, access: ObjectAccess) -> Vec<u8> 
     codec.encode(address, access, at(500))
 }
 
-fn decode(bytes: &[u8]) -> Vec<Decoded> {
+fn decode(bytes: &[u8]) -> Vec<DecodedFrame> {
     let mut codec = Codec::usb(1);
     bytes
         .chunks(1)
@@ -23,11 +23,11 @@ fn decode(bytes: &[u8]) -> Vec<Decoded> {
         .collect()
 }
 
-fn shape(decoded: &[Decoded]) -> Vec<(u32, usize, Option<u32>)> {
+fn shape(decoded: &[DecodedFrame]) -> Vec<(u32, usize, Option<u32>)> {
     decoded
         .iter()
         .map(|one| match one {
-            Decoded::Reply(Reply::Serial(reply)) => (reply.error.0, reply.words, reply.value),
+            DecodedFrame::Reply(Reply::Serial(reply)) => (reply.error.0, reply.words, reply.value),
             other => panic!("{other:?}"),
         })
         .collect()
@@ -70,13 +70,13 @@ fn usb_answers_match_golden_bytes() {
 fn an_echo_is_not_an_answer() {
     let mut codec = Codec::usb(1);
     let echo = encode(&mut codec, STATUSWORD, ObjectAccess::Read);
-    assert_eq!(decode(&echo), [Decoded::Foreign]);
+    assert_eq!(decode(&echo), [DecodedFrame::Foreign]);
 }
 
 #[test]
 fn a_wrong_checksum_is_reported() {
     let read = [0x90, 2, 0, 4, 0, 0, 0, 0, 0x36, 2, 0, 0, 0x68, 0];
-    assert_eq!(decode(&read), [Decoded::Damaged]);
+    assert_eq!(decode(&read), [DecodedFrame::Damaged]);
 }
 
 /// A known defect of other clients: reception fails if the last data byte, or any other, is 0x90.
@@ -113,12 +113,12 @@ fn rs232_read_frames_match_golden_bytes() {
     assert_eq!(encode(&mut codec, STATUSWORD, ObjectAccess::Read), [0x10]);
     assert!(!codec.is_ready());
     assert_eq!(codec.outgoing(at(0)), None, "not before the unit is ready");
-    assert_eq!(codec.push(&[OKAY], at(1)), Some(Decoded::Handshake));
+    assert_eq!(codec.push(&[OKAY], at(1)), Some(DecodedFrame::Handshake));
     let body = codec.outgoing(at(1)).unwrap();
     assert_eq!(body.bytes, [0x01, 0x41, 0x60, 0x00, 0x01, 0xAB, 0xF0]);
     assert!(body.is_body);
-    assert_eq!(codec.push(&[OKAY], at(2)), Some(Decoded::Handshake));
-    assert_eq!(codec.push(&[0x00], at(2)), Some(Decoded::Handshake));
+    assert_eq!(codec.push(&[OKAY], at(2)), Some(DecodedFrame::Handshake));
+    assert_eq!(codec.push(&[0x00], at(2)), Some(DecodedFrame::Handshake));
     assert_eq!(codec.outgoing(at(2)).unwrap().bytes, [OKAY]);
     let answer = [0x03, 0, 0, 0, 0, 0x37, 2, 0, 0, 0x19, 0x80];
     let decoded: Vec<_> = answer
@@ -159,7 +159,7 @@ fn rs232_refusals_are_reported_and_end_the_exchange() {
             codec.push(&[OKAY], at(1));
             codec.outgoing(at(1)).unwrap();
         }
-        assert_eq!(codec.push(&[FAILED], at(2)), Some(Decoded::Refused));
+        assert_eq!(codec.push(&[FAILED], at(2)), Some(DecodedFrame::Refused));
         assert_eq!(codec.outgoing(at(2)), None);
         assert_eq!(codec.deadline(), Some(at(22)), "more bytes may follow");
         codec.expire(at(22));
@@ -184,7 +184,7 @@ fn rs232_recovers_after_a_flush_and_silence() {
             assert!(flush.bytes.iter().all(|&b| b == FAILED));
         }
         // The unit's last bytes are discarded, but awaited.
-        assert_eq!(codec.push(&[OKAY], at(30)), Some(Decoded::Handshake));
+        assert_eq!(codec.push(&[OKAY], at(30)), Some(DecodedFrame::Handshake));
         codec.expire(at(49));
         assert!(!codec.is_ready());
         let quiet = if failure < 3 { 50 } else { 550 };
@@ -223,21 +223,21 @@ fn can_frames_match_golden_bytes() {
     );
     assert_eq!(mode, frame([6, 1], [0x2F, 0x60, 0x60, 0, 0xFD, 0, 0, 0]));
     let answer = frame([5, 0x81], [0x4B, 0x41, 0x60, 0, 0x40, 1, 0, 0]);
-    let Some(Decoded::Reply(reply)) = codec.push(&answer, at(0)) else {
+    let Some(DecodedFrame::Reply(reply)) = codec.push(&answer, at(0)) else {
         panic!()
     };
     assert_eq!((reply.error().0, reply.value()), (0, Some(0x140)));
     let abort = frame([5, 0x81], [0x80, 0x41, 0x60, 0, 0, 0, 2, 6]);
-    let Some(Decoded::Reply(reply)) = codec.push(&abort, at(0)) else {
+    let Some(DecodedFrame::Reply(reply)) = codec.push(&abort, at(0)) else {
         panic!()
     };
     assert_eq!((reply.error(), reply.value()), (CommError::NO_OBJECT, None));
     let other_node = frame([5, 0x82], [0x4B, 0x41, 0x60, 0, 0x40, 1, 0, 0]);
     assert!(matches!(
         codec.push(&other_node, at(0)),
-        Some(Decoded::Bus(_))
+        Some(DecodedFrame::Bus(_))
     ));
-    assert_eq!(codec.push(&answer[..9], at(0)), Some(Decoded::Noise));
+    assert_eq!(codec.push(&answer[..9], at(0)), Some(DecodedFrame::Noise));
 }
 
 /// The device name of the guide's example, in segments.
@@ -254,7 +254,7 @@ fn can_segments_match_golden_bytes() {
     let push = |codec: &mut Codec, data: [u8; 8]| {
         let frame = [&[0, 0, 5, 0x81, 8, 0, 0, 0][..], &data].concat();
         match codec.push(&frame, at(0)) {
-            Some(Decoded::Reply(reply)) => reply,
+            Some(DecodedFrame::Reply(reply)) => reply,
             other => panic!("{other:?}"),
         }
     };

@@ -17,7 +17,7 @@ use protocol::epos2::CommError;
 use protocol::epos2::objects::Address;
 use units::{Host, Span, Stamp};
 
-use crate::codec::{Codec, Decoded};
+use crate::codec::{Codec, DecodedFrame};
 use crate::exchange::Reply;
 use crate::request_matcher::{ReplyMatch, RequestMatcher, SentRequest};
 use request::ActiveRequest;
@@ -194,16 +194,16 @@ impl RequestLink {
         for chunk in bytes.chunks(self.codec.chunk_len()) {
             match self.codec.push(chunk, now) {
                 None => self.handle_partial_reply(now),
-                Some(Decoded::Handshake) => {}
-                Some(Decoded::Reply(reply)) => self.handle_reply(&reply, now),
-                Some(Decoded::Refused) => self.handle_refusal(now),
-                Some(Decoded::Bus(frame)) => self.frames.push_back(frame),
-                Some(Decoded::Foreign) => self.stats.foreign += 1,
-                Some(Decoded::Noise) => {
+                Some(DecodedFrame::Handshake) => {}
+                Some(DecodedFrame::Reply(reply)) => self.handle_reply(&reply, now),
+                Some(DecodedFrame::Refused) => self.handle_refusal(now),
+                Some(DecodedFrame::Bus(frame)) => self.frames.push_back(frame),
+                Some(DecodedFrame::Foreign) => self.stats.foreign += 1,
+                Some(DecodedFrame::Noise) => {
                     self.stats.damaged += 1;
                     self.budget.handle_input(now);
                 }
-                Some(Decoded::Damaged) => self.handle_damage(now),
+                Some(DecodedFrame::Damaged) => self.handle_damage(now),
             }
         }
     }

@@ -32,6 +32,13 @@ pub(crate) struct TimedReply {
     pub answer: Stamp<Host>,
 }
 
+impl TimedReply {
+    /// From request to answer.
+    pub fn took(&self) -> Span {
+        self.answer.saturating_since(self.request)
+    }
+}
+
 /// Reason why a request has no reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum RequestFailure {

@@ -64,6 +64,8 @@ pub(crate) struct Ops {
     pub aborts_on_alarm: bool,
     /// The power was switched off: friction stops the axis, without a brake slower than a ramp.
     pub is_coasting: bool,
+    /// Replies are known to come late: time limits are long, also while the axis may be moving.
+    pub is_slow: bool,
     next_sample: Option<Stamp<Host>>,
 }
 
@@ -85,6 +87,7 @@ impl Ops {
             silence_limit: Span::ZERO,
             aborts_on_alarm: false,
             is_coasting: false,
+            is_slow: false,
             next_sample: None,
         }
     }
@@ -220,7 +223,7 @@ impl Ops {
         value: T,
     ) -> Result<(), DriveError> {
         let request = LinkRequest {
-            timeout: self.config.timing.timeout_moving,
+            timeout: self.timeout_moving(),
             retries: self.config.timing.read_retries,
             is_urgent: true,
             ..self.write_request(object, value)
@@ -237,7 +240,10 @@ impl Ops {
     ) -> Result<(), DriveError> {
         let timing = &self.config.timing;
         let request = LinkRequest {
-            timeout: timing.timeout_moving.min(LAST_ATTEMPT_TIMEOUT),
+            timeout: match self.is_slow {
+                true => timing.timeout,
+                false => timing.timeout_moving.min(LAST_ATTEMPT_TIMEOUT),
+            },
             retries: timing.read_retries,
             is_urgent: true,
             is_last_attempt: true,
@@ -299,6 +305,15 @@ impl Ops {
         .await;
     }
 
+    /// Time limit of a reply while the axis moves.
+    fn timeout_moving(&self) -> Span {
+        let timing = &self.config.timing;
+        match self.is_slow {
+            true => timing.timeout,
+            false => timing.timeout_moving,
+        }
+    }
+
     fn is_host_loaded(&self) -> bool {
         let core = lock(&self.core);
         core.host_delayed
@@ -324,8 +339,12 @@ impl Ops {
             false => Span::ZERO,
         };
         let (timeout, probe_timeout) = if self.is_moving {
-            let timeout = timing.timeout_moving;
-            (timeout, timeout.min(PROBE_TIMEOUT_MOVING))
+            let timeout = self.timeout_moving();
+            let probe_timeout = match self.is_slow {
+                true => timeout,
+                false => timeout.min(PROBE_TIMEOUT_MOVING),
+            };
+            (timeout, probe_timeout)
         } else {
             let timeout = timing.timeout.max(loaded);
             (timeout, timeout)

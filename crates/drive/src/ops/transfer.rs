@@ -1,6 +1,6 @@
 //! Transfers of objects of any length, with the rules of SDO on every link.
 
-use protocol::Bounded;
+use protocol::BoundedVec;
 use protocol::canopen::sdo::{Expedited, SdoTransfer, TransferStep};
 use protocol::epos2::CommError;
 use protocol::epos2::objects::Address;
@@ -66,7 +66,7 @@ impl Ops {
         operation: Operation,
         mut transfer: ObjectTransfer,
         mut request: TransferRequest,
-    ) -> Result<Bounded<u8, MAX_OBJECT>, DriveError> {
+    ) -> Result<BoundedVec<u8, MAX_OBJECT>, DriveError> {
         let address = transfer.address();
         loop {
             let exchange = self.request(address, ObjectAccess::Transfer(request));

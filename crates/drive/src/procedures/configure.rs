@@ -7,6 +7,7 @@ use std::ops::RangeInclusive;
 
 use protocol::epos2::cia402::mode;
 use protocol::epos2::objects::{self, Scalar, TypedObject};
+use units::Span;
 
 use crate::config::{BrakeConfig, LimitSwitchConfig, whole_ms};
 use crate::error::DriveError;
@@ -125,12 +126,14 @@ async fn expect<T: Scalar + Into<i64>>(
 }
 
 /// Verifies the settings that keep the axis within its range. Done before every move, as a drive
-/// that restarted has lost them.
-pub(super) async fn verify_safety(ops: &Ops) -> Result<(), DriveError> {
+/// that restarted has lost them. Returns the time of the quicker of two replies.
+pub(super) async fn verify_safety(ops: &Ops) -> Result<Span, DriveError> {
     verify_drive(ops).await?;
     let switches = ops.config.limit_switches.mask();
+    let mut quickest = Span::from_nanos(i64::MAX);
     for object in [objects::INPUT_MASK, objects::INPUT_EXECUTION_MASK] {
-        let got = ops.read(object).await?;
+        let (got, reply) = ops.read_timed(object).await?;
+        quickest = quickest.min(reply.took());
         if got & switches != switches {
             return Err(DriveError::NotTaken {
                 address: object.address,
@@ -142,7 +145,29 @@ pub(super) async fn verify_safety(ops: &Ops) -> Result<(), DriveError> {
     let limits = ops.config.limits_qc()?;
     ops.verify(objects::MIN_POSITION, limits.min.0).await?;
     ops.verify(objects::MAX_POSITION, limits.max.0).await?;
-    network::verify(ops).await
+    network::verify(ops).await?;
+    Ok(quickest)
+}
+
+/// Further reads before replies count as slow: a busy host delays some, but not all.
+const REPLY_CHECKS: u8 = 5;
+
+/// Verifies what [`verify_safety`] does, and that replies come well within the time limit of a
+/// move: else the move would begin and end as unanswered.
+pub(super) async fn verify_before_move(ops: &Ops) -> Result<(), DriveError> {
+    let limit = Span::from_nanos(ops.config.timing.timeout_moving.as_nanos() / 5 * 4);
+    let mut took = verify_safety(ops).await?;
+    for _ in 0..REPLY_CHECKS {
+        if took <= limit {
+            return Ok(());
+        }
+        let (_, reply) = ops.read_timed(objects::MIN_POSITION).await?;
+        took = took.min(reply.took());
+    }
+    match took <= limit {
+        true => Ok(()),
+        false => Err(DriveError::SlowReplies { took, limit }),
+    }
 }
 
 /// Whether the drive has lost the software limits written by connecting, which only a restart

@@ -9,7 +9,7 @@ use crate::error::{Deviation, DriveError};
 use crate::event::{CommandOutcome, CommandProgress};
 use crate::ops::Ops;
 
-use super::configure::verify_safety;
+use super::configure::verify_before_move;
 use super::motion::{PeriodicCheck, SWITCH_CHECKS};
 use super::network;
 use super::power::{check_enabled, enable, is_held, is_referenced, set_mode};
@@ -26,7 +26,7 @@ pub(crate) async fn home(mut ops: Ops) -> Result<CommandOutcome, DriveError> {
 }
 
 async fn run(ops: &mut Ops) -> Result<CommandOutcome, DriveError> {
-    verify_safety(ops).await?;
+    verify_before_move(ops).await?;
     // A start bit left by another master must not act when the mode changes.
     let idle = match is_held(ops, ops.read(objects::STATUSWORD).await?) {
         true => control::ENABLE_OPERATION,

@@ -12,7 +12,7 @@ use crate::event::{CommandOutcome, CommandProgress, MoveReport, ShaftSample};
 use crate::ops::Ops;
 use crate::plan::{MovePlan, ValidatedMove};
 
-use super::configure::verify_safety;
+use super::configure::verify_before_move;
 use super::guard::MotionGuard;
 use super::network;
 use super::power::{
@@ -105,7 +105,7 @@ async fn run(
     hold: Span,
     begun: &mut Option<(MovePlan, Stamp<Host>)>,
 ) -> Result<MoveReport, DriveError> {
-    verify_safety(ops).await?;
+    verify_before_move(ops).await?;
     let got = ops.read(objects::STATUSWORD).await?;
     if !is_referenced(got) {
         return Err(DriveError::NotReferenced { got });

@@ -49,6 +49,7 @@ pub(super) async fn stop_after_failure(ops: &mut Ops, cause: DriveError) -> Driv
     ops.aborts_on_alarm = false;
     ops.silence_limit = Span::ZERO;
     ops.loaded_silence_limit = Span::ZERO;
+    ops.is_slow = matches!(cause, DriveError::SlowReplies { .. });
     let stopped = match cause {
         DriveError::LinkLost { .. }
         | DriveError::NodeSilent { .. }

@@ -277,6 +277,29 @@ fn a_drive_that_contradicts_the_configuration_is_not_moved() {
     }
 }
 
+/// Replies that come later than the client waits for in a move would end each move as unanswered.
+#[test]
+fn a_drive_that_always_answers_late_is_not_moved() {
+    for link in [DriveLink::Usb, DriveLink::Rs232, DriveLink::Can] {
+        let mut rig = Rig::homed_on(link);
+        rig.run(DriveCommand::Brake).unwrap();
+        rig.unit.turnaround = Span::from_millis(150);
+        let before = rig.unit.requests.len();
+        for command in [DriveCommand::Sweep(to(45.0)), DriveCommand::Home] {
+            let error = rig.run(command).unwrap_err();
+            let DriveError::SlowReplies { took, limit } = error else {
+                panic!("{link:?}: {error}")
+            };
+            assert!(took >= Span::from_millis(150) && limit < took, "{link:?}");
+        }
+        let enabled = rig.unit.requests[before..].iter().any(|(_, request)| {
+            matches!(request, SerialRequest::WriteObject(write)
+                if write.address.index == 0x6040 && write.value & 0xF == 0xF)
+        });
+        assert!(!enabled, "{link:?}: the power was switched on");
+    }
+}
+
 /// An axis in a slow move, whose states may take 100 ms.
 fn slowly_moving() -> Rig {
     let mut config = AxisConfig::default();
@@ -455,4 +478,18 @@ fn silence_ends_a_command_in_bounded_time() {
     assert!(rig.now - began <= Span::from_millis(1600));
     assert!(error.to_string().contains("silence for 1500 ms"), "{error}");
     assert!(!error.help().is_empty());
+}
+
+/// Reads the literals of the source, since no list of all errors exists.
+#[test]
+fn advice_begins_in_lower_case_and_has_no_full_stop() {
+    let (_, source) = include_str!("../error.rs")
+        .split_once("pub fn help")
+        .unwrap();
+    let literals: Vec<&str> = source.split('"').skip(1).step_by(2).collect();
+    assert!(literals.len() > 25, "{literals:?}");
+    for advice in literals {
+        assert!(!advice.starts_with(|c: char| c.is_uppercase()), "{advice}");
+        assert!(!advice.ends_with('.') && !advice.contains(". "), "{advice}");
+    }
 }

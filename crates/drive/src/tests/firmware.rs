@@ -6,7 +6,7 @@ mod load;
 use firmware_sim::epos2::{BrakeState, NodeConfig, Servo};
 use protocol::epos2::cia402::DeviceState;
 use protocol::epos2::objects::Address;
-use protocol::epos2::{Bounded, CommError, DeviceError};
+use protocol::epos2::{BoundedVec, CommError, DeviceError};
 use protocol::record::{Direction, DriveLink};
 use units::{Host, Rpm, Span, Stamp};
 
@@ -266,7 +266,7 @@ fn long_objects_of_the_software_drive_are_readable_and_refuse_writes() {
             (0x2004, 8, CommError::READ_ONLY),
             (0x5000, 8, CommError::NO_OBJECT),
         ] {
-            let bytes = Bounded::from_slice(&vec![0x90; len]).unwrap();
+            let bytes = BoundedVec::from_slice(&vec![0x90; len]).unwrap();
             let address = Address::new(index, 0);
             let error = rig.run(DriveCommand::Write { address, bytes }).unwrap_err();
             assert!(
@@ -274,7 +274,7 @@ fn long_objects_of_the_software_drive_are_readable_and_refuse_writes() {
                 "{link:?}: {error}"
             );
         }
-        let bytes = Bounded::from_slice(&1_500_u32.to_le_bytes()).unwrap();
+        let bytes = BoundedVec::from_slice(&1_500_u32.to_le_bytes()).unwrap();
         let address = Address::new(0x6065, 0);
         rig.run(DriveCommand::Write { address, bytes }).unwrap();
         let Ok(CommandOutcome::Read { bytes, .. }) = rig.run(DriveCommand::Read(address)) else {

@@ -5,7 +5,7 @@ use protocol::epos2::message::{
     InitiateSegmentedWrite, ReadSegment, SegmentedRead, SegmentedWrite, SerialAnswer,
     SerialRequest, WriteSegment,
 };
-use protocol::epos2::{Bounded, CommError, SerialFrame};
+use protocol::epos2::{BoundedVec, CommError, SerialFrame};
 
 /// The longest value that can be written.
 const LONGEST: usize = 20;
@@ -57,7 +57,7 @@ impl LongObject {
     }
 
     fn next_segment(&mut self, toggle: bool) -> ReadSegment {
-        let mut bytes = Bounded::new();
+        let mut bytes = BoundedVec::new();
         bytes.extend(self.bytes[self.sent..].iter().copied().take(self.segment.0));
         self.sent += bytes.len();
         ReadSegment {

@@ -3,7 +3,7 @@
 use protocol::canopen::sdo::TransferError;
 use protocol::epos2::message::SerialRequest;
 use protocol::epos2::objects::Address;
-use protocol::epos2::{Bounded, CommError};
+use protocol::epos2::{BoundedVec, CommError};
 use protocol::record::DriveLink;
 
 use super::long_object::LongObject;
@@ -31,7 +31,7 @@ fn name(rig: &mut Rig) -> &mut LongObject {
 }
 
 fn write(address: Address, bytes: &[u8]) -> DriveCommand {
-    let bytes = Bounded::from_slice(bytes).unwrap();
+    let bytes = BoundedVec::from_slice(bytes).unwrap();
     DriveCommand::Write { address, bytes }
 }
 

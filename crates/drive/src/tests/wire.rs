@@ -12,7 +12,7 @@ use protocol::epos2::message::{
 use protocol::epos2::objects::Address;
 use protocol::epos2::rs232::{BodyDecoder, OKAY, encode_body};
 use protocol::epos2::usb::{self, UsbDecoder};
-use protocol::epos2::{Bounded, SerialFrame};
+use protocol::epos2::{BoundedVec, SerialFrame};
 use protocol::record::DriveLink;
 use units::{Host, Span, Stamp};
 
@@ -325,7 +325,7 @@ fn serial_request(request: &sdo::SdoRequest) -> (SerialRequest, Address) {
             (SerialRequest::InitiateSegmentedWrite(open), address)
         }
         sdo::SdoRequest::DownloadSegment(segment) => {
-            let mut bytes = Bounded::new();
+            let mut bytes = BoundedVec::new();
             bytes.extend(segment.bytes.iter().copied());
             let toggle = segment.toggle;
             let write = SegmentedWrite(WriteSegment { toggle, bytes });

@@ -14,7 +14,7 @@ use serde::Serialize;
 use units::{DegPerS2, Span};
 use utoipa::ToSchema;
 
-use crate::devices::drive_port::Opened;
+use crate::devices::drive_port::OpenPort;
 use crate::devices::drive_session::{Session, SessionError};
 
 /// Judgement of a measured value.
@@ -84,7 +84,7 @@ pub struct BringUp<'a> {
     /// Acceleration of moves.
     pub acceleration: DegPerS2,
     /// The open port.
-    pub(crate) opened: &'a mut Opened,
+    pub(crate) opened: &'a mut OpenPort,
     /// Set to stop the axis.
     pub interrupt: Arc<AtomicBool>,
     found: Vec<BringUpResult>,
@@ -144,7 +144,7 @@ impl<'a> BringUp<'a> {
     pub fn new(
         axis: AxisConfig,
         acceleration: DegPerS2,
-        opened: &'a mut Opened,
+        opened: &'a mut OpenPort,
         interrupt: Arc<AtomicBool>,
     ) -> Self {
         Self {

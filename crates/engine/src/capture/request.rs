@@ -103,12 +103,15 @@ impl CapturePlan {
         let Some(Step { plan, .. }) = self.steps.iter().find(|step| step.sweep) else {
             return lines;
         };
-        lines.push(format!(
-            "{} deg/s is {} rpm of the motor, {} deg/s",
-            plan.requested.0,
-            plan.speed.0,
-            trim(self.axis.gearing.rate(plan.speed).0)
-        ));
+        let (requested, rpm) = (plan.requested.0, plan.speed.0);
+        let rate = self.axis.gearing.rate(plan.speed).0;
+        lines.push(match (rate - requested).abs() < 1e-9 {
+            true => format!("{requested} deg/s is {rpm} rpm of the motor"),
+            false => format!(
+                "{requested} deg/s becomes {} deg/s, {rpm} rpm of the motor",
+                trim(rate)
+            ),
+        });
         let shape = if plan.triangle {
             format!("too short for a cruise, peak {:.2} deg/s", plan.cruise.0)
         } else {
@@ -145,10 +148,11 @@ pub fn scan_config(
     ScanConfig {
         device: device.to_owned(),
         simulated,
-        mount: config.mount,
+        mount: config.mount.pose(),
+        calibration: config.mount.calibration().cloned(),
         lidar: match simulated {
             true => simulated::lidar(),
-            false => config.lidar,
+            false => config.lidar.accuracy(),
         },
         axis: config.axis.scan(),
         sweep,

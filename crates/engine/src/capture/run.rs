@@ -232,7 +232,7 @@ pub fn cloud(
         truth,
         live,
         lost_records,
-        ..Reconstruction::of_log(&source, accuracy, interrupt)
+        ..Reconstruction::of_log(&source, accuracy, interrupt)?
     };
     replay::make(&request, target)
 }

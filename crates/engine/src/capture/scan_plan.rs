@@ -2,15 +2,16 @@
 //!
 //! `analysis::plan` predicts; the moves are those that [`super::moves`] plans for the drive.
 
+mod report;
+
 use analysis::plan::{
     ErrorModel, LinkTiming, PlanLaser, PlanLidar, PlanLimits, PlanRow, PlannedScan, ScanPredictor,
     ScanSetting, TiltSweep,
 };
 use drive::AxisConfig;
-use protocol::vlp16::Model;
-use serde::Serialize;
+use protocol::vlp16::{Model, models};
+use sim::RigLidar;
 use units::{Degrees, Rpm};
-use utoipa::ToSchema;
 
 use super::moves::{self, Step};
 use super::request::{CapturePlan, sweep_request};
@@ -18,6 +19,8 @@ use crate::capture_request::CaptureRequest;
 use crate::config::{Config, Device, DeviceKind};
 use crate::devices::{profile, simulated};
 use crate::failure::{Failure, Kind};
+
+pub use report::{CommandRow, PlanReport, UnmetLimit};
 
 /// What a plan is about.
 #[derive(Clone, Debug)]
@@ -42,43 +45,8 @@ pub struct PlanRequest {
     pub rest_deg: Option<f64>,
 }
 
-/// A row with its command.
-#[derive(Clone, Debug, Serialize, ToSchema)]
-pub struct CommandRow {
-    /// The capture.
-    pub command: String,
-    /// What it gives.
-    #[serde(flatten)]
-    pub row: PlanRow,
-}
-
-/// A plan.
-#[derive(Clone, Debug, Serialize, ToSchema)]
-pub struct PlanReport {
-    /// The device.
-    pub device: String,
-    /// Whether it is software.
-    pub simulated: bool,
-    /// Model of the lidar.
-    pub lidar: String,
-    /// Distance of gaps and errors, metres.
-    pub at_m: f64,
-    /// Settings that no other beats in time, 99 % gap and error at once, one for each class of scan
-    /// time.
-    pub rows: Vec<CommandRow>,
-    /// The fastest setting within the limits; with a limit of time only, the densest. Null without
-    /// limits, and if no setting meets them.
-    pub chosen: Option<CommandRow>,
-    /// Why no setting meets the limits.
-    pub unmet: Option<String>,
-    /// What the figures assume.
-    pub assumptions: Vec<String>,
-}
-
 /// Distance at which a capture reports gaps and errors, metres.
 pub const USUAL_M: f64 = 20.0;
-/// Rate of an unknown lidar, revolutions per minute: the factory setting of a VLP-16.
-pub const USUAL_RPM: u32 = 600;
 /// Time of homing besides the way: checks, ramps, and the edge of the switch; seconds. Measured in
 /// virtual time over USB, as `STEP_S`.
 const HOMING_S: f64 = 0.62;
@@ -137,13 +105,14 @@ impl ScanPlanner {
         let axis = profile::axis(&config.axis)?;
         check(&request)?;
         let lidar = plan_lidar(request.model, config.mount.d_m);
-        let configured = match profile::simulated(device) {
+        let simulated = profile::simulated(device) && is_simulated(&request);
+        let accuracy = match simulated {
             true => simulated::lidar(),
-            false => config.lidar,
+            false => config.lidar.accuracy(),
         };
         let errors = ErrorModel {
             range_m: request.at_m,
-            range_sd_m: request.range_sd_m.unwrap_or(configured.range_sd_m),
+            range_sd_m: request.range_sd_m.unwrap_or(accuracy.range_sd_m),
             count_deg: axis.gearing.degrees_per_qc(),
             link: link(device.kind),
             mount_sd_deg: request.mount_sd_deg,
@@ -163,16 +132,22 @@ impl ScanPlanner {
         })
     }
 
-    /// A planner for one capture, with gaps and errors at [`USUAL_M`].
+    /// A planner for one capture, with gaps and errors at [`USUAL_M`], and the model and the rate
+    /// of the lidar as far as they are known; else those of the configuration, or of the simulator.
     ///
     /// # Errors
     /// [`Kind::BadInput`] for an invalid configuration.
     pub fn of_capture(
         config: &Config,
         capture: &CapturePlan,
-        model: &'static Model,
-        rpm: u32,
+        model: Option<&'static Model>,
+        rpm: Option<u32>,
     ) -> Result<Self, Failure> {
+        let (usual_model, usual_rpm) = match profile::simulated(&capture.device) {
+            true => (SIMULATED, RigLidar::default().rpm),
+            false => (config.lidar.model.model(), config.lidar.rpm),
+        };
+        let (model, rpm) = (model.unwrap_or(usual_model), rpm.unwrap_or(usual_rpm));
         let first = capture.steps.iter().find(|step| step.sweep);
         let request = PlanRequest {
             from_deg: first.map(|step| step.plan.from.0),
@@ -361,104 +336,15 @@ impl ScanPlanner {
             scan_s: homing_s + moves_s + STEP_S * (steps.len() as f64 - 1.0).max(0.0),
         }
     }
+}
 
-    fn with_command(&self, row: PlanRow) -> CommandRow {
-        let setting = &row.setting;
-        let mut command = format!("velomotion capture --speed {}", trim(setting.speed_deg_s));
-        if trim(setting.accel_deg_s2) != trim(self.device.accel_deg_s2) {
-            command += &format!(" --accel {}", trim(setting.accel_deg_s2));
-        }
-        if setting.sweeps > 1 {
-            command += " --both-ways";
-        }
-        for (flag, end) in [
-            ("--from", self.request.from_deg),
-            ("--to", self.request.to_deg),
-        ] {
-            command += &end.map_or(String::new(), |end| format!(" {flag} {end}"));
-        }
-        // `capture` looks for a device, too, if none is configured.
-        let usual = self.config.device.default.as_deref().unwrap_or("auto");
-        if self.name != usual {
-            command += &format!(" --device {}", self.name);
-        }
-        CommandRow { command, row }
-    }
+/// The simulator's lidar.
+const SIMULATED: &Model = &models::VLP_16;
 
-    /// Which limit no setting meets.
-    fn unmet(&self, scans: &[PlannedScan]) -> String {
-        let limits = &self.request.limits;
-        let budget = |scan: &PlannedScan| {
-            let errors = &self.predictor.errors;
-            errors.budget(&self.predictor.lidar, &scan.sweeps)
-        };
-        let least = scans
-            .iter()
-            .map(budget)
-            .min_by(|a, b| a.total.total_cmp(&b.total));
-        let fastest = scans
-            .iter()
-            .map(|scan| scan.scan_s)
-            .fold(f64::INFINITY, f64::min);
-        match (limits.error_mm, limits.time_s, least) {
-            (Some(limit), _, Some(least)) if least.total > limit => format!(
-                "no setting has an error of {limit} mm at {} m: the least is {:.1} mm, of which {:.1} mm by the ranges (95 %)",
-                self.request.at_m,
-                least.total,
-                1.96 * least.range.hypot(least.range_step),
-            ),
-            (_, Some(limit), _) if fastest > limit => {
-                format!("no scan with homing takes {limit} s: the shortest takes {fastest:.1} s")
-            }
-            (_, Some(_), _) => {
-                "no setting meets all limits: allow more time, error or gap".to_owned()
-            }
-            _ => format!(
-                "no setting has a gap of {} deg: firings are {:.2} deg apart in azimuth, and lines never reach the poles of the tilt axis",
-                limits.gap_deg.unwrap_or_default(),
-                6.0 * f64::from(self.request.rpm.iter().copied().min().unwrap_or_default())
-                    * self.predictor.lidar.firing_period_s,
-            ),
-        }
-    }
-
-    /// What the figures assume.
-    fn assumptions(&self) -> Vec<String> {
-        let errors = &self.predictor.errors;
-        let per_tenth_deg_mm = 1e3 * errors.range_m * 0.1_f64.to_radians();
-        let mount = match errors.mount_sd_deg {
-            Some(sd) => format!("mount and zero of the tilt known to {sd} deg"),
-            None => format!(
-                "mount and zero of the tilt are not calibrated and count as exact: each 0.1 deg is {per_tenth_deg_mm:.0} mm, the same in \
-                 every scan; --mount-sd includes it"
-            ),
-        };
-        vec![
-            format!(
-                "ranges: standard deviation {:.2} mm, quantisation included; {}",
-                1e3 * errors.range_sd_m,
-                match (self.request.range_sd_m, profile::simulated(&self.device)) {
-                    (Some(_), _) => "--range-sd",
-                    (None, true) => "the simulated lidar's",
-                    (None, false) => "[lidar] range_sd_m of the configuration",
-                }
-            ),
-            format!(
-                "drive: a position every {:.2} ms, {:.0} us off, and a delay of up to {:.2} ms that no scan reveals",
-                1e3 * errors.link.poll_s,
-                1e6 * errors.link.sd_s,
-                1e3 * errors.link.shared_s,
-            ),
-            mount,
-            "gear: its error behind the encoder is not known and counts as none".to_owned(),
-            "azimuth of the lidar at the start is not controlled: gaps are those of the worst of it"
-                .to_owned(),
-            match self.request.rest_deg {
-                Some(rest) => format!("homing from {rest} deg"),
-                None => "homing from where the same scan before ended".to_owned(),
-            },
-        ]
-    }
+/// Whether a request is for the simulator's lidar at its rate.
+fn is_simulated(request: &PlanRequest) -> bool {
+    let rpm = RigLidar::default().rpm;
+    request.model == SIMULATED && request.rpm.iter().all(|rate| *rate == rpm)
 }
 
 /// Refuses impossible limits.

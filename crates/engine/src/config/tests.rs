@@ -1,3 +1,5 @@
+use scanner::config::MountConfig;
+
 use super::*;
 
 #[test]
@@ -10,16 +12,22 @@ fn the_shipped_file_sets_sim_and_only_defaults() {
         ..AxisSettings::default()
     };
     assert_eq!(config.axis, braked);
-    assert_eq!(config.mount, MountConfig::default());
-    assert_eq!(config.lidar, LidarConfig::default());
+    assert_eq!(config.mount.pose(), MountConfig::default());
+    assert_eq!(config.lidar, LidarSettings::default());
 }
 
 #[test]
 fn out_of_range_numbers_are_refused() {
     for (text, key) in [
         ("[mount]\nd_m = nan", "mount.d_m"),
+        ("[mount]\nposition_m = [0.0, 11.0, 0.0]", "mount.position_m"),
+        (
+            "[mount]\nrotation_deg = [0.0, 0.0, inf]",
+            "mount.rotation_deg",
+        ),
         ("[axis]\nmin_deg = -inf", "axis.min_deg"),
         ("[lidar]\nrange_sd_m = -0.01", "lidar.range_sd_m"),
+        ("[lidar]\nmodel = 'hi-res'\nrpm = 30", "lidar.rpm"),
         ("[axis]\nmax_speed_deg_s = -20.0", "axis.max_speed_deg_s"),
         ("[axis]\nmax_accel_deg_s2 = 0.0", "axis.max_accel_deg_s2"),
         ("[axis]\nquick_stop_deg_s2 = nan", "axis.quick_stop_deg_s2"),

@@ -23,10 +23,11 @@ const RS232_BAUD: u32 = 115_200;
 const SLCAN_BAUD: u32 = 115_200;
 /// Longest wait for a port in use.
 const BUSY_WAIT: Duration = Duration::from_secs(2);
-const BUSY_POLL: Duration = Duration::from_millis(20);
+/// Short: a move gets the port between two of the commands that read the drive's state in a loop.
+const BUSY_POLL: Duration = Duration::from_millis(2);
 
 /// An open port of the drive.
-pub struct Opened {
+pub struct OpenPort {
     /// Stops the axis if this process dies. Dropped before the port, which it shares.
     pub guardian: Option<Guardian>,
     /// Bytes of a serial line, or 16 bytes per frame of a bus.
@@ -138,16 +139,16 @@ fn found(plugged: &ConnectedDevices, search: Search) -> Result<PathBuf, Failure>
 /// pseudo-terminal.
 ///
 /// # Errors
-/// Returns [`Kind::NoDevice`].
+/// Returns [`Kind::Busy`] for a port in use, else [`Kind::NoDevice`].
 pub fn open(
     device: &Device,
     place: &Path,
     guarding: Option<&GuardianOptions<'_>>,
-) -> Result<Opened, Failure> {
+) -> Result<OpenPort, Failure> {
     let serial = |baud: u32| {
         open_serial(place, device.baud.unwrap_or(baud)).map_err(|error| failure(&error))
     };
-    let opened = |port: Box<dyn Port>, link| Opened {
+    let opened = |port: Box<dyn Port>, link| OpenPort {
         guardian: None,
         port,
         link,
@@ -164,7 +165,7 @@ pub fn open(
                 .into_iter()
                 .flatten()
                 .collect();
-            Opened {
+            OpenPort {
                 guardian,
                 warning: (!warnings.is_empty()).then(|| warnings.join("; ")),
                 ..opened(Box::new(port), DriveLink::Usb)
@@ -173,7 +174,7 @@ pub fn open(
         DeviceKind::Rs232 => {
             let port = serial(RS232_BAUD)?;
             let (guardian, warning) = start_guardian(&port, DriveLink::Rs232, guarding);
-            Opened {
+            OpenPort {
                 guardian,
                 warning,
                 rs232_baud: Some(device.baud.unwrap_or(RS232_BAUD)),
@@ -252,7 +253,11 @@ pub fn failure(error: &PortError) -> Failure {
              --device sim needs no hardware"
         }
     };
-    Failure::new(Kind::NoDevice, error.to_string()).help(help)
+    let kind = match error {
+        PortError::Busy { .. } => Kind::Busy,
+        _ => Kind::NoDevice,
+    };
+    Failure::new(kind, error.to_string()).help(help)
 }
 
 fn can_failure(place: &Path, error: &CanError) -> Failure {

@@ -146,22 +146,20 @@ impl<'g, P: Port> Session<'g, P> {
             self.inhibitor = self.keeps_awake.then(SleepInhibitor::take).flatten();
         }
         if let Err(error) = self.client.start(command) {
-            return Err(match self.stop(on_event)? {
-                None => SessionError::Drive(error),
-                Some(stop) => SessionError::NotStopped(stop),
-            });
+            self.stop(on_event)?;
+            return Err(SessionError::Drive(error));
         }
         self.unsafe_to_leave |= may_leave_power_on(kind);
         let ended = self.pump(on_event, true, None)?;
         match ended {
-            Ended::Done(outcome) => {
+            CommandEnd::Done(outcome) => {
                 if matches!(kind, CommandKind::Stop | CommandKind::Brake) {
                     self.set_safe(true);
                 }
                 Ok(outcome)
             }
             // The client has stopped the axis, or has reported that it could not.
-            Ended::Failed(error) => {
+            CommandEnd::Failed(error) => {
                 let error = match kind {
                     CommandKind::Stop => SessionError::NotStopped(error),
                     _ => SessionError::Drive(error),
@@ -169,14 +167,14 @@ impl<'g, P: Port> Session<'g, P> {
                 self.set_safe(!error.may_move());
                 Err(error)
             }
-            Ended::Interrupted => match self.stop(on_event)? {
-                None => Err(SessionError::Interrupted),
-                Some(error) => Err(SessionError::NotStopped(error)),
-            },
-            Ended::Unguarded(error) => match self.stop(on_event)? {
-                None => Err(error.after_own_stop().into()),
-                Some(error) => Err(SessionError::NotStopped(error)),
-            },
+            CommandEnd::Interrupted => {
+                self.stop(on_event)?;
+                Err(SessionError::Interrupted)
+            }
+            CommandEnd::Unguarded(error) => {
+                self.stop(on_event)?;
+                Err(error.after_own_stop().into())
+            }
         }
     }
 
@@ -185,28 +183,31 @@ impl<'g, P: Port> Session<'g, P> {
         &self.port
     }
 
-    /// Stops the axis and sets the brake. Returns the last error if every attempt failed.
-    fn stop(
+    /// Stops the axis and sets the brake.
+    ///
+    /// # Errors
+    /// [`SessionError::NotStopped`] with the last error if every attempt failed, or the port's.
+    pub(super) fn stop(
         &mut self,
         on_event: &mut dyn FnMut(&DriveEvent),
-    ) -> Result<Option<DriveError>, SessionError> {
+    ) -> Result<(), SessionError> {
         let mut last = None;
         for _ in 0..STOP_TRIES {
             last = match self.client.start(DriveCommand::Stop) {
                 Err(error) => Some(error),
                 Ok(()) => match self.pump(on_event, false, None)? {
-                    Ended::Failed(error) => Some(error),
-                    Ended::Done(_) | Ended::Interrupted => None,
+                    CommandEnd::Failed(error) => Some(error),
+                    CommandEnd::Done(_) | CommandEnd::Interrupted => None,
                     // The next attempt has no guardian.
-                    Ended::Unguarded(_) => continue,
+                    CommandEnd::Unguarded(_) => continue,
                 },
             };
             if last.is_none() {
                 self.set_safe(true);
-                break;
+                return Ok(());
             }
         }
-        Ok(last)
+        last.map_or(Ok(()), |error| Err(SessionError::NotStopped(error)))
     }
 
     /// Records whether the axis is at rest as it may be left.
@@ -225,14 +226,14 @@ impl<'g, P: Port> Session<'g, P> {
         on_event: &mut dyn FnMut(&DriveEvent),
         interruptible: bool,
         until: Option<Stamp<Host>>,
-    ) -> Result<Ended, SessionError> {
+    ) -> Result<CommandEnd, SessionError> {
         let mut buffer = [0; 512];
         let mut last_read = self.port.now();
         loop {
             match self.guardian.as_mut().map(|guardian| guardian.heartbeat()) {
                 Some(Err(error)) if error.may_move() || matches!(error, GuardianError::Lost) => {
                     self.guardian = None;
-                    return Ok(Ended::Unguarded(error));
+                    return Ok(CommandEnd::Unguarded(error));
                 }
                 Some(Err(error)) => {
                     // The guardian has used the port, and the axis is at rest.
@@ -249,8 +250,8 @@ impl<'g, P: Port> Session<'g, P> {
             while let Some(event) = self.client.poll_event() {
                 on_event(&event);
                 match event {
-                    DriveEvent::Done(outcome) => return Ok(Ended::Done(outcome)),
-                    DriveEvent::Failed(error) => return Ok(Ended::Failed(error)),
+                    DriveEvent::Done(outcome) => return Ok(CommandEnd::Done(outcome)),
+                    DriveEvent::Failed(error) => return Ok(CommandEnd::Failed(error)),
                     _ => {}
                 }
             }
@@ -259,7 +260,7 @@ impl<'g, P: Port> Session<'g, P> {
             if (interruptible && self.interrupt.load(Ordering::Relaxed))
                 || until.is_some_and(|until| now >= until)
             {
-                return Ok(Ended::Interrupted);
+                return Ok(CommandEnd::Interrupted);
             }
             let wait = self
                 .client
@@ -307,16 +308,16 @@ impl<P: Port> Drop for Session<'_, P> {
             // The error that dropped the session has been reported already. Without a confirmed
             // stop the guardian stays armed: it tries once more when it hears nothing from here.
             match self.pump(&mut |_| {}, false, Some(until)) {
-                Ok(Ended::Done(_)) => self.set_safe(true),
+                Ok(CommandEnd::Done(_)) => self.set_safe(true),
                 // The stop is this process's own now.
-                Ok(Ended::Unguarded(_)) => {}
+                Ok(CommandEnd::Unguarded(_)) => {}
                 _ => return,
             }
         }
     }
 }
 
-enum Ended {
+enum CommandEnd {
     Done(CommandOutcome),
     Failed(DriveError),
     Interrupted,

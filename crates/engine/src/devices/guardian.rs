@@ -15,7 +15,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use ::io::port::{Port, PortChild, SerialPort, shared_port};
-use drive::{DriveClient, DriveCommand};
+use drive::DriveClient;
 use protocol::record::DriveLink;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -295,12 +295,13 @@ pub fn run() -> io::Result<Option<GuardianReport>> {
     Ok(Some(report))
 }
 
-/// Stops the axis, whatever the parent has left on the line.
+/// Stops the axis, whatever the parent has left on the line. Late answers to the parent may spoil
+/// the first attempt.
 fn stop(axis: drive::AxisConfig, link: DriveLink, mut port: impl Port) -> Result<(), SessionError> {
     drain(&mut port);
     let client = DriveClient::new(axis, link);
     let mut session = Session::new(client, port, Arc::default());
-    session.run(DriveCommand::Stop, &mut |_| {}).map(drop)
+    session.stop(&mut |_| {})
 }
 
 /// Reads what is on the line, but not for longer than [`DRAIN_LIMIT`]. The stop is tried whatever

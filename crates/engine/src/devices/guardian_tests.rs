@@ -5,8 +5,10 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use ::io::port::{PortError, Pty};
-use drive::{CommandProgress, DriveEvent, MoveCommand};
+use drive::{CommandProgress, DriveCommand, DriveEvent, MoveCommand};
 use protocol::epos2::cia402::DeviceState;
+use protocol::epos2::message::ReadObject;
+use protocol::epos2::{objects, usb};
 use sim::Attachment;
 use units::{Degrees, Host, Rpm, RpmPerS, Stamp};
 
@@ -84,6 +86,73 @@ fn the_guardian_sends_the_quick_stop_into_endless_noise() {
 fn the_guardian_sends_the_quick_stop_after_a_read_error() {
     let (_, bytes) = first_write(true);
     assert_eq!(bytes[..10], [0x90, 2, 0x11, 4, 0x40, 0x60, 0, 1, 0x0B, 0]);
+}
+
+/// A line on which the first answer arrives late.
+struct LateLine {
+    line: SerialPort,
+    /// The first answer, and when a program may read it.
+    late: Option<(Instant, Vec<u8>)>,
+    has_answered: bool,
+}
+
+const LATE: Duration = Duration::from_millis(150);
+
+impl Port for LateLine {
+    fn write_frame(&mut self, frame: &[u8]) -> Result<Stamp<Host>, PortError> {
+        self.line.write_frame(frame)
+    }
+
+    fn read(
+        &mut self,
+        buffer: &mut [u8],
+        wait: Span,
+    ) -> Result<Option<(usize, Stamp<Host>)>, PortError> {
+        let now = Instant::now();
+        if let Some((_, bytes)) = self.late.take_if(|(due, _)| *due <= now) {
+            buffer[..bytes.len()].copy_from_slice(&bytes);
+            return Ok(Some((bytes.len(), self.now())));
+        }
+        let read = self.line.read(buffer, wait)?;
+        match read {
+            Some((count, _)) if !self.has_answered => {
+                self.has_answered = true;
+                self.late = Some((now + LATE, buffer[..count].to_vec()));
+                Ok(None)
+            }
+            _ => Ok(read),
+        }
+    }
+}
+
+/// The answer to the parent's last request arrives while the guardian waits for others.
+#[test]
+fn the_guardian_stops_an_axis_though_an_answer_to_its_parent_is_late() {
+    let axis = drive::AxisConfig::default();
+    let pty = Pty::open().unwrap();
+    let mut line = SerialPort::open(pty.path(), 1_000_000).unwrap();
+    let is_over = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            let port = SoftwarePort::Serial(pty);
+            let node = simulated::node(&axis);
+            run_observed(node, Attachment::Usb, port, &is_over, &mut |_, _| {}).unwrap();
+        });
+        let read = ReadObject {
+            node: 1,
+            address: objects::POSITION_ACTUAL.address,
+        };
+        let request = usb::to_bytes(&read.to_frame());
+        line.write_frame(&request).unwrap();
+        let late = LateLine {
+            line,
+            late: None,
+            has_answered: false,
+        };
+        let stopped = stop(axis.clone(), DriveLink::Usb, late);
+        is_over.store(true, Ordering::Relaxed);
+        stopped.unwrap();
+    });
 }
 
 /// Silence until the alarm, with checks at this interval, and a machine that delays the program at

@@ -10,10 +10,12 @@ use std::thread::JoinHandle;
 
 use firmware_sim::vlp16::DISTANCE_UNIT_MM;
 use io::port::{Port, PortError, Pty};
+use scanner::config::MountConfig;
 use scanner::{LidarConfig, ScanConfig};
+use sim::sensor::LidarMount;
 use sim::{Rig, RigConfig, Truth};
 use thiserror::Error;
-use units::{Host, Metres, Span, Stamp};
+use units::{Host, Span, Stamp};
 
 use crate::devices::lidar_sockets::DATA_PORT;
 pub use crate::devices::simulated_axis::node;
@@ -29,7 +31,7 @@ pub struct LidarPorts {
 }
 
 /// A running software scanner.
-pub struct Simulated {
+pub struct SimulatedDevices {
     /// Serial port of the software drive.
     pub port: PathBuf,
     stop: Arc<AtomicBool>,
@@ -60,8 +62,8 @@ const CYCLE: Span = Span::from_millis(1);
 /// steps and meanwhile answer nothing, not even a stop.
 const LONGEST_STEP: Span = Span::from_millis(500);
 
-impl Simulated {
-    /// Starts the devices. They run until [`Simulated::stop`].
+impl SimulatedDevices {
+    /// Starts the devices. They run until [`SimulatedDevices::stop`].
     ///
     /// # Errors
     /// Returns a failure if the machine provides no pseudo-terminal or socket.
@@ -171,11 +173,16 @@ fn run(
 #[must_use]
 pub fn rig(axis: &drive::AxisConfig, scan: &ScanConfig, start: Stamp<Host>) -> RigConfig {
     RigConfig {
-        mount: Metres(scan.mount.d_m),
+        mount: lidar_mount(scan.mount),
         gearing: axis.gearing,
         drive: node(axis),
         ..RigConfig::new(start)
     }
+}
+
+fn lidar_mount(mount: MountConfig) -> LidarMount {
+    let mount = mount.mount();
+    LidarMount::at(mount.position_m(), mount.rotation_deg())
 }
 
 /// Accuracy of the software lidar: ranges are quantised and have no other error.

@@ -10,16 +10,16 @@ use ::io::files::NewFile;
 const BUFFER_BYTES: usize = 1 << 16;
 
 /// A file with a write buffer that can also be read.
-pub struct Buffered<F: Write>(BufWriter<F>);
+pub struct BufferedFile<F: Write>(BufWriter<F>);
 
-impl<F: Write> Buffered<F> {
+impl<F: Write> BufferedFile<F> {
     /// Wraps `file`.
     pub fn new(file: F) -> Self {
         Self(BufWriter::with_capacity(BUFFER_BYTES, file))
     }
 }
 
-impl<F: Write> Write for Buffered<F> {
+impl<F: Write> Write for BufferedFile<F> {
     fn write(&mut self, bytes: &[u8]) -> stdio::Result<usize> {
         self.0.write(bytes)
     }
@@ -29,7 +29,7 @@ impl<F: Write> Write for Buffered<F> {
     }
 }
 
-impl<F: Write + Seek> Seek for Buffered<F> {
+impl<F: Write + Seek> Seek for BufferedFile<F> {
     fn seek(&mut self, to: SeekFrom) -> stdio::Result<u64> {
         self.0.seek(to)
     }
@@ -40,7 +40,7 @@ impl<F: Write + Seek> Seek for Buffered<F> {
     }
 }
 
-impl<F: Read + Write> Read for Buffered<F> {
+impl<F: Read + Write> Read for BufferedFile<F> {
     fn read(&mut self, bytes: &mut [u8]) -> stdio::Result<usize> {
         self.0.flush()?;
         self.0.get_mut().read(bytes)

@@ -8,6 +8,7 @@ use lidar::calibration::{from_ros_yaml, from_toml};
 use lidar::{Corrections, Decoder, Duplicates, Options};
 use protocol::record::Wire;
 use protocol::vlp16::Model;
+use scanner::config::DeviceCalibration;
 
 use crate::failure::{Failure, Kind};
 use crate::reconstruct::source::Source;
@@ -43,15 +44,37 @@ pub fn decoder_options(request: &DecoderRequest, source: &Source) -> Result<Opti
         vertical_offsets: !request.one_origin,
         ..Options::default()
     };
-    let Some(path) = &request.calibration else {
-        return Ok(plain);
+    let corrections = match &request.calibration {
+        Some(path) => Some(calibration(path, model(&plain, source)?)?),
+        None => match source
+            .config()?
+            .calibration
+            .filter(|all| !all.laser.is_empty())
+        {
+            Some(all) => {
+                let model = model(&plain, source)?;
+                let of_model = all.corrections(model.name, Corrections::from(model));
+                Some(of_model.ok_or_else(|| other_model(&all, model))?)
+            }
+            None => None,
+        },
     };
-    let model = model(&plain, source)?;
-    let corrections = calibration(path, model)?;
     Ok(Options {
-        corrections: Some(Arc::new(corrections)),
+        corrections: corrections.map(Arc::new),
         ..plain
     })
+}
+
+pub(crate) fn other_model(calibration: &DeviceCalibration, model: &Model) -> Failure {
+    let calibrated = calibration.model.as_deref().unwrap_or("unknown model");
+    Failure::new(
+        Kind::BadInput,
+        format!(
+            "the calibration is of a {calibrated}, and the lidar is a {}",
+            model.name
+        ),
+    )
+    .help("name the mount of this lidar with --mount")
 }
 
 /// Model of the first packets, which the calibration must match.

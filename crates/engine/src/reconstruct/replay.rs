@@ -24,6 +24,7 @@ use super::live::{LiveDifference, LivePoints};
 use super::warnings::{alignment_warnings, incomplete_sweeps};
 use crate::failure::{Failure, Kind};
 use crate::output::{Target, sink_failure};
+use crate::reconstruct::decoder_options::{DecoderRequest, decoder_options};
 use crate::reconstruct::diagnostics;
 use crate::reconstruct::report::{
     self, ScanReport, StepReport, SyncReport, ToleranceReport, TruthErrors,
@@ -66,13 +67,19 @@ pub struct Reconstruction<'a> {
 }
 
 impl<'a> Reconstruction<'a> {
-    /// The cloud of a log with its own tilt angles, in the recording host's time.
-    #[must_use]
-    pub fn of_log(recording: &'a Source, accuracy: Accuracy, interrupt: &'a AtomicBool) -> Self {
-        Self {
+    /// The cloud of a log with its own tilt angles and calibration, in the recording host's time.
+    ///
+    /// # Errors
+    /// [`Kind::BadInput`] for a calibration of another lidar.
+    pub fn of_log(
+        recording: &'a Source,
+        accuracy: Accuracy,
+        interrupt: &'a AtomicBool,
+    ) -> Result<Self, Failure> {
+        Ok(Self {
             recording,
             tilt: TiltSource::Log,
-            options: Options::default(),
+            options: decoder_options(&DecoderRequest::default(), recording)?,
             time: TimeReference::Host,
             accuracy,
             pace: None,
@@ -80,7 +87,7 @@ impl<'a> Reconstruction<'a> {
             live: false,
             lost_records: 0,
             interrupt,
-        }
+        })
     }
 
     /// Fails once the reconstruction is to stop.
@@ -221,7 +228,7 @@ pub(crate) fn tilt_track(alignment: &Alignment) -> TiltTrack {
     let samples = trajectory.samples().iter();
     let sweeps = alignment.sweeps.iter();
     TiltTrack {
-        mount: (trajectory.method() != Method::None).then_some(alignment.mount.d),
+        mount: (trajectory.method() != Method::None).then_some(alignment.mount),
         samples: samples.map(|s| (s.host, s.angle)).collect(),
         sweeps: sweeps.map(|s| (s.start, s.end)).collect(),
     }

@@ -1,7 +1,7 @@
 //! Recordings as a source of records: passes over a file or pipe, the selected sensor, the log's
 //! configuration.
 
-use std::collections::{BTreeSet, VecDeque};
+use std::collections::BTreeSet;
 use std::fmt;
 use std::io::ErrorKind;
 use std::net::Ipv4Addr;
@@ -14,8 +14,8 @@ use io::recording::{
 use protocol::record::{Record, Wire};
 use protocol::vlp16::{DATA_LEN, DataPacket};
 use scanner::ScanConfig;
-use scanner::config::MountConfig;
 
+use crate::config::MountSettings;
 use crate::failure::{Failure, Kind};
 
 /// A recording and its selected sensor.
@@ -24,7 +24,7 @@ pub struct Source {
     path: PathBuf,
     input: RecordingInput,
     wanted: Option<SensorAddress>,
-    mount: Option<MountConfig>,
+    mount: Option<MountSettings>,
 }
 
 /// Name of a sensor: its address, and its data port if one address has several.
@@ -136,13 +136,28 @@ impl Filter {
 
 /// The newest data packets. One that comes again was recorded twice: a lidar's packets differ at
 /// least by their times.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct RecentPackets {
-    packets: VecDeque<[u8; DATA_LEN]>,
+    /// The last six bytes of each, its time, which tell nearly all apart.
+    times: [u64; MAX_RECENT],
+    packets: Vec<[u8; DATA_LEN]>,
+    /// Index of the oldest.
+    oldest: usize,
 }
 
 /// Packets remembered: those of 80 ms.
 const MAX_RECENT: usize = 64;
+
+impl Default for RecentPackets {
+    fn default() -> Self {
+        Self {
+            // No six bytes.
+            times: [u64::MAX; MAX_RECENT],
+            packets: Vec::with_capacity(MAX_RECENT),
+            oldest: 0,
+        }
+    }
+}
 
 impl RecentPackets {
     /// Whether a datagram is one of these; else it becomes one.
@@ -150,19 +165,22 @@ impl RecentPackets {
         let Ok(packet) = <&[u8; DATA_LEN]>::try_from(payload) else {
             return false;
         };
-        // The time, in the last six bytes, tells nearly all apart.
-        let time = packet.last_chunk::<6>();
-        let mut like_it = self
-            .packets
-            .iter()
-            .filter(|old| old.last_chunk::<6>() == time);
-        if DataPacket::new(packet).is_ok() && like_it.any(|old| old == packet) {
+        let [.., a, b, c, d, e, f] = *packet;
+        let time = u64::from_le_bytes([a, b, c, d, e, f, 0, 0]);
+        if self.times.contains(&time)
+            && self.packets.contains(packet)
+            && DataPacket::new(packet).is_ok()
+        {
             return true;
         }
-        if self.packets.len() == MAX_RECENT {
-            self.packets.pop_front();
+        match self.packets.get_mut(self.oldest) {
+            Some(old) => *old = *packet,
+            None => self.packets.push(*packet),
         }
-        self.packets.push_back(*packet);
+        if let Some(old) = self.times.get_mut(self.oldest) {
+            *old = time;
+        }
+        self.oldest = (self.oldest + 1) % MAX_RECENT;
         false
     }
 }
@@ -194,8 +212,8 @@ impl Source {
         self.input.recording().map_err(|error| failure(&error))
     }
 
-    /// Replaces the mount of the recording's configuration.
-    pub const fn set_mount(&mut self, mount: MountConfig) {
+    /// Replaces mount and calibration of the recording's configuration.
+    pub fn set_mount(&mut self, mount: MountSettings) {
         self.mount = Some(mount);
     }
 
@@ -213,9 +231,13 @@ impl Source {
     /// [`Kind::BadInput`] for an unreadable file or an invalid configuration in a log.
     pub fn config(&self) -> Result<ScanConfig, Failure> {
         let config = self.recorded_config()?;
-        Ok(ScanConfig {
-            mount: self.mount.unwrap_or(config.mount),
-            ..config
+        Ok(match &self.mount {
+            None => config,
+            Some(mount) => ScanConfig {
+                mount: mount.pose(),
+                calibration: mount.calibration().cloned(),
+                ..config
+            },
         })
     }
 
@@ -241,9 +263,13 @@ impl Source {
             .help("replay the log with the version named in its first line")
         };
         let config: ScanConfig = toml::from_str(text).map_err(|error| wrong(error.to_string()))?;
-        if !config.mount.d_m.is_finite() {
-            return Err(wrong(format!("mount.d_m is {}", config.mount.d_m)));
+        if !config.mount.is_finite() {
+            return Err(wrong(format!("the mount is {:?}", config.mount)));
         }
+        let calibration = config.calibration.as_ref();
+        calibration
+            .map_or(Ok(()), |calibration| calibration.check())
+            .map_err(wrong)?;
         Ok(config)
     }
 

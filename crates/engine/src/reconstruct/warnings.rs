@@ -65,7 +65,8 @@ fn angle_warning(alignment: &Alignment) -> Option<String> {
         true => 0.0,
         false => MAX_AGE_S * speeds.fold(0.0, f64::max),
     };
-    let bound = alignment.angle_bound_deg()?;
+    // The clock has its own warning.
+    let bound = alignment.trajectory_bound_deg()?;
     let gaps = alignment.sample_gaps;
     let cause = match gaps.count {
         0 => "the drive's positions are few, late or scattered".to_owned(),

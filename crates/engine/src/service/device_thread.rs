@@ -24,7 +24,7 @@ use crate::capture::jog;
 use crate::capture::request::CapturePlan;
 use crate::devices::drive_port;
 use crate::devices::drive_session::SessionError;
-use crate::devices::simulated::Simulated;
+use crate::devices::simulated::SimulatedDevices;
 use crate::failure::{Failure, Kind};
 use crate::threads::spawn;
 
@@ -109,7 +109,7 @@ impl DeviceThread {
 pub(super) struct Worker {
     pub(super) service: Arc<DeviceService>,
     requests: Receiver<ThreadRequest>,
-    pub(super) simulated: Option<Simulated>,
+    pub(super) simulated: Option<SimulatedDevices>,
     pub(super) lidar_retry: Backoff,
 }
 

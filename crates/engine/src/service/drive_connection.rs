@@ -6,7 +6,7 @@ use io::port::PortError;
 use protocol::record::DriveLink;
 use units::Span;
 
-use crate::devices::drive_port::Opened;
+use crate::devices::drive_port::OpenPort;
 use crate::devices::drive_session::SessionError;
 
 /// Silence after which no more answers are expected: between requests, and after a failed one.
@@ -28,7 +28,7 @@ pub(super) enum AxisKnowledge {
 /// A port that stays open from one request to the next.
 pub(super) struct DriveConnection {
     /// The port.
-    pub(super) opened: Opened,
+    pub(super) opened: OpenPort,
     /// Whether the last request failed: an answer to it may still arrive.
     pub(super) failed: bool,
     /// The axis.
@@ -38,7 +38,7 @@ pub(super) struct DriveConnection {
 impl DriveConnection {
     /// A connection over a port just opened. `stale` where answers to another program's requests
     /// may still arrive.
-    pub(super) const fn new(opened: Opened, stale: bool) -> Self {
+    pub(super) const fn new(opened: OpenPort, stale: bool) -> Self {
         Self {
             opened,
             failed: stale,

@@ -18,7 +18,7 @@ use crate::capture::request::CapturePlan;
 use crate::capture::run::{self, CaptureEvent, CaptureJob, Outcome};
 use crate::devices::drive_port;
 use crate::devices::drive_session::{CLEARING, Session, SessionError};
-use crate::devices::simulated::Simulated;
+use crate::devices::simulated::SimulatedDevices;
 use crate::failure::{Failure, Kind};
 use crate::service::axis_report::{AxisReport, DriveFault};
 
@@ -190,7 +190,7 @@ impl Worker {
             })
         }));
         drop(preview);
-        let truth = self.simulated.as_ref().and_then(Simulated::truth);
+        let truth = self.simulated.as_ref().and_then(SimulatedDevices::truth);
         let recorded = match recorded {
             Ok(Ok(recorded)) => recorded,
             Ok(Err(failure)) => {

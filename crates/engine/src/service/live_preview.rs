@@ -14,6 +14,7 @@ use bytes::Bytes;
 use cloud::{Fields, Points, Sink, SinkError};
 use io::log::OwnedRecord;
 use protocol::record::Record;
+use protocol::vlp16::models::VLP_16;
 use scanner::{Live, ScanConfig};
 
 use super::events::{Event, Events};
@@ -171,8 +172,21 @@ impl Drop for LivePreview {
     }
 }
 
+/// Decoder options of the view: the calibrated lasers of the scanner's VLP-16.
+fn live_options(config: &ScanConfig) -> lidar::Options {
+    let calibration = config.calibration.as_ref();
+    let corrections = calibration.and_then(|all| {
+        let table = lidar::Corrections::from(&VLP_16);
+        all.corrections(VLP_16.name, table)
+    });
+    lidar::Options {
+        corrections: corrections.map(Arc::new),
+        ..lidar::Options::default()
+    }
+}
+
 fn run(config: &ScanConfig, mut frames: FrameSink, inbox: &Receiver<Message>) {
-    let Ok(mut live) = Live::new(config, lidar::Options::default(), &mut frames) else {
+    let Ok(mut live) = Live::new(config, live_options(config), &mut frames) else {
         return;
     };
     while let Ok(Message::Record(record)) = inbox.recv() {

@@ -14,7 +14,7 @@ use crate::config::DeviceKind;
 use crate::devices::drive_port::{self, GuardianOptions, Search};
 use crate::devices::lidar_receiver::LidarReceiver;
 use crate::devices::lidar_sockets::{LidarSockets, listen_config};
-use crate::devices::simulated::{self, LidarPorts, Simulated};
+use crate::devices::simulated::{self, LidarPorts, SimulatedDevices};
 use crate::failure::{Failure, Kind};
 use crate::reconstruct::contents::link_name;
 
@@ -29,7 +29,7 @@ impl Worker {
     pub(super) fn open_once(&mut self, lidar: bool) -> Result<DriveConnection, Failure> {
         let service = Arc::clone(&self.service);
         if service.simulated() && !lidar {
-            self.simulated = Some(Simulated::start(rig(&service), DISCARD)?);
+            self.simulated = Some(SimulatedDevices::start(rig(&service), DISCARD)?);
             return self.open_drive();
         }
         if service.simulated() {
@@ -53,7 +53,10 @@ impl Worker {
     pub(super) fn keep_lidar_open(&mut self) {
         let receiver = self.service.receiver();
         if receiver.is_some_and(|receiver| receiver.is_sound())
-            && !self.simulated.as_ref().is_some_and(Simulated::failed)
+            && !self
+                .simulated
+                .as_ref()
+                .is_some_and(SimulatedDevices::failed)
         {
             return;
         }
@@ -88,7 +91,7 @@ impl Worker {
         };
         let sockets = LidarSockets::bind(&config)?;
         if service.simulated() {
-            let started = Simulated::start(rig(&service), sockets.ports)?;
+            let started = SimulatedDevices::start(rig(&service), sockets.ports)?;
             if let Some(old) = self.simulated.replace(started) {
                 drop(old.stop());
             }
@@ -169,7 +172,7 @@ impl Worker {
 
 fn rig(service: &DeviceService) -> sim::RigConfig {
     let scan = scanner::ScanConfig {
-        mount: service.config.mount,
+        mount: service.config.mount.pose(),
         ..scanner::ScanConfig::default()
     };
     simulated::rig(&service.axis, &scan, io::clock::now())

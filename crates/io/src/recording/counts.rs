@@ -5,7 +5,7 @@ use super::PacketFault;
 /// The first unusable packet.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub struct Malformed {
+pub struct MalformedPacket {
     /// Offset of its record in the file, in bytes.
     pub offset: u64,
     /// Its fault.
@@ -34,7 +34,7 @@ pub struct RecordingCounts {
     /// Unusable packets.
     pub malformed: u64,
     /// The first unusable packet.
-    pub first_malformed: Option<Malformed>,
+    pub first_malformed: Option<MalformedPacket>,
     /// Of `malformed`: truncated packets (snap length).
     pub snapped: u64,
     /// Of `malformed`: damaged stretches of the file, after which reading continued.
@@ -59,7 +59,7 @@ impl RecordingCounts {
         self.malformed += 1;
         self.snapped += u64::from(matches!(fault, PacketFault::Snapped { .. }));
         if self.first_malformed.is_none() {
-            self.first_malformed = Some(Malformed { offset, fault });
+            self.first_malformed = Some(MalformedPacket { offset, fault });
         }
     }
 }

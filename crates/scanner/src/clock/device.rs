@@ -46,6 +46,9 @@ pub(crate) struct ClockPiece {
 pub(crate) struct ErrorCell {
     pub from_ns: f64,
     pub bound_ns: f64,
+    /// Error of the host's own stamps, which the samples of other devices have too: the host's
+    /// clock may have been set or slewed by so much.
+    pub host_ns: f64,
     /// Standard deviation of the error.
     pub sd_ns: f64,
 }
@@ -151,6 +154,7 @@ impl<C: Copy> DeviceClock<C> {
             piece.set_by = set_by;
             for cell in &mut piece.cells {
                 cell.bound_ns += uncertain_ns;
+                cell.host_ns += uncertain_ns;
                 cell.sd_ns = cell.sd_ns.hypot(uncertain_ns / BOUND_SDS);
             }
             pieces.push(piece);
@@ -197,6 +201,15 @@ impl<C: Copy> DeviceClock<C> {
     pub fn bound(&self) -> Span {
         let cells = self.pieces.iter().flat_map(|piece| &piece.cells);
         span(cells.map(|cell| cell.bound_ns).fold(0.0, f64::max))
+    }
+
+    /// Greatest error of the host's own stamps, part of [`DeviceClock::bound`]: the host's clock
+    /// may have been set or slewed where all packets came late, and the size of a step that was
+    /// found has an error.
+    #[must_use]
+    pub fn host_bound(&self) -> Span {
+        let cells = self.pieces.iter().flat_map(|piece| &piece.cells);
+        span(cells.map(|cell| cell.host_ns).fold(0.0, f64::max))
     }
 
     /// Greatest error of the clock at `device`, without the constant delay.

@@ -82,6 +82,8 @@ struct EnvelopeBlock<'a> {
     line: OffsetLine,
     /// Standard deviations of the line.
     ends: Ends,
+    /// How many of them contain it, in 99 of 100 recordings.
+    sds: f64,
 }
 
 impl Envelope {
@@ -100,6 +102,7 @@ impl Envelope {
                     points,
                     line: line_below(points)?,
                     ends: Ends::default(),
+                    sds: BOUND_SDS,
                 })
             })
             .collect();
@@ -145,6 +148,9 @@ fn refine(blocks: &mut [EnvelopeBlock<'_>]) -> Option<LowDelays> {
         for (block, hull) in blocks.iter_mut().zip(&hulls) {
             if let Some((line, ends)) = endpoint::line(block.points, *hull, tail) {
                 (block.line, block.ends) = (line, ends);
+                // Its own low packets determine a line, and a quarter of them each of its ends.
+                let own = (count * block.points.len()) as f64 / all as f64;
+                block.sds = student(BOUND_SDS, own / 4.0);
             }
         }
     }
@@ -161,6 +167,16 @@ fn refine(blocks: &mut [EnvelopeBlock<'_>]) -> Option<LowDelays> {
         }
     }
     Some(spread)
+}
+
+/// Standard deviations that contain as much of Student's distribution as `sds` of the normal one
+/// (Abramowitz and Stegun 26.7.5): those of few packets are estimates themselves.
+fn student(sds: f64, freedom: f64) -> f64 {
+    let freedom = freedom.max(1.0);
+    let square = sds * sds;
+    let first = sds * (square + 1.0) / 4.0;
+    let second = sds * ((5.0 * square + 16.0) * square + 3.0) / 96.0;
+    sds + first / freedom + second / (freedom * freedom)
 }
 
 /// The delay below which the lowest share lies, and the number of packets in it.
@@ -208,7 +224,11 @@ fn cells(
             }
         })
         .collect();
-    let known = |x: f64| wander_ns + BOUND_SDS * deviation(blocks, x);
+    let sds = blocks
+        .iter()
+        .map(|block| block.sds)
+        .fold(BOUND_SDS, f64::max);
+    let known = |x: f64| wander_ns + sds * deviation(blocks, x);
     (0..count)
         .map(|i| {
             let (from_ns, to_ns) = (from(i), from(i + 1));
@@ -219,6 +239,7 @@ fn cells(
                 return ErrorCell {
                     from_ns,
                     bound_ns: UNKNOWN_NS,
+                    host_ns: 0.0,
                     sd_ns: UNIFORM_SD * UNKNOWN_NS,
                 };
             }
@@ -226,6 +247,7 @@ fn cells(
             ErrorCell {
                 from_ns,
                 bound_ns: known(from_ns).max(known(to_ns)).max(late_ns),
+                host_ns: late_ns,
                 sd_ns: line_ns.hypot(UNIFORM_SD * wander_ns.max(late_ns)),
             }
         })
@@ -359,4 +381,18 @@ pub(super) fn lower_hull(points: &[Point]) -> Vec<Point> {
         }
     }
     hull
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Quantiles of Student's distribution (Abramowitz and Stegun, table 26.10).
+    #[test]
+    fn few_packets_give_wider_bounds() {
+        for (normal, freedom, expected) in [(2.326, 10.0, 2.764), (3.09, 20.0, 3.552)] {
+            let found = student(normal, freedom);
+            assert!((found - expected).abs() < 0.02, "{found}, not {expected}");
+        }
+    }
 }

@@ -148,6 +148,10 @@ impl<'a> FiringBlockPlacer<'a> {
     /// Looks up time and angle of a block.
     #[inline(always)]
     fn placement<S: Simd>(&mut self, simd: S, block: &FiringBlock<'_>) -> BlockPlacement {
+        // A calibration's tilt is no cubic.
+        if self.alignment.calibration.is_some() {
+            return BlockPlacement::OneByOne;
+        }
         let Some(tangent) = self.clock.tangent(block.start, block.length()) else {
             return BlockPlacement::OneByOne;
         };

@@ -81,7 +81,9 @@ pub(super) fn step(samples: &[ShaftSample], at: usize, by: Span) -> Option<Range
 }
 
 /// Matches samples after a step with earlier SYNCs, if they were matched with later ones than
-/// their own: while the stamps were on two clocks, a SYNC seemed to be earlier than it was.
+/// their own: while the stamps were on two clocks, a SYNC seemed to be earlier than it was. The
+/// matching recovers where SYNCs pause or answers are lost, so each block of samples is compared
+/// with the one before it. In the block where it recovers, SYNCs may be too early, never too late.
 pub(super) fn rematch(samples: &mut [ShaftSample], step: &Range<usize>) {
     let Some(origin) = samples.get(step.start).copied() else {
         return;
@@ -91,25 +93,37 @@ pub(super) fn rematch(samples: &mut [ShaftSample], step: &Range<usize>) {
         since(host, sample, &origin)
     };
     let greatest = |range: Range<usize>| {
-        let side = samples.get(range).unwrap_or_default();
-        side.iter().filter_map(early).max()
+        let some = samples.get(range).unwrap_or_default();
+        some.iter().filter_map(early).max()
     };
     let before = greatest(step.start.saturating_sub(SIDE)..step.start);
-    let after = greatest(step.end..(step.end + SIDE).min(samples.len()));
-    let (Some(before), Some(after), Some(period)) = (before, after, period(samples, step)) else {
+    let (Some(mut reference), Some(period)) = (before, period(samples, step)) else {
         return;
     };
-    let periods = after
-        .saturating_sub(before)
-        .saturating_add(period / 2)
-        .div_euclid(period);
-    let Some(shift) = usize::try_from(periods).ok().filter(|shift| *shift > 0) else {
-        return;
-    };
-    for i in (step.start + shift..samples.len()).rev() {
-        let request = samples.get(i - shift).map(|earlier| earlier.request);
-        if let (Some(sample), Some(request)) = (samples.get_mut(i), request) {
-            sample.request = request;
+    let mut blocks = Vec::new();
+    let mut from = step.start;
+    while from < samples.len() {
+        let certain = from.max(step.end);
+        let to = match samples.len() {
+            end if end < certain + 2 * SIDE => end,
+            _ => certain + SIDE,
+        };
+        let latest = greatest(certain..to).unwrap_or(reference);
+        let rise = latest.saturating_sub(reference).saturating_add(period / 2);
+        let shift = rise.div_euclid(period);
+        // Where all of a block have earlier SYNCs than their own, the one before it counts.
+        if let Ok(late) = usize::try_from(shift) {
+            reference = latest.saturating_sub(shift.saturating_mul(period));
+            blocks.push((from..to, late));
+        }
+        from = to;
+    }
+    for (block, shift) in blocks.into_iter().rev().filter(|(_, shift)| *shift > 0) {
+        for i in block.rev().take_while(|i| *i >= step.start + shift) {
+            let request = samples.get(i - shift).map(|earlier| earlier.request);
+            if let (Some(sample), Some(request)) = (samples.get_mut(i), request) {
+                sample.request = request;
+            }
         }
     }
 }

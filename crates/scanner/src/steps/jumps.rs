@@ -18,6 +18,7 @@ use std::collections::VecDeque;
 use units::Span;
 
 use crate::clock::Arrival;
+pub(super) use grid::shifted;
 
 /// The smallest jump to look for.
 pub(crate) const LEAST: Span = Span::from_millis(10);

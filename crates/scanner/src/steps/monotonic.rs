@@ -199,7 +199,7 @@ struct HostStep {
     /// Monotonic time of the first record after it.
     from: Stamp<Host>,
     by: Span,
-    /// The samples of which a stamp may precede or follow it, if the drive's clock shows them.
+    /// The samples of which a stamp may precede or follow it, if they show it.
     samples: Option<Range<usize>>,
 }
 

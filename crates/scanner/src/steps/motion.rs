@@ -5,7 +5,7 @@
 
 use drive::ShaftSample;
 use nalgebra::{Matrix4, Vector4};
-use units::{Host, Span, Stamp};
+use units::Span;
 
 /// Samples on either side of a step; more of them show a smaller one if the speed is even.
 const SIDE: usize = 24;
@@ -20,9 +20,9 @@ const DIFFERENCE: f64 = 0.3;
 /// Least jump of the positions, in its standard deviations.
 const MIN_SDS: f64 = 4.0;
 
-/// The request of the first sample after a step of the host's clock by `by`, if the samples show it
+/// The index of the first sample after a step of the host's clock by `by`, if the samples show it
 /// near the index `at`.
-pub(super) fn step(samples: &[ShaftSample], at: usize, by: Span) -> Option<Stamp<Host>> {
+pub(super) fn step(samples: &[ShaftSample], at: usize, by: Span) -> Option<usize> {
     let places = at.saturating_sub(NEAR)..=at + NEAR;
     let best = |side: usize| {
         let fits = places
@@ -34,14 +34,13 @@ pub(super) fn step(samples: &[ShaftSample], at: usize, by: Span) -> Option<Stamp
     let shows =
         |fit: &JumpFit| (fit.by_s - by_s).abs() < DIFFERENCE * by_s.abs() && fit.sds > MIN_SDS;
     let (near, few) = best(SIDE)?;
-    let first = if shows(&few) {
+    Some(if shows(&few) {
         near
     } else {
         let (far, many) = best(LONG_SIDE)?;
         let is_even = many.variance <= MAX_VARIANCE_RATIO * few.variance;
         (is_even && shows(&many)).then_some(far)?
-    };
-    samples.get(first).map(|sample| sample.request)
+    })
 }
 
 /// A parabola through the positions, with a jump.

@@ -472,6 +472,9 @@ fn undetectably_small_steps_are_within_the_bound() {
         let seen = recorded.stepped(&[(31 * S, by)]);
         let timeline = seen.timeline();
         assert_eq!(timeline.steps, []);
+        // The stamps of the polls have the step too.
+        let host_bound = timeline.clock.host_bound().as_nanos();
+        assert!(host_bound >= by.abs() - 2_000, "{by}: {host_bound} ns");
         for (packet, was) in seen.arrivals.iter().zip(&recorded.packets) {
             // By the clock of that time.
             let since = was.device.as_nanos() - EPOCH;

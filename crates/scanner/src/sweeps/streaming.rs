@@ -1,7 +1,9 @@
-//! Sweeps while they happen. [`MoveWatch::sweeps`] finds them more exactly afterwards.
+//! Sweeps while they happen. [`MoveWatch::sweeps`] finds them more exactly afterwards. A move whose
+//! start or target was not recorded is the plan's next sweep if it begins like it.
 
 use units::{Degrees, Gearing, Host, Span, Stamp};
 
+use super::uncommanded::REST;
 use super::{END_TOLERANCE_DEG, MoveWatch, REST_QC};
 use crate::angles::AngleSample;
 use crate::config::SweepPlan;
@@ -14,16 +16,20 @@ pub(crate) struct SweepWatch {
     /// Number of moves handled.
     seen: usize,
     last: Option<AngleSample>,
+    /// First sample of the present rest.
+    rest: Option<AngleSample>,
     state: Watched,
 }
 
 #[derive(Clone, Copy, Debug)]
 enum Watched {
     Nothing,
-    /// A sweep was commanded, and the axis is still in its place.
-    Rest(Degrees),
-    /// The last sample that moved.
-    Motion(AngleSample),
+    /// A sweep to this target was commanded, and the axis is still in its place.
+    Rest(Degrees, Degrees),
+    /// Another move was commanded.
+    OtherMove(Degrees),
+    /// The last sample that moved, and the target.
+    Motion(AngleSample, Degrees),
 }
 
 /// An axis at rest for this long has ended its sweep.
@@ -37,6 +43,7 @@ impl SweepWatch {
             spans: Vec::new(),
             seen: 0,
             last: None,
+            rest: None,
             state: Watched::Nothing,
         }
     }
@@ -54,36 +61,72 @@ impl SweepWatch {
         plan: Option<&SweepPlan>,
     ) {
         let last = *self.last.get_or_insert(*sample);
-        if let Some((count, target)) = moves.newest().filter(|(count, _)| *count > self.seen) {
-            self.seen = count;
+        let rest = *self.rest.get_or_insert(*sample);
+        let rest_deg = self.rest_deg;
+        let moved = |from: Degrees| (sample.angle.0 - from.0).abs() > rest_deg;
+        let due = plan.map(|plan| plan.ends(self.spans.len()).1);
+        let is_next = |from, target| {
+            plan.is_none_or(|plan| {
+                plan.is_next_sweep(self.spans.len(), from, target, END_TOLERANCE_DEG)
+            })
+        };
+        let number = moves.count();
+        // The samples may show a move before the record of its command does.
+        let is_begun = |target: Degrees| match (self.state, self.spans.last()) {
+            (Watched::Motion(_, going), Some((start, _))) => {
+                (going.0 - target.0).abs() <= END_TOLERANCE_DEG
+                    && sample.host.saturating_since(*start) < REST
+            }
+            _ => false,
+        };
+        if number > self.seen && moves.newest_target().is_some_and(is_begun) {
+            self.seen = number;
+        } else if number > self.seen {
+            // A target where the axis already is was that of the move before.
+            let is_elsewhere =
+                |target: &Degrees| (target.0 - last.angle.0).abs() > END_TOLERANCE_DEG;
+            let target = moves.newest_target().filter(is_elsewhere).or(due);
+            let is_sweep = target.is_some_and(|target| is_next(last.angle, target));
+            self.seen = number;
             self.end(sample.host);
-            let is_sweep = plan.is_none_or(|plan| {
-                plan.is_next_sweep(self.spans.len(), last.angle, target, END_TOLERANCE_DEG)
-            });
-            if is_sweep {
-                self.state = Watched::Rest(last.angle);
-            }
+            self.state = match target {
+                Some(target) if is_sweep => Watched::Rest(last.angle, target),
+                Some(target) => Watched::OtherMove(target),
+                None => Watched::Nothing,
+            };
+        } else if let (Watched::Nothing, Some(due)) = (self.state, due)
+            && moves.is_position_mode()
+            && moved(rest.angle)
+            && last.host.saturating_since(rest.host) >= REST
+            && (sample.angle.0 - rest.angle.0) * (due.0 - rest.angle.0) > 0.0
+            && is_next(rest.angle, due)
+        {
+            self.state = Watched::Rest(rest.angle, due);
         }
-        let moved = |from: Degrees| (sample.angle.0 - from.0).abs() > self.rest_deg;
         match self.state {
-            Watched::Rest(from) if moved(from) => {
+            Watched::Rest(from, target) if moved(from) => {
                 self.spans.push((last.host, Stamp::from_nanos(i64::MAX)));
-                self.state = Watched::Motion(*sample);
+                self.state = Watched::Motion(*sample, target);
             }
-            Watched::Motion(_) if moves.newest().is_some_and(|(_, target)| !moved(target)) => {
+            Watched::Motion(_, target) | Watched::OtherMove(target) if !moved(target) => {
                 self.end(sample.host);
             }
-            Watched::Motion(seen) if moved(seen.angle) => self.state = Watched::Motion(*sample),
-            Watched::Motion(seen) if sample.host.saturating_since(seen.host) > STILL => {
+            Watched::Motion(seen, target) if moved(seen.angle) => {
+                self.state = Watched::Motion(*sample, target);
+            }
+            Watched::Motion(seen, _) if sample.host.saturating_since(seen.host) > STILL => {
                 self.end(sample.host);
             }
             _ => {}
+        }
+        if moved(rest.angle) {
+            self.rest = Some(*sample);
         }
         self.last = Some(*sample);
     }
 
     fn end(&mut self, host: Stamp<Host>) {
-        if let (Watched::Motion(_), Some((_, end))) = (self.state, self.spans.last_mut()) {
+        if let (Watched::Motion(..), Some((_, end))) = (self.state, self.spans.last_mut()) {
             *end = host;
         }
         self.state = Watched::Nothing;

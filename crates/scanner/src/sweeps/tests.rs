@@ -2,6 +2,8 @@ use units::Span;
 
 use super::*;
 
+mod pushed;
+
 const PLAN: SweepPlan = SweepPlan {
     from_deg: 0.0,
     to_deg: -45.0,

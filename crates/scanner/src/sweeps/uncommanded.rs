@@ -10,7 +10,7 @@ use crate::angles::AngleSample;
 use crate::config::SweepPlan;
 
 /// An axis in one place for this long is at rest. The slowest axis leaves it within that time.
-const REST: Span = Span::from_millis(40);
+pub(super) const REST: Span = Span::from_millis(40);
 
 /// The last rest in `place` before the axis leaves it, as indices of samples.
 pub(super) fn rest_before_departure(

@@ -25,7 +25,9 @@ impl<'a> Candidates<'a> {
         let renewals = Renewals::find(&residuals, self.noise.angle_sd_deg)?;
         let mut residuals = residuals.iter().peekable();
         let mut samples: Vec<AngleSample> = Vec::with_capacity(self.polled.len());
-        for sample in self.polled {
+        let mut unit_deg = Vec::with_capacity(self.polled.len());
+        let polled = observed(self.polled, &self.noise, self.origin);
+        for (sample, polled) in self.polled.iter().zip(polled) {
             let at_s = sample.host.saturating_since(self.origin).as_secs_f64();
             let residual = residuals.next_if(|residual| residual.at_s == at_s);
             let renewed = residual.and_then(|residual| renewals.instant_s(residual));
@@ -40,11 +42,13 @@ impl<'a> Candidates<'a> {
             // Several polls may see one renewal.
             if samples.last().is_none_or(|last| last.host < sample.host) {
                 samples.push(sample);
+                unit_deg.push(polled.sd_deg);
             }
         }
         Some(Self {
             observed: observed(&samples, &self.noise, self.origin),
             samples: Cow::Owned(samples),
+            unit_deg,
             renewed: self.renewed + 1,
             renewals: Some(renewals),
             sweep: self.sweep,

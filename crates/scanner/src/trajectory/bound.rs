@@ -11,20 +11,24 @@ use super::{AngleSample, Method, latch, noise};
 /// Standard deviations within a bound.
 pub(super) const BOUND_SDS: f64 = 3.0;
 
-/// Bound of a fit within a span, degrees: its scatter, and the delay that all samples may share at
-/// the speed there.
+/// Bound of a fit within a span, degrees: its scatter, at least half a step of the encoder, and the
+/// delay that all samples may share at the greatest speed there. Any curve within half a step of
+/// the samples agrees with all of them, so that they do not show a servo which rounds a corner by
+/// less: the scatter of the motion without it may be far smaller. A head that catches up is fastest
+/// within a piece, not at its ends.
 pub(super) fn of_fit(
     pieces: &PiecewiseCubic,
     (from, to): (Stamp<Host>, Stamp<Host>),
     fit: &SweepFit,
+    step_deg: f64,
 ) -> f64 {
     let shared_s = fit.shared_s();
-    let all = pieces.as_slice();
-    // The piece that contains the beginning counts too.
-    let first = all.partition_point(|p| p.from <= from).saturating_sub(1);
-    let inside = all.iter().skip(first).take_while(|p| p.from <= to);
-    inside
-        .map(|piece| BOUND_SDS * piece.sd_deg + shared_s * piece.rate(0.0).abs() * 1e9)
+    pieces
+        .within(from, to)
+        .map(|(piece, length_ns)| {
+            let fastest_deg_s = piece.fastest(length_ns) * 1e9;
+            (BOUND_SDS * piece.sd_deg).max(step_deg / 2.0) + shared_s * fastest_deg_s
+        })
         .fold(0.0, f64::max)
 }
 
@@ -52,6 +56,20 @@ pub(super) fn of_corner(samples: &[AngleSample], profile: &Profile) -> f64 {
     all_s.sort_by(f64::total_cmp);
     let median_s = all_s.get(all_s.len() / 2).copied().unwrap_or_default();
     profile.speed_deg_s.abs() * longest_s.max(median_s) / 4.0
+}
+
+/// The same where a ramp is so short that most such ramps have no sample in them: below a quarter
+/// of the interval. The servo's lag there is not determined. Zero for longer ramps.
+pub(super) fn of_short_ramps(samples: &[AngleSample], profile: &Profile) -> f64 {
+    let (Some(first), Some(last)) = (samples.first(), samples.last()) else {
+        return 0.0;
+    };
+    let intervals = samples.len().saturating_sub(1).max(1);
+    let mean_s = noise::seconds(first, last) / intervals as f64;
+    match profile.ramp_up_s.min(profile.ramp_down_s) < mean_s / 4.0 {
+        true => of_corner(samples, profile),
+        false => 0.0,
+    }
 }
 
 /// Bound of connected samples within a span, degrees.
@@ -119,7 +137,29 @@ fn of_lines(samples: &[AngleSample]) -> f64 {
 mod tests {
     use units::Degrees;
 
+    use super::super::pieces::CubicPiece;
     use super::*;
+
+    /// A curve that the scatter of its samples makes certain to a hundredth of a step.
+    #[test]
+    fn a_fit_is_never_known_to_less_than_half_a_step() {
+        let (from, to) = (Stamp::from_nanos(0), Stamp::from_nanos(1_000_000_000));
+        let rate = 0.7e-9;
+        let piece = CubicPiece::hermite(from, 1e9, [0.0, rate], [0.7, rate]).with_sd(5e-6);
+        let pieces = PiecewiseCubic::new(vec![piece], to).unwrap();
+        let fit = SweepFit {
+            method: Method::Profile,
+            rms_deg: 0.0,
+            sd_deg: 0.0,
+            delay: (Span::from_millis(-1), Span::ZERO),
+            profile: None,
+            condition: None,
+            remarks: Vec::new(),
+        };
+        let bound = |step_deg| of_fit(&pieces, (from, to), &fit, step_deg);
+        assert!((bound(0.0015) - 0.00145).abs() < 1e-9);
+        assert!((bound(0.0) - 0.000715).abs() < 1e-9);
+    }
 
     /// Polls every 20 ms; those from 20 to 180 ms, in the first ramp, are missing.
     #[test]

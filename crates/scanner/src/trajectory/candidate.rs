@@ -22,7 +22,7 @@ pub(super) struct Candidate {
     /// Part of the residual that neighbouring samples share, degrees.
     pub systematic_residual_deg: f64,
     /// Predicted mean square of the residual of a sample that is left out of the fit, in variances
-    /// of the sample (generalised cross-validation).
+    /// of its poll (generalised cross-validation).
     pub prediction_error: f64,
     /// Number of free parameters.
     pub parameters: usize,
@@ -32,22 +32,20 @@ pub(super) struct Candidate {
 }
 
 impl Candidates<'_> {
-    /// Generalised cross-validation (Craven and Wahba 1979) of a curve with so many parameters.
+    /// Generalised cross-validation (Craven and Wahba 1979) of a curve with so many parameters. The
+    /// renewals of a latch are two more, phase and drift.
     fn prediction_error(&self, pieces: &PiecewiseCubic, parameters: usize) -> f64 {
         let squares: f64 = self
             .samples
             .iter()
-            .zip(&self.observed)
-            .filter_map(|(sample, observed)| {
-                let at = Moment {
-                    host: sample.host,
-                    rest_ns: 0.0,
-                };
-                let off = observed.angle_deg - pieces.angle(at)?.0;
-                Some((off / observed.sd_deg).powi(2))
+            .zip(&self.unit_deg)
+            .filter_map(|(sample, unit_deg)| {
+                let off = sample.angle.0 - pieces.angle(Moment::at(sample.host))?.0;
+                Some((off / unit_deg).powi(2))
             })
             .sum();
         let n = self.observed.len() as f64;
+        let parameters = parameters + if self.renewed > 0 { 2 } else { 0 };
         let left = (1.0 - parameters as f64 / n).max(1.0 / n);
         squares / n / (left * left)
     }
@@ -120,17 +118,10 @@ impl Candidates<'_> {
         };
         let rms_deg = mean_square(&mut off.iter().map(|o| o.off_deg)).sqrt();
         let systematic_residual_deg = residual_autocorrelation(&off);
-        let all = pieces.as_slice();
         let scatter = mean_square(
-            // The piece that contains the beginning counts too.
-            &mut all
-                .iter()
-                .skip(
-                    all.partition_point(|p| p.from <= self.sweep.start)
-                        .saturating_sub(1),
-                )
-                .take_while(|p| p.from <= self.sweep.end)
-                .map(|p| p.sd_deg),
+            &mut pieces
+                .within(self.sweep.start, self.sweep.end)
+                .map(|(piece, _)| piece.sd_deg),
         );
         // A spline may follow the saw of a latch.
         let latch = match method {
@@ -139,7 +130,10 @@ impl Candidates<'_> {
             _ => latch::evidence(&off, self.noise.angle_sd_deg),
         };
         let pieces = self.with_drift(pieces)?;
-        let polled = self.residuals(self.polled, &pieces);
+        let polled = match self.renewed {
+            0 => off,
+            _ => self.residuals(self.polled, &pieces),
+        };
         let (shift, delay) = latch::delay(&polled, latch, self.noise.angle_sd_deg, scatter.sqrt());
         let fit = SweepFit {
             method,

@@ -4,8 +4,9 @@
 //! only if the axis followed the command. The autocorrelation of its residuals shows how far it did
 //! not. A spline follows any motion and averages over fewer samples; a spline through the
 //! residuals of the best profile follows a short disturbance. All compete on one scale, the
-//! predicted error of a sample that is left out (generalised cross-validation), which does not
-//! depend on a candidate's own scatter. The samples limit the rest: with independent errors of
+//! predicted error of a sample that is left out (generalised cross-validation) in variances of its
+//! poll, which does not depend on a candidate's own scatter, nor on whether its samples were moved
+//! to the renewals of a latch. The samples limit the rest: with independent errors of
 //! standard deviation s, a parameter that n samples determine has at least s / sqrt(n)
 //! (Cramer-Rao), and a motion between two samples leaves no trace in them.
 
@@ -72,6 +73,9 @@ pub(super) struct Candidates<'a> {
     pub samples: Cow<'a, [AngleSample]>,
     /// The same by their polls.
     pub polled: &'a [AngleSample],
+    /// Standard deviations of the polls of `samples`, degrees: the unit of their residuals, alike
+    /// for all candidates.
+    pub unit_deg: Vec<f64>,
     /// How often the curves' samples were moved to the renewals of a latch.
     pub renewed: usize,
     pub renewals: Option<Renewals>,
@@ -94,56 +98,23 @@ impl<'a> Candidates<'a> {
         let high = samples.partition_point(|s| s.host <= to);
         let samples = samples.get(low..high)?;
         let origin = samples.first()?.host;
+        let observed = observed(samples, noise, origin);
         Some(Self {
             sweep,
             samples: Cow::Borrowed(samples),
             polled: samples,
+            unit_deg: observed.iter().map(|o| o.sd_deg).collect(),
             renewed: 0,
             renewals: None,
             origin,
             noise: *noise,
-            observed: observed(samples, noise, origin),
+            observed,
         })
     }
 
     /// The candidate with the smallest error, or that of `method`. `None` without one.
     pub(super) fn best(&self, method: Option<Method>) -> Option<(SweepFit, PiecewiseCubic)> {
-        let servo = |method: Method| match method {
-            Method::Profile => Some(ServoModel::None),
-            Method::ProfileServo => Some(ServoModel::Lag),
-            Method::ProfileServo2 => Some(ServoModel::Swing),
-            _ => None,
-        };
-        let mut candidates: Vec<Candidate> = match method {
-            Some(Method::Spline) => self.splines(None),
-            Some(fixed) => {
-                let only = self.profile(servo(fixed)?, fixed)?;
-                let renewed = self.at_renewals(&only);
-                if let Some(better) = renewed.and_then(|renewed| renewed.best(method)) {
-                    return Some(better);
-                }
-                vec![only]
-            }
-            None => {
-                let mut all = self.profiles();
-                let best = least(&all).and_then(|best| all.get(best));
-                let renewed = best.and_then(|best| self.at_renewals(best));
-                if let Some(better) = renewed.and_then(|renewed| renewed.best(None)) {
-                    return Some(better);
-                }
-                // Ages of a latch are errors that neighbours share, up to the way of half a cycle:
-                // a spline would follow them. Greater errors are motion.
-                let age_deg = 0.5 * latch::CYCLE_S * self.sweep.cruise.0.abs();
-                let is_aged = |best: &Candidate| {
-                    best.latch == LatchEvidence::Present && best.systematic_residual_deg < age_deg
-                };
-                if best.is_none_or(|best| !is_aged(best)) {
-                    let splines = self.splines(best);
-                    all.extend(splines);
-                }
-                all
-            }
-        };
+        let mut candidates = self.all(method);
         let least_autocorrelation = candidates
             .iter()
             .filter(|c| c.fit.method != Method::Spline)
@@ -161,31 +132,51 @@ impl<'a> Candidates<'a> {
         Some((best.fit, best.pieces))
     }
 
-    /// The commanded motion behind each servo that may be there.
-    fn profiles(&self) -> Vec<Candidate> {
-        let mut all = Vec::new();
-        let Some(guess) = self.guess() else {
-            return all;
+    /// All candidates, or those of `method`: through the polls and, if these show a latch, through
+    /// its renewals.
+    fn all(&self, method: Option<Method>) -> Vec<Candidate> {
+        let mut all = self.profiles(method);
+        let best = least(&all).and_then(|best| all.get(best));
+        let renewed = best.and_then(|best| self.at_renewals(best));
+        // Ages of a latch are errors that neighbours share, up to the way of half a cycle: a spline
+        // would follow them. Greater errors are motion.
+        let age_deg = 0.5 * latch::CYCLE_S * self.sweep.cruise.0.abs();
+        let is_aged = |best: &Candidate| {
+            best.latch == LatchEvidence::Present && best.systematic_residual_deg < age_deg
         };
-        let observed = condensed(&self.observed, &guess);
-        let fit = |servo| profile_fit::fit(&observed, guess, servo);
-        let lag = fit(ServoModel::Lag);
-        let swing = profile_fit::fit_swing(&observed, guess, lag.as_ref());
-        for (fit, method) in [
-            (fit(ServoModel::None), Method::Profile),
-            (lag, Method::ProfileServo),
-            (swing, Method::ProfileServo2),
-        ] {
-            all.extend(fit.and_then(|fit| self.candidate(fit, method)));
-        }
+        let splines = match method {
+            Some(Method::Spline) => self.splines(None),
+            None if !best.is_some_and(is_aged) => self.splines(best),
+            _ => Vec::new(),
+        };
+        all.extend(splines);
+        all.extend(renewed.into_iter().flat_map(|renewed| renewed.all(method)));
         all
     }
 
-    fn profile(&self, servo: ServoModel, method: Method) -> Option<Candidate> {
-        let guess = self.guess()?;
+    /// The commanded motion behind each servo that may be there, or behind that of `method`.
+    fn profiles(&self, method: Option<Method>) -> Vec<Candidate> {
+        let Some(guess) = self.guess().filter(|_| method != Some(Method::Spline)) else {
+            return Vec::new();
+        };
         let observed = condensed(&self.observed, &guess);
-        let fit = profile_fit::fit(&observed, guess, servo)?;
-        self.candidate(fit, method)
+        let if_wanted = |of: Method, fit: &dyn Fn() -> Option<ProfileFit>| {
+            method.is_none_or(|only| only == of).then(fit).flatten()
+        };
+        let fit = |servo| profile_fit::fit(&observed, guess, servo);
+        let lag = if_wanted(Method::ProfileServo, &|| fit(ServoModel::Lag));
+        let swing = if_wanted(Method::ProfileServo2, &|| {
+            profile_fit::fit_swing(&observed, guess, lag.as_ref())
+        });
+        let plain = if_wanted(Method::Profile, &|| fit(ServoModel::None));
+        let fits = [
+            (plain, Method::Profile),
+            (lag, Method::ProfileServo),
+            (swing, Method::ProfileServo2),
+        ];
+        let fits = fits.into_iter();
+        fits.filter_map(|(fit, method)| self.candidate(fit?, method))
+            .collect()
     }
 
     fn candidate(&self, fit: ProfileFit, method: Method) -> Option<Candidate> {
@@ -208,11 +199,19 @@ impl<'a> Candidates<'a> {
     }
 
     /// Splines through the samples and through the residuals of `profile`, with and without the
-    /// kinks of the motion.
+    /// kinks of the motion. If the residuals are by chance, as no window of any size shows a motion
+    /// in them, the one through them competes alone: the others only have more parameters.
     fn splines(&self, profile: Option<&Candidate>) -> Vec<Candidate> {
+        let mut all: Vec<Candidate> = Vec::new();
+        if let Some(profile) = profile {
+            all.extend(self.corrected(profile, &[]));
+            let by_chance = profile.parameters + spline::FEWEST_PARAMETERS;
+            if all.first().is_some_and(|one| one.parameters == by_chance) {
+                return all;
+            }
+        }
         let found = kinks::find(&self.observed);
-        let mut all: Vec<Candidate> = self.spline(&[]).into_iter().collect();
-        all.extend(profile.and_then(|profile| self.corrected(profile, &[])));
+        all.extend(self.spline(&[]));
         if !found.is_empty() {
             all.extend(self.spline(&found));
             all.extend(profile.and_then(|profile| self.corrected(profile, &found)));

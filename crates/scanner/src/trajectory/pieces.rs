@@ -76,6 +76,15 @@ impl CubicPiece {
         c1 + ns * (2.0 * c2 + ns * (3.0 * c3))
     }
 
+    /// Greatest magnitude of the rate within `length_ns` of its start, degrees per nanosecond.
+    pub(super) fn fastest(&self, length_ns: f64) -> f64 {
+        let [_, _, c2, c3] = self.deg;
+        // Where the acceleration changes its sign; without one no number, or outside.
+        let turn_ns = (-c2 / (3.0 * c3)).clamp(0.0, length_ns);
+        let rates = [0.0, turn_ns, length_ns].map(|ns| self.rate(ns).abs());
+        rates.into_iter().fold(0.0, f64::max)
+    }
+
     /// Variance of the angle at a rate of `deg_per_ns` and a standard deviation of the instant,
     /// square radians.
     #[inline(always)]
@@ -125,6 +134,25 @@ impl PiecewiseCubic {
 
     pub(crate) fn as_slice(&self) -> &[CubicPiece] {
         &self.pieces
+    }
+
+    /// The pieces from the one that contains `from` until `to`, with their lengths in nanoseconds.
+    pub(super) fn within(
+        &self,
+        from: Stamp<Host>,
+        to: Stamp<Host>,
+    ) -> impl Iterator<Item = (&CubicPiece, f64)> {
+        let first = self.pieces.partition_point(|piece| piece.from <= from);
+        let first = first.saturating_sub(1);
+        let ends = self.pieces.iter().skip(first + 1).map(|piece| piece.from);
+        let pieces = self.pieces.iter().skip(first);
+        let with_ends = pieces.zip(ends.chain([self.end]));
+        with_ends
+            .take_while(move |(piece, _)| piece.from <= to)
+            .map(|(piece, end)| {
+                let length = end.saturating_since(piece.from).max(Span::ZERO);
+                (piece, length.as_nanos() as f64)
+            })
     }
 
     /// The piece at an instant; `None` before the first and after the end, to the nanosecond.

@@ -9,6 +9,7 @@
 
 use units::{Host, Span, Stamp};
 
+use super::banded::{BAND, Banded};
 use super::pieces::{CubicPiece, PiecewiseCubic};
 use super::profile_fit::Observed;
 
@@ -20,8 +21,8 @@ pub(super) struct SplineFit {
     pub parameters: usize,
 }
 
-/// A cubic depends on angle and speed at both ends.
-const BAND: usize = 4;
+/// Parameters of a spline of one interval.
+pub(super) const FEWEST_PARAMETERS: usize = BAND;
 /// Least number of samples in an interval.
 const MIN_SAMPLES: usize = 3;
 /// Rounds of halving at most: intervals of a millisecond in a quarter of an hour.
@@ -143,20 +144,28 @@ impl Spline {
                 rest.partition_point(|o| o.at_s < to)
             };
             firsts.push(first + inside);
+            let (mut squares, mut products) = ([[0.0; BAND]; BAND], [0.0; BAND]);
             for o in rest.get(..inside)? {
                 let values = basis((o.at_s - from) / length, length);
                 let weight = weight(o);
-                for (i, a) in index.iter().zip(values) {
-                    *right.get_mut(*i)? += weight * a * o.angle_deg;
+                for ((row, product), a) in squares.iter_mut().zip(&mut products).zip(values) {
+                    *product += weight * a * o.angle_deg;
+                    for (square, b) in row.iter_mut().zip(values) {
+                        *square += weight * a * b;
+                    }
                 }
-                normal.add_square(index, values, weight)?;
             }
+            for (i, product) in index.iter().zip(products) {
+                *right.get_mut(*i)? += product;
+            }
+            normal.add_block(index, &squares)?;
             // Bending energy of the cubic.
             for bend in [
                 [0.0, -1.0, 0.0, 1.0].map(|b| b * length),
                 [2.0, length, -2.0, length],
             ] {
-                normal.add_square(index, bend, stiffness)?;
+                let square = bend.map(|a| bend.map(|b| stiffness * a * b));
+                normal.add_block(index, &square)?;
             }
         }
         let factor = normal.factor()?;
@@ -319,91 +328,6 @@ fn greatest_window(residuals: &[f64]) -> f64 {
         size *= 2;
     }
     greatest
-}
-
-/// Lower triangle of a symmetric matrix of bandwidth four, or of its Cholesky factor.
-struct Banded {
-    /// Rows: the diagonal element, the one left of it, and so on.
-    rows: Vec<[f64; BAND]>,
-}
-
-impl Banded {
-    fn zeros(count: usize) -> Self {
-        Self {
-            rows: vec![[0.0; BAND]; count],
-        }
-    }
-
-    fn get(&self, row: usize, column: usize) -> f64 {
-        let left = row.checked_sub(column);
-        left.and_then(|left| self.rows.get(row)?.get(left))
-            .copied()
-            .unwrap_or(0.0)
-    }
-
-    /// `column` is at most `row`.
-    fn add(&mut self, row: usize, column: usize, value: f64) -> Option<()> {
-        *self.rows.get_mut(row)?.get_mut(row.checked_sub(column)?)? += value;
-        Some(())
-    }
-
-    /// Adds the square of a weighted sum of coefficients.
-    fn add_square(&mut self, index: [usize; BAND], values: [f64; BAND], weight: f64) -> Option<()> {
-        for (n, (i, a)) in index.into_iter().zip(values).enumerate() {
-            for (j, b) in index.into_iter().zip(values).take(n + 1) {
-                self.add(i.max(j), i.min(j), weight * a * b)?;
-            }
-        }
-        Some(())
-    }
-
-    /// The Cholesky factor; `None` if the matrix is not positive definite.
-    fn factor(mut self) -> Option<Self> {
-        for i in 0..self.rows.len() {
-            for j in i.saturating_sub(BAND - 1)..=i {
-                let from = i.saturating_sub(BAND - 1);
-                let sum: f64 = (from..j).map(|k| self.get(i, k) * self.get(j, k)).sum();
-                let rest = self.get(i, j) - sum;
-                let value = if i == j {
-                    if rest <= 0.0 || !rest.is_finite() {
-                        return None;
-                    }
-                    rest.sqrt()
-                } else {
-                    rest / self.get(j, j)
-                };
-                *self.rows.get_mut(i)?.get_mut(i - j)? = value;
-            }
-        }
-        Some(self)
-    }
-
-    /// Solves with the factor.
-    fn solve(&self, right: Vec<f64>) -> Option<Vec<f64>> {
-        self.solve_within(0, right)
-    }
-
-    /// Solves for the rows from `low` on as if there were no others.
-    fn solve_within(&self, low: usize, mut x: Vec<f64>) -> Option<Vec<f64>> {
-        let n = x.len();
-        for i in 0..n {
-            let from = i.saturating_sub(BAND - 1);
-            let sum: f64 = (from..i)
-                .map(|k| Some(self.get(low + i, low + k) * x.get(k)?))
-                .sum::<Option<f64>>()?;
-            let value = (x.get(i)? - sum) / self.get(low + i, low + i);
-            *x.get_mut(i)? = value;
-        }
-        for i in (0..n).rev() {
-            let to = (i + BAND).min(n);
-            let sum: f64 = (i + 1..to)
-                .map(|k| Some(self.get(low + k, low + i) * x.get(k)?))
-                .sum::<Option<f64>>()?;
-            let value = (x.get(i)? - sum) / self.get(low + i, low + i);
-            *x.get_mut(i)? = value;
-        }
-        Some(x)
-    }
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use super::*;
 
 mod choice;
 mod realistic;
+mod simulated_drive;
 
 fn at(ns: i64, angle: f64) -> AngleSample {
     AngleSample {

@@ -16,8 +16,9 @@ const WIDTH: usize = 80;
 pub struct EffectLine {
     /// Name of the effect.
     pub name: &'static str,
-    /// The line, from 1.
-    pub line: usize,
+    /// The line, from 1; absent for an effect that no line configures.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub line: Option<usize>,
 }
 
 /// One effect that was on.
@@ -66,7 +67,7 @@ impl Explanation {
         };
         let on = used.iter().map(|used| EffectExplanation {
             effect: used.name,
-            line: line(used.name).map(|line| line.line),
+            line: line(used.name).and_then(|line| line.line),
             each: used.each,
             asked: used.counts.calls,
             acted: used.counts.acted,
@@ -185,7 +186,10 @@ mod tests {
             used("weather", 3),
         ];
         let lines = [("divergence", 14), ("weather", 107)];
-        let lines = lines.map(|(name, line)| EffectLine { name, line });
+        let lines = lines.map(|(name, line)| EffectLine {
+            name,
+            line: Some(line),
+        });
         let explanation = Explanation::new(&used, &lines, 10_000);
         let text = explanation.to_string();
         assert!(
@@ -215,7 +219,7 @@ mod tests {
         );
         has("below 0.1 % of firings");
         has("not needed: divergence (line 14): no edge lies within a footprint:");
-        has("absent: limited_field_of_view, own_shadow, moving_objects,");
+        has("absent: limited_field_of_view, own_shadow, base_drift, moving_objects,");
         assert!(!text.contains("not needed: range_noise"));
         assert_eq!(
             explanation.on.len() + explanation.absent.len(),

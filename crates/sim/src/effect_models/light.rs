@@ -13,6 +13,10 @@
 //! Here the scale from 100 to 255 is logarithmic and ends at [`RETRO_GAIN`], about the ratio of
 //! road sign sheeting with 100 cd/lx/m2 to a white wall (1/pi cd/lx/m2).
 
+use glam::DVec3;
+
+use crate::firing::Echo;
+
 /// Light from an ideal retroreflector relative to an ideal white wall.
 pub(super) const RETRO_GAIN: f64 = 300.0;
 /// Default range, metres, at which a target of [`HALF_REFLECTIVITY`] percent is detected half the
@@ -46,6 +50,17 @@ pub(super) fn of_surface(light: f64, specular: f64, cosine: f64) -> f64 {
     let off_mirror = (2.0 * cosine * cosine - 1.0).max(0.0);
     let lobe = 0.5 * f64::from(GLOSS + 2) * off_mirror.powi(GLOSS);
     (scattered + specular * light.min(1.0) * lobe) * cosine
+}
+
+/// Light of an echo that arrives from `direction`; diffuse and head-on without `incidence` or a
+/// normal.
+#[inline]
+pub(super) fn of_echo(echo: &Echo, direction: DVec3, incidence: bool) -> f64 {
+    let head_on = of_reflectivity(echo.reflectivity);
+    match incidence && echo.normal != DVec3::ZERO {
+        true => of_surface(head_on, echo.specular, echo.normal.dot(direction).abs()),
+        false => head_on,
+    }
 }
 
 /// The reported reflectivity, 0..=255.

@@ -60,7 +60,7 @@ pub struct Mover {
 }
 
 /// Bodies that move.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct MovingObjects {
     movers: Vec<Mover>,
 }
@@ -82,6 +82,12 @@ impl MovingObjects {
     pub fn of(settings: &MovingObjectsSettings) -> Result<Self, InvalidSetting> {
         let movers = settings.boxes.iter().map(Mover::of);
         Ok(Self::new(movers.collect::<Result<_, _>>()?))
+    }
+
+    /// Number of bodies.
+    #[must_use]
+    pub const fn count(&self) -> usize {
+        self.movers.len()
     }
 
     /// Adds bodies.

@@ -73,6 +73,10 @@ impl SurfaceEffect for RangeNoise {
         }
         acted
     }
+
+    fn range_variance_m2(&self) -> f64 {
+        self.sd_m * self.sd_m
+    }
 }
 
 #[cfg(test)]

@@ -76,10 +76,7 @@ impl Reflectance {
     #[inline]
     fn seen(&self, echo: &Echo, direction: DVec3, mut unit: impl FnMut() -> f64) -> Echo {
         let head_on = light::of_reflectivity(echo.reflectivity);
-        let light = match self.incidence && echo.normal != DVec3::ZERO {
-            true => light::of_surface(head_on, echo.specular, echo.normal.dot(direction).abs()),
-            false => head_on,
-        };
+        let light = light::of_echo(echo, direction, self.incidence);
         let above = light / (echo.range_m * echo.range_m * self.threshold) - 1.0;
         let margin_sd = self.snr * above;
         // Beyond six standard deviations no draw is needed.

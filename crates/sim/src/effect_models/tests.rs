@@ -14,11 +14,15 @@ use crate::scenes;
 use units::{Gearing, Stamp};
 
 /// For each effect a table of settings with which it acts in the hall.
-const TABLES: [(&str, &str); 18] = [
+const TABLES: [(&str, &str); 21] = [
     ("limited_field_of_view", "from_deg = 30.0\nto_deg = 200.0"),
     (
         "own_shadow",
         "sectors = [{ azimuth_from_deg = 170.0, azimuth_to_deg = 190.0 }]\nbelow_deg = -50.0",
+    ),
+    (
+        "base_drift",
+        "velocity_m_s = [0.02, 0.0, 0.0]\nturn_deg_s = [0.0, 0.1, 0.0]",
     ),
     (
         "moving_objects",
@@ -27,6 +31,10 @@ const TABLES: [(&str, &str); 18] = [
     ("divergence", ""),
     ("weather", "visibility_m = 60.0\nrain_mm_h = 10.0"),
     ("reflectance", "half_range_m = 8.0\nincidence = false"),
+    (
+        "laser_errors",
+        "range_sd_m = 0.01\nelevation_sd_deg = 0.05\nazimuth_sd_deg = 0.05",
+    ),
     ("range_noise", "sd_m = 0.02"),
     (
         "lidar_clock",
@@ -35,6 +43,7 @@ const TABLES: [(&str, &str); 18] = [
     ("servo_lag", "frequency_hz = 20.0\ndamping = 0.7"),
     ("tilt_limits", "from_deg = -30.0\nto_deg = 30.0"),
     ("gear_ripple", "amplitude_deg = 0.01\nphase_deg = 90"),
+    ("eccentricity", "amplitude_deg = 0.02"),
     ("backlash", "play_deg = 0.05"),
     ("encoder_quantisation", "encoder_lines = 100"),
     ("duplicate", "share = 0.1"),

@@ -1,31 +1,42 @@
 //! Beam: fog and rain, which absorb light and scatter some back.
 //!
-//! Light falls with exp(-2 s R) there and back (Beer and Lambert). In fog, s follows from the
-//! visibility, at which 5 % of the light is left (Koschmieder 1924; the meteorological optical
-//! range of WMO): s = ln 20 / V = 3 / V, for droplets larger than the wavelength. In rain it is
-//! 1.076 h^0.67 dB/km at h mm/h (Carbonneau and Wisely 1998).
+//! The link budget of Rasshofer, Spies and Spies (2011, Advances in Radio Science 9), as Hahner et
+//! al. (2021, ICCV) use it. Light falls with exp(-2 s R) there and back (Beer and Lambert). In fog,
+//! s follows from the visibility V, at which 5 % of the light is left (Koschmieder 1924; the
+//! meteorological optical range of WMO): s = ln 20 / V. In rain it is 1.076 h^0.67 dB/km at h mm/h
+//! (Carbonneau and Wisely 1998).
 //!
-//! Drops scatter s / 18.8 per steradian back (O'Connor, Illingworth and Hogan 2004, at 905 nm).
-//! Over the 0.9 m that a pulse of 6 ns illuminates at once, that is a surface of reflectivity pi *
-//! 0.9 m * s / 18.8; the number of drops in it is exponentially distributed. There is at most one
-//! such return per pulse, at a distance drawn with density 1 / R^2, if it exceeds the light of a 10
-//! % target at 50 m. A surface below that is lost once the air takes 95 % of its light; detection
-//! in clear air is the reflectance effect. Multiple scattering, gusts and drops on the window are
-//! not included.
+//! Fog scatters 0.046 / V per metre and steradian back (Rasshofer et al.). Over the 0.9 m that a
+//! pulse of 6 ns illuminates at once, this is a surface of reflectivity pi * 0.9 m * 0.046 / V at
+//! every distance. The receiver sees of its light the share o(R), which rises from 0 to 1 between
+//! two distances, as the beam enters the view of the detector. The return comes from the maximum of
+//! o(R) exp(-2 s R) / R^2. Rain drops scatter s / 18.8 per steradian back (O'Connor, Illingworth
+//! and Hogan 2004, at 905 nm); few are in a pulse, so their number is exponentially distributed,
+//! and their distance is drawn with density 1 / R^2.
+//!
+//! No manual gives o(R) of a VLP-16. By default it ends at 10 m, where lenses side by side that
+//! share a view of 3 mrad have it whole. Fog of 50 m visibility is then seen at 2 m, fog of 200 m
+//! is not.
+//!
+//! Which returns are detected is the reflectance effect's decision. Without it, fog and drops count
+//! that exceed the light of its default target, and a surface is lost below that once the air takes
+//! 95 % of its light. Multiple scattering, gusts and drops on the window are not included.
 
 use crate::effects::BeamEffect;
 use crate::firing::{Echo, Echoes, Firing, Surroundings};
 use std::sync::Arc;
 
+use glam::DVec3;
 use serde::Deserialize;
 
 use super::light;
+use super::reflectance::ReflectanceSettings;
 use super::returns::{Return, reported};
 use super::settings::{InvalidSetting, SettingCheck};
 use crate::random::Source;
 
 /// `[effects.weather]`; absent settings have no effect.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, default)]
 #[non_exhaustive]
 pub struct WeatherSettings {
@@ -33,6 +44,22 @@ pub struct WeatherSettings {
     pub visibility_m: Option<f64>,
     /// Rain, millimetres per hour.
     pub rain_mm_h: Option<f64>,
+    /// Distances at which the receiver begins to see the beam and sees all of it, metres.
+    pub overlap_m: [f64; 2],
+    /// The effect that decides which returns are detected, if it is on.
+    #[serde(skip)]
+    pub(super) reflectance: Option<ReflectanceSettings>,
+}
+
+impl Default for WeatherSettings {
+    fn default() -> Self {
+        Self {
+            visibility_m: None,
+            rain_mm_h: None,
+            overlap_m: [0.9, 10.0],
+            reflectance: None,
+        }
+    }
 }
 
 /// Air that absorbs light.
@@ -40,40 +67,57 @@ pub struct WeatherSettings {
 pub struct Weather {
     /// Extinction per metre, one way.
     extinction_per_m: f64,
-    /// Reflectivity of the drops within a pulse.
+    /// Reflectivity of the fog within a pulse.
+    fog: f64,
+    /// Mean reflectivity of the drops within a pulse.
     drops: f64,
+    overlap_m: [f64; 2],
+    reflectance: Option<ReflectanceSettings>,
     random: Source,
 }
 
 /// Share of light left at the visibility.
 const VISIBLE: f64 = 0.05;
-/// Ratio of extinction to backscatter of water drops at 905 nm, steradians.
+/// Backscatter of fog times its visibility, per steradian.
+const FOG_BACKSCATTER: f64 = 0.046;
+/// Ratio of extinction to backscatter of rain drops at 905 nm, steradians.
 const LIDAR_RATIO_SR: f64 = 18.8;
 /// Length that a pulse illuminates at once, metres.
 const PULSE_M: f64 = 0.9;
-/// Least light that is detected.
+/// Least light that is detected without the reflectance effect.
 const LEAST: f64 = 0.01 * light::HALF_REFLECTIVITY / (light::HALF_RANGE_M * light::HALF_RANGE_M);
 
 impl Weather {
     /// With these settings, in a run with `seed`.
     ///
     /// # Errors
-    /// [`InvalidSetting`] for a visibility below 1 m or rain outside 0 to 500 mm/h.
+    /// [`InvalidSetting`] for a visibility below 1 m, rain outside 0 to 500 mm/h, or distances of
+    /// the overlap that do not rise within 1 km.
     pub fn new(settings: &WeatherSettings, seed: u64) -> Result<Self, InvalidSetting> {
         let check = SettingCheck(Self::NAME);
-        let mut extinction_per_m = 0.0;
+        let per_m = core::f64::consts::PI * PULSE_M;
+        let (mut extinction_per_m, mut fog, mut drops) = (0.0, 0.0, 0.0);
         if let Some(visibility_m) = settings.visibility_m {
             let visibility_m = check.within("visibility_m", visibility_m, 1.0..=1e6)?;
             extinction_per_m += -VISIBLE.ln() / visibility_m;
+            fog = per_m * FOG_BACKSCATTER / visibility_m;
         }
         if let Some(rain_mm_h) = settings.rain_mm_h {
             let rain_mm_h = check.within("rain_mm_h", rain_mm_h, 0.0..=500.0)?;
             let db_per_km = 1.076 * rain_mm_h.powf(0.67);
-            extinction_per_m += db_per_km * 1e-4 * core::f64::consts::LN_10;
+            let rain_per_m = db_per_km * 1e-4 * core::f64::consts::LN_10;
+            extinction_per_m += rain_per_m;
+            drops = per_m * rain_per_m / LIDAR_RATIO_SR;
         }
+        let [from_m, to_m] = settings.overlap_m;
+        let from_m = check.within("overlap_m", from_m, 0.0..=999.0)?;
+        let to_m = check.within("overlap_m", to_m, from_m + 1e-3..=1e3)?;
         Ok(Self {
             extinction_per_m,
-            drops: core::f64::consts::PI * PULSE_M * extinction_per_m / LIDAR_RATIO_SR,
+            fog,
+            drops,
+            overlap_m: [from_m, to_m],
+            reflectance: settings.reflectance,
             random: Source::new(seed, Self::NAME),
         })
     }
@@ -83,45 +127,75 @@ impl Weather {
         (-2.0 * self.extinction_per_m * range_m).exp()
     }
 
-    /// A surface behind the weather, if it is detected.
-    fn dimmed(&self, echo: &Echo) -> Option<Return> {
-        let clear = light::of_reflectivity(echo.reflectivity);
-        let light = clear * self.left(echo.range_m);
-        let echo = Echo {
-            reflectivity: light::to_reflectivity(light),
-            ..*echo
-        };
-        // A surface that is detected in clear air is not lost to a trace of rain, however faint.
-        let least = LEAST.min(VISIBLE * clear / (echo.range_m * echo.range_m));
-        detected(echo, light, least)
+    /// Share of the scattered light of a distance that the receiver sees.
+    fn overlap(&self, range_m: f64) -> f64 {
+        let [from_m, to_m] = self.overlap_m;
+        ((range_m - from_m) / (to_m - from_m)).clamp(0.0, 1.0)
     }
 
-    /// Drops between two distances, if they are detected.
-    fn drops(&self, from_m: f64, to_m: f64, draw: (u64, u32)) -> Option<Return> {
-        let mut draws = self.random.at(draw.0, draw.1);
-        let (place, many) = (draws.unit(), -(1.0 - draws.unit()).ln());
-        if to_m <= from_m {
-            return None;
-        }
-        // Density 1 / R^2 between the two.
-        let range_m = 1.0 / (1.0 / from_m - place * (1.0 / from_m - 1.0 / to_m));
-        let light = self.drops * many * self.left(range_m);
+    /// A surface behind the weather, if it may be detected.
+    fn dimmed(&self, echo: &Echo, direction: DVec3) -> Option<Return> {
+        let (clear, left) = (
+            light::of_reflectivity(echo.reflectivity),
+            self.left(echo.range_m),
+        );
+        let square = echo.range_m * echo.range_m;
+        let incidence = self.reflectance.is_some_and(|effect| effect.incidence);
+        let strength = light::of_echo(echo, direction, incidence) * left / square;
+        // A surface that is detected in clear air is not lost to a trace of rain, however faint.
+        let is_lost = self.reflectance.is_none() && strength < LEAST.min(VISIBLE * clear / square);
+        let echo = Echo {
+            reflectivity: light::to_reflectivity(clear * left),
+            ..*echo
+        };
+        (!is_lost).then_some(Return { echo, strength })
+    }
+
+    /// Light of the air at a distance, of this reflectivity, if it may be detected.
+    fn scattered(&self, reflectivity: f64, range_m: f64) -> Option<Return> {
+        let light = reflectivity * self.overlap(range_m) * self.left(range_m);
+        let strength = light / (range_m * range_m);
+        let least = match self.reflectance {
+            Some(_) => f64::MIN_POSITIVE,
+            None => LEAST,
+        };
         let echo = Echo {
             range_m,
             // No surface: no true point.
             true_range_m: f64::INFINITY,
             reflectivity: light::to_reflectivity(light),
             share: 1.0,
-            normal: glam::DVec3::ZERO,
+            normal: DVec3::ZERO,
             specular: 0.0,
         };
-        detected(echo, light, LEAST)
+        (strength >= least).then_some(Return { echo, strength })
     }
-}
 
-fn detected(echo: Echo, light: f64, least: f64) -> Option<Return> {
-    let strength = light / (echo.range_m * echo.range_m);
-    (strength >= least).then_some(Return { echo, strength })
+    /// Fog between two distances, at its brightest.
+    fn fog(&self, from_m: f64, to_m: f64) -> Option<Return> {
+        let [begins_m, ends_m] = self.overlap_m;
+        // Where the overlap rises, the derivative of (R - b) exp(-2 s R) / R^2 is zero at the root
+        // of 2 s R^2 + (1 - 2 s b) R - 2 b.
+        let (s, b) = (self.extinction_per_m, begins_m);
+        let linear = 1.0 - 2.0 * s * b;
+        let root = 4.0 * b / (linear + (linear * linear + 16.0 * s * b).sqrt());
+        let range_m = root.min(ends_m).max(from_m);
+        (range_m < to_m)
+            .then(|| self.scattered(self.fog, range_m))
+            .flatten()
+    }
+
+    /// Drops between two distances.
+    fn drops(&self, from_m: f64, to_m: f64, draw: (u64, u32)) -> Option<Return> {
+        if self.drops == 0.0 || to_m <= from_m {
+            return None;
+        }
+        let mut draws = self.random.at(draw.0, draw.1);
+        let (place, many) = (draws.unit(), -(1.0 - draws.unit()).ln());
+        // Density 1 / R^2 between the two.
+        let range_m = 1.0 / (1.0 / from_m - place * (1.0 / from_m - 1.0 / to_m));
+        self.scattered(self.drops * many, range_m)
+    }
 }
 
 effect! {
@@ -136,30 +210,36 @@ impl BeamEffect for Weather {
             return 0;
         }
         let (reach, two) = (surroundings.range(), echoes.two);
+        let nearest_m = reach.min_m.max(0.1);
         let mut acted = 0;
         for laser in firing.alive() {
-            let (Some(strongest), Some(other)) =
-                (echoes.strongest.get_mut(laser), echoes.other.get_mut(laser))
-            else {
+            let (Some(strongest), Some(other), Some(direction)) = (
+                echoes.strongest.get_mut(laser),
+                echoes.other.get_mut(laser),
+                firing.directions.get(laser),
+            ) else {
                 continue;
             };
             let farthest_m = match strongest.is_present() {
                 true => strongest.range_m,
                 false => reach.max_m,
             };
-            let mut returns = [None; 3];
             // An unreported second return may hold anything.
             let others = if two { *other } else { Echo::NONE };
-            for (place, echo) in returns.iter_mut().zip([*strongest, others]) {
-                *place = echo.is_present().then(|| self.dimmed(&echo)).flatten();
-            }
-            let [_, _, last] = &mut returns;
-            let draw = (firing.number, laser as u32);
-            *last = self.drops(reach.min_m.max(0.1), farthest_m, draw);
+            let surface = |echo: Echo| {
+                let present = echo.is_present();
+                present.then(|| self.dimmed(&echo, *direction)).flatten()
+            };
+            let returns = [
+                surface(*strongest),
+                surface(others),
+                self.fog(nearest_m, farthest_m),
+                self.drops(nearest_m, farthest_m, (firing.number, laser as u32)),
+            ];
             let mut received = [Return {
                 echo: Echo::NONE,
                 strength: 0.0,
-            }; 3];
+            }; 4];
             let mut count = 0;
             for (place, found) in received.iter_mut().zip(returns.into_iter().flatten()) {
                 *place = found;
@@ -177,10 +257,17 @@ impl BeamEffect for Weather {
 mod tests {
     use super::*;
     use crate::cast::{Object, Sphere};
+    use crate::effect_models::reflectance::Reflectance;
     use crate::effect_models::testing::{around, cast, firing};
+    use crate::effects::SurfaceEffect;
     use crate::scene::Scene;
 
+    /// The shares of returns from a wall and from the air, and the wall's reported reflectivity.
     fn seen(settings: WeatherSettings, radius_m: f64, reflectivity: u8) -> (f64, f64, f64) {
+        let detection = settings
+            .reflectance
+            .map(|effect| Reflectance::new(&effect, 11));
+        let detection = detection.transpose().unwrap();
         let weather = Weather::new(&settings, 11).unwrap();
         let scene = Scene::new()
             .with(Object::new(Sphere { radius_m }), reflectivity)
@@ -192,6 +279,9 @@ mod tests {
             firing.number = number;
             let mut echoes = cast(&firing, &surroundings);
             weather.receive(&firing, &surroundings, &mut echoes);
+            if let Some(detection) = detection {
+                detection.reflect(&firing, &mut echoes);
+            }
             for echo in echoes.strongest.iter().take(16).filter(|e| e.is_present()) {
                 if echo.true_range_m.is_finite() {
                     wall += 1;
@@ -209,7 +299,7 @@ mod tests {
     fn light_follows_the_beer_lambert_law() {
         let fog = |visibility_m| WeatherSettings {
             visibility_m: Some(visibility_m),
-            rain_mm_h: None,
+            ..Default::default()
         };
         // A fifth of the visibility, there and back.
         let (wall, fog_share, reported) = seen(fog(100.0), 10.0, 80);
@@ -231,8 +321,8 @@ mod tests {
     fn a_faint_surface_disappears_gradually_with_extinction() {
         let share = |rain_mm_h| {
             let settings = WeatherSettings {
-                visibility_m: None,
                 rain_mm_h: Some(rain_mm_h),
+                ..Default::default()
             };
             seen(settings, 99.0, 30).0
         };
@@ -266,6 +356,7 @@ mod tests {
             let settings = WeatherSettings {
                 visibility_m: visibility_m.is_finite().then_some(visibility_m),
                 rain_mm_h: (rain_mm_h > 0.0).then_some(rain_mm_h),
+                ..Default::default()
             };
             let weather = Weather::new(&settings, 1).unwrap();
             if rain_mm_h == 0.0 {
@@ -287,8 +378,8 @@ mod tests {
     fn rain_is_much_clearer_than_fog() {
         let rain = Weather::new(
             &WeatherSettings {
-                visibility_m: None,
                 rain_mm_h: Some(25.0),
+                ..Default::default()
             },
             1,
         )
@@ -303,8 +394,66 @@ mod tests {
         );
         let wrong = WeatherSettings {
             visibility_m: Some(0.0),
-            rain_mm_h: None,
+            ..Default::default()
         };
         assert!(Weather::new(&wrong, 1).is_err());
+    }
+
+    /// The distance of the brightest fog against a search in steps of a millimetre.
+    #[test]
+    fn fog_returns_from_where_it_is_brightest() {
+        for visibility_m in [10.0, 50.0, 200.0, 1_000.0] {
+            for overlap_m in [[0.9, 1.0], [0.9, 10.0], [0.0, 5.0], [2.0, 50.0]] {
+                let settings = WeatherSettings {
+                    visibility_m: Some(visibility_m),
+                    overlap_m,
+                    reflectance: Some(ReflectanceSettings::default()),
+                    ..Default::default()
+                };
+                let weather = Weather::new(&settings, 1).unwrap();
+                let strength = |range_m: f64| {
+                    let found = weather.scattered(weather.fog, range_m);
+                    found.map_or(0.0, |found| found.strength)
+                };
+                let steps = (1..60_000).map(|step| 0.5 + 1e-3 * f64::from(step));
+                let best = steps.map(strength).fold(0.0, f64::max);
+                let found = weather.fog(0.5, 100.0).unwrap();
+                let ratio = found.strength / best;
+                assert!(ratio > 0.999_999, "{visibility_m} {overlap_m:?}: {ratio}");
+            }
+        }
+    }
+
+    /// The link budget of the reflectance effect decides: walls at 20 m stay in fog of 200 m
+    /// visibility, and dark ones are replaced by the air near the sensor in fog of 30 m. A receiver
+    /// that sees twice as far sees thinner fog, too.
+    #[test]
+    fn the_link_budget_decides_between_walls_and_fog() {
+        let in_fog = |visibility_m, half_range_m, reflectivity| {
+            let settings = WeatherSettings {
+                visibility_m: Some(visibility_m),
+                reflectance: Some(ReflectanceSettings {
+                    half_range_m,
+                    ..Default::default()
+                }),
+                ..Default::default()
+            };
+            let (wall, fog, _) = seen(settings, 20.0, reflectivity);
+            (wall, fog)
+        };
+        for reflectivity in [20, 50, 80] {
+            let (wall, fog) = in_fog(200.0, 50.0, reflectivity);
+            assert!(wall > 0.999 && fog < 1e-3, "{reflectivity}: {wall} {fog}");
+        }
+        let (wall, fog) = in_fog(30.0, 50.0, 20);
+        assert!(wall < 1e-3 && fog > 0.99, "{wall} {fog}");
+        let (wall, fog) = in_fog(30.0, 50.0, 80);
+        assert!(wall + fog > 0.99, "{wall} {fog}");
+        let (nothing, fog) = in_fog(200.0, 50.0, 0);
+        let (_, sensitive) = in_fog(200.0, 100.0, 0);
+        assert!(
+            nothing == 0.0 && fog < 0.05 && sensitive > 0.9,
+            "{fog} {sensitive}"
+        );
     }
 }

@@ -13,27 +13,28 @@ use super::{
     LinkEffect, LinkMessage, MechanismEffect, Needs, ObjectsEffect, SurfaceEffect, ViewEffect,
 };
 use crate::firing::{Echoes, Firing, Surroundings};
+use crate::sensor::LaserBeam;
 
 /// A clock in nanoseconds from any origin that measures the cost of effects.
 pub type Stopwatch = Option<fn() -> u64>;
 
 /// A list of effects that threads share.
-type Shared<T> = Vec<MeteredEffect<Arc<T>>>;
+type SharedEffects<T> = Vec<MeteredEffect<Arc<T>>>;
 /// A list of effects of one thread.
-type Owned<T> = Vec<MeteredEffect<Box<T>>>;
+type OwnedEffects<T> = Vec<MeteredEffect<Box<T>>>;
 
 /// Any number of effects of any type.
 pub type ConfiguredEffects = Effects<
     FiringEffectSet<
-        Shared<dyn ObjectsEffect + Send + Sync>,
-        Shared<dyn ViewEffect + Send + Sync>,
-        Shared<dyn BeamEffect + Send + Sync>,
-        Shared<dyn SurfaceEffect + Send + Sync>,
-        Shared<dyn ClockEffect + Send + Sync>,
+        SharedEffects<dyn ObjectsEffect + Send + Sync>,
+        SharedEffects<dyn ViewEffect + Send + Sync>,
+        SharedEffects<dyn BeamEffect + Send + Sync>,
+        SharedEffects<dyn SurfaceEffect + Send + Sync>,
+        SharedEffects<dyn ClockEffect + Send + Sync>,
     >,
-    Owned<dyn MechanismEffect + Send>,
-    Owned<dyn EncoderEffect + Send>,
-    Owned<dyn LinkEffect + Send>,
+    OwnedEffects<dyn MechanismEffect + Send>,
+    OwnedEffects<dyn EncoderEffect + Send>,
+    OwnedEffects<dyn LinkEffect + Send>,
 >;
 
 /// How often an effect was called and acted, and the time it took.
@@ -216,7 +217,7 @@ impl<P: Deref<Target: Effect> + std::fmt::Debug> Effect for Vec<MeteredEffect<P>
     }
 }
 
-impl<T: ObjectsEffect + ?Sized> ObjectsEffect for Shared<T> {
+impl<T: ObjectsEffect + ?Sized> ObjectsEffect for SharedEffects<T> {
     fn place(&self, time_s: f64, surroundings: &mut Surroundings) -> u32 {
         self.iter()
             .map(|MeteredEffect { effect, meter }| {
@@ -226,7 +227,7 @@ impl<T: ObjectsEffect + ?Sized> ObjectsEffect for Shared<T> {
     }
 }
 
-impl<T: ViewEffect + ?Sized> ViewEffect for Shared<T> {
+impl<T: ViewEffect + ?Sized> ViewEffect for SharedEffects<T> {
     fn fires(&self, azimuth_deg: f64) -> bool {
         let mut views = self.iter().filter(|listed| listed.effect.needs().azimuths);
         views.all(|MeteredEffect { effect, meter }| {
@@ -243,7 +244,7 @@ impl<T: ViewEffect + ?Sized> ViewEffect for Shared<T> {
     }
 }
 
-impl<T: BeamEffect + ?Sized> BeamEffect for Shared<T> {
+impl<T: BeamEffect + ?Sized> BeamEffect for SharedEffects<T> {
     fn receive(&self, firing: &Firing, surroundings: &Surroundings, echoes: &mut Echoes) -> u32 {
         self.iter()
             .map(|MeteredEffect { effect, meter }| {
@@ -253,7 +254,7 @@ impl<T: BeamEffect + ?Sized> BeamEffect for Shared<T> {
     }
 }
 
-impl<T: SurfaceEffect + ?Sized> SurfaceEffect for Shared<T> {
+impl<T: SurfaceEffect + ?Sized> SurfaceEffect for SharedEffects<T> {
     fn reflect(&self, firing: &Firing, echoes: &mut Echoes) -> u32 {
         self.iter()
             .map(|MeteredEffect { effect, meter }| {
@@ -261,9 +262,18 @@ impl<T: SurfaceEffect + ?Sized> SurfaceEffect for Shared<T> {
             })
             .sum()
     }
+
+    fn range_variance_m2(&self) -> f64 {
+        let each = self.iter().map(|listed| listed.effect.range_variance_m2());
+        each.sum()
+    }
+
+    fn misalign(&self, beams: &mut [LaserBeam]) {
+        self.iter().for_each(|listed| listed.effect.misalign(beams));
+    }
 }
 
-impl<T: ClockEffect + ?Sized> ClockEffect for Shared<T> {
+impl<T: ClockEffect + ?Sized> ClockEffect for SharedEffects<T> {
     fn host_ns(&self, device_ns: i64) -> i64 {
         self.iter()
             .fold(device_ns, |ns, MeteredEffect { effect, meter }| {
@@ -272,7 +282,7 @@ impl<T: ClockEffect + ?Sized> ClockEffect for Shared<T> {
     }
 }
 
-impl<T: MechanismEffect + ?Sized> MechanismEffect for Owned<T> {
+impl<T: MechanismEffect + ?Sized> MechanismEffect for OwnedEffects<T> {
     fn is_present(&self) -> bool {
         !self.is_empty()
     }
@@ -286,7 +296,7 @@ impl<T: MechanismEffect + ?Sized> MechanismEffect for Owned<T> {
     }
 }
 
-impl<T: EncoderEffect + ?Sized> EncoderEffect for Owned<T> {
+impl<T: EncoderEffect + ?Sized> EncoderEffect for OwnedEffects<T> {
     fn read(&mut self, poll: u64, shaft: Degrees) -> Degrees {
         self.iter_mut().fold(shaft, |shaft, listed| {
             let MeteredEffect { effect, meter } = listed;
@@ -299,7 +309,7 @@ impl<T: EncoderEffect + ?Sized> EncoderEffect for Owned<T> {
     }
 }
 
-impl<T: LinkEffect + ?Sized> LinkEffect for Owned<T> {
+impl<T: LinkEffect + ?Sized> LinkEffect for OwnedEffects<T> {
     fn deliver(&mut self, message: LinkMessage, arrive: &mut dyn FnMut(LinkMessage)) -> u32 {
         deliver_through(self, message, arrive)
     }

@@ -1,14 +1,48 @@
 //! Names of patterns with options: `rmbl:120,rpm=600,tilt=stepped`.
 
 use super::{
-    Pattern, PatternError, PatternSensor, PatternSettings, PatternTilt, RevolutionEnds, TiltSteps,
+    Pattern, PatternError, PatternSensor, PatternSettings, PatternTilt, PlanarFront,
+    RevolutionEnds, TiltSteps,
 };
 
-/// All names: fixed sensors; one or sixteen lasers tilted by half a revolution (rotating single-
-/// and multi-beam lidar); and velomotion's own sweep.
-pub const NAMES: [&str; 6] = ["vlp16", "hdl32e", "vlp32c", "rmbl", "rsbl", "velomotion16"];
+/// How a named pattern moves without options.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum PatternMotion {
+    /// At rest without a speed; with one it tilts, or spins with `spin`.
+    Free,
+    /// From 0 to -45 degrees.
+    Tilt,
+    /// By half a turn.
+    Spin,
+}
 
-const KEYS: &str = "rpm, step, start, seam, from, to, speed, accel, tilt, frames or d";
+const SENSORS: [(&str, PatternSensor, PatternMotion); 10] = [
+    ("vlp16", PatternSensor::Vlp16, PatternMotion::Free),
+    ("hi-res", PatternSensor::HiRes, PatternMotion::Free),
+    ("hdl32e", PatternSensor::Hdl32e, PatternMotion::Free),
+    ("vlp32c", PatternSensor::Vlp32c, PatternMotion::Free),
+    ("hdl64e", PatternSensor::Hdl64e, PatternMotion::Free),
+    ("utm30lx", PatternSensor::Utm30lx, PatternMotion::Free),
+    ("lms151", PatternSensor::Lms151, PatternMotion::Free),
+    ("rmbl", PatternSensor::Vlp16, PatternMotion::Spin),
+    ("rsbl", PatternSensor::SingleBeam, PatternMotion::Spin),
+    ("velomotion16", PatternSensor::Vlp16, PatternMotion::Tilt),
+];
+
+/// All names: sensors, and the patterns of the paper: rotating multi- and single-beam lidar, and
+/// velomotion's own sweep.
+pub const NAMES: [&str; SENSORS.len()] = {
+    let mut names = [""; SENSORS.len()];
+    let mut at = 0;
+    while at < SENSORS.len() {
+        names[at] = SENSORS[at].0;
+        at += 1;
+    }
+    names
+};
+
+const KEYS: &str =
+    "rpm, step, start, seam, from, to, speed, accel, tilt, frames, d, spin, roll or pitch";
 /// Keys with numbers.
 const NUMBERS: [&str; 9] = [
     "rpm", "step", "start", "from", "to", "speed", "accel", "frames", "d",
@@ -18,19 +52,22 @@ const NUMBERS: [&str; 9] = [
 #[derive(Clone, Debug, PartialEq)]
 pub struct PatternRequest {
     name: String,
+    motion: PatternMotion,
     settings: PatternSettings,
-    /// Step of azimuth; absent: from the rotation of the head.
     step_deg: Option<f64>,
+    from_deg: Option<f64>,
+    to_deg: Option<f64>,
     speed_deg_s: Option<f64>,
+    spin: bool,
+    front: Option<PlanarFront>,
 }
 
-/// Step of azimuth per revolution per minute: the paper's 0.4 degrees at 1200, 0.2 at 600.
-const STEP_DEG_PER_RPM: f64 = 1.0 / 3_000.0;
 /// Azimuth at which a frame begins and ends: across the tilt axis, as far as possible from the
 /// poles of the pattern.
 const START_DEG: f64 = 90.0;
-/// The paper's 20 frames per second.
-const RPM: f64 = 1_200.0;
+/// Ends of velomotion's sweep, and of half a turn, degrees.
+const TILT_DEG: f64 = -45.0;
+const SPIN_DEG: f64 = 180.0;
 
 impl PatternRequest {
     /// Whether a text begins with the name of a pattern.
@@ -39,45 +76,43 @@ impl PatternRequest {
         NAMES.contains(&name_of(text))
     }
 
-    /// Parses `NAME[:SPEED][,KEY=VALUE]...`.
+    /// Parses `NAME[:SPEED][,KEY=VALUE|,spin|,roll|,pitch]...`.
     ///
     /// # Errors
     /// [`PatternError`] for an unknown name or option.
     pub fn parse(text: &str) -> Result<Self, PatternError> {
         let name = name_of(text);
-        let (head, to_deg) = match name {
-            "vlp16" => (PatternSensor::Vlp16, None),
-            "hdl32e" => (PatternSensor::Hdl32e, None),
-            "vlp32c" => (PatternSensor::Vlp32c, None),
-            "rmbl" => (PatternSensor::Vlp16, Some(180.0)),
-            "rsbl" => (PatternSensor::Single, Some(180.0)),
-            "velomotion16" => (PatternSensor::Vlp16, Some(-45.0)),
-            got => {
-                let got = got.to_owned();
-                return Err(PatternError::Name { got });
-            }
-        };
-        let tilt = PatternTilt {
-            from_deg: 0.0,
-            to_deg: to_deg.unwrap_or(0.0),
-            speed_deg_s: 0.0,
-            steps: TiltSteps::Continuous,
-            accel_deg_s2: None,
+        let known = SENSORS.into_iter().find(|(known, ..)| *known == name);
+        let Some((_, head, motion)) = known else {
+            let got = name.to_owned();
+            return Err(PatternError::Name { got });
         };
         let mut request = Self {
             name: text.to_owned(),
+            motion,
             settings: PatternSettings {
                 head,
-                rpm: RPM,
+                rpm: head.usual_rpm(),
                 step_deg: 0.0,
                 start_deg: START_DEG,
+                front: PlanarFront::Pitch,
                 seam: RevolutionEnds::Twice,
-                tilt,
+                tilt: PatternTilt {
+                    from_deg: 0.0,
+                    to_deg: 0.0,
+                    speed_deg_s: 0.0,
+                    steps: TiltSteps::Continuous,
+                    accel_deg_s2: None,
+                },
                 frames: None,
                 d_m: 0.0,
             },
             step_deg: None,
+            from_deg: None,
+            to_deg: None,
             speed_deg_s: None,
+            spin: motion == PatternMotion::Spin,
+            front: None,
         };
         let rest = text.get(name.len()..).unwrap_or_default();
         let (speed, options) = match rest.strip_prefix(':') {
@@ -93,18 +128,34 @@ impl PatternRequest {
             set.push("speed");
         }
         for option in options.into_iter().flat_map(|options| options.split(',')) {
-            match option.split_once('=') {
-                Some((key, _)) if set.contains(&key) => {
-                    return Err(request.wrong(format!("{key} once"), format!("{option} as well")));
-                }
-                Some((key, value)) => {
-                    request.set(key, value)?;
-                    set.push(key);
-                }
-                None => return Err(request.wrong(format!("KEY=VALUE with {KEYS}"), option)),
+            let key = option.split('=').next().unwrap_or_default();
+            if set.contains(&key) {
+                return Err(request.wrong(format!("{key} once"), format!("{option} as well")));
             }
+            match option.split_once('=') {
+                Some((key, value)) => request.set(key, value)?,
+                None => request.set_word(option)?,
+            }
+            set.push(key);
         }
         Ok(request)
+    }
+
+    /// Sets an option without a value.
+    fn set_word(&mut self, word: &str) -> Result<(), PatternError> {
+        let is_planar = self.settings.head.aperture_deg().is_some();
+        match word {
+            "spin" if self.motion == PatternMotion::Free => self.spin = true,
+            "roll" | "pitch" if !is_planar => {
+                let expected =
+                    "a planar scanner (a rotating head has no front: roll and pitch are one)";
+                return Err(self.wrong(expected, word));
+            }
+            "roll" => self.front = Some(PlanarFront::Roll),
+            "pitch" => self.front = Some(PlanarFront::Pitch),
+            _ => return Err(self.wrong(format!("KEY=VALUE or a word of {KEYS}"), word)),
+        }
+        Ok(())
     }
 
     /// Sets an option.
@@ -136,26 +187,20 @@ impl PatternRequest {
     /// # Errors
     /// [`PatternError::Option`] for an unknown option.
     pub fn set_number(&mut self, key: &str, value: f64) -> Result<(), PatternError> {
-        let stands = self.stands();
         let settings = &mut self.settings;
         match key {
             "rpm" => settings.rpm = value,
             "step" => self.step_deg = Some(value),
-            "start" => settings.start_deg = value,
-            "d" => settings.d_m = value,
-            "from" if stands => {
-                settings.tilt.from_deg = value;
-                settings.tilt.to_deg = value;
-            }
-            "from" => settings.tilt.from_deg = value,
-            "to" if !stands => settings.tilt.to_deg = value,
-            "speed" if !stands => self.speed_deg_s = Some(value),
-            "accel" if !stands => settings.tilt.accel_deg_s2 = Some(value),
-            "to" | "speed" | "accel" => {
-                let what =
-                    "a sensor that stands still, without speed (rmbl:120 and velomotion16:50 turn)";
+            "start" if settings.head.aperture_deg().is_some() => {
+                let what = "no start: a planar scanner begins at the edge of its aperture";
                 return Err(self.wrong(what, format!("{key}={value}")));
             }
+            "start" => settings.start_deg = value,
+            "d" => settings.d_m = value,
+            "from" => self.from_deg = Some(value),
+            "to" => self.to_deg = Some(value),
+            "speed" => self.speed_deg_s = Some(value),
+            "accel" => settings.tilt.accel_deg_s2 = Some(value),
             "frames" if value.fract() == 0.0 && (1.0..=1e6).contains(&value) => {
                 settings.frames = Some(value as u32);
             }
@@ -181,9 +226,36 @@ impl PatternRequest {
     /// [`PatternError`] for invalid options, such as a motion without a speed.
     pub fn build(&self) -> Result<Pattern, PatternError> {
         let mut settings = self.settings;
-        settings.step_deg = self.step_deg.unwrap_or(settings.rpm * STEP_DEG_PER_RPM);
-        let tilt = settings.tilt;
-        if !self.stands() && tilt.to_deg == tilt.from_deg {
+        let head = settings.head;
+        let steps_per_s = head.steps_per_s();
+        settings.step_deg = self.step_deg.unwrap_or(settings.rpm * (6.0 / steps_per_s));
+        if settings.d_m != 0.0 && head.aperture_deg().is_some() {
+            let what = "d=0: the view of a planar scanner is known on the axis only";
+            return Err(self.wrong(what, settings.d_m.to_string()));
+        }
+        let usual = if self.spin {
+            PlanarFront::Roll
+        } else {
+            PlanarFront::Pitch
+        };
+        settings.front = self.front.unwrap_or(usual);
+        let at_rest = self.motion == PatternMotion::Free && self.speed_deg_s.is_none();
+        settings.tilt.from_deg = self.from_deg.unwrap_or(0.0);
+        settings.tilt.to_deg = match (self.to_deg, self.spin) {
+            _ if at_rest => settings.tilt.from_deg,
+            (Some(to_deg), _) => to_deg,
+            (None, true) => SPIN_DEG,
+            (None, false) => TILT_DEG,
+        };
+        let tilt = &mut settings.tilt;
+        if at_rest && (self.to_deg.is_some() || self.spin || tilt.accel_deg_s2.is_some()) {
+            let what = "a speed with to, accel and spin, as in vlp16:50,to=-30";
+            return Err(self.wrong(what, "none"));
+        }
+        if at_rest {
+            return Pattern::new(&self.name, settings);
+        }
+        if tilt.to_deg == tilt.from_deg {
             let got = format!("both {}", tilt.from_deg);
             return Err(self.wrong("from and to that differ (vlp16 stands still)", got));
         }
@@ -193,21 +265,14 @@ impl PatternRequest {
             let what = "accel without frames and tilt=stepped, which have no ramps";
             return Err(self.wrong(what, "both"));
         }
-        if tilt.to_deg != tilt.from_deg {
-            let Some(speed_deg_s) = self.speed_deg_s.filter(|speed| *speed > 0.0) else {
-                let name = name_of(&self.name);
-                let got = self
-                    .speed_deg_s
-                    .map_or("none".to_owned(), |s| s.to_string());
-                return Err(self.wrong(format!("a speed above 0 deg/s, as in {name}:50"), got));
-            };
-            settings.tilt.speed_deg_s = speed_deg_s;
-        }
+        let Some(speed_deg_s) = self.speed_deg_s.filter(|speed| *speed > 0.0) else {
+            let name = name_of(&self.name);
+            let speed = self.speed_deg_s;
+            let got = speed.map_or("none".to_owned(), |speed| speed.to_string());
+            return Err(self.wrong(format!("a speed above 0 deg/s, as in {name}:50"), got));
+        };
+        tilt.speed_deg_s = speed_deg_s;
         Pattern::new(&self.name, settings)
-    }
-
-    fn stands(&self) -> bool {
-        matches!(name_of(&self.name), "vlp16" | "hdl32e" | "vlp32c")
     }
 
     fn wrong(&self, expected: impl Into<String>, got: impl Into<String>) -> PatternError {

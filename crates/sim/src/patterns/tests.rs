@@ -29,6 +29,15 @@ fn point_counts_match_the_paper() {
         ("rmbl:50", 72, 1_037_952),
         ("velomotion16:50", 18, 259_488),
         ("rsbl:50", 72, 64_872),
+        ("hi-res:50", 18, 259_488),
+        ("vlp32c:50", 18, 18 * 28_832),
+        // 45 deg at 50 deg/s and 10 Hz; 20,828 firings per second.
+        ("hdl64e", 1, 64 * 2_083),
+        ("hdl64e:50,spin", 36, 36 * 64 * 2_083),
+        // 270 deg in steps of 0.25, both ends included.
+        ("utm30lx", 1, 1_081),
+        ("utm30lx:180,spin", 40, 40 * 1_081),
+        ("lms151:180,spin", 25, 25 * 1_081),
         // 8 frames of 10 Hz at the fastest speed, 0.2 deg.
         ("velomotion16:56.25,rpm=600", 8, 8 * 16 * 1_801),
     ] {
@@ -40,6 +49,58 @@ fn point_counts_match_the_paper() {
         let off = directions.iter().map(|d| (d.length() - 1.0).abs());
         assert!(off.fold(0.0, f64::max) < 1e-15, "{text}");
     }
+}
+
+#[test]
+fn points_are_addressed_by_their_number() {
+    for text in [
+        "velomotion16:13,d=0.06",
+        "velomotion16:50,accel=500",
+        "hdl64e:400,spin",
+        "utm30lx:300",
+        "lms151",
+    ] {
+        let pattern = pattern(text);
+        let all = pattern.directions();
+        assert_eq!(pattern.points(), all.len() as u64, "{text}");
+        for (number, direction) in all.iter().enumerate().step_by(101) {
+            assert_eq!(pattern.direction(number as u64), Some(*direction), "{text}");
+        }
+        assert_eq!(pattern.direction(pattern.points() - 1), all.last().copied());
+        assert_eq!(pattern.direction(pattern.points()), None, "{text}");
+    }
+    // 45 degrees at 0.05 deg/s: 9000 revolutions.
+    assert_eq!(
+        pattern("velomotion16:0.05,rpm=600").points(),
+        9_000 * 1_801 * 16
+    );
+}
+
+#[test]
+fn planar_scanners_see_their_aperture() {
+    for (text, azimuths_deg, behind) in [
+        ("utm30lx:180,spin", [-135.0, 135.0], DVec3::NEG_Y),
+        ("utm30lx:50", [-225.0, 45.0], DVec3::X),
+    ] {
+        let pattern = pattern(text);
+        assert_eq!(pattern.azimuths_deg(), Some(azimuths_deg));
+        // The cone behind, 45 degrees from its axis, stays empty.
+        let nearest = pattern
+            .frame(0)
+            .iter()
+            .map(|d| d.angle_between(behind))
+            .fold(9.0, f64::min);
+        assert!(
+            (nearest.to_degrees() - 45.0).abs() < 1e-9,
+            "{text}: {nearest}"
+        );
+        assert!(pattern.view().depth_rad(behind) < -0.7, "{text}");
+    }
+    assert_eq!(pattern("hdl64e").azimuths_deg(), None);
+    // At rest it sees half a plane and two eighths, not the whole.
+    let resting = pattern("utm30lx").view();
+    assert!(resting.depth_rad(DVec3::NEG_X).abs() < 1e-9);
+    assert!(resting.depth_rad(DVec3::X) < -0.7);
 }
 
 #[test]
@@ -282,7 +343,7 @@ fn invalid_patterns_are_reported() {
         built.unwrap_err().to_string()
     };
     for (text, words) in [
-        ("vlp64", "expected one of vlp16, hdl32e"),
+        ("vlp64", "expected one of vlp16, hi-res, hdl32e"),
         (
             "rmbl",
             "expected a speed above 0 deg/s, as in rmbl:50, got \"none\"",
@@ -291,7 +352,12 @@ fn invalid_patterns_are_reported() {
         ("rmbl:-3", "a speed above 0"),
         ("rmbl:fast", "expected a number for speed, got \"fast\""),
         ("rmbl:NaN", "a number for speed"),
-        ("vlp16:50", "a sensor that stands still"),
+        ("vlp16,to=-30", "a speed with to, accel and spin"),
+        ("vlp16,spin", "a speed with to, accel and spin"),
+        ("vlp16:50,roll", "a rotating head has no front"),
+        ("rmbl:50,spin", "KEY=VALUE or a word of"),
+        ("lms151:50,start=0", "a planar scanner begins at the edge"),
+        ("lms151:50,d=0.1", "d=0: the view of a planar scanner"),
         ("rmbl:50,colour=red", "expected rpm, step, start"),
         ("rmbl:50,colour=3", "expected rpm, step, start"),
         ("rmbl:50,rpm=fast", "a number for rpm"),
@@ -317,7 +383,7 @@ fn invalid_patterns_are_reported() {
         ("rmbl:50,rpm=0", "rpm: expected 1 to 100000"),
         ("rmbl:50,step=0", "step: expected 0.001"),
         ("rmbl:50,d=7", "d: expected -5 to 5 m"),
-        ("rmbl:0.001", "at most 100000000 points, got"),
+        ("rmbl:0.001", "at most 2000000000 points, got"),
     ] {
         let message = wrong(text);
         assert!(message.contains(words), "{text}: {message}");

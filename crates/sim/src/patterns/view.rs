@@ -3,9 +3,9 @@
 //!
 //! Directions are from the origin of the base, on the tilt axis. A sensor off the axis sees a point
 //! under another elevation, the more the nearer the point, so a view is for a range of distances.
-//! Occlusion and limited azimuths are not included.
+//! A planar scanner on the axis sees a range of azimuths. Occlusion is not included.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::DVec3;
 
@@ -17,6 +17,8 @@ pub struct FieldOfView {
     elevations_rad: [f64; 2],
     /// Least and greatest tilt, radians.
     tilt_rad: [f64; 2],
+    /// First and last azimuth of a planar scanner, degrees; `None` for a rotating head.
+    pub(super) azimuths_deg: Option<[f64; 2]>,
 }
 
 impl FieldOfView {
@@ -44,6 +46,7 @@ impl FieldOfView {
         Self {
             elevations_rad: [low_near.max(low_far), high_near.min(high_far)],
             tilt_rad: [a.min(b), a.max(b)],
+            azimuths_deg: None,
         }
     }
 
@@ -51,6 +54,9 @@ impl FieldOfView {
     /// tilts: radians, negative outside. It changes by no more than the direction.
     #[must_use]
     pub fn depth_rad(&self, direction: DVec3) -> f64 {
+        if let Some(azimuths_deg) = self.azimuths_deg {
+            return self.planar_depth_rad(direction, azimuths_deg);
+        }
         let [from, to] = self.tilt_rad;
         // In the sensor's frame the height of a direction is across x cos(tilt - ahead).
         let across = direction.x.hypot(direction.z);
@@ -73,6 +79,39 @@ impl FieldOfView {
         let elevation = |height: f64| height.clamp(-1.0, 1.0).asin();
         let [low, high] = self.elevations_rad;
         (elevation(most) - low).min(high - elevation(least))
+    }
+
+    /// Depth in what a level laser on the axis passes over: a wedge about the axis on either side
+    /// of it, in each of which the azimuth is the angle from the axis, or its negative.
+    fn planar_depth_rad(&self, direction: DVec3, [first_deg, last_deg]: [f64; 2]) -> f64 {
+        let across = direction.x.hypot(direction.z);
+        let polar = across.atan2(direction.y);
+        let [middle, half] = [first_deg + last_deg, last_deg - first_deg].map(|a| 0.5 * a);
+        let (middle, half) = (middle.to_radians(), half.to_radians());
+        let around = (-direction.z).atan2(direction.x);
+        let side = |azimuth: f64, around: f64| {
+            let off = (azimuth - middle + PI).rem_euclid(TAU) - PI;
+            (half - off.abs()).min(self.wedge_depth_rad(across, around))
+        };
+        side(polar, around).max(side(-polar, around + PI))
+    }
+
+    /// Depth between the half-planes through the axis at the first and the last tilt, of a
+    /// direction `across` off the axis at the angle `around` it.
+    fn wedge_depth_rad(&self, across: f64, around: f64) -> f64 {
+        let [from, to] = self.tilt_rad;
+        // Distances from great circles through the axis.
+        let from_circle = |angle: f64| (across * angle.sin()).clamp(-1.0, 1.0).asin();
+        let (after, before) = (from_circle(around - from), from_circle(to - around));
+        match to - from {
+            way if way >= TAU => PI,
+            way if way > PI => after.max(before),
+            // A narrow wedge does not go on beyond the axis.
+            way => {
+                let ahead = from_circle(around - from - 0.5 * way + FRAC_PI_2);
+                after.min(before).min(ahead)
+            }
+        }
     }
 }
 
@@ -109,6 +148,12 @@ mod tests {
             "velomotion16:50,d=-0.06",
             "velomotion16:50,d=3",
             "rmbl:120,to=90,d=-1",
+            "hdl64e:90",
+            "utm30lx:90",
+            "utm30lx:90,roll",
+            "lms151:180,spin",
+            "lms151:180,spin,pitch",
+            "lms151:180,spin,to=270",
         ] {
             let pattern = PatternRequest::parse(text).unwrap().build().unwrap();
             let view = pattern.view();

@@ -2,13 +2,12 @@
 
 use std::ops::RangeInclusive;
 
-use glam::DVec3;
 use serde::Deserialize;
 use units::Gearing;
 
 use crate::motion::{AxisMotion, MotionError, Sweeps};
 use crate::packet_maker::HeadRotation;
-use crate::scenery::{InvalidValue, rotation};
+use crate::scenery::InvalidValue;
 use crate::sensor::{DetectionRange, LidarMount, LidarSensor, ReturnMode};
 use crate::simulate::Polls;
 
@@ -75,6 +74,11 @@ impl Default for SensorSection {
 }
 
 impl SensorSection {
+    /// Whether the sensor has no errors of its own.
+    pub const fn is_ideal(&self) -> bool {
+        self.ideal
+    }
+
     pub fn build(&self) -> Result<(LidarSensor, ReturnMode, HeadRotation), InvalidValue> {
         let mut sensor = match self.model {
             SensorName::Vlp16 => LidarSensor::vlp16(),
@@ -244,10 +248,8 @@ impl MountSection {
                 return Err(invalid(path, what));
             }
         }
-        let mut mount = LidarMount::above(self.d_m);
-        mount.position_m += DVec3::from_array(self.position_m);
-        mount.rotation = rotation(self.rotation_deg);
-        Ok(mount)
+        let [x, y, z] = self.position_m;
+        Ok(LidarMount::at([x, y, self.d_m + z], self.rotation_deg))
     }
 }
 

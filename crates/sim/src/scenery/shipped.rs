@@ -7,12 +7,18 @@ macro_rules! scenes {
 }
 
 /// All shipped scenes: name and scene file. None needs another file.
-pub const SHIPPED: [(&str, &str); 6] = scenes!(
+pub const SHIPPED: [(&str, &str); 12] = scenes!(
     "hollow-sphere",
     "planes",
     "hall",
     "parking",
     "quarry",
+    "room",
+    "wavy-walls",
+    "stairwell",
+    "glass-corridor",
+    "fog",
+    "traffic",
     "rig"
 );
 

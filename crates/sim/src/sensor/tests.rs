@@ -40,6 +40,8 @@ fn tables_agree_with_the_manuals() {
     assert_eq!(vlp32c.beams[31].delay_ns, 34_560);
     assert_eq!(vlp32c.beams[29].elevation_deg, 15.0);
     assert_eq!(vlp32c.beams[1].azimuth_deg, -4.2);
+    let ideal = &vlp32c.ideal().beams[1];
+    assert_eq!((ideal.azimuth_deg, ideal.delay_ns), (-4.2, 0));
 }
 
 #[test]

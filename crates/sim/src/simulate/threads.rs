@@ -47,7 +47,7 @@ impl<'a> SharedRun<'a> {
         let needs = effects.needs();
         let range = simulation.sensor.range();
         Self {
-            lidar: simulation.lidar(),
+            lidar: simulation.lidar(effects.parts().surface),
             course,
             schedule: BlockSchedule::new(simulation, needs, effects.parts().view),
             surroundings: Surroundings::new(simulation.scene.clone(), range, !needs.moving),

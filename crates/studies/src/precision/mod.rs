@@ -7,7 +7,7 @@ use std::hint::black_box;
 
 use crate::placing::Real;
 use analysis::tradeoff::{
-    Bench, Measured, Row, SeededNoise, Study, StudyError, TimedChoice, Trade, Work,
+    Bench, Row, SeededNoise, Study, StudyError, StudyFindings, StudyRows, TimedChoice, Trade, Work,
 };
 use glam::DVec3;
 
@@ -27,6 +27,7 @@ pub(super) const PRECISION: Study = Study {
         ("missed_per_million", "slipped through, of a million"),
     ],
     trades: &[Trade::new(0, 2).by_group(), Trade::new(0, 3).by_group()],
+    finding: StudyFindings::ends_of_front,
     measure,
 };
 
@@ -80,7 +81,7 @@ fn circumstances() -> [CastingCase; 3] {
     ]
 }
 
-fn measure(bench: &mut Bench<'_>) -> Result<Measured, StudyError> {
+fn measure(bench: &mut Bench<'_>) -> Result<StudyRows, StudyError> {
     let patches = bench.pick(12, 4_096);
     let rays = patches * PACKETS * LANES;
     let plan = bench.plan(&format!("{rays} rays of each"), 3, 15);

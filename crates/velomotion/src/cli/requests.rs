@@ -3,10 +3,11 @@
 use cloud::Fields;
 use engine::capture::jog::{GotoRequest, JogRequest};
 use engine::capture_request::CaptureRequest;
+use engine::config::LidarName;
 use engine::reconstruct::decoder_options::DecoderRequest;
 use engine::reconstruct::replay;
 use lidar::Duplicates;
-use protocol::vlp16::{Model, models};
+use protocol::vlp16::Model;
 
 use super::{
     AccuracyArguments, Capture, EqualReturns, LidarArguments, ModelName, Output, TiltVerb,
@@ -85,12 +86,13 @@ impl ModelName {
     /// The model.
     #[must_use]
     pub const fn model(self) -> &'static Model {
-        match self {
-            Self::Vlp16 => &models::VLP_16,
-            Self::HiRes => &models::PUCK_HI_RES,
-            Self::Hdl32e => &models::HDL_32E,
-            Self::Vlp32c => &models::VLP_32C,
-        }
+        let name = match self {
+            Self::Vlp16 => LidarName::Vlp16,
+            Self::HiRes => LidarName::HiRes,
+            Self::Hdl32e => LidarName::Hdl32e,
+            Self::Vlp32c => LidarName::Vlp32c,
+        };
+        name.model()
     }
 }
 

@@ -1,6 +1,8 @@
 //! Parsers of the values of arguments.
 
+use std::net::SocketAddr;
 use std::num::NonZeroUsize;
+use std::ops::RangeInclusive;
 
 use clap::builder::PossibleValuesParser;
 
@@ -44,17 +46,29 @@ pub(super) fn number(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Parses a seed.
-pub(super) fn seed(text: &str) -> Result<u64, String> {
-    let expected = || format!("expected a whole number from 0 to {}", u64::MAX);
-    text.parse().map_err(|_| expected())
+/// Parser of a whole number of a range.
+pub(super) fn whole<N: TryFrom<u64>>(
+    range: RangeInclusive<u64>,
+) -> impl Fn(&str) -> Result<N, String> + Clone + Send + Sync {
+    move |text| {
+        let number = text.parse().ok().filter(|number| range.contains(number));
+        let number = number.and_then(|number| N::try_from(number).ok());
+        let (first, last) = (range.start(), range.end());
+        number.ok_or_else(|| format!("expected a whole number from {first} to {last}"))
+    }
 }
 
 /// Parses a number of threads.
 pub(super) fn threads(text: &str) -> Result<NonZeroUsize, String> {
-    let number = text.parse::<u16>().ok().map(usize::from);
-    let number = number.and_then(NonZeroUsize::new);
-    number.ok_or_else(|| format!("expected a whole number from 1 to {}", u16::MAX))
+    let number: u64 = whole(1..=u16::MAX.into())(text)?;
+    let number = usize::try_from(number).ok().and_then(NonZeroUsize::new);
+    number.ok_or_else(|| "expected a whole number above 0".to_owned())
+}
+
+/// Parses an address with a port.
+pub(super) fn address_and_port(text: &str) -> Result<SocketAddr, String> {
+    let expected = |_| "expected an address and a port, such as 127.0.0.1:8016".to_owned();
+    text.parse().map_err(expected)
 }
 
 /// Parses a share below 1.

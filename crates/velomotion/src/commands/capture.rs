@@ -5,10 +5,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::SystemTime;
 
 use daemon::client::Client;
-use daemon::local::LocalService;
+use daemon::local::{LocalService, LocalTask};
 use engine::capture::request::CapturePlan;
 use engine::capture::run;
-use engine::capture::scan_plan::{ScanPlanner, USUAL_RPM};
+use engine::capture::scan_plan::ScanPlanner;
 use engine::capture_request::CaptureRequest;
 use engine::config::{self, Config};
 use engine::default_paths;
@@ -17,8 +17,6 @@ use engine::failure::{Failure, Kind};
 use engine::output::{self, Backup, Target};
 use engine::reconstruct::report::ScanReport;
 use engine::service::CaptureEnd;
-
-use protocol::vlp16::models;
 
 use super::CommandOutput;
 use super::device_backend::{DaemonCapture, LocalCapture, record};
@@ -41,7 +39,7 @@ pub fn run(arguments: &cli::Capture, common: &Common) -> Result<CommandOutput, F
     let interrupt = signals::motion_interrupt_flag()?;
     let mut progress = Progress::new(common);
     // A scan that cannot be predicted can be made all the same.
-    let planner = ScanPlanner::of_capture(&config, &plan, &models::VLP_16, USUAL_RPM);
+    let planner = ScanPlanner::of_capture(&config, &plan, None, None);
     let expected = planner.map_or_else(
         |_| Vec::new(),
         |planner| planner.expectation(&arguments.into(), &planner.row(&plan.steps)),
@@ -95,7 +93,7 @@ fn record_locally(
     progress: &mut Progress,
 ) -> Result<CaptureEnd, Failure> {
     let device = (plan.name.clone(), plan.device.clone());
-    let local = LocalService::start(config, device, true, interrupt, environment())?;
+    let local = LocalService::start(config, device, LocalTask::Capture, interrupt, environment())?;
     if let Some(warning) = &local.thread.port_warning {
         progress.say(&format!("warning: {warning}"));
     }

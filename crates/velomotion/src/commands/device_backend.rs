@@ -328,6 +328,7 @@ pub fn jog_by_daemon(
         }
         if interrupt.swap(false, Ordering::Relaxed) {
             if !moves || stop.is_some() {
+                interrupt.store(true, Ordering::Relaxed);
                 return Err(Failure::new(
                     Kind::Interrupted,
                     format!(

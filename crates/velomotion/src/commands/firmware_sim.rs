@@ -154,8 +154,11 @@ struct Link(PathBuf);
 
 impl Link {
     fn make(link: &Path, port: &Path) -> Result<Self, Failure> {
-        // A link that an earlier run left is replaced; any other file is not ours.
-        if let Ok(used) = link.canonicalize() {
+        // A link that an earlier run left is replaced; any other file is not ours. The system may
+        // have given this port the number of that run's.
+        if let Ok(used) = link.canonicalize()
+            && used != port
+        {
             let (link, used) = (link.display(), used.display());
             return Err(
                 Failure::new(Kind::Usage, format!("{link} exists already: {used}"))
@@ -195,6 +198,23 @@ mod tests {
             panic!("{line}")
         };
         load(&arguments, &AxisConfig::default())
+    }
+
+    /// A killed run leaves its link, and the system gives its port's number to the next run.
+    #[test]
+    fn a_link_to_the_own_port_is_an_earlier_runs() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().canonicalize().unwrap().join(name);
+        let (port, other, link) = (path("port"), path("other"), path("link"));
+        for file in [&port, &other] {
+            std::fs::write(file, "").unwrap();
+        }
+        std::os::unix::fs::symlink(&port, &link).unwrap();
+        assert!(Link::make(&link, &other).is_err());
+        let made = Link::make(&link, &port).unwrap();
+        assert_eq!(link.canonicalize().unwrap(), port);
+        drop(made);
+        assert!(!link.is_symlink());
     }
 
     /// The default gear has 0.05 deg/s per rpm.

@@ -10,9 +10,10 @@ use engine::failure::{Failure, Kind};
 use super::CommandOutput;
 use crate::cli::{self, Cli};
 use crate::documents::HelpText;
+use crate::terminal::{width_of, wrapped};
 
 /// Two examples of each command, and the page of the book about it.
-const EXAMPLES: [(&str, [&str; 2], &str); 13] = [
+const EXAMPLES: [(&str, [&str; 2], &str); 15] = [
     (
         "velomotion",
         ["capture --speed 56.25", "replay scan.pcapng -o scan.laz"],
@@ -29,7 +30,7 @@ const EXAMPLES: [(&str, [&str; 2], &str); 13] = [
     (
         "plan",
         [
-            "plan --at 20m --error 9mm --gap 0.8deg",
+            "plan --at 20m --error 65mm --gap 0.8deg",
             "plan --time 10s --lidar vlp16 --rpm 300,600,1200 --device auto",
         ],
         "plan",
@@ -41,6 +42,22 @@ const EXAMPLES: [(&str, [&str; 2], &str); 13] = [
             "replay street.pcap --tilt none --frames 0 -o street.mcap",
         ],
         "replay",
+    ),
+    (
+        "calibrate",
+        [
+            "calibrate fast.pcapng slow.pcapng -o mount.toml",
+            "calibrate hall.pcapng --fix play --level floor --report calibration",
+        ],
+        "calibration",
+    ),
+    (
+        "accuracy",
+        [
+            "accuracy fast.pcapng slow.pcapng --mount mount.toml --report accuracy",
+            "accuracy hall.pcapng --scene hall",
+        ],
+        "accuracy-study",
     ),
     (
         "simulate",
@@ -101,12 +118,14 @@ macro_rules! pages {
 }
 
 /// The pages of the book for users, in its order.
-const PAGES: [(&str, &str); 23] = pages!(
+const PAGES: [(&str, &str); 25] = pages!(
     "quick-start",
     "install",
     "plan",
     "capture",
     "replay",
+    "calibration",
+    "accuracy-study",
     "tilt",
     "daemon",
     "page",
@@ -183,7 +202,11 @@ fn usage(error: &clap::Error) -> Failure {
         None => message.to_owned(),
     };
     let help = paragraphs
-        .filter(|paragraph| !paragraph.starts_with("For more information"))
+        .filter(|paragraph| {
+            !OMITTED_PARAGRAPHS
+                .iter()
+                .any(|words| paragraph.contains(words))
+        })
         .map(|paragraph| match paragraph.strip_prefix("tip: ") {
             Some(tip) => tip.to_owned(),
             None => paragraph,
@@ -191,6 +214,10 @@ fn usage(error: &clap::Error) -> Failure {
         .chain(["--help lists all options".to_owned()]);
     Failure::new(Kind::Usage, message).help(help.collect::<Vec<_>>().join("\n"))
 }
+
+/// Words of the parser's paragraphs that help no user: how to give a value that looks like an
+/// option, and a command that this program alone runs.
+const OMITTED_PARAGRAPHS: [&str; 3] = ["For more information", "tip: to pass", "guard-axis"];
 
 /// Characters of a message; a value with many words is cut there.
 const LONGEST_MESSAGE: usize = 300;
@@ -213,20 +240,58 @@ fn brief(word: &str) -> String {
 /// [`Kind::Usage`] for neither a command nor a page.
 pub fn run(arguments: &cli::Help) -> Result<CommandOutput, Failure> {
     let topic = arguments.words.join(" ");
-    let text = text(&arguments.words).ok_or_else(|| {
+    let text = |width| text(&arguments.words, width);
+    let page = text(None).ok_or_else(|| {
         let message = format!("{topic} is neither a command nor a page of the book");
         Failure::new(Kind::Usage, message).help("velomotion help lists both")
     })?;
-    let page = HelpText {
-        topic,
-        text: text.clone(),
+    let shown = text(width_of(std::io::stdout())).unwrap_or_default();
+    let page = HelpText { topic, text: page };
+    Ok(CommandOutput::result(&page, shown))
+}
+
+/// Columns of a page on a wide terminal.
+const MAX_WIDTH: usize = 100;
+
+/// Fills the paragraphs and items of Markdown to a width. Headings, tables and code stay.
+fn refilled(text: &str, width: usize) -> String {
+    let mut lines: Vec<(String, bool)> = Vec::new();
+    let mut is_code = false;
+    for line in text.lines() {
+        let is_fence = line.starts_with("```");
+        is_code ^= is_fence;
+        let stays = is_code || is_fence || line.is_empty() || line.starts_with(['|', '#']);
+        match lines.last_mut() {
+            Some((paragraph, false)) if !stays && item_indentation(line).is_none() => {
+                paragraph.push(' ');
+                paragraph.push_str(line.trim_start());
+            }
+            _ => lines.push((line.to_owned(), stays)),
+        }
+    }
+    let fill = |(line, stays): &(String, bool)| match stays {
+        true => line.clone(),
+        false => wrapped(line, Some(width), "", item_indentation(line).unwrap_or("")),
     };
-    Ok(CommandOutput::result(&page, text))
+    lines.iter().map(fill).collect::<Vec<_>>().join("\n")
+}
+
+/// The indentation of the further lines of an item of a list; `None` of any other line.
+fn item_indentation(line: &str) -> Option<&'static str> {
+    let (mark, _) = line.split_once(' ')?;
+    let is_number = |mark: &str| mark.parse::<u8>().is_ok();
+    match mark {
+        "-" => Some("  "),
+        _ => mark
+            .strip_suffix('.')
+            .is_some_and(is_number)
+            .then_some("   "),
+    }
 }
 
 /// Explains a command, with the page of its name if there is one, or a page; without words lists
-/// both.
-fn text(words: &[String]) -> Option<String> {
+/// both. Pages are filled to a width if there is one.
+fn text(words: &[String], width: Option<usize>) -> Option<String> {
     let mut command = command();
     command.build();
     let [first, ..] = words else {
@@ -244,7 +309,10 @@ fn text(words: &[String]) -> Option<String> {
         [name] => PAGES.iter().find(|(known, _)| known == name),
         _ => None,
     };
-    let page = page.map(|(_, text)| text.trim_end().to_owned());
+    let page = page.map(|(_, text)| match width {
+        Some(width) => refilled(text.trim_end(), width.min(MAX_WIDTH)),
+        None => text.trim_end().to_owned(),
+    });
     if command.find_subcommand(first).is_none() {
         return page;
     }
@@ -294,6 +362,7 @@ mod tests {
                     .iter()
                     .map(|&word| word.to_owned())
                     .collect::<Vec<_>>(),
+                None,
             )
         };
         assert!(of(&["capture"]).unwrap().contains("--both-ways"));
@@ -309,6 +378,23 @@ mod tests {
     }
 
     #[test]
+    fn pages_are_filled_to_the_width_of_the_terminal() {
+        let text = "# A long heading stays\n\nSome words\nof a paragraph.\n\n- one item\n  goes on\n2. two\n\n\
+                    ```sh\ncode that stays as it is\n```\n| a table that stays |";
+        let filled = "# A long heading stays\n\nSome words of\na paragraph.\n\n- one item\n  goes on\n2. two\n\n\
+                      ```sh\ncode that stays as it is\n```\n| a table that stays |";
+        assert_eq!(refilled(text, 14), filled);
+        for (name, page) in PAGES {
+            let words = |text: &str| {
+                text.split_whitespace()
+                    .map(str::to_owned)
+                    .collect::<Vec<_>>()
+            };
+            assert_eq!(words(&refilled(page, 80)), words(page), "{name}");
+        }
+    }
+
+    #[test]
     fn invalid_values_are_named_in_one_short_line() {
         for (line, message) in [
             (
@@ -321,7 +407,15 @@ mod tests {
             ),
             (
                 "analyze vlp16 --level -1",
-                "invalid value '-1' for '--level <N>': -1 is not in 0..=8",
+                "invalid value '-1' for '--level <N>': expected a whole number from 0 to 8",
+            ),
+            (
+                "firmware-sim --usb --dither -1",
+                "invalid value '-1' for '--dither <QC>': expected a whole number from 0 to 255",
+            ),
+            (
+                "daemon --listen 8016",
+                "invalid value '8016' for '--listen <ADDRESS:PORT>': expected an address and a port, such as 127.0.0.1:8016",
             ),
             (
                 "capture --speed 1e300",

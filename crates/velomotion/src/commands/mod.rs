@@ -1,6 +1,8 @@
 //! The commands, one file each.
 
+pub mod accuracy;
 pub mod analyze;
+pub mod calibrate;
 pub mod capture;
 pub mod daemon;
 pub mod device_backend;

@@ -5,15 +5,15 @@ use std::path::PathBuf;
 use analysis::plan::{PlanLimits, PlanRow, figure};
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, Table};
-use engine::capture::scan_plan::{CommandRow, PlanReport, PlanRequest, ScanPlanner, USUAL_RPM};
-use engine::config;
+use engine::capture::scan_plan::{CommandRow, PlanReport, PlanRequest, ScanPlanner};
+use engine::config::{self, Config};
 use engine::devices::profile;
 use engine::document::Document;
 use engine::failure::{Failure, Kind};
 use engine::output::{check_free, make_folder, write_text};
 
 use super::CommandOutput;
-use crate::cli::{self, Common};
+use crate::cli::{self, Common, ModelName};
 
 /// Runs the command.
 ///
@@ -30,17 +30,12 @@ pub fn run(arguments: &cli::Plan, common: &Common) -> Result<CommandOutput, Fail
     for file in files.iter().flatten() {
         check_free(file, arguments.force)?;
     }
-    let simulated_rpm = sim::RigLidar::default().rpm;
-    let other = arguments.rpm.iter().find(|rpm| **rpm != simulated_rpm);
-    if let Some(rpm) = other.filter(|_| profile::simulated(&device)) {
-        let message = format!("the simulated lidar turns at {simulated_rpm} rpm, not at {rpm}");
-        let help = "name another device with --device";
-        return Err(Failure::new(Kind::Usage, message).help(help));
-    }
-    let mut report = ScanPlanner::new(&config, (&name, &device), request(arguments))?.plan()?;
+    let request = request(arguments, &config);
+    let mut report = ScanPlanner::new(&config, (&name, &device), request)?.plan()?;
     if let Some(file) = &common.config {
-        for row in report.rows.iter_mut().chain(&mut report.chosen) {
-            row.command += &format!(" --config {}", quoted(&file.to_string_lossy()));
+        let rows = report.rows.iter_mut().chain(&mut report.chosen);
+        for command in rows.filter_map(|row| row.command.as_mut()) {
+            *command += &format!(" --config {}", quoted(&file.to_string_lossy()));
         }
     }
     if let ([Some(drawing), Some(json)], Some(folder)) = (&files, &arguments.report) {
@@ -64,19 +59,26 @@ pub fn run(arguments: &cli::Plan, common: &Common) -> Result<CommandOutput, Fail
     })
 }
 
-fn request(arguments: &cli::Plan) -> PlanRequest {
+fn request(arguments: &cli::Plan, config: &Config) -> PlanRequest {
+    let model = arguments.lidar.map(ModelName::model);
+    let model = model.unwrap_or_else(|| config.lidar.model.model());
+    let rpm = match arguments.rpm.as_slice() {
+        [] => vec![config.lidar.rpm],
+        given => given.to_vec(),
+    };
     PlanRequest {
         limits: PlanLimits {
-            error_mm: arguments.error.map(|metres| 1e3 * metres),
+            // Whole nanometres: 0.009 m is 9 mm, not 9.000000000000002.
+            error_mm: arguments.error.map(|metres| (1e9 * metres).round() / 1e6),
             gap_deg: arguments.gap,
             time_s: arguments.time,
         },
-        rpm: arguments.rpm.clone(),
+        rpm,
         range_sd_m: arguments.range_sd,
         mount_sd_deg: arguments.mount_sd,
         from_deg: arguments.from,
         to_deg: arguments.to,
-        ..PlanRequest::new(arguments.at, arguments.lidar.model(), 0)
+        ..PlanRequest::new(arguments.at, model, 0)
     }
 }
 
@@ -130,16 +132,31 @@ fn wrapped(line: &str) -> String {
     textwrap::fill(line, textwrap::Options::new(80).subsequent_indent("  "))
 }
 
-const HEADINGS: [&str; 11] = [
-    "deg/s", "deg/s2", "rpm", "sweeps", "scan s", "50 % deg", "95 %", "99 %", "worst", "error mm",
-    "points",
+const HEADINGS: [&str; 14] = [
+    "\ndeg/s",
+    "\ndeg/s2",
+    "\nrpm",
+    "\nsweeps",
+    "scan\ns",
+    "gap deg\n50 %",
+    "\n95 %",
+    "\n99 %",
+    "\nworst",
+    "error\nmm",
+    "million\npoints",
+    "replay\ns",
+    "log\nMB",
+    "cloud\nMB",
 ];
 
 fn table(rows: &[CommandRow]) -> String {
     let mut table = Table::new();
-    let cells = rows.iter().map(|CommandRow { row, .. }| {
+    // Without unmet limits their column is empty.
+    let has_unmet = rows.iter().any(|row| !row.unmet.is_empty());
+    let cells = rows.iter().map(|CommandRow { row, unmet, .. }| {
         let (setting, gap) = (&row.setting, &row.gap_deg);
-        [
+        let unmet: Vec<&str> = unmet.iter().map(|unmet| unmet.limit).collect();
+        let cells = [
             format!("{:.2}", setting.speed_deg_s),
             format!("{:.0}", setting.accel_deg_s2),
             format!("{:.0}", setting.rpm),
@@ -150,12 +167,20 @@ fn table(rows: &[CommandRow]) -> String {
             format!("{:.2}", gap.p99),
             format!("{:.2}", gap.worst),
             format!("{:.1}", row.error_mm.total),
-            row.points.to_string(),
-        ]
+            format!("{:.2}", row.points as f64 * 1e-6),
+            format!("{:.1}", row.replay_s),
+            format!("{:.1}", megabytes(row.log_bytes)),
+            format!("{:.1}", megabytes(row.cloud_bytes)),
+        ];
+        let cells = cells.into_iter();
+        cells
+            .chain(has_unmet.then(|| unmet.join(", ")))
+            .collect::<Vec<String>>()
     });
+    let headings = HEADINGS.into_iter().chain(has_unmet.then_some("\nunmet"));
     table
         .load_style(NOTHING)
-        .set_header(HEADINGS)
+        .set_header(headings)
         .add_rows(cells);
     for column in table.column_iter_mut() {
         column
@@ -165,6 +190,10 @@ fn table(rows: &[CommandRow]) -> String {
     table.trim_fmt()
 }
 
+fn megabytes(bytes: u64) -> f64 {
+    bytes as f64 * 1e-6
+}
+
 /// The chosen row in words.
 fn choice(chosen: &CommandRow, at_m: f64) -> Vec<String> {
     let row = &chosen.row;
@@ -172,7 +201,6 @@ fn choice(chosen: &CommandRow, at_m: f64) -> Vec<String> {
     let mount = error
         .mount
         .map_or("not calibrated".to_owned(), |mm| format!("{mm:.2}"));
-    let megabytes = |bytes: u64| bytes as f64 * 1e-6;
     let paragraphs = [
         format!(
             "{:.1} s with homing; at most {} points; replay {:.1} s; log {:.1} MB, cloud {:.1} MB; mean resolution {:.3} deg",
@@ -202,18 +230,21 @@ fn choice(chosen: &CommandRow, at_m: f64) -> Vec<String> {
             error.range, error.range_step, error.azimuth, error.tilt, error.clock, error.delay,
         ),
         format!(
-            "sum: {:.1} mm for 95 % of points; the cloud's column sd will state {:.2} mm, which leaves out constant errors (delay, mount)",
-            error.total, error.stated,
+            "sum: {:.1} mm for 95 % of points; the cloud's column sd will have {:.2} mm, which leaves out constant errors (delay, mount)",
+            error.total, error.column_sd,
         ),
     ];
     let paragraphs = paragraphs.iter().map(|line| wrapped(&format!("  {line}")));
-    let rpm = row.setting.rpm;
-    let other_rate = (rpm != f64::from(USUAL_RPM))
-        .then(|| format!("  the lidar must turn at {rpm} rpm: set it on its own page first"));
-    std::iter::once(format!("\n{}", chosen.command))
-        .chain(other_rate)
-        .chain(paragraphs)
-        .collect()
+    let setting = &row.setting;
+    let first = match &chosen.command {
+        Some(command) => format!("\n{command}\n  with the lidar at {} rpm", setting.rpm),
+        None => format!(
+            "\n{} deg/s, {} deg/s2, {} rpm, {} sweeps: no command, as the simulated lidar is a VLP-16 at 600 rpm;\n  name a \
+             device with --device",
+            setting.speed_deg_s, setting.accel_deg_s2, setting.rpm, setting.sweeps,
+        ),
+    };
+    std::iter::once(first).chain(paragraphs).collect()
 }
 
 #[cfg(test)]
@@ -243,10 +274,11 @@ mod tests {
             time_s: None,
         });
         let chosen = report.chosen.as_ref().unwrap();
-        let words = chosen.command.split(' ').map(std::ffi::OsString::from);
+        let command = chosen.command.as_deref().unwrap();
+        let words = command.split(' ').map(std::ffi::OsString::from);
         let cli = <cli::Cli as clap::Parser>::try_parse_from(words).unwrap();
         let cli::Command::Capture(capture) = cli.command else {
-            panic!("{}", chosen.command);
+            panic!("{command}");
         };
         let same = (capture.speed - chosen.row.setting.speed_deg_s).abs() < 1e-6;
         assert!(same, "{} {chosen:?}", capture.speed);
@@ -257,6 +289,44 @@ mod tests {
             text.lines().all(|line| line.chars().count() <= 100),
             "{text}"
         );
+    }
+
+    #[test]
+    fn another_lidar_than_the_simulated_has_no_command() {
+        let config = Config::default();
+        let device = Device::simulator();
+        let limits = PlanLimits {
+            gap_deg: Some(0.5),
+            time_s: Some(4.0),
+            ..PlanLimits::default()
+        };
+        for (model, rpm, has_command) in [
+            (&models::VLP_16, 600, true),
+            (&models::VLP_16, 1_200, false),
+            (&models::HDL_32E, 600, false),
+        ] {
+            let request = PlanRequest {
+                limits,
+                ..PlanRequest::new(20.0, model, rpm)
+            };
+            let planner = ScanPlanner::new(&config, ("sim", &device), request).unwrap();
+            let report = planner.plan().unwrap();
+            let all = report
+                .rows
+                .iter()
+                .all(|row| row.command.is_some() == has_command);
+            assert!(all && !report.rows.is_empty(), "{} {rpm}", model.name);
+            // Ranges of a lidar that is not simulated are those of the configuration.
+            let ranges_mm = report.rows[0].row.error_mm.range;
+            assert_eq!(ranges_mm > 20.0, !has_command, "{ranges_mm}");
+            for CommandRow { row, unmet, .. } in &report.rows {
+                let names: Vec<&str> = unmet.iter().map(|unmet| unmet.limit).collect();
+                assert_eq!(names.contains(&"gap"), row.gap_deg.p99 > 0.5, "{row:?}");
+                assert_eq!(names.contains(&"time"), row.scan_s > 4.0, "{row:?}");
+                assert!(unmet.iter().all(|unmet| !unmet.cause.is_empty()));
+            }
+            assert!(text(&report, Vec::new()).contains("unmet"));
+        }
     }
 
     #[test]

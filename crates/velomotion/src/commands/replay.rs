@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use engine::capture::completeness;
-use engine::config;
+use engine::config::{self, MountSettings};
 use engine::default_paths;
 use engine::failure::{Failure, Kind};
 use engine::output::{self, Target};
@@ -15,7 +15,6 @@ use engine::reconstruct::lidar_copy;
 use engine::reconstruct::replay::{self, Reconstruction};
 use engine::reconstruct::source::Source;
 use engine::reconstruct::tilt_table::tilt_source;
-use scanner::config::MountConfig;
 use scanner::{TableTime, TiltSource};
 use units::Degrees;
 
@@ -64,7 +63,7 @@ fn replay(
     let tilt = tilt_source(&arguments.tilt)?;
     let mount = mount(arguments, common, &tilt, &source)?;
     if let Some((mount, _)) = &mount {
-        source.set_mount(*mount);
+        source.set_mount(mount.clone());
     }
     let request = Reconstruction {
         recording: &source,
@@ -80,10 +79,14 @@ fn replay(
     };
     let progress = Progress::new(common);
     if let Some((mount, file)) = &mount {
+        let calibrated = match mount.calibration() {
+            Some(_) => ", calibrated",
+            None => "",
+        };
         progress.say(&format!(
-            "mount of {}: the lidar is {} m above the tilt axis",
+            "mount of {}: the lidar is {} m above the tilt axis{calibrated}",
             file.display(),
-            mount.d_m
+            mount.pose().mount().position_m()[2]
         ));
     }
     if let TiltSource::Table(table) = &request.tilt {
@@ -206,7 +209,7 @@ fn mount(
     common: &Common,
     tilt: &TiltSource,
     source: &Source,
-) -> Result<Option<(MountConfig, PathBuf)>, Failure> {
+) -> Result<Option<(MountSettings, PathBuf)>, Failure> {
     let load = |file: PathBuf| config::load_mount(&file).map(|mount| Some((mount, file)));
     if let (Some(_), TiltSource::None) = (&arguments.mount, tilt) {
         let what = "--mount is for a tilted lidar: --tilt none gives the sensor's own frame";

@@ -1,9 +1,11 @@
 //! `velomotion tilt`: jogs of the axis.
 
+use std::sync::atomic::Ordering;
+
 use daemon::client::Client;
-use daemon::local::LocalService;
-use engine::capture::jog;
-use engine::config;
+use daemon::local::{LocalService, LocalTask};
+use engine::capture::jog::{self, JogRequest};
+use engine::config::{self, Device};
 use engine::devices::profile;
 use engine::failure::{Failure, Kind};
 use engine::service::axis_report::{AxisReport, StopAnswer};
@@ -25,25 +27,38 @@ pub fn run(arguments: &cli::TiltArguments, common: &Common) -> Result<CommandOut
     let config = config::load(common.config.as_deref())?;
     let (name, device) = profile::choose(&config, arguments.device.name.as_deref())?;
     // Refused before a device is opened.
-    let request = verb.into();
+    let request: JogRequest = verb.into();
     jog::commands(request, &config, &device)?;
     let interrupt = signals::motion_interrupt_flag()?;
-    // A stop is confirmed only by a program that has the drive; else it goes to the drive itself.
-    let client = Client::find(&name, &device).filter(|client| {
-        !matches!(verb, TiltVerb::Stop) || client.holds_port(&device) != Some(false)
-    });
-    let (answer, simulated) = match client {
-        Some(client) => (
-            jog_by_daemon(&client, request, &interrupt)?,
-            "a software drive, the daemon's",
-        ),
+    let device = (name, device);
+    let task = match request {
+        JogRequest::Status => LocalTask::Read,
+        _ => LocalTask::Jog,
+    };
+    let jog = || match client_of(verb, &device) {
+        Some(client) => {
+            let answer = jog_by_daemon(&client, request, &interrupt)?;
+            Ok((answer, "a software drive, the daemon's"))
+        }
         None => {
-            let local =
-                LocalService::start(config, (name, device), false, &interrupt, environment())?;
+            let (config, device) = (config.clone(), device.clone());
+            let local = LocalService::start(config, device, task, &interrupt, environment())?;
             let answer = jog_locally(&local, request);
             local.stop();
-            (answer?, "a software drive, switched on a moment ago")
+            Ok((answer?, "a software drive, switched on a moment ago"))
         }
+    };
+    // A program may take or release the drive in the meantime.
+    let changed = |failure: &Failure| match failure.kind {
+        Kind::Busy => client_of(verb, &device).is_some(),
+        Kind::Interrupted | Kind::Incomplete => {
+            task == LocalTask::Read && !interrupt.load(Ordering::Relaxed)
+        }
+        _ => false,
+    };
+    let (answer, simulated) = match jog() {
+        Err(failure) if changed(&failure) => jog()?,
+        answer => answer?,
     };
     Ok(match answer {
         StopAnswer::Report(report) => output(&verb, &report, simulated),
@@ -62,6 +77,14 @@ pub fn run(arguments: &cli::TiltArguments, common: &Common) -> Result<CommandOut
             )
             .help("switch the motor's supply off if the axis moves"));
         }
+    })
+}
+
+/// The program that has the drive. A stop is confirmed only by one that has its port; else it goes
+/// to the drive itself.
+fn client_of(verb: TiltVerb, (name, device): &(String, Device)) -> Option<Client> {
+    Client::find(name, device).filter(|client| {
+        !matches!(verb, TiltVerb::Stop) || client.holds_port(device) != Some(false)
     })
 }
 
@@ -136,6 +159,10 @@ fn status_table(report: &AxisReport, simulated: &str) -> String {
 }
 
 fn faults_table(report: &AxisReport) -> String {
+    if report.switches_age_s.is_none() {
+        return "the drive's error history has not been read: another command uses the device"
+            .to_owned();
+    }
     if report.faults.is_empty() {
         return "no faults in the drive's history".to_owned();
     }

@@ -4,7 +4,7 @@
 use protocol::canopen::pdo::{MAX_ENTRIES, PdoLayout, TransmissionType};
 use protocol::canopen::{CanFrame, PdoNumber};
 use protocol::epos2::objects::Address;
-use protocol::epos2::{Bounded, DeviceError};
+use protocol::epos2::{BoundedVec, DeviceError};
 
 use super::parameters;
 use crate::epos2::mapping;
@@ -14,7 +14,7 @@ use crate::epos2::node::Node;
 const FIRST: u16 = 0x1400;
 
 /// The values of a PDO.
-type Values = Bounded<u64, MAX_ENTRIES>;
+type Values = BoundedVec<u64, MAX_ENTRIES>;
 
 /// State of one receive PDO.
 #[derive(Clone, Copy, Debug, Default)]

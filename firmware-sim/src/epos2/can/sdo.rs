@@ -5,7 +5,7 @@ use protocol::canopen::sdo::{
     Expedited, Initiate, SEGMENT_LEN, SdoRequest, SdoResponse, SdoSegment,
 };
 use protocol::epos2::objects::Address;
-use protocol::epos2::{Bounded, CommError};
+use protocol::epos2::{BoundedVec, CommError};
 
 use crate::epos2::Abort;
 use crate::epos2::dictionary::Dictionary;
@@ -40,7 +40,7 @@ enum TransferContent {
         sent: usize,
     },
     Download {
-        bytes: Bounded<u8, MAX_BYTES>,
+        bytes: BoundedVec<u8, MAX_BYTES>,
         /// Bytes announced.
         size: Option<u32>,
     },
@@ -150,7 +150,7 @@ impl SdoServer {
                     Some(size) => node.check_download(address, *size as usize)?,
                     None => Dictionary::entry(address)?.check_access()?,
                 }
-                let (bytes, size) = (Bounded::new(), *size);
+                let (bytes, size) = (BoundedVec::new(), *size);
                 self.begin(address, TransferContent::Download { bytes, size });
             }
         }

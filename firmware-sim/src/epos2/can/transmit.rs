@@ -6,7 +6,7 @@
 
 use protocol::canopen::pdo::{CommunicationId, MAX_ENTRIES, PdoLayout, TransmissionType};
 use protocol::canopen::{CanFrame, CanId, CobId, PdoNumber};
-use protocol::epos2::Bounded;
+use protocol::epos2::BoundedVec;
 use protocol::epos2::objects::Address;
 
 use super::parameters;
@@ -17,7 +17,7 @@ use crate::epos2::node::Node;
 const FIRST: u16 = 0x1800;
 
 /// The data of a PDO.
-type Data = Bounded<u8, 8>;
+type Data = BoundedVec<u8, 8>;
 
 /// State of one transmit PDO.
 #[derive(Clone, Copy, Debug, Default)]
@@ -58,7 +58,7 @@ impl ConfiguredPdo {
 
     /// The mapped values at this instant.
     fn sample(&self, node: &Node) -> Option<Data> {
-        let mut values = Bounded::<u64, MAX_ENTRIES>::new();
+        let mut values = BoundedVec::<u64, MAX_ENTRIES>::new();
         for entry in self.layout.entries() {
             let value = node.read(entry.address).ok()?;
             let bytes = value.bytes().iter().rev();

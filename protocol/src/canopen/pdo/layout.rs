@@ -6,7 +6,7 @@ use core::fmt;
 
 use thiserror::Error;
 
-use crate::Bounded;
+use crate::BoundedVec;
 use crate::canopen::object::{Address, Scalar, TypedObject};
 
 /// Largest number of entries of an EPOS2 mapping.
@@ -108,7 +108,7 @@ pub enum PdoError {
 /// Mapping entries that fit a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PdoLayout {
-    entries: Bounded<MappedObject, MAX_ENTRIES>,
+    entries: BoundedVec<MappedObject, MAX_ENTRIES>,
 }
 
 impl PdoLayout {
@@ -118,7 +118,7 @@ impl PdoLayout {
     /// [`LayoutError`].
     pub fn new(entries: &[MappedObject]) -> Result<Self, LayoutError> {
         let layout = Self {
-            entries: Bounded::from_slice(entries).map_err(|full| LayoutError::TooMany {
+            entries: BoundedVec::from_slice(entries).map_err(|full| LayoutError::TooMany {
                 max: full.capacity,
                 got: entries.len(),
             })?,
@@ -163,7 +163,7 @@ impl PdoLayout {
     ///
     /// # Errors
     /// [`PdoError::Values`] unless there is one value per entry.
-    pub fn pack(&self, values: &[u64]) -> Result<Bounded<u8, 8>, PdoError> {
+    pub fn pack(&self, values: &[u64]) -> Result<BoundedVec<u8, 8>, PdoError> {
         if values.len() != self.entries.len() {
             return Err(PdoError::Values {
                 expected: self.entries.len(),
@@ -176,7 +176,7 @@ impl PdoLayout {
             .fold(0, |all, ((_, shift, mask), value)| {
                 all | (value & mask) << shift
             });
-        let mut data = Bounded::new();
+        let mut data = BoundedVec::new();
         data.extend(packed.to_le_bytes().into_iter().take(self.len()));
         Ok(data)
     }
@@ -186,9 +186,9 @@ impl PdoLayout {
     ///
     /// # Errors
     /// [`PdoError::Short`].
-    pub fn unpack(&self, data: &[u8]) -> Result<Bounded<u64, MAX_ENTRIES>, PdoError> {
+    pub fn unpack(&self, data: &[u8]) -> Result<BoundedVec<u64, MAX_ENTRIES>, PdoError> {
         let packed = self.word(data)?;
-        let mut values = Bounded::new();
+        let mut values = BoundedVec::new();
         values.extend(self.places().map(|(_, shift, mask)| packed >> shift & mask));
         Ok(values)
     }

@@ -1,7 +1,7 @@
 //! Encoding of data in SDO messages: up to four bytes in the first message, or segments of up to
 //! seven.
 
-use crate::Bounded;
+use crate::BoundedVec;
 use crate::canopen::Scalar;
 
 /// Bit of the first message: the number of bytes is indicated.
@@ -122,7 +122,7 @@ pub struct GenericSdoSegment<const L: usize> {
     /// No more segments follow.
     pub last: bool,
     /// The data.
-    pub bytes: Bounded<u8, L>,
+    pub bytes: BoundedVec<u8, L>,
 }
 
 impl<const L: usize> GenericSdoSegment<L> {
@@ -131,7 +131,7 @@ impl<const L: usize> GenericSdoSegment<L> {
     pub fn cut(data: &[u8], offset: usize, toggle: bool, max_len: usize) -> Self {
         let rest = data.get(offset..).unwrap_or_default();
         let len = max_len.min(L);
-        let mut bytes = Bounded::new();
+        let mut bytes = BoundedVec::new();
         bytes.extend(rest.iter().copied().take(len));
         Self {
             toggle,
@@ -155,7 +155,7 @@ impl<const L: usize> GenericSdoSegment<L> {
     pub(super) fn parse(command: u8, data: [u8; SEGMENT_LEN]) -> Self {
         const { assert!(L >= SEGMENT_LEN) };
         let unused = usize::from(command >> 1 & 7);
-        let mut bytes = Bounded::new();
+        let mut bytes = BoundedVec::new();
         bytes.extend(data.into_iter().take(SEGMENT_LEN - unused));
         Self {
             toggle: command & TOGGLE != 0,

@@ -13,7 +13,7 @@ use crate::canopen::{CanFrame, MessageError, NodeId};
 
 const CAPACITY: usize = 40;
 type Transfer = SdoTransfer<CAPACITY>;
-type TransferResult = Result<crate::Bounded<u8, CAPACITY>, TransferError>;
+type TransferResult = Result<crate::BoundedVec<u8, CAPACITY>, TransferError>;
 
 const NAME: Address = Address::new(0x1008, 0);
 const STATUS: Address = objects::STATUSWORD.address;
@@ -37,7 +37,7 @@ fn part(toggle: bool, last: bool, bytes: &[u8]) -> SdoResponse {
     SdoResponse::UploadSegment(SdoSegment {
         toggle,
         last,
-        bytes: crate::Bounded::from_slice(bytes).unwrap(),
+        bytes: crate::BoundedVec::from_slice(bytes).unwrap(),
     })
 }
 

@@ -5,7 +5,7 @@ use super::{
     Expedited, GenericSdoRequest, GenericSdoResponse, GenericSdoSegment, Initiate, SEGMENT_LEN,
     TransferError,
 };
-use crate::Bounded;
+use crate::BoundedVec;
 use crate::canopen::Address;
 
 /// A transfer of up to `N` bytes in segments of up to `L`.
@@ -14,7 +14,7 @@ pub struct SdoTransfer<const N: usize, const L: usize = SEGMENT_LEN> {
     address: Address,
     state: TransferState,
     /// Data to write, or read so far.
-    data: Bounded<u8, N>,
+    data: BoundedVec<u8, N>,
     segment_len: usize,
 }
 
@@ -41,7 +41,7 @@ pub enum TransferStep<const N: usize, const L: usize = SEGMENT_LEN> {
     Send(GenericSdoRequest<L>),
     /// The transfer is complete, with the data read. The last bytes of a value whose size the node
     /// does not indicate (four bytes in one exchange) may be unused.
-    Done(Bounded<u8, N>),
+    Done(BoundedVec<u8, N>),
 }
 
 impl<const N: usize, const L: usize> SdoTransfer<N, L> {
@@ -51,7 +51,7 @@ impl<const N: usize, const L: usize> SdoTransfer<N, L> {
         let transfer = Self {
             address,
             state: TransferState::InitiateUpload,
-            data: Bounded::new(),
+            data: BoundedVec::new(),
             segment_len: L,
         };
         (transfer, GenericSdoRequest::InitiateUpload { address })
@@ -67,7 +67,7 @@ impl<const N: usize, const L: usize> SdoTransfer<N, L> {
         data: &[u8],
         segment_len: usize,
     ) -> Result<(Self, GenericSdoRequest<L>), TransferError> {
-        let bytes = Bounded::from_slice(data).map_err(|full| TransferError::TooLong {
+        let bytes = BoundedVec::from_slice(data).map_err(|full| TransferError::TooLong {
             max: full.capacity,
             got: data.len(),
         })?;
@@ -136,7 +136,7 @@ impl<const N: usize, const L: usize> SdoTransfer<N, L> {
             }
             (TransferState::InitiateDownload, GenericSdoResponse::InitiateDownload { .. }) => {
                 if Expedited::new(&self.data).is_some() {
-                    return Ok(TransferStep::Done(Bounded::new()));
+                    return Ok(TransferStep::Done(BoundedVec::new()));
                 }
                 Ok(self.send_segment(0, false))
             }
@@ -146,7 +146,7 @@ impl<const N: usize, const L: usize> SdoTransfer<N, L> {
             ) => {
                 check_toggle(toggle, *got)?;
                 if sent >= self.data.len() {
-                    return Ok(TransferStep::Done(Bounded::new()));
+                    return Ok(TransferStep::Done(BoundedVec::new()));
                 }
                 Ok(self.send_segment(sent, !toggle))
             }

@@ -1,7 +1,7 @@
 //! Lines of text and hexadecimal digits.
 
 use super::error::SlcanError;
-use crate::Bounded;
+use crate::BoundedVec;
 
 /// Ends a line; alone, it confirms a command.
 pub const CR: u8 = 0x0D;
@@ -14,7 +14,7 @@ const LF: u8 = 0x0A;
 pub const MAX_LINE: usize = 96;
 
 /// A line, or text in it.
-pub type Line = Bounded<u8, MAX_LINE>;
+pub type Line = BoundedVec<u8, MAX_LINE>;
 
 /// A completed line or answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! Segmented read and write, opcodes 12 to 15: objects of any length, such as the device name.
 
 use super::{SerialAnswer, command, dword, parse_target, target, target_and_number, word_count};
-use crate::Bounded;
+use crate::BoundedVec;
 use crate::canopen::Address;
 use crate::epos2::{CommError, SerialFrame, SerialFrameError, Words};
 
@@ -76,7 +76,7 @@ pub struct ReadSegment {
     /// More segments follow.
     pub more: bool,
     /// Its bytes, at most 63.
-    pub bytes: Bounded<u8, MAX_BYTES>,
+    pub bytes: BoundedVec<u8, MAX_BYTES>,
 }
 
 impl SegmentedRead {
@@ -114,7 +114,7 @@ pub struct WriteSegment {
     /// Alternates from segment to segment, beginning with `false`.
     pub toggle: bool,
     /// Its bytes, at most 63.
-    pub bytes: Bounded<u8, MAX_BYTES>,
+    pub bytes: BoundedVec<u8, MAX_BYTES>,
 }
 
 /// Writes the next segment.
@@ -186,11 +186,14 @@ fn pack(flags: u8, bytes: &[u8]) -> Words {
 }
 
 /// The control byte and the bytes it announces; `before` words of the frame precede.
-fn unpack(words: &[u16], before: usize) -> Result<(u8, Bounded<u8, MAX_BYTES>), SerialFrameError> {
+fn unpack(
+    words: &[u16],
+    before: usize,
+) -> Result<(u8, BoundedVec<u8, MAX_BYTES>), SerialFrameError> {
     let mut all = words.iter().flat_map(|word| word.to_le_bytes());
     let control = all.next().ok_or(word_count(before + 1, before))?;
     let len = usize::from(control & LENGTH);
-    let bytes: Bounded<_, MAX_BYTES> = all.take(len).collect();
+    let bytes: BoundedVec<_, MAX_BYTES> = all.take(len).collect();
     if bytes.len() < len {
         return Err(word_count(before + 1 + len / 2, before + words.len()));
     }

@@ -7,8 +7,8 @@ use glam::DVec3;
 use super::hard_cases::{ONE, counted};
 use super::patterns::{rmbl, scattered, vlp16};
 use crate::k::{
-    Edges, Estimate, FrameRotation, KCurve, KError, KMethod, Sampling, choose, estimate, exact,
-    sampled,
+    Edges, Estimate, FrameRotation, KCurve, KError, KMethod, Sampling, choose, drawn, estimate,
+    exact, sampled,
 };
 
 /// The number of shares whose error exceeds the bound, and the largest error.
@@ -82,6 +82,28 @@ fn sampled_estimates_are_within_their_confidence_intervals() {
     }
 }
 
+/// The bound of drawn pairs holds for all bins at once but for a risk of 1 in 20.
+#[test]
+fn drawn_pairs_are_within_their_bound() {
+    for points in patterns() {
+        let truth: Estimate = counted(&points, 151).into();
+        let direction = |index: u64| points.get(index as usize).copied();
+        let (n, setting) = (points.len() as u64, sampling(3e-3, 0.05));
+        let of = drawn(n, &direction, &truth.edges, &setting).unwrap();
+        assert_eq!((of.method, of.points), ("drawn", points.len()));
+        assert!(of.largest_bound() <= 3e-3);
+        let (outside, off) = compared_with(&of, &truth);
+        assert!(outside == 0 && off > 1e-5, "{off}");
+        // Threads do not change the draws.
+        assert_eq!(drawn(n, &direction, &truth.edges, &setting).unwrap(), of);
+        let missing = drawn(n + 50_000, &direction, &truth.edges, &setting);
+        assert!(
+            matches!(missing, Err(KError::NotUnit { .. })),
+            "{missing:?}"
+        );
+    }
+}
+
 /// Eight frames of an RMBL, bin edges, and the exact estimate.
 fn counted_rmbl() -> (Vec<DVec3>, Edges, Estimate) {
     let points = rmbl(8);
@@ -139,6 +161,8 @@ fn the_cheapest_sufficient_method_is_chosen() {
     assert_eq!(of(1_037_952, Some(&rotation), 0.0, 0.1), KMethod::Turned);
     assert_eq!(of(1_037_952, None, 1e-4, 1e-3), KMethod::Sampled);
     assert_eq!(of(1_037_952, Some(&rotation), 1e-4, 1e-3), KMethod::Sampled);
+    // Coarse bounds of many points need few pairs of them.
+    assert_eq!(of(20_000_000, None, 1e-2, 1e-3), KMethod::Drawn);
     // With a risk of zero every pair is counted.
     assert_eq!(of(1_037_952, None, 0.1, 0.0), KMethod::Exact);
     assert_eq!(of(1_037_952, None, 1e-4, 0.0), KMethod::Exact);

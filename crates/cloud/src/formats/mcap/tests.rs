@@ -4,6 +4,8 @@ use mcap::MessageStream;
 use proptest::prelude::*;
 use units::Metres;
 
+use crate::mount::Mount;
+
 use super::*;
 use crate::tests::samples::{self, NOW_NS, SharedOutput, SmallDisk, cloud_from, metadata};
 use crate::{DiagnosticLevel, Point};
@@ -31,7 +33,7 @@ fn points(after_ns: impl IntoIterator<Item = i64>) -> Points {
 /// after.
 fn track() -> TiltTrack {
     TiltTrack {
-        mount: Some(Metres(0.06)),
+        mount: Some(Mount::new(Metres(0.06))),
         samples: (-10..=260)
             .map(|ms| (at(ms * MS), Degrees(ms as f64 / 10.0)))
             .collect(),

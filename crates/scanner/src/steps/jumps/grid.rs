@@ -37,15 +37,31 @@ pub(super) fn jumps(arrivals: &[Arrival], spacing_ns: i64) -> Vec<Jump> {
     found.collect()
 }
 
-/// The packets by the lidar's clock before the jumps.
+/// The packets by the lidar's clock before the jumps, which are in order.
 pub(super) fn without(arrivals: &[Arrival], jumps: &[Jump]) -> Vec<Arrival> {
-    let mut level = arrivals.to_vec();
-    for jump in jumps {
-        for arrival in level.get_mut(jump.at..).unwrap_or_default() {
-            arrival.device = arrival.device.saturating_add(jump.by);
+    let jumps = jumps.iter().map(|jump| (jump.at, jump.by));
+    shifted(arrivals, jumps, |arrival, by| Arrival {
+        device: arrival.device.saturating_add(by),
+        ..arrival
+    })
+}
+
+/// The packets, each shifted by the sum of the steps at it and before, in one pass. A step is its
+/// first packet and its size; steps are in order.
+pub(in crate::steps) fn shifted(
+    arrivals: &[Arrival],
+    steps: impl IntoIterator<Item = (usize, Span)>,
+    shift: impl Fn(Arrival, Span) -> Arrival,
+) -> Vec<Arrival> {
+    let mut next = steps.into_iter().peekable();
+    let mut by = Span::ZERO;
+    let all = arrivals.iter().enumerate().map(|(at, arrival)| {
+        while let Some((_, step)) = next.next_if(|(first, _)| *first <= at) {
+            by = by.saturating_add(step);
         }
-    }
-    level
+        shift(*arrival, by)
+    });
+    all.collect()
 }
 
 /// By how much the lidar's clock was set forward before packet `at`; `None` if it was not.

@@ -43,7 +43,7 @@ fn a_step_of_the_lidar_clock_on_a_busy_network_is_found() {
         let (worst_us, polls_off) = seen.errors(&timeline, &truth);
         let bound_us = timeline.clock.bound().as_secs_f64() * 1e6;
         assert!(worst_us < bound_us && polls_off == 0, "{worst_us} us");
-        assert!(bound_us < 100.0, "{bound_us} us");
+        assert!(bound_us < 130.0, "{bound_us} us");
     }
 }
 
@@ -117,27 +117,33 @@ fn samples_with_the_drives_time_enclose_the_truth_across_a_step() {
 }
 
 /// While the host's clock seems to be earlier than it is, each answer is matched with the SYNC
-/// after its own.
+/// after its own, up to a pause of the SYNCs. The drive's clock drifts by a period meanwhile.
 #[test]
 fn samples_matched_with_a_later_sync_are_matched_again() {
-    let sent = |i: i64| i * 1_000_000;
-    let samples = (0..1_000i64).map(|i| {
-        let at = sent(i) + 250_000 + (i % 7) * 10_000;
-        let later = i64::from(i >= 500);
-        ShaftSample {
-            request: Stamp::from_nanos(EPOCH + sent(i + later)),
-            answer: Stamp::from_nanos(EPOCH + at + 1_350_000),
-            position: Quadcounts(0),
-            trigger: SampleTrigger::Sync,
-            device_us: Some((at / 1_000) as u32),
+    const PAUSE: i64 = 3_000;
+    for has_pause in [false, true] {
+        let sent = |i: i64| i * 1_000_000 + i64::from(has_pause && i >= PAUSE) * 50_000_000;
+        let mut noise = Noise(7);
+        let samples = (0..12_000i64).map(|i| {
+            let at = sent(i) + 250_000 + (600e3 * noise.next()) as i64;
+            // The last one before the pause has no later SYNC.
+            let later = i64::from(i >= 500 && !(has_pause && i >= PAUSE - 1));
+            ShaftSample {
+                request: Stamp::from_nanos(EPOCH + sent(i + later)),
+                answer: Stamp::from_nanos(EPOCH + at + 1_350_000),
+                position: Quadcounts(0),
+                trigger: SampleTrigger::Sync,
+                device_us: Some((at / 1_000 - at / 10_000_000) as u32),
+            }
+        });
+        let mut samples: Vec<ShaftSample> = samples.collect();
+        drive_clock::rematch(&mut samples, &(498..503));
+        for (i, sample) in (0..).zip(&samples) {
+            let matched = sample.request.as_nanos() - EPOCH;
+            // Of those near the step and after the pause an earlier one may be taken.
+            let is_early = (498..504).contains(&i) || (PAUSE..PAUSE + 96).contains(&i);
+            let is_earlier = is_early && matched == sent(i - 1);
+            assert!(is_earlier || matched == sent(i), "{i}: {matched}");
         }
-    });
-    let mut samples: Vec<ShaftSample> = samples.collect();
-    drive_clock::rematch(&mut samples, &(498..503));
-    for (i, sample) in (0..).zip(&samples) {
-        let matched = sample.request.as_nanos() - EPOCH;
-        // Of those near the step an earlier one may be taken.
-        let is_early = (498..504).contains(&i) && matched == sent(i - 1);
-        assert!(is_early || matched == sent(i), "{i}: {matched}");
     }
 }

@@ -1,6 +1,6 @@
 //! The chosen curve against the best by hindsight, over servos, accelerations and disturbances.
 
-use super::realistic::{Disturbance, Drive, QUANTUM, REFERENCE};
+use super::simulated_drive::{Disturbance, Drive, QUANTUM, REFERENCE};
 use super::*;
 
 /// Natural frequency and damping, underdamped to overdamped.
@@ -79,8 +79,8 @@ fn the_curve_that_predicts_best_is_chosen_for_any_servo() {
 
 /// A head held for 0.15 s or more was 7 degrees off, as a fit with large residuals has a large
 /// scatter. What remains happens between two polls, 2.5 ms apart, and is within the bound. All but
-/// a few of 140 are within 1.3 times the best by hindsight: cross-validation predicts samples, and
-/// where two curves differ between samples only, they cannot tell.
+/// a few of 140 are within 1.3 times the best by hindsight, as with other seeds: cross-validation
+/// predicts samples, and where two curves differ between samples only, they cannot tell.
 #[test]
 fn a_disturbed_head_is_followed() {
     let mut far = Vec::new();

@@ -110,10 +110,19 @@ fn a_box_at_2_m_s_is_at_its_position_of_each_firing() {
     assert!((gone - 0.4).abs() < 0.02, "{gone}");
     let line = BEFORE.lines().count() + 1;
     let name = "moving_objects";
-    assert_eq!(scene.effects.lines, [EffectLine { name, line }]);
+    assert_eq!(
+        scene.effects.lines,
+        [EffectLine {
+            name,
+            line: Some(line)
+        }]
+    );
     let explained = Explanation::new(
         &scene.effects.effects.usage(),
-        &[EffectLine { name, line }],
+        &[EffectLine {
+            name,
+            line: Some(line),
+        }],
         0,
     );
     let [on] = &explained.on[..] else { panic!() };
@@ -168,7 +177,7 @@ fn moving_objects_and_boxes_do_not_depend_on_threads() {
         .position(|line| line == "[effects.moving_objects]")
         .unwrap()
         + 1;
-    assert_eq!(scene.effects.lines[0].line, line);
+    assert_eq!(scene.effects.lines[0].line, Some(line));
     let after = format!("{BEFORE}{MESH}[effects.range_noise]\nsd_m = 0.01\n");
     let names: Vec<_> = read(&after)
         .effects

@@ -6,7 +6,7 @@
 use std::path::{Path, PathBuf};
 
 use analysis::density::Icosahedron;
-use analysis::figures::{self, AnalyzedScan, AnalyzedScans, InView, Planes, csv};
+use analysis::figures::{self, AnalyzedScan, AnalyzedScans, InView, csv};
 
 use super::input::Input;
 use super::report::{AnalyzeReport, PatternReport};
@@ -55,6 +55,7 @@ impl Folder {
 
     /// Stores what the figures need of a scan, independent of its size.
     pub fn add(&mut self, input: &Input, pattern: &PatternReport) {
+        let (planes, sphere) = input.directions.pictures();
         self.scans.scans.push(AnalyzedScan {
             name: pattern.name.clone(),
             points: pattern.points,
@@ -68,7 +69,8 @@ impl Folder {
             counts: pattern.density.counts.clone(),
             k: pattern.k.curve.clone(),
             method: pattern.k.method,
-            planes: Planes::new(&input.directions),
+            planes,
+            sphere,
         });
     }
 
@@ -80,6 +82,7 @@ impl Folder {
         let scans = &self.scans;
         let json = report.to_json();
         let files = [
+            ("points.svg", figures::points(scans)),
             ("density.svg", figures::density(scans)),
             ("histogram.svg", figures::histogram(scans)),
             ("planes.svg", figures::planes(scans)),

@@ -16,6 +16,7 @@ use protocol::record::Wire;
 use scanner::{Accuracy, TiltSource};
 use sim::patterns::{Pattern, PatternError, PatternRequest};
 
+use super::directions::Directions;
 use super::report::DeviceReport;
 use super::view::{DistantOrigin, ViewReport};
 use engine::failure::{Failure, Kind};
@@ -29,7 +30,7 @@ pub struct Input {
     /// Name of the input.
     pub name: String,
     /// Unit directions of the points.
-    pub directions: Vec<DVec3>,
+    pub directions: Directions,
     /// Revolutions of the lidar, if known.
     pub frames: Option<u64>,
     /// Duration of the scan, if known, seconds.
@@ -106,7 +107,7 @@ impl<'a> InputArgument<'a> {
 /// Extensions of text files with one row per point, apart from `.csv`.
 const TEXT_EXTENSIONS: [&str; 3] = ["xyz", "txt", "asc"];
 
-const HINT: &str = "name a pattern (vlp16, hdl32e, vlp32c, rmbl:SPEED, rsbl:SPEED, velomotion16:SPEED), a cloud (.ply .pcd .las .laz .e57 .mcap .csv .xyz .txt .asc), \
+const HINT: &str = "name a pattern (a lidar: vlp16, hi-res, hdl32e, vlp32c, hdl64e, utm30lx, lms151, each with :SPEED to tilt and ,spin to spin; rmbl:SPEED, rsbl:SPEED, velomotion16:SPEED), a cloud (.ply .pcd .las .laz .e57 .mcap .csv .xyz .txt .asc), \
                     or a log or recording (pcapng, pcap)";
 
 /// The failure for an invalid pattern.
@@ -124,7 +125,7 @@ pub fn pattern_failure(error: &PatternError) -> Failure {
 fn of_pattern(pattern: &Pattern) -> Input {
     Input {
         name: pattern.name().to_owned(),
-        directions: pattern.directions(),
+        directions: Directions::of_pattern(pattern),
         frames: Some(u64::from(pattern.frames())),
         scan_s: Some(pattern.scan_s()),
         view: Some(ViewReport::of_pattern(pattern)),
@@ -148,9 +149,10 @@ pub fn device(pattern: &Pattern) -> Option<DeviceReport> {
             tilt.from_deg.min(tilt.to_deg),
             tilt.from_deg.max(tilt.to_deg),
         ],
+        sees: [-90.0, 90.0].map(|azimuth_deg| pattern.sees_azimuth(azimuth_deg)),
     };
     let view = device.view();
-    let [low, high] = view.forwards_deg;
+    let [low, high] = view.forwards_deg.or(view.backwards_deg)?;
     // Without the ramps, as in the paper.
     let moving_s = match tilt.accel_deg_s2 {
         Some(_) => (tilt.to_deg - tilt.from_deg).abs() / tilt.speed_deg_s,
@@ -189,7 +191,7 @@ fn of_cloud(path: &Path, format: Format, origin_m: DVec3) -> Result<Input, Failu
     let (directions, without_direction) = directions(path, places, read.without_numbers)?;
     Ok(Input {
         name: path.display().to_string(),
-        directions,
+        directions: Directions::Stored(directions),
         without_direction,
         without_numbers: read.without_numbers,
         outside,
@@ -296,7 +298,7 @@ fn of_log(path: &Path, interrupt: &AtomicBool) -> Result<Input, Failure> {
     };
     Ok(Input {
         name: path.display().to_string(),
-        directions,
+        directions: Directions::Stored(directions),
         frames: frames.map(|frames| frames.round() as u64),
         scan_s: Some(scan_s),
         without_direction,

@@ -2,6 +2,7 @@
 //!
 //! Patterns come from `sim`, clouds and logs from files (`input`); `analysis` measures.
 
+mod directions;
 mod folder;
 mod input;
 pub(crate) mod report;
@@ -17,7 +18,7 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
 
 use analysis::density::{
-    BinCounts, DensityError, Icosahedron, LargestHole, Locator, TOLERANCE_RAD, bands, gaps, holes,
+    BinCounts, DensityError, Icosahedron, LargestHole, Locator, TOLERANCE_RAD, bands, holes,
     largest_hole, largest_hole_within, quantile, rows,
 };
 use analysis::figures::SPHERE_M;
@@ -35,6 +36,7 @@ use super::CommandOutput;
 use crate::cli::{self, Common};
 use crate::signals;
 use crate::terminal::Progress;
+use directions::Directions;
 use engine::failure::{Failure, Kind};
 use folder::Folder;
 use input::{Input, InputArgument};
@@ -47,8 +49,10 @@ const RADIUS_M: f64 = 1.0;
 const LEAST_ON_EDGES: f64 = 1e-8;
 /// Interval of checks for an interrupt.
 const LOOK_AGAIN: Duration = Duration::from_millis(20);
+/// Least tolerance of K by draws: an hour of them would bound the error by a tenth of it.
+const LEAST_DRAWN: f64 = 2e-5;
 /// Number of points above which progress is reported.
-const MANY_POINTS: usize = 1_000_000;
+const MANY_POINTS: u64 = 1_000_000;
 /// Holes counted one by one; more would take half a minute at eleven million points.
 const MOST_HOLES: usize = 2_000;
 
@@ -87,14 +91,14 @@ pub fn run(arguments: &cli::Analyze, common: &Common) -> Result<CommandOutput, F
 }
 
 /// The output, and the folder to be written.
-type Measured = (CommandOutput, Option<(Folder, AnalyzeReport, Progress)>);
+type AnalyzeOutcome = (CommandOutput, Option<(Folder, AnalyzeReport, Progress)>);
 
 /// Measures all inputs.
 fn measured(
     arguments: &cli::Analyze,
     common: &Common,
     interrupt: &AtomicBool,
-) -> Result<Measured, Failure> {
+) -> Result<AnalyzeOutcome, Failure> {
     let progress = Progress::new(common);
     let measure = Measure::new(arguments)?;
     if let Some(sweep) = &arguments.sweep {
@@ -182,7 +186,7 @@ impl Measure {
         interrupt: &AtomicBool,
     ) -> Result<PatternReport, Failure> {
         let say = |what: &str| {
-            let points = input.directions.len();
+            let points = input.directions.points();
             if points >= MANY_POINTS {
                 progress.say(&format!("{}, {points} points: {what}", input.name));
             }
@@ -191,9 +195,15 @@ impl Measure {
         let directions = &input.directions;
         let view = input.view.as_ref().map(|seen| seen.view);
         say("density");
-        let counts = BinCounts::new(&self.locator, directions).map_err(wrong)?;
+        let counts = directions.counts(&self.locator).map_err(wrong)?;
+        go_on(interrupt)?;
+        say("gaps");
+        let gaps = self.gaps(input).map_err(wrong)?;
+        let emptiest = self.emptiest(input, &counts).map_err(wrong)?;
+        go_on(interrupt)?;
         say("largest holes");
-        let largest = largest_hole(directions, TOLERANCE_RAD).map_err(wrong)?;
+        let (thinned, within_rad) = directions.thinned();
+        let largest = largest_hole(&thinned, TOLERANCE_RAD).map_err(wrong)?;
         let largest = largest.ok_or_else(|| {
             Failure::new(Kind::BadInput, format!("{}: no points", input.name))
                 .help("give one that has some")
@@ -202,19 +212,19 @@ impl Measure {
         let hole_in_view = match view {
             Some(view) => {
                 let depth = |direction: DVec3| view.depth_rad(direction);
-                largest_hole_within(directions, TOLERANCE_RAD, &depth).map_err(wrong)?
+                largest_hole_within(&thinned, TOLERANCE_RAD, &depth).map_err(wrong)?
             }
             None => None,
         };
-        let gaps = self.gaps(input).map_err(wrong)?;
         go_on(interrupt)?;
         say("blind spots");
-        let blind = blind(input, gaps.of_99_percent_deg).map_err(wrong)?;
+        let least_rad = gaps.of_99_percent_deg.to_radians();
+        let blind = blind(input, (&thinned, within_rad), least_rad).map_err(wrong)?;
+        drop(thinned);
         let in_view = view.map(|view| self.in_view(&view));
         let in_view =
             in_view.map(|which| counts.statistics_of(|bin| which.get(bin) == Some(&true)));
-        let emptiest = self.emptiest(input, &counts).map_err(wrong)?;
-        let hole = hole_report(&largest);
+        let hole = hole_report(&largest, within_rad);
         go_on(interrupt)?;
         say("K function");
         let (k, on_edges) = self.k(input)?;
@@ -226,7 +236,7 @@ impl Measure {
         warnings.extend(input.warnings.iter().cloned().chain(on_edges));
         Ok(PatternReport {
             name: input.name.clone(),
-            points: directions.len() as u64,
+            points: directions.points(),
             frames: input.frames,
             scan_s: input.scan_s,
             without_direction: input.without_direction,
@@ -240,7 +250,7 @@ impl Measure {
             },
             density_in_view: in_view,
             hole,
-            hole_in_view: hole_in_view.as_ref().map(hole_report),
+            hole_in_view: hole_in_view.map(|found| hole_report(&found, within_rad)),
             gaps,
             emptiest,
             blind,
@@ -270,14 +280,28 @@ impl Measure {
             ..Sampling::default()
         };
         let threads = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
-        let directions = &input.directions;
-        let estimate = k::estimate(
-            directions,
-            rotation.as_ref(),
-            &self.edges,
-            &sampling,
-            threads,
-        );
+        let estimate = match &input.directions {
+            Directions::Stored(directions) => {
+                let rotation = rotation.as_ref();
+                k::estimate(directions, rotation, &self.edges, &sampling, threads)
+            }
+            Directions::Streamed(pattern) if self.tolerance < LEAST_DRAWN => {
+                let what = format!(
+                    "--k-error: expected at least {LEAST_DRAWN}, got {}",
+                    self.tolerance
+                );
+                let help = format!(
+                    "{} has {} points, of which pairs are drawn",
+                    input.name,
+                    pattern.points()
+                );
+                return Err(Failure::new(Kind::Usage, what).help(help));
+            }
+            Directions::Streamed(pattern) => {
+                let direction = |point: u64| pattern.direction(point);
+                k::drawn(pattern.points(), &direction, &self.edges, &sampling)
+            }
+        };
         let estimate = estimate.map_err(|error| {
             Failure::new(Kind::BadInput, format!("{}: {error}", input.name))
                 .help("--k-error 0 counts every pair, whatever the points")
@@ -334,7 +358,7 @@ impl Measure {
         let most = most.map_or(0, |(_, points)| *points);
         bins.retain(|(_, points)| *points <= most);
         let places: Vec<DVec3> = bins.iter().map(|(place, _)| *place).collect();
-        let gaps = gaps(&input.directions, &places)?;
+        let gaps = input.directions.gaps(&places)?;
         let mut found: Vec<EmptiestBin> = bins
             .iter()
             .zip(gaps)
@@ -356,14 +380,14 @@ impl Measure {
     /// Angle to the nearest point, radians, from the directions of gaps that are in view.
     fn gaps_in_view(
         &self,
-        directions: &[DVec3],
+        directions: &Directions,
         view: Option<&FieldOfView>,
     ) -> Result<Vec<f64>, DensityError> {
         let mut places = self.gap_places.clone();
         if let Some(view) = view {
             places.retain(|place| view.depth_rad(*place) >= 0.0);
         }
-        gaps(directions, &places)
+        directions.gaps(&places)
     }
 
     fn gaps(&self, input: &Input) -> Result<GapReport, DensityError> {
@@ -380,13 +404,22 @@ impl Measure {
 }
 
 /// Holes in view that are larger than most gaps, and bands.
-fn blind(input: &Input, least_deg: f64) -> Result<Blind, DensityError> {
-    let directions = &input.directions;
-    let least_rad = least_deg.to_radians().max(TOLERANCE_RAD);
+fn blind(
+    input: &Input,
+    (directions, within_rad): (&[DVec3], f64),
+    least_rad: f64,
+) -> Result<Blind, DensityError> {
+    let least_rad = least_rad.max(TOLERANCE_RAD);
     let found = match &input.view {
         Some(seen) => {
             let depth = |direction: DVec3| seen.view.depth_rad(direction);
-            Some(holes(directions, least_rad, MOST_HOLES, &depth)?)
+            // A hole among thinned points is larger by at most the distance of those left out.
+            Some(holes(
+                directions,
+                least_rad + within_rad,
+                MOST_HOLES,
+                &depth,
+            )?)
         }
         None => None,
     };
@@ -421,10 +454,10 @@ fn on_edges(estimate: &Estimate) -> Option<String> {
     ))
 }
 
-fn hole_report(largest: &LargestHole) -> HoleReport {
+fn hole_report(largest: &LargestHole, within_rad: f64) -> HoleReport {
     let hole = largest.hole;
     HoleReport {
-        radius_deg: hole.radius_rad.to_degrees(),
+        radius_deg: (hole.radius_rad - within_rad).max(0.0).to_degrees(),
         at_most_deg: largest.bound_rad.to_degrees(),
         centre: hole.centre.to_array(),
         from_axis_deg: hole.centre.angle_between(AXIS).to_degrees(),

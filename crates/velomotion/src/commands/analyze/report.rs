@@ -88,7 +88,7 @@ pub struct EmptiestBin {
 /// The largest circle without a point.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct HoleReport {
-    /// Radius, degrees.
+    /// Radius, degrees; its least possible value where not all points are in memory.
     pub radius_deg: f64,
     /// Upper bound on the radius, degrees.
     pub at_most_deg: f64,
@@ -104,7 +104,7 @@ pub struct HoleReport {
 /// single point.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct KReport {
-    /// Method: exact, turned (exact too) or sampled.
+    /// Method: exact, turned (exact too), sampled or drawn.
     pub method: &'static str,
     /// Bins.
     pub bins: usize,

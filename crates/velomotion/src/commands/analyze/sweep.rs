@@ -7,13 +7,14 @@
 
 use std::sync::atomic::AtomicBool;
 
-use analysis::density::{BinCounts, DensityError, TOLERANCE_RAD, largest_hole_within, quantile};
+use analysis::density::{DensityError, TOLERANCE_RAD, largest_hole_within, quantile};
 use analysis::tradeoff::front::front;
 use glam::DVec3;
 use serde::Serialize;
 use sim::patterns::{Pattern, PatternRequest};
 use utoipa::ToSchema;
 
+use super::directions::Directions;
 use super::input::pattern_failure;
 use super::text::{aligned, number};
 use super::{Measure, failure, go_on};
@@ -124,19 +125,20 @@ fn measured(
     pattern: &Pattern,
     measure: &Measure,
 ) -> Result<SweepSetting, DensityError> {
-    let directions = pattern.directions();
+    let directions = Directions::of_pattern(pattern);
     let view = pattern.view();
     let depth = |direction: DVec3| view.depth_rad(direction);
     let in_view = measure.in_view(&view);
     let is_in_view = |bin: usize| in_view.get(bin).copied().unwrap_or(false);
-    let counts = BinCounts::new(&measure.locator, &directions)?;
+    let counts = directions.counts(&measure.locator)?;
     let statistics = counts.statistics_of(is_in_view);
-    let hole = largest_hole_within(&directions, 100.0 * TOLERANCE_RAD, &depth)?;
+    let (thinned, _) = directions.thinned();
+    let hole = largest_hole_within(&thinned, 100.0 * TOLERANCE_RAD, &depth)?;
     let gap = quantile(&measure.gaps_in_view(&directions, Some(&view))?, 0.99);
     Ok(SweepSetting {
         values,
         scan_s: pattern.scan_s(),
-        points: directions.len() as u64,
+        points: directions.points(),
         hole_deg: hole.map_or(180.0, |hole| hole.hole.radius_rad.to_degrees()),
         gap_deg: gap.map_or(180.0, f64::to_degrees),
         // A scan without points in view counts as maximally uneven.

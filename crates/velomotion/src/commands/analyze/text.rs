@@ -235,8 +235,15 @@ impl HoleReport {
         let [x, y, z] = self
             .centre
             .map(|axis| if axis.abs() < 5e-4 { 0.0 } else { axis });
+        // Below it the bound is that of the search.
+        let is_wide = self.at_most_deg - self.radius_deg > 1e-3;
+        let to = if is_wide {
+            format!(" to {}", number(self.at_most_deg, 7))
+        } else {
+            String::new()
+        };
         format!(
-            "{what}: {} deg about ({x:.3}, {y:.3}, {z:.3}), {} deg from the tilt axis",
+            "{what}: {}{to} deg about ({x:.3}, {y:.3}, {z:.3}), {} deg from the tilt axis",
             number(self.radius_deg, 7),
             number(self.from_axis_deg, 6)
         )
@@ -253,8 +260,9 @@ impl DeviceReport {
         [
             format!("the device sees from {near:.3} to {far:.3} m"),
             format!(
-                "elevations {} to {} deg towards -x, {} to {} towards +x",
-                forwards_deg[0], forwards_deg[1], backwards_deg[0], backwards_deg[1],
+                "elevations towards -x: {}, towards +x: {}",
+                elevations(forwards_deg),
+                elevations(backwards_deg)
             ),
             format!(
                 "mean vertical resolution {} deg, tilt per turn {} deg",
@@ -263,6 +271,13 @@ impl DeviceReport {
             ),
         ]
     }
+}
+
+fn elevations(range_deg: Option<[f64; 2]>) -> String {
+    let trim = |x: f64| (x * 1e6).round() / 1e6;
+    range_deg.map_or("none".to_owned(), |[low, high]| {
+        format!("{} to {} deg", trim(low), trim(high))
+    })
 }
 
 /// One bar per class; the longest fills the available width.

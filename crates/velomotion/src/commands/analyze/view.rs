@@ -22,6 +22,8 @@ pub struct ViewReport {
     pub view: FieldOfView,
     /// Lowest and highest laser above the sensor's horizontal plane, degrees.
     pub elevations_deg: [f64; 2],
+    /// First and last azimuth of a planar scanner, degrees; null for a head that rotates.
+    pub azimuths_deg: Option<[f64; 2]>,
     /// Smallest and largest tilt, degrees.
     pub tilt_deg: [f64; 2],
     /// Height of the sensor above the tilt axis, metres.
@@ -43,6 +45,7 @@ impl ViewReport {
         Self {
             view: pattern.view(),
             elevations_deg: pattern.elevations_deg(),
+            azimuths_deg: pattern.azimuths_deg(),
             tilt_deg: tilts,
             d_m: pattern.settings().d_m,
             distance_m: [SPHERE_M; 2],
@@ -67,7 +70,7 @@ impl ViewReport {
             .iter()
             .flat_map(|sweep| [sweep.from_deg, sweep.to_deg]);
         let tilt_deg = ends(tilts).unwrap_or([0.0; 2]);
-        let d_m = track.mount.map_or(0.0, |d| d.0);
+        let d_m = track.mount.map_or(0.0, |mount| mount.position_m()[2]);
         let mut distances: Vec<f64> = places.iter().map(|place| place.length()).collect();
         let distance_m = middle(&mut distances)?;
         let elevations_deg = [low.elevation_deg, high.elevation_deg];
@@ -75,6 +78,7 @@ impl ViewReport {
         Some(Self {
             view: FieldOfView::new(elevations_deg, tilt_deg, heights_m, distance_m),
             elevations_deg,
+            azimuths_deg: None,
             tilt_deg,
             d_m,
             distance_m,

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant, SystemTime};
 use engine::bring_up::{BringUp, BringUpResult, BringUpStepReport, Judgement, Operator, STEPS};
 use engine::config::{Config, Device};
 use engine::default_paths;
-use engine::devices::drive_port::{self, GuardianOptions, Opened, Search};
+use engine::devices::drive_port::{self, GuardianOptions, OpenPort, Search};
 use engine::devices::profile;
 use engine::failure::{Failure, Kind};
 use io::discover::discover;
@@ -377,7 +377,7 @@ fn wait_for_move(child: &mut Child) -> bool {
 }
 
 /// Opens the port as soon as the killed process's guardian has closed it.
-fn reopen(device: &Device, port: &Path) -> Result<Opened, Failure> {
+fn reopen(device: &Device, port: &Path) -> Result<OpenPort, Failure> {
     let until = Instant::now() + START_LIMIT;
     loop {
         match drive_port::open(device, port, None) {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use daemon::client::Client;
-use daemon::local::LocalService;
+use daemon::local::{LocalService, LocalTask};
 use engine::capture::jog::JogRequest;
 use engine::capture::run;
 use engine::config::{Config, Device};
@@ -81,7 +81,7 @@ fn report(config: &Config, device: (String, Device)) -> Result<AxisReport, Failu
     let local = LocalService::start(
         config.clone(),
         device,
-        false,
+        LocalTask::Read,
         &Arc::default(),
         environment(),
     )?;

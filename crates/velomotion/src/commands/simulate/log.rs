@@ -16,7 +16,9 @@ use protocol::record::{Direction, DriveLink, Record, Wire};
 use scanner::config::{MountConfig, TiltAxisConfig};
 use scanner::{LidarConfig, ScanConfig, SweepPlan};
 use sim::TruePoint;
+use sim::effects::SurfaceEffect;
 use sim::scene_file::SceneFile;
+use sim::sensor::LidarMount;
 use sim::simulate::{DriveRequest, Simulation, SimulationEvent, SimulationSink};
 use units::{Degrees, Gearing, Host, Lidar, Span, Stamp};
 
@@ -25,7 +27,7 @@ use engine::failure::{Failure, Kind};
 use engine::output::{Target, sink_failure};
 
 /// Factory address of a sensor (63-9243).
-const SOURCE: [u8; 4] = [192, 168, 1, 201];
+pub(super) const SOURCE: [u8; 4] = [192, 168, 1, 201];
 /// The drive's node id.
 const NODE: u8 = 1;
 /// Points per batch.
@@ -125,7 +127,7 @@ impl<'a> Log<'a> {
         let _ = self.flush();
         self.writer
             .finish()
-            .map_err(|error| super::cannot_write(path, &error))?;
+            .map_err(|error| cannot_write(path, &error))?;
         let name = match self.truth {
             Some(truth) => {
                 let name = truth.path().to_owned();
@@ -162,22 +164,10 @@ impl SimulationSink for Log<'_> {
                     },
                 })
             }
-            SimulationEvent::Request { at, request } => match self.gearing {
-                Some(gearing) => self.frame(*at, Direction::ToDevice, &frame(*request, gearing)),
+            _ => match frame_of(event, self.gearing) {
+                Some((at, direction, frame)) => self.frame(at, direction, &frame),
                 None => ControlFlow::Continue(()),
             },
-            SimulationEvent::Answer {
-                at,
-                request,
-                position_qc,
-            } => {
-                let answer = match request {
-                    DriveRequest::Position => ReadObject::answer(Ok(*position_qc as u32)),
-                    DriveRequest::Probe(which) => ReadObject::answer(Err(probe_request(*which).1)),
-                    _ => WriteObject::answer(Ok(())),
-                };
-                self.frame(*at, Direction::FromDevice, &answer)
-            }
         }
     }
 
@@ -211,6 +201,15 @@ impl SimulationSink for Log<'_> {
     }
 }
 
+/// The failure of a log that cannot be written.
+pub(super) fn cannot_write(path: &Path, error: &dyn std::fmt::Display) -> Failure {
+    Failure::new(
+        Kind::Incomplete,
+        format!("the log {} cannot be written: {error}", path.display()),
+    )
+    .help("free some space or choose another folder with -o")
+}
+
 /// Ring of each laser by elevation; 0 is the lowest.
 fn rings(simulation: &Simulation) -> Vec<u8> {
     let beams = &simulation.sensor.beams;
@@ -223,6 +222,31 @@ fn rings(simulation: &Simulation) -> Vec<u8> {
         .iter()
         .map(|beam| u8::try_from(below(beam.elevation_deg).count()).unwrap_or(u8::MAX))
         .collect()
+}
+
+/// The frame of the drive in an event, with its time and direction.
+pub(super) fn frame_of(
+    event: &SimulationEvent,
+    gearing: Option<Gearing>,
+) -> Option<(Stamp<Host>, Direction, SerialFrame)> {
+    match event {
+        SimulationEvent::Datagram { .. } => None,
+        SimulationEvent::Request { at, request } => {
+            Some((*at, Direction::ToDevice, frame(*request, gearing?)))
+        }
+        SimulationEvent::Answer {
+            at,
+            request,
+            position_qc,
+        } => {
+            let answer = match request {
+                DriveRequest::Position => ReadObject::answer(Ok(*position_qc as u32)),
+                DriveRequest::Probe(which) => ReadObject::answer(Err(probe_request(*which).1)),
+                _ => WriteObject::answer(Ok(())),
+            };
+            Some((*at, Direction::FromDevice, answer))
+        }
+    }
 }
 
 /// Frame of a request to the drive.
@@ -266,6 +290,7 @@ const fn probe_request(second: bool) -> (Address, CommError) {
 pub(super) fn scan_config(scene: &SceneFile, gearing: Option<Gearing>) -> ScanConfig {
     let simulation = &scene.simulation;
     let step_m = f64::from(simulation.sensor.model.distance_unit_mm()) * 1e-3;
+    let noise_m2 = scene.effects.effects.firings.surface.range_variance_m2();
     let axis = gearing.map_or_else(TiltAxisConfig::default, |gearing| TiltAxisConfig {
         node: NODE,
         encoder_lines: gearing.qc_per_motor_turn() / 4,
@@ -274,15 +299,22 @@ pub(super) fn scan_config(scene: &SceneFile, gearing: Option<Gearing>) -> ScanCo
     ScanConfig {
         device: "simulate".to_owned(),
         simulated: true,
-        mount: MountConfig {
-            d_m: simulation.mount.position_m.z,
-        },
+        mount: mount_config(&simulation.mount),
         lidar: LidarConfig {
-            range_sd_m: step_m / f64::sqrt(12.0),
+            range_sd_m: (step_m * step_m / 12.0 + noise_m2).sqrt(),
         },
         axis,
         sweep: plan(simulation),
         ..ScanConfig::default()
+    }
+}
+
+fn mount_config(mount: &LidarMount) -> MountConfig {
+    let [x, y, z] = mount.position_m.to_array();
+    MountConfig {
+        position_m: [x, y, 0.0],
+        rotation_deg: mount.rotation_deg(),
+        ..MountConfig::upright(z)
     }
 }
 

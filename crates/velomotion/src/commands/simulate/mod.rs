@@ -4,6 +4,7 @@
 //! `sim::simulate` does the simulation.
 
 mod log;
+mod sizes;
 
 use std::fs::File;
 use std::num::NonZeroUsize;
@@ -12,17 +13,16 @@ use std::sync::OnceLock;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
+use cloud::mount::Mount;
 use cloud::{Fields, Metadata, TiltTrack};
-use glam::{DMat3, DVec2};
 use io::log::{LogConfig, LogError, LogWriter};
 use protocol::record::DriveLink;
 use scanner::ScanConfig;
 use serde::Serialize;
-use sim::effect_models::Explanation;
+use sim::effect_models::{Explanation, InvalidSetting};
 use sim::effects::{Effects, FiringEffectSet, Stopwatch};
 use sim::scene_file::{EffectLine, SHIPPED, SceneFile};
 use sim::simulate::SimulateError;
-use units::Metres;
 use utoipa::ToSchema;
 
 use super::CommandOutput;
@@ -33,7 +33,8 @@ use engine::document::Document;
 use engine::failure::{Failure, Kind};
 use engine::output::{self, Target};
 use engine::reconstruct::report::PacketCounts;
-use log::{Log, scan_config};
+use log::{Log, cannot_write, scan_config};
+use sizes::{EffectChoice, EffectSize, Sampler};
 
 /// Report on a simulation.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
@@ -74,6 +75,12 @@ pub struct SimulationReport {
     /// Changes and costs of effects, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub explanation: Option<Explanation>,
+    /// What effects change in the cloud, measured on a sample of the scene's firings, if requested.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sizes: Option<Vec<EffectSize>>,
+    /// Effects chosen by a tolerance, if requested.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub choice: Option<EffectChoice>,
 }
 
 /// A simulation to run.
@@ -109,6 +116,8 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, 
     scene
         .effects
         .leave_out(|effect| out.iter().any(|name| name == effect || name == cli::ALL));
+    let cores = || std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
+    let threads = arguments.threads.unwrap_or_else(cores);
     let log = arguments
         .output
         .clone()
@@ -125,18 +134,40 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, 
         None => None,
     };
     let stdout_taken = truth.as_ref().is_some_and(Target::is_stdout);
-    let cores = || std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
+    let choice = match arguments.tolerance {
+        Some(tolerance) => {
+            let choice = Sampler::new(&scene, threads).choose(tolerance, &|name| {
+                out.iter().any(|other| other == name || other == cli::ALL)
+            })?;
+            let selected = scene.select(|name| choice.on.contains(&name), clock);
+            scene.effects = selected.map_err(|error| invalid_setting(&name, &error))?;
+            Some(choice)
+        }
+        None => None,
+    };
+    // What a tolerance leaves out is reported with the choice.
+    let sizes = match (arguments.explain, &choice) {
+        (false, Some(_)) => Vec::new(),
+        (explain, _) => Sampler::new(&scene, threads).sizes(!explain)?,
+    };
+    let warnings = match choice {
+        Some(_) => Vec::new(),
+        None => sizes::warnings(&sizes),
+    };
     let request = Request {
         name,
         log: &log,
         truth,
-        threads: arguments.threads.unwrap_or_else(cores),
+        threads,
         explain: arguments.explain,
         force: arguments.force,
         interrupt: &interrupt,
         progress: Progress::new(common),
     };
-    let (report, failure) = make(scene, request)?;
+    let (mut report, failure) = make(scene, request)?;
+    report.warnings.extend(warnings);
+    report.sizes = arguments.explain.then_some(sizes);
+    report.choice = choice;
     Ok(CommandOutput {
         json: report.to_json(),
         text: report.text(),
@@ -147,7 +178,7 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, 
 }
 
 /// Finds a scene by path or name.
-fn find(scene: &Path) -> Result<(String, String), Failure> {
+pub(super) fn find(scene: &Path) -> Result<(String, String), Failure> {
     let name = scene.display().to_string();
     if let Some((_, text)) = SHIPPED.iter().find(|(shipped, _)| *shipped == name) {
         return Ok((name, (*text).to_owned()));
@@ -235,7 +266,7 @@ pub fn make(
     let config = scan_config(&scene, gearing);
     let writer = create_log(path, &config, gearing.is_some(), force)?;
     if let Some(truth) = &mut truth {
-        begin_truth(truth, &name, config.mount.d_m)?;
+        begin_truth(truth, &name, config.mount.mount())?;
     }
     let began = Instant::now();
     let mut out = Log::new(
@@ -257,7 +288,6 @@ pub fn make(
             scene.simulation.run(effects, threads, &mut out)
         }
     };
-    let warnings = beyond_the_log(&scene).into_iter().collect();
     let summary = summary.map_err(|error| cannot_simulate(&name, &error))?;
     let (truth, cut) = out.finish(path)?;
     let took = began.elapsed();
@@ -293,8 +323,10 @@ pub fn make(
         threads: threads.get(),
         log: path.display().to_string(),
         truth: truth.map(|path| path.display().to_string()),
-        warnings,
+        warnings: Vec::new(),
         explanation,
+        sizes: None,
+        choice: None,
     };
     Ok((report, failure))
 }
@@ -318,10 +350,10 @@ fn create_log(
     writer.map_err(|error| log_failure(path, &error))
 }
 
-/// Begins the cloud of the truth, of a lidar `d_m` above the tilt axis.
-fn begin_truth(truth: &mut Target, name: &str, d_m: f64) -> Result<(), Failure> {
+/// Begins the cloud of the truth.
+fn begin_truth(truth: &mut Target, name: &str, mount: Mount) -> Result<(), Failure> {
     let track = TiltTrack {
-        mount: Some(Metres(d_m)),
+        mount: Some(mount),
         ..TiltTrack::default()
     };
     let sink = truth.sink();
@@ -338,7 +370,10 @@ impl SimulationReport {
             false => {
                 let named = self.effects.iter();
                 let named: Vec<_> = named
-                    .map(|e| format!("{} (line {})", e.name, e.line))
+                    .map(|e| match e.line {
+                        Some(line) => format!("{} (line {line})", e.name),
+                        None => e.name.to_owned(),
+                    })
                     .collect();
                 named.join(", ")
             }
@@ -370,29 +405,21 @@ impl SimulationReport {
                 self.took_s, self.threads, self.times_real_time
             ),
         ));
+        rows.extend((self.choice.iter()).map(|choice| ("tolerance", choice.text())));
         rows.push(("log", self.log.clone()));
         rows.extend(self.truth.iter().map(|truth| ("truth", truth.clone())));
         let warnings = self.warnings.iter();
         rows.extend(warnings.map(|warning| ("warning", warning.clone())));
         let table = crate::tables::table(rows);
-        match &self.explanation {
-            Some(explanation) => format!("{table}\n{explanation}"),
-            None => table,
+        let mut text = table;
+        if let Some(explanation) = &self.explanation {
+            text = format!("{text}\n{explanation}");
         }
+        if let Some(sizes) = &self.sizes {
+            text = format!("{text}\n{}", sizes::table(sizes));
+        }
+        text
     }
-}
-
-/// Mount settings of the scene that a log cannot store: its rotation and horizontal offset.
-fn beyond_the_log(scene: &SceneFile) -> Option<String> {
-    let mount = &scene.simulation.mount;
-    let is_recorded =
-        mount.rotation == DMat3::IDENTITY && mount.position_m.truncate() == DVec2::ZERO;
-    (!is_recorded).then(|| {
-        format!(
-            "a log stores only the height of the mount, {} m: replay ignores the scene's position_m and rotation_deg, the truth includes them",
-            mount.position_m.z
-        )
-    })
 }
 
 /// A quotient, 0 of nothing.
@@ -410,17 +437,14 @@ fn metadata(name: &str) -> Metadata {
     }
 }
 
+fn invalid_setting(name: &str, error: &InvalidSetting) -> Failure {
+    Failure::new(Kind::BadInput, format!("scene {name}: {error}"))
+        .help("correct the scene file; docs: Effects")
+}
+
 fn cannot_simulate(name: &str, error: &SimulateError) -> Failure {
     Failure::new(Kind::BadInput, format!("scene {name}: {error}"))
         .help("reduce the values in the scene file's [motion] or [drive]")
-}
-
-fn cannot_write(path: &Path, error: &dyn std::fmt::Display) -> Failure {
-    Failure::new(
-        Kind::Incomplete,
-        format!("the log {} cannot be written: {error}", path.display()),
-    )
-    .help("free some space or choose another folder with -o")
 }
 
 fn log_failure(path: &Path, error: &LogError) -> Failure {

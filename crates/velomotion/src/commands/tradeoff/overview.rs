@@ -2,8 +2,10 @@
 //! timed.
 
 use analysis::plan::{PlanLimits, PlanRow};
-use analysis::tradeoff::{Bench, Measured, Row, Study, StudyError, Trade};
-use engine::capture::scan_plan::{PlanRequest, ScanPlanner, USUAL_M, USUAL_RPM};
+use analysis::tradeoff::{
+    Bench, Measurement, Row, Study, StudyError, StudyFindings, StudyRows, Trade,
+};
+use engine::capture::scan_plan::{PlanRequest, ScanPlanner, USUAL_M};
 use engine::capture_request::CaptureRequest;
 use engine::config::{Config, Device};
 use protocol::vlp16::models;
@@ -18,7 +20,7 @@ pub(super) const SCAN_SPEED: Study = Study {
         ("mean_resolution_deg", "mean resolution, deg"),
         ("gap_deg", "gap of 99 %, deg"),
         ("widest_gap_deg", "widest gap, deg"),
-        ("stated_mm", "error without ranges, mm"),
+        ("error_without_ranges_mm", "error without ranges, mm"),
         ("error_mm", "error of 95 %, mm"),
     ],
     trades: &[
@@ -26,6 +28,7 @@ pub(super) const SCAN_SPEED: Study = Study {
         Trade::new(0, 3).joined(),
         Trade::new(0, 4).joined(),
     ],
+    finding,
     measure,
 };
 
@@ -33,6 +36,8 @@ pub(super) const SCAN_SPEED: Study = Study {
 const SPEEDS_DEG_S: [f64; 13] = [
     0.5, 1.0, 2.0, 3.0, 5.0, 7.0, 10.0, 15.0, 19.0, 20.0, 30.0, 40.0, 56.25,
 ];
+/// Revolutions of the lidar per minute.
+const RPM: u32 = 600;
 /// The drive's factory ramps, and gentler ones.
 const RAMPS: [(f64, &str); 2] = [
     (500.0, "ramps of 500 deg/s2"),
@@ -47,13 +52,13 @@ fn planner(gap_deg: Option<f64>) -> Result<ScanPlanner, StudyError> {
             gap_deg,
             ..PlanLimits::default()
         },
-        ..PlanRequest::new(USUAL_M, &models::VLP_16, USUAL_RPM)
+        ..PlanRequest::new(USUAL_M, &models::VLP_16, RPM)
     };
     ScanPlanner::new(&Config::default(), ("auto", &Device::found()), request)
         .map_err(|failure| StudyError::workload(failure.message))
 }
 
-fn measure(bench: &mut Bench<'_>) -> Result<Measured, StudyError> {
+fn measure(bench: &mut Bench<'_>) -> Result<StudyRows, StudyError> {
     let every = bench.pick(3, 1);
     (bench.say)(&format!(
         "{} settings, computed",
@@ -82,15 +87,34 @@ fn measure(bench: &mut Bench<'_>) -> Result<Measured, StudyError> {
     Ok((about(bench.pick(1, GAPS_DEG.len()))?, rows))
 }
 
+/// The fastest and the slowest scan.
+fn finding(findings: &StudyFindings) -> String {
+    let value =
+        |row: &Row, column: usize| row.values.get(column).map_or(f64::NAN, Measurement::middle);
+    let mut rows: Vec<&Row> = findings.rows.iter().collect();
+    rows.sort_by(|a, b| value(a, 0).total_cmp(&value(b, 0)));
+    let (Some(fast), Some(slow)) = (rows.first(), rows.last()) else {
+        return findings.study.title.to_owned();
+    };
+    format!(
+        "{:.0} s give gaps of {:.2} deg, {:.0} s {:.2} deg; the error stays at {:.0} to {:.0} mm, that of the ranges",
+        value(fast, 0),
+        value(fast, 2),
+        value(slow, 0),
+        value(slow, 2),
+        value(slow, 5),
+        value(fast, 5),
+    )
+}
+
 fn values(row: &PlanRow) -> [f64; 6] {
     let error = &row.error_mm;
-    let without_ranges = [error.azimuth, error.tilt, error.clock, error.delay];
     [
         row.scan_s,
         row.resolution_deg,
         row.gap_deg.p99,
         row.gap_deg.worst,
-        1.96 * without_ranges.into_iter().fold(0.0, f64::hypot),
+        error.without_ranges(),
         error.total,
     ]
 }
@@ -102,7 +126,7 @@ fn about(recommended: usize) -> Result<Vec<String>, StudyError> {
         let plan = planner(Some(gap_deg))?.plan();
         let plan = plan.map_err(|failure| StudyError::workload(failure.message))?;
         if let Some(chosen) = plan.chosen {
-            let command = chosen.command.clone();
+            let command = chosen.command.unwrap_or_default();
             advice.push(format!(
                 "{gap_deg} deg: {command} ({:.1} s, {:.1} million points)",
                 chosen.row.scan_s,
@@ -119,7 +143,7 @@ fn about(recommended: usize) -> Result<Vec<String>, StudyError> {
             advice.join("; ")
         ),
         format!(
-            "45 degrees, one sweep, a VLP-16 at {USUAL_RPM} rpm, USB, homing included. The gap is the angle from a direction in view to \
+            "45 degrees, one sweep, a VLP-16 at {RPM} rpm, USB, homing included. The gap is the angle from a direction in view to \
              the nearest ray, for 99 % of directions and for all; it is the worst of four azimuths of the lidar at the start. Gentle ramps \
              are part of the sweep, with lines closer together. At 20 deg/s the tilt per revolution is the spacing of the lasers, so that \
              lines coincide: 19 deg/s sees more."
@@ -163,6 +187,8 @@ mod tests {
                 .unwrap();
             row.values[column].middle()
         };
+        let finding = finding(&findings);
+        assert!(finding.starts_with("6 s give gaps of 0.9"), "{finding}");
         // 75 degrees over 16 lasers in 8 revolutions.
         assert!((value("56.25 deg/s", 1) - 0.5859).abs() < 1e-4);
         assert!(value("56.25 deg/s", 2) > 4.0 * value("3 deg/s", 2));

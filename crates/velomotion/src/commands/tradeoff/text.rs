@@ -52,7 +52,7 @@ fn table(findings: &StudyFindings) -> String {
 #[cfg(test)]
 mod tests {
     use analysis::tradeoff::Trade;
-    use analysis::tradeoff::{Effort, Machine, Measured, Measurement, Row, Study, TimingSpread};
+    use analysis::tradeoff::{Effort, Machine, Measurement, Row, Study, StudyRows, TimingSpread};
 
     use super::*;
 
@@ -86,7 +86,8 @@ mod tests {
                     choice: "way",
                     columns: &[("time_ns", "ns per point"), ("error_mm", "worst error, mm")],
                     trades: const { &[Trade::new(0, 1)] },
-                    measure: |_| Ok(Measured::default()),
+                    finding: StudyFindings::ends_of_front,
+                    measure: |_| Ok(StudyRows::default()),
                 },
                 about: vec![
                     "A sentence that is long enough to need a second line of text. ".repeat(2),

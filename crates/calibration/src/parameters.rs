@@ -1,0 +1,136 @@
+//! The parameters of the scanner: their order, names, units and priors.
+
+use std::ops::Range;
+
+/// Parameters of the mount and the axis, before those of the lasers.
+pub(crate) const DEVICE: usize = 9;
+pub(crate) const ROTATION_X: usize = 0;
+pub(crate) const ROTATION_Z: usize = 1;
+pub(crate) const POSITION_X: usize = 2;
+pub(crate) const POSITION_Z: usize = 3;
+pub(crate) const DELAY: usize = 4;
+pub(crate) const SCALE: usize = 5;
+pub(crate) const RIPPLE_SIN: usize = 6;
+pub(crate) const RIPPLE_COS: usize = 7;
+pub(crate) const PLAY: usize = 8;
+/// Parameters of a log: velocity and rotation rate of its base.
+pub(crate) const DRIFT: usize = 6;
+
+/// A parameter with its unit and prior.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// Name with unit, such as `mount_rotation_x_deg`.
+    pub name: String,
+    /// SI units (radians, metres, seconds) per unit of the name.
+    pub(crate) si_per_unit: f64,
+    /// Standard deviation before the scan, SI.
+    pub(crate) prior_sd: f64,
+    /// Largest error at 20 m per SI unit, metres.
+    pub(crate) m_at_20_m: f64,
+}
+
+/// The list of parameters of a scanner with `lasers` lasers and `logs` logs.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Layout {
+    pub lasers: usize,
+    pub logs: usize,
+}
+
+/// Distance for which effects of parameters are stated.
+const DISTANCE_M: f64 = 20.0;
+/// Rate of the tilt for which the effect of a delay is stated: the scanner's fastest sweep.
+const RATE_RAD_S: f64 = 56.25 * DEG;
+const DEG: f64 = std::f64::consts::PI / 180.0;
+
+impl Layout {
+    pub const fn len(&self) -> usize {
+        DEVICE + 3 * self.lasers + DRIFT * self.logs
+    }
+
+    pub const fn range(&self, laser: usize) -> usize {
+        DEVICE + laser
+    }
+
+    pub const fn elevation(&self, laser: usize) -> usize {
+        DEVICE + self.lasers + laser
+    }
+
+    pub const fn azimuth(&self, laser: usize) -> usize {
+        DEVICE + 2 * self.lasers + laser
+    }
+
+    pub const fn drift(&self, log: usize) -> usize {
+        DEVICE + 3 * self.lasers + DRIFT * log
+    }
+
+    pub const fn azimuths(&self) -> Range<usize> {
+        self.azimuth(0)..self.azimuth(self.lasers)
+    }
+
+    /// Names, units and priors in order.
+    pub fn parameters(&self) -> Vec<Parameter> {
+        let mut all = Vec::with_capacity(self.len());
+        let mut add = |name: String, si_per_unit: f64, prior_sd: f64, m_at_20_m: f64| {
+            all.push(Parameter {
+                name,
+                si_per_unit,
+                prior_sd,
+                m_at_20_m,
+            });
+        };
+        add("mount_rotation_x_deg".into(), DEG, 3.0 * DEG, DISTANCE_M);
+        add("mount_rotation_z_deg".into(), DEG, 3.0 * DEG, DISTANCE_M);
+        add("mount_position_x_m".into(), 1.0, 0.03, 1.0);
+        add("mount_position_z_m".into(), 1.0, 0.03, 1.0);
+        add("delay_us".into(), 1e-6, 5e-3, RATE_RAD_S * DISTANCE_M);
+        add("scale".into(), 1.0, 5e-3, 45.0 * DEG * DISTANCE_M);
+        add("ripple_sin_deg".into(), DEG, 0.05 * DEG, DISTANCE_M);
+        add("ripple_cos_deg".into(), DEG, 0.05 * DEG, DISTANCE_M);
+        add("play_deg".into(), DEG, 0.1 * DEG, 0.5 * DISTANCE_M);
+        for laser in 0..self.lasers {
+            add(format!("laser_{laser}_range_m"), 1.0, 0.02, 1.0);
+        }
+        for laser in 0..self.lasers {
+            let name = format!("laser_{laser}_elevation_deg");
+            add(name, DEG, 0.1 * DEG, DISTANCE_M);
+        }
+        for laser in 0..self.lasers {
+            let name = format!("laser_{laser}_azimuth_deg");
+            add(name, DEG, 0.1 * DEG, DISTANCE_M);
+        }
+        for log in 1..=self.logs {
+            for axis in ["x", "y", "z"] {
+                add(format!("drift_{log}_velocity_{axis}_m_s"), 1.0, 0.05, 1.0);
+            }
+            for axis in ["x", "y", "z"] {
+                let name = format!("drift_{log}_rotation_{axis}_deg_s");
+                add(name, DEG, 0.5 * DEG, DISTANCE_M);
+            }
+        }
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_distinct_and_where_the_layout_says() {
+        let layout = Layout {
+            lasers: 16,
+            logs: 2,
+        };
+        let all = layout.parameters();
+        assert_eq!(all.len(), layout.len());
+        let mut names: Vec<&str> = all.iter().map(|p| &*p.name).collect();
+        assert_eq!(names[PLAY], "play_deg");
+        assert_eq!(names[layout.range(3)], "laser_3_range_m");
+        assert_eq!(names[layout.elevation(15)], "laser_15_elevation_deg");
+        assert_eq!(names[layout.azimuth(0)], "laser_0_azimuth_deg");
+        assert_eq!(names[layout.drift(1)], "drift_2_velocity_x_m_s");
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), all.len());
+    }
+}

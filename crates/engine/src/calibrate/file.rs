@@ -1,0 +1,97 @@
+//! The file of a calibration, `mount.toml`.
+
+use scanner::config::{
+    AxisCorrection, DeviceCalibration, LaserCalibration, MountConfig, ParameterCovariance,
+};
+use serde::Serialize;
+
+use super::report::correlations;
+use super::{Calibrated, mount_config};
+
+#[derive(Serialize)]
+struct CalibrationFileText<'a> {
+    #[serde(flatten)]
+    calibration: DeviceCalibration,
+    mount: MountConfig,
+    evidence: EvidenceTable<'a>,
+}
+
+#[derive(Serialize)]
+struct EvidenceTable<'a> {
+    velomotion: &'a str,
+    simulated: bool,
+    logs: Vec<String>,
+    shots: usize,
+    patches: usize,
+    chi2: f64,
+    loops: usize,
+}
+
+/// The calibration as TOML, with the version of the program that made it.
+///
+/// # Errors
+/// The serialiser's message.
+pub fn to_toml(calibrated: &Calibrated, version: &str) -> Result<String, String> {
+    let evidence = &calibrated.calibration.evidence;
+    let file = CalibrationFileText {
+        calibration: device_calibration(calibrated),
+        mount: mount_config(&calibrated.calibration.mount()),
+        evidence: EvidenceTable {
+            velomotion: version,
+            simulated: calibrated.simulated,
+            logs: calibrated
+                .logs
+                .iter()
+                .map(|(path, _)| path.display().to_string())
+                .collect(),
+            shots: evidence.shots,
+            patches: evidence.patches,
+            chi2: evidence.chi2,
+            loops: evidence.loops,
+        },
+    };
+    let first = match calibrated.simulated {
+        true => "# SIMULATED: calibrated by logs of software devices\n",
+        false => "",
+    };
+    let text = toml::to_string(&file).map_err(|error| error.to_string())?;
+    Ok(format!("{first}{text}"))
+}
+
+/// What the calibration says beside the mount.
+fn device_calibration(calibrated: &Calibrated) -> DeviceCalibration {
+    let calibration = &calibrated.calibration;
+    let value = |name: &str| {
+        calibration
+            .parameter(name)
+            .map_or(0.0, |estimate| estimate.value)
+    };
+    let scanner = calibration.of_the_scanner();
+    let lasers = calibrated.model.lasers.iter().zip(0_u8..);
+    DeviceCalibration {
+        model: Some(calibrated.model.name.to_owned()),
+        axis_correction: AxisCorrection {
+            delay_us: value("delay_us"),
+            scale: value("scale"),
+            ripple_deg: [value("ripple_sin_deg"), value("ripple_cos_deg")],
+            play_deg: value("play_deg"),
+        },
+        laser: lasers
+            .map(|(laser, id)| LaserCalibration {
+                id,
+                elevation_deg: laser.elevation_deg + value(&format!("laser_{id}_elevation_deg")),
+                azimuth_offset_deg: laser.azimuth_offset_deg
+                    + value(&format!("laser_{id}_azimuth_deg")),
+                range_offset_m: value(&format!("laser_{id}_range_m")),
+            })
+            .collect(),
+        covariance: Some(ParameterCovariance {
+            names: scanner
+                .iter()
+                .map(|estimate| estimate.name.clone())
+                .collect(),
+            sd: scanner.iter().map(|estimate| estimate.sd).collect(),
+            correlation: correlations(calibration, scanner.len()),
+        }),
+    }
+}

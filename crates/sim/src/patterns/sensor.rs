@@ -1,0 +1,98 @@
+//! The sensors of patterns: elevations of their lasers, rates, apertures and ranges.
+//!
+//! Sensors that the simulator knows take its tables. The others have no packets here.
+
+use crate::sensor::{DetectionRange, LidarSensor};
+
+/// Sensors of patterns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PatternSensor {
+    /// VLP-16, 16 lasers.
+    Vlp16,
+    /// Puck Hi-Res, 16 lasers.
+    HiRes,
+    /// HDL-32E, 32 lasers.
+    Hdl32e,
+    /// VLP-32C, 32 lasers.
+    Vlp32c,
+    /// HDL-64E, 64 lasers.
+    Hdl64e,
+    /// Hokuyo UTM-30LX: one level laser, 270 degrees.
+    Utm30lx,
+    /// SICK LMS151: one level laser, 270 degrees.
+    Lms151,
+    /// One level laser with the rates and the range of a VLP-16: the paper's RSBL.
+    SingleBeam,
+}
+
+impl PatternSensor {
+    /// Elevations of its lasers in firing order, degrees.
+    pub(super) fn elevations_deg(self) -> Vec<f64> {
+        let of = |sensor: LidarSensor| {
+            let beams = sensor.beams.iter();
+            beams.map(|beam| beam.elevation_deg).collect()
+        };
+        match self {
+            Self::Vlp16 => of(LidarSensor::vlp16()),
+            Self::HiRes => of(LidarSensor::hi_res()),
+            Self::Hdl32e => of(LidarSensor::hdl32e()),
+            Self::Vlp32c => of(LidarSensor::vlp32c()),
+            // HDL-64E S2 manual, specifications: an upper block of 32 lasers from 2 degrees down in
+            // steps of 1/3, a lower one from -8.83 in steps of 1/2.
+            Self::Hdl64e => {
+                let upper = (0..32).map(|laser| 2.0 - f64::from(laser) / 3.0);
+                let lower = (0..32).map(|laser| -8.83 - f64::from(laser) / 2.0);
+                upper.chain(lower).collect()
+            }
+            Self::Utm30lx | Self::Lms151 | Self::SingleBeam => vec![0.0],
+        }
+    }
+
+    /// Usual revolutions per minute: the paper's 20 frames per second; 10 of an HDL-64E; those of
+    /// the data sheets.
+    pub(super) const fn usual_rpm(self) -> f64 {
+        match self {
+            Self::Hdl64e => 600.0,
+            Self::Utm30lx => 2_400.0,
+            Self::Lms151 => 1_500.0,
+            _ => 1_200.0,
+        }
+    }
+
+    /// Steps of azimuth per second. The paper has 0.4 degrees at 20 frames per second for all,
+    /// close to the 18,084 firings of a VLP-16. The HDL-64E S2 has 1.333 million points per second,
+    /// the planar scanners 1440 steps per revolution.
+    pub(super) const fn steps_per_s(self) -> f64 {
+        match self {
+            Self::Hdl64e => 1_333_000.0 / 64.0,
+            Self::Utm30lx => 1_440.0 * 40.0,
+            Self::Lms151 => 1_440.0 * 25.0,
+            _ => 18_000.0,
+        }
+    }
+
+    /// Angle that a planar scanner sees, degrees, half of it to either side of its front; `None`
+    /// for a head that rotates.
+    #[must_use]
+    pub const fn aperture_deg(self) -> Option<f64> {
+        match self {
+            Self::Utm30lx | Self::Lms151 => Some(270.0),
+            _ => None,
+        }
+    }
+
+    /// The range of detection by the manual or data sheet.
+    #[must_use]
+    pub fn range(self) -> DetectionRange {
+        let range = |min_m, max_m| DetectionRange { min_m, max_m };
+        match self {
+            Self::Vlp16 | Self::SingleBeam => LidarSensor::vlp16().range(),
+            Self::HiRes => LidarSensor::hi_res().range(),
+            Self::Hdl32e => LidarSensor::hdl32e().range(),
+            Self::Vlp32c => LidarSensor::vlp32c().range(),
+            Self::Hdl64e => range(0.9, 120.0),
+            Self::Utm30lx => range(0.1, 30.0),
+            Self::Lms151 => range(0.5, 50.0),
+        }
+    }
+}

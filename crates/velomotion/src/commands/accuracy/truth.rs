@@ -1,0 +1,80 @@
+//! The truth of a simulated log: one scene and one seed give the same shots again.
+
+use std::collections::HashMap;
+use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use engine::failure::{Failure, Kind};
+use sim::TruePoint;
+use sim::simulate::{SimulationEvent, SimulationSink};
+
+use crate::commands::simulate::{find, read};
+
+/// True places of the first returns of a scene, by firing and laser.
+pub struct TruePlaces {
+    places: HashMap<(i64, u8), [f64; 3]>,
+    clock_ns: i64,
+    firing_ns: i64,
+}
+
+const HOUR_NS: i64 = 3_600_000_000_000;
+/// Stamps of packets are truncated to microseconds.
+const STAMP_NS: i64 = 1_000;
+
+impl TruePlaces {
+    /// Simulates a scene again.
+    ///
+    /// # Errors
+    /// [`Kind::BadInput`] for an invalid scene.
+    pub fn new(scene: &Path, seed: Option<u64>) -> Result<Self, Failure> {
+        let (name, text) = find(scene)?;
+        let mut scene = read(&name, &text, seed, None)?;
+        let simulation = &scene.simulation;
+        if simulation.motion.end_s >= 3_600.0 {
+            let what =
+                format!("scene {name}: an hour or longer, after which the lidar's clock repeats");
+            return Err(Failure::new(Kind::BadInput, what).help("compare a shorter scan"));
+        }
+        let mut places = Self {
+            places: HashMap::new(),
+            clock_ns: i64::from(simulation.clock_at_start_us).saturating_mul(1_000),
+            firing_ns: simulation.sensor.model.firing_period_ns(),
+        };
+        let threads = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
+        let run = simulation.run(&mut scene.effects.effects, threads, &mut places);
+        run.map_err(|error| {
+            Failure::new(Kind::BadInput, format!("scene {name}: {error}"))
+                .help("name the scene with which the log was simulated")
+        })?;
+        Ok(places)
+    }
+
+    /// The place that a laser hit when it fired, by the lidar's clock.
+    pub fn place(&self, time_ns: i64, laser: u8) -> Option<[f64; 3]> {
+        let since_ns = (time_ns - self.clock_ns).rem_euclid(HOUR_NS);
+        self.places.get(&self.firing(since_ns, laser)).copied()
+    }
+
+    const fn firing(&self, since_ns: i64, laser: u8) -> (i64, u8) {
+        ((since_ns + STAMP_NS) / self.firing_ns, laser)
+    }
+}
+
+impl SimulationSink for TruePlaces {
+    fn event(&mut self, _: &SimulationEvent) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+
+    fn wants_truth(&self) -> bool {
+        true
+    }
+
+    fn truth(&mut self, points: &[TruePoint]) -> ControlFlow<()> {
+        for point in points.iter().filter(|point| point.echo == 0) {
+            let firing = self.firing(point.device_ns, point.laser);
+            self.places.insert(firing, point.position_m.to_array());
+        }
+        ControlFlow::Continue(())
+    }
+}
