@@ -204,9 +204,7 @@ pub async fn guard(
             next.run(request).await
         }
         // A browser gets the page that signs in.
-        Err(refusal) if wants_page(&request) && refusal.1 => {
-            super::page::sign_in()
-        }
+        Err(refusal) if wants_page(&request) && refusal.1 => super::page::sign_in(),
         Err((refusal, _)) => refusal.into_response(),
     }
 }

@@ -142,7 +142,7 @@ pub async fn asset(request: Request) -> Response {
     match is_known(request.headers(), &tag) {
         true => {
             headers.remove(header::CONTENT_ENCODING);
-            (headers, html(StatusCode::NOT_MODIFIED, content, &[])).into_response()
+            (headers, html(StatusCode::NOT_MODIFIED, content, ())).into_response()
         }
         false => (headers, html(StatusCode::OK, content, bytes)).into_response(),
     }
