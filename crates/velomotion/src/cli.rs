@@ -387,8 +387,8 @@ pub struct Output {
 /// `view`.
 #[derive(Clone, Debug, Args)]
 pub struct ViewArguments {
-    /// Clouds (.ply .pcd .las .laz .e57 .mcap .csv .xyz .txt .asc), logs or recordings (pcapng, pcap);
-    /// a log's cloud is made first and plays along its time
+    /// Clouds (.ply .pcd .las .laz .e57 .mcap .csv .xyz .txt .asc), logs or recordings (pcapng,
+    /// pcap); a log's cloud is made first and plays along its time
     #[arg(value_name = "FILE", required = true)]
     pub files: Vec<PathBuf>,
     /// Print the address only, and open no browser
