@@ -153,6 +153,44 @@ fn tshark_reads_the_can_traffic_of_a_capture_as_canopen() {
     assert_eq!(tshark(&["-Y", "_ws.malformed"]), "");
 }
 
+/// The dissector of the Debian package names the objects of a capture over USB and RS232.
+#[test]
+#[ignore = "needs tshark"]
+fn tshark_reads_the_serial_traffic_of_a_capture_with_our_dissector() {
+    let dissector = Path::new(env!("CARGO_MANIFEST_DIR")).join("../packaging/epos2.lua");
+    for attachment in [Attachment::Usb, Attachment::Rs232] {
+        let scan = Captured::new(Setting::over(attachment));
+        let tshark = |filter: &str, field: &str| {
+            let mut command = Command::new("tshark");
+            command
+                .arg("-X")
+                .arg(format!("lua_script:{}", dissector.display()))
+                .args(["-n", "-r"])
+                .arg(scan.log())
+                .args(["-Y", filter, "-T", "fields", "-e", field]);
+            run(command)
+        };
+        let frames = |filter: &str| tshark(filter, "frame.number").lines().count();
+        assert_eq!(frames("epos2"), frames("frame.interface_id == 1"));
+        assert_eq!(tshark("_ws.lua.error || _ws.expert", "frame.number"), "");
+        assert_eq!(frames("epos2.crc_good == 0"), 0, "{attachment:?}");
+        let answered = frames("epos2.crc && epos2.opcode == 0");
+        assert_eq!(answered, frames("epos2.request"), "{attachment:?}");
+        let positions = tshark("epos2.index == 0x6064 && epos2.request", "epos2.value");
+        let target = tshark(
+            "epos2.index == 0x607a && epos2.opcode == 0x11",
+            "epos2.value",
+        );
+        let [target, last] = [target.trim(), positions.lines().last().unwrap()];
+        assert!(positions.lines().count() > 300, "{attachment:?}");
+        let [target, last] = [target, last].map(|text| text.parse::<i32>().unwrap());
+        assert!(
+            target < -10_000 && last.abs_diff(target) < 20,
+            "{target} {last}"
+        );
+    }
+}
+
 #[test]
 #[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
 fn laspy_reads_our_laz_with_the_right_count_and_bounds() {

@@ -56,10 +56,11 @@ pub struct AccuracyStudy {
     pub patches: usize,
     /// Shots on them that count.
     pub shots: usize,
-    /// Range noise of each laser between neighbouring shots, metres.
+    /// Range noise of each laser between neighbouring shots, metres; the maker's accuracy for one
+    /// without.
     pub noise_m: Vec<f64>,
-    /// Mean residual of each laser, metres; 0 for one without shots.
-    pub laser_offsets_m: Vec<f64>,
+    /// Mean residual of each laser, metres; none without shots on elements.
+    pub laser_offsets_m: Vec<Option<f64>>,
     /// Residuals by what they may depend on.
     pub groups: Vec<BinGroup>,
     /// Pairs of sweeps of one scan.
@@ -154,7 +155,7 @@ pub fn study(request: &StudyRequest<'_>) -> Result<AccuracyStudy, CalibrationRef
     }
     study.laser_offsets_m = lasers
         .iter()
-        .map(|(sum, count)| sum / f64::max(*count, 1.0))
+        .map(|(sum, count)| (*count > 0.0).then(|| sum / count))
         .collect();
     study.groups = groups.result();
     study.sweeps = sweeps.result();

@@ -51,7 +51,7 @@ fn errors_of_a_simulated_scan_are_as_large_as_stated_in_every_bin() {
         panic!("{:?}", report.sweeps)
     };
     assert!(pair.both_ways && pair.patches > 500, "{pair:?}");
-    let noise_mm = report.lasers.iter().map(|laser| laser.noise_mm);
+    let noise_mm = report.lasers.iter().map(|laser| laser.noise_mm.unwrap());
     assert!(noise_mm.into_iter().all(|noise| (noise - 10.0).abs() < 0.7));
     println!("{pair:?}");
     for bin in &report.budget {

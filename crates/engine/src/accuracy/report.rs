@@ -39,10 +39,11 @@ pub struct AccuracyReport {
 pub struct LaserNoise {
     /// Index in firing order.
     pub laser: usize,
-    /// Standard deviation of its ranges between neighbouring shots, millimetres.
-    pub noise_mm: f64,
+    /// Standard deviation of its ranges between neighbouring shots, millimetres; none without shots
+    /// on elements.
+    pub noise_mm: Option<f64>,
     /// Mean residual against elements that other lasers meet too, millimetres.
-    pub offset_mm: f64,
+    pub offset_mm: Option<f64>,
 }
 
 /// Residuals by one quantity.
@@ -172,8 +173,8 @@ impl AccuracyReport {
         let lasers = study.noise_m.iter().zip(&study.laser_offsets_m).enumerate();
         let lasers = lasers.map(|(laser, (noise_m, offset_m))| LaserNoise {
             laser,
-            noise_mm: 1e3 * noise_m,
-            offset_mm: 1e3 * offset_m,
+            noise_mm: offset_m.map(|_| 1e3 * noise_m),
+            offset_mm: offset_m.map(|offset_m| 1e3 * offset_m),
         });
         let group = |group: &calibration::BinGroup| ResidualGroup {
             by: group.name.to_owned(),

@@ -79,12 +79,17 @@ fn tables(report: &AccuracyReport) -> Vec<TitledTable> {
     tables
 }
 
+/// A length with a number of decimals, if it is known.
+fn known(mm: Option<f64>, decimals: usize) -> String {
+    mm.map_or("unknown".to_owned(), |mm| format!("{mm:.decimals$}"))
+}
+
 fn lasers(report: &AccuracyReport) -> TitledTable {
     let rows = report.lasers.iter().map(|laser| {
         vec![
             laser.laser.to_string(),
-            format!("{:.1}", laser.noise_mm),
-            format!("{:.1}", laser.offset_mm),
+            known(laser.noise_mm, 1),
+            known(laser.offset_mm, 1),
         ]
     });
     TitledTable {
@@ -193,7 +198,7 @@ fn stations(report: &AccuracyReport) -> Option<TitledTable> {
 }
 
 fn budget(report: &AccuracyReport) -> TitledTable {
-    let known = |mm: Option<f64>| mm.map_or("unknown".to_owned(), |mm| format!("{mm:.2}"));
+    let known = |mm| known(mm, 2);
     let rows = report.budget.iter().map(|bin| {
         vec![
             format!("{} to {} m", bin.from_m, bin.to_m),
