@@ -5,11 +5,11 @@
 
 mod log;
 mod sizes;
+mod stopwatch;
 
 use std::fs::File;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
@@ -35,6 +35,7 @@ use engine::output::{self, Target};
 use engine::reconstruct::report::PacketCounts;
 use log::{Log, cannot_write, scan_config};
 use sizes::{EffectChoice, EffectSize, Sampler};
+use stopwatch::nanoseconds;
 
 /// Report on a simulation.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
@@ -200,13 +201,6 @@ pub(super) fn find(scene: &Path) -> Result<(String, String), Failure> {
         ))
     })?;
     Ok((name, text))
-}
-
-/// Nanoseconds since the first call.
-fn nanoseconds() -> u64 {
-    static BEGINNING: OnceLock<Instant> = OnceLock::new();
-    let since = BEGINNING.get_or_init(Instant::now).elapsed();
-    u64::try_from(since.as_nanos()).unwrap_or(u64::MAX)
 }
 
 /// Parses a scene; mesh paths are relative to it. A stopwatch measures the cost of effects.

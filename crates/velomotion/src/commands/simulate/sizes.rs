@@ -29,7 +29,7 @@ pub(super) use choice::EffectChoice;
 pub(super) use words::{reasons, table, unmet};
 
 use super::log::{SOURCE, frame_of, scan_config};
-use super::nanoseconds;
+use super::stopwatch::nanoseconds;
 use engine::failure::{Failure, Kind};
 
 /// Firings of a sample, about: 65,000 shots of a VLP-16.
