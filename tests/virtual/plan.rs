@@ -5,8 +5,8 @@ use analysis::density::{gaps, quantile};
 use analysis::plan::{PlanLimits, PlanRow, ScanSetting};
 use engine::capture::scan_plan::{PlanReport, PlanRequest, ScanPlanner};
 use engine::config::{Config, Device};
+use engine::lidars;
 use glam::DVec3;
-use protocol::vlp16::models;
 use sim::patterns::PatternRequest;
 use units::{DegPerS, DegPerS2, Span};
 use velomotion_tests::capture::{Captured, Setting};
@@ -19,7 +19,7 @@ fn planner(at_m: f64, limits: PlanLimits) -> ScanPlanner {
     let request = PlanRequest {
         limits,
         rest_deg: Some(REST_DEG),
-        ..PlanRequest::new(at_m, &models::VLP_16, 600)
+        ..PlanRequest::new(at_m, &lidars::VLP_16, 600)
     };
     // A light head, so that there are four ramps of which one hardly counts.
     let device = Device {

@@ -28,7 +28,7 @@ pub enum DriveError {
         got: String,
     },
     /// The target is outside the configured limits or not a number; nothing was sent.
-    #[error("target {} deg is outside the axis' limits of {} to {} deg", brief(target.0), min.0, max.0)]
+    #[error("{} deg is outside the axis' limits of {} to {} deg", brief(target.0), min.0, max.0)]
     Limits {
         /// Requested angle.
         target: Degrees,
@@ -412,7 +412,7 @@ impl DriveError {
                 return format!("correct {field} in the axis configuration");
             }
             Self::Limits { .. } => {
-                "choose a target within the limits, or widen them if the mechanics allow it"
+                "choose an angle within the limits, or widen them if the mechanics allow it"
             }
             Self::Speed { .. } | Self::Acceleration { .. } => {
                 "choose a value within the range; its upper end is the configured maximum"

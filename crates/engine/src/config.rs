@@ -80,8 +80,11 @@ impl Config {
     /// Refuses impossible numbers (TOML allows nan and inf).
     fn check(&self) -> Result<(), String> {
         self.mount.check()?;
-        between("lidar.range_sd_m", self.lidar.range_sd_m, 0.0, 10.0)?;
-        between("lidar.rpm", f64::from(self.lidar.rpm), 60.0, 6_000.0)?;
+        let lidar = &self.lidar;
+        between("lidar.range_sd_m", lidar.accuracy().range_sd_m, 0.0, 10.0)?;
+        let sheet = lidar.model.sheet();
+        let rpm = sheet.check_rpm(lidar.rpm);
+        rpm.map_err(|what| format!("lidar.rpm: {what}"))?;
         self.axis.check()?;
         let mut devices = self.device.profiles.iter();
         devices.try_for_each(|(name, device)| device.check(name))

@@ -13,6 +13,7 @@ pub mod default_paths;
 pub mod devices;
 pub mod document;
 pub mod failure;
+pub mod lidars;
 pub mod output;
 pub mod reconstruct;
 pub mod service;

@@ -29,6 +29,8 @@ const LONGEST_SILENCE: Span = Span::from_secs(5);
 const REORDER: Span = Span::from_secs(2);
 /// Up to this time before the last one data are out of order; beyond, the clock was set.
 const DATA_REORDER: Span = Span::from_millis(20);
+/// Difference of two clocks of which one is set to a zone's time: from UTC-12 to UTC+14.
+const MAX_ZONE_H: i64 = 26;
 /// Limit of stored locks; the oldest are dropped.
 const MAX_LOCKS: usize = 4_096;
 
@@ -284,7 +286,17 @@ impl fmt::Display for UtcState {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Locked { hours: 0 } => write!(f, "locked"),
-            Self::Locked { hours } => write!(f, "locked; the host's clock is {:+} h off", -hours),
+            Self::Locked { hours } if hours.abs() <= MAX_ZONE_H => {
+                write!(f, "locked; the host's clock is {:+} h off", -hours)
+            }
+            Self::Locked { hours } => {
+                let days = hours.unsigned_abs() / 24;
+                let side = if *hours > 0 { "after" } else { "before" };
+                write!(
+                    f,
+                    "locked; the receiver's date is {days} days {side} that of the recording: one is simulated, or the host's clock was not set"
+                )
+            }
             Self::Unlocked(why) => write!(f, "no lock: {why}"),
         }
     }

@@ -148,10 +148,11 @@ impl Default for MountConfig {
 }
 
 impl Default for LidarConfig {
-    /// 3 cm: the typical accuracy of the VLP-16 by its manual (63-9243, specifications). The manual
-    /// does not define it; here it counts as one standard deviation.
+    /// A third of the typical accuracy of the VLP-16, 3 cm by its manual (63-9243, specifications).
+    /// The manual does not define it. As three standard deviations it agrees with recordings of
+    /// three VLP-16s, whose ranges spread by 7 to 13 mm within a laser.
     fn default() -> Self {
-        Self { range_sd_m: 0.03 }
+        Self { range_sd_m: 0.01 }
     }
 }
 

@@ -5,6 +5,7 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use engine::lidars::LidarSheet;
 use engine::reconstruct::source::SensorAddress;
 use scanner::Tolerance;
 use sim::effect_models::EffectTolerance;
@@ -15,8 +16,8 @@ mod requests;
 mod values;
 
 use values::{
-    acceleration, address_and_port, azimuth, deceleration, degrees, effect_or_all, metres,
-    millimetres, number, place, seconds, share, threads, two_times, whole,
+    acceleration, address_and_port, azimuth, deceleration, degrees, effect_or_all, lidar_sheet,
+    metres, millimetres, number, place, seconds, share, threads, two_times, whole,
 };
 
 /// Version, and the commit of the build.
@@ -81,6 +82,8 @@ pub enum Command {
     Replay(Replay),
     /// Simulate a scene into a log, with ground truth
     Simulate(Simulate),
+    /// Show clouds, logs and recordings in the browser
+    View(ViewArguments),
     /// List what a file holds
     Info(Info),
     /// Calibrate mount, tilt axis and lasers by logs of ordinary scans, without targets
@@ -382,6 +385,18 @@ pub struct Output {
     pub force: bool,
 }
 
+/// `view`.
+#[derive(Clone, Debug, Args)]
+pub struct ViewArguments {
+    /// Clouds (.ply .pcd .las .laz .e57 .mcap .csv .xyz .txt .asc), logs or recordings (pcapng, pcap);
+    /// a log's cloud is made first and plays along its time
+    #[arg(value_name = "FILE", required = true)]
+    pub files: Vec<PathBuf>,
+    /// Print the address only, and open no browser
+    #[arg(long)]
+    pub no_open: bool,
+}
+
 /// `info`.
 #[derive(Clone, Debug, Args)]
 pub struct Info {
@@ -412,14 +427,16 @@ pub struct Plan {
     /// Time for the scan with homing, such as 10s
     #[arg(long, value_name = "S", allow_hyphen_values = true, value_parser = seconds)]
     pub time: Option<f64>,
-    /// Lidar model [default: the configuration's, vlp16]
-    #[arg(long, value_enum, value_name = "MODEL")]
-    pub lidar: Option<ModelName>,
+    /// Lidar: vlp16, hi-res, hdl32e, vlp32c, or one that velomotion does not capture: hdl64e,
+    /// utm30lx, lms151 [default: the configuration's, vlp16]
+    #[arg(long, value_name = "MODEL", value_parser = lidar_sheet(), hide_possible_values = true)]
+    pub lidar: Option<&'static LidarSheet>,
     /// Revolutions of the lidar per minute to choose from; they are set on the lidar's own page
-    /// [default: the configuration's, 600]
-    #[arg(long, value_name = "N[,N]", value_delimiter = ',', allow_negative_numbers = true, value_parser = whole::<u32>(60..=6_000))]
+    /// [default: the configuration's, 600; another lidar's usual one]
+    #[arg(long, value_name = "N[,N]", value_delimiter = ',', allow_negative_numbers = true, value_parser = whole::<u32>(0..=1_000_000))]
     pub rpm: Vec<u32>,
-    /// Standard deviation of a range, such as 10mm [default: the configuration's range_sd_m]
+    /// Standard deviation of a range, such as 10mm [default: the configuration's range_sd_m, or the
+    /// lidar's by its data sheet]
     #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = millimetres)]
     pub range_sd: Option<f64>,
     /// Standard deviation of mount and zero of the tilt, such as 0.05deg [default: not included]

@@ -94,7 +94,8 @@ impl FromStr for SettingRange {
 }
 
 impl SettingRange {
-    /// Value of a step: geometric if both ends are positive, else linear. Both ends are exact.
+    /// Value of a step: geometric if both ends are positive, else linear. Both ends are exact;
+    /// rates between are those that heads have, multiples of 60 rpm.
     pub(crate) fn value(&self, step: usize) -> f64 {
         if step == 0 {
             return self.from;
@@ -103,10 +104,14 @@ impl SettingRange {
             return self.to;
         }
         let share = step as f64 / (self.steps - 1) as f64;
-        if self.from > 0.0 && self.to > 0.0 {
+        let value = if self.from > 0.0 && self.to > 0.0 {
             self.from * (self.to / self.from).powf(share)
         } else {
             self.from + (self.to - self.from) * share
+        };
+        match self.key.as_str() {
+            "rpm" => (value / 60.0).round() * 60.0,
+            _ => value,
         }
     }
 }

@@ -197,9 +197,14 @@ pub fn scan_table(scan: &ScanReport) -> String {
             rows.push((if line == 0 { "tolerance" } else { "" }, why.to_owned()));
         }
     }
+    let because = scan.left_out_because.iter();
+    let because: String = because.map(|why| format!(": {why}")).collect();
     rows.push((
         "points",
-        format!("{} ({} returns omitted)", scan.points, scan.left_out),
+        format!(
+            "{} ({} returns omitted{because})",
+            scan.points, scan.left_out
+        ),
     ));
     if let Some(truth) = scan.truth {
         rows.push((

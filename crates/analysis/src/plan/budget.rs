@@ -60,8 +60,6 @@ pub struct ErrorModel {
     pub mount_sd_deg: Option<f64>,
 }
 
-/// Steps of the azimuths on the wire, degrees (VLP-16 manual 63-9243).
-const AZIMUTH_STEP_DEG: f64 = 0.01;
 /// Mean square of the weights of two neighbouring azimuths, between which a firing's is
 /// interpolated: that of p and 1 - p for p from 0 to 1.
 const INTERPOLATED: f64 = 2.0 / 3.0;
@@ -123,7 +121,7 @@ impl ErrorModel {
         let mut budget = ErrorBudget {
             range: 1e3 * range,
             range_step: 1e3 * range_step,
-            azimuth: mm(uniform_step(AZIMUTH_STEP_DEG) * INTERPOLATED.sqrt()),
+            azimuth: mm(uniform_step(lidar.azimuth_step_deg) * INTERPOLATED.sqrt()),
             tilt: mm(sample * (MOTION_PARAMETERS / samples).sqrt()),
             clock: mm(speed * CLOCK_SD_S),
             delay: mm(speed * shared_s / 3_f64.sqrt()),

@@ -17,7 +17,7 @@ pub struct PlanLaser {
     pub delay_s: f64,
 }
 
-/// A multi-beam lidar on the platform.
+/// A lidar on the platform: a head that rotates, or a planar scanner.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlanLidar {
     /// Its model.
@@ -26,8 +26,12 @@ pub struct PlanLidar {
     pub lasers: Vec<PlanLaser>,
     /// Time from one firing of all lasers to the next, seconds; above 0.
     pub firing_period_s: f64,
-    /// Time from one packet to the next, seconds; above 0.
-    pub packet_period_s: f64,
+    /// Time from one packet to the next, seconds; above 0. `None` where logs cannot hold them.
+    pub packet_period_s: Option<f64>,
+    /// Steps of its azimuths, degrees; 0 where a reading is at its nominal azimuth.
+    pub azimuth_step_deg: f64,
+    /// First and last azimuth that it sees, degrees; `None` for all around.
+    pub azimuths_deg: Option<[f64; 2]>,
     /// Steps of its ranges, metres.
     pub range_step_m: f64,
     /// Height of its origin above the tilt axis, metres (d of Eq. 4-6).
@@ -57,7 +61,11 @@ impl PlanLidar {
     /// Rays of all lasers during sweeps: the most points that a scan may have.
     #[must_use]
     pub fn rays(&self, sweeps: &[TiltSweep]) -> f64 {
-        let firings = |sweep: &TiltSweep| (sweep.duration_s() / self.firing_period_s).floor();
+        let seen = self
+            .azimuths_deg
+            .map_or(1.0, |[first, last]| (last - first) / 360.0);
+        let firings =
+            |sweep: &TiltSweep| (seen * sweep.duration_s() / self.firing_period_s).floor();
         sweeps.iter().map(firings).sum::<f64>() * self.lasers.len() as f64
     }
 }
@@ -82,7 +90,9 @@ pub(super) mod tests {
             name: "VLP-16".to_owned(),
             lasers: (0..16).map(laser).collect(),
             firing_period_s: 55.296e-6,
-            packet_period_s: 24.0 * 55.296e-6,
+            packet_period_s: Some(24.0 * 55.296e-6),
+            azimuth_step_deg: 0.01,
+            azimuths_deg: None,
             range_step_m: 2e-3,
             d_m: 0.06,
         }

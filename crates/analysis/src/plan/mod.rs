@@ -18,5 +18,5 @@ pub use gaps::{PlannedRays, StartedSweep};
 pub use lidar::{PlanLaser, PlanLidar};
 pub use row::{DRIVE_BYTES_S, PACKET_BYTES, ROW_BYTES};
 pub use row::{GapQuantiles, PlanRow, PlannedScan, ScanPredictor, ScanSetting};
-pub use search::PlanLimits;
+pub use search::{LimitKind, NearestScan, PlanLimits};
 pub use sweep::TiltSweep;

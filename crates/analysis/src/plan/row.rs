@@ -71,10 +71,10 @@ pub struct PlanRow {
     pub share_without_point: f64,
     /// Error of a point at the range.
     pub error_mm: ErrorBudget,
-    /// Estimated time of a replay, seconds.
-    pub replay_s: f64,
-    /// Bytes of the log.
-    pub log_bytes: u64,
+    /// Estimated time of a replay, seconds; null for a lidar whose packets velomotion cannot read.
+    pub replay_s: Option<f64>,
+    /// Bytes of the log; null as well.
+    pub log_bytes: Option<u64>,
     /// Bytes of the cloud as PLY.
     pub cloud_bytes: u64,
 }
@@ -207,7 +207,8 @@ impl ScanPredictor {
         }
         let mm = |deg: f64| 1e3 * self.errors.range_m * deg.to_radians();
         let points = self.lidar.rays(&scan.sweeps);
-        let log_bytes = scan.scan_s * (PACKET_BYTES / self.lidar.packet_period_s + DRIVE_BYTES_S);
+        let period_s = self.lidar.packet_period_s;
+        let log_bytes = period_s.map(|s| scan.scan_s * (PACKET_BYTES / s + DRIVE_BYTES_S));
         let resolution_deg = scan.sweeps.first().map_or(f64::INFINITY, |sweep| {
             self.lidar.mean_resolution_deg(sweep, scan.setting.rpm)
         });
@@ -227,8 +228,8 @@ impl ScanPredictor {
             best_start_deg,
             share_without_point: without,
             error_mm: self.errors.budget(&self.lidar, &scan.sweeps),
-            replay_s: REPLAY_S + points / REPLAY_POINTS_S,
-            log_bytes: log_bytes as u64,
+            replay_s: period_s.map(|_| REPLAY_S + points / REPLAY_POINTS_S),
+            log_bytes: log_bytes.map(|bytes| bytes as u64),
             cloud_bytes: (points * ROW_BYTES) as u64,
         }
     }

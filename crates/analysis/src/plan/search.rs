@@ -18,11 +18,32 @@ pub struct PlanLimits {
     pub time_s: Option<f64>,
 }
 
+/// One of the limits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LimitKind {
+    /// The error.
+    Error,
+    /// The gap.
+    Gap,
+    /// The time.
+    Time,
+}
+
+/// What comes nearest to a limit that no scan keeps.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NearestScan {
+    /// The limit.
+    pub limit: LimitKind,
+    /// Whether it keeps others.
+    pub with_others: bool,
+    /// What it gives.
+    pub row: PlanRow,
+}
+
 /// Rows of a table, at most.
 const ROWS: usize = 12;
-/// Gap below which slower scans hit the same spots, degrees: a third of the beam's divergence of 3
-/// mrad (VLP-16 manual).
-const LEAST_GAP_DEG: f64 = 0.05;
+/// Ratio of a gap to the least one that counts as reaching it.
+const NEARLY_LEAST: f64 = 1.02;
 /// Settings examined at a time.
 const BLOCK: usize = 64;
 /// Settings of which the densest is chosen by a third of the directions.
@@ -34,7 +55,7 @@ const SHORT: f64 = 0.6;
 
 impl ScanPredictor {
     /// Rows that no other scan beats in time, 99 % gap and error at once: the fastest of each of at
-    /// most 12 classes of gap, down to a third of the beam, in the order of time.
+    /// most 12 classes of gap, from the widest to the least that there is, in the order of time.
     #[must_use]
     pub fn table(&self, scans: &[PlannedScan]) -> Vec<PlanRow> {
         let costs: Vec<Vec<f64>> = scans
@@ -52,10 +73,12 @@ impl ScanPredictor {
             .filter_map(|((scan, costs), kept)| Some((scan, *costs.get(1)?)).filter(|_| kept))
             .collect();
         best.sort_by(|a, b| a.0.scan_s.total_cmp(&b.0.scan_s));
-        let widest = best.iter().map(|(_, gap)| *gap).fold(0.0, f64::max);
+        let gaps = || best.iter().map(|(_, gap)| *gap);
+        let widest = gaps().fold(0.0, f64::max);
+        let least = gaps().fold(f64::INFINITY, f64::min);
         let class = |gap_deg: f64| {
-            let share = (widest / gap_deg).ln() / (widest / LEAST_GAP_DEG).ln().max(1e-9);
-            (share * (ROWS as f64 - 1.0)) as usize
+            let share = (widest / gap_deg).ln() / (widest / least).ln().max(1e-9);
+            (share * ROWS as f64).min(ROWS as f64 - 1.0) as usize
         };
         let mut fastest: [Option<&PlannedScan>; ROWS] = [None; ROWS];
         for (scan, gap_deg) in best {
@@ -78,14 +101,10 @@ impl ScanPredictor {
     /// The fastest scan within the limits; with a limit of time only, the densest. `None` if there
     /// is none, or no limit.
     #[must_use]
-    pub fn choose(&self, mut scans: Vec<PlannedScan>, limits: &PlanLimits) -> Option<PlanRow> {
-        let within = |value: f64, limit: Option<f64>| limit.is_none_or(|limit| value <= limit);
-        scans.retain(|scan| {
-            let error = || self.errors.budget(&self.lidar, &scan.sweeps).total;
-            within(scan.scan_s, limits.time_s)
-                && (limits.error_mm.is_none() || within(error(), limits.error_mm))
-        });
-        scans.sort_by(|a, b| a.scan_s.total_cmp(&b.scan_s));
+    pub fn choose(&self, scans: &[PlannedScan], limits: &PlanLimits) -> Option<PlanRow> {
+        let is_short = |scan: &&PlannedScan| limits.time_s.is_none_or(|most| scan.scan_s <= most);
+        let mut scans = self.accurate(scans, limits);
+        scans.retain(is_short);
         match (limits.gap_deg, limits.error_mm, limits.time_s) {
             (Some(gap_deg), ..) => self.fastest_within(&scans, gap_deg),
             (None, Some(_), _) => scans.first().map(|scan| self.row(scan)),
@@ -94,11 +113,59 @@ impl ScanPredictor {
         }
     }
 
-    fn fastest_within(&self, scans: &[PlannedScan], gap_deg: f64) -> Option<PlanRow> {
+    /// The fastest of the scans that come nearest to a limit which none keeps.
+    #[must_use]
+    pub fn nearest(&self, scans: &[PlannedScan], limits: &PlanLimits) -> Option<NearestScan> {
+        let error_mm = |scan: &PlannedScan| self.errors.budget(&self.lidar, &scan.sweeps).total;
+        let least_mm = scans.iter().map(error_mm).fold(f64::INFINITY, f64::min);
+        if limits.error_mm.is_some_and(|limit| least_mm > limit) {
+            let near = scans
+                .iter()
+                .filter(|scan| error_mm(scan) <= NEARLY_LEAST * least_mm);
+            let scan = near.min_by(|a, b| a.scan_s.total_cmp(&b.scan_s))?;
+            return Some(NearestScan {
+                limit: LimitKind::Error,
+                with_others: false,
+                row: self.row(scan),
+            });
+        }
+        let scans = self.accurate(scans, limits);
+        let fastest = match limits.gap_deg {
+            Some(gap_deg) => self.fastest_within(&scans, gap_deg),
+            None => scans.first().map(|scan| self.row(scan)),
+        };
+        if let Some(row) = fastest {
+            return Some(NearestScan {
+                limit: LimitKind::Time,
+                with_others: limits.gap_deg.is_some() || limits.error_mm.is_some(),
+                row,
+            });
+        }
+        let densest = self.densest(scans.clone(), f64::INFINITY)?;
+        let cheaper = self.fastest_within(&scans, NEARLY_LEAST * densest.gap_deg.p99);
+        Some(NearestScan {
+            limit: LimitKind::Gap,
+            with_others: limits.error_mm.is_some(),
+            row: cheaper.unwrap_or(densest),
+        })
+    }
+
+    /// Scans within the limit of the error, in the order of their time.
+    fn accurate<'a>(&self, scans: &'a [PlannedScan], limits: &PlanLimits) -> Vec<&'a PlannedScan> {
+        let error_mm = |scan: &PlannedScan| self.errors.budget(&self.lidar, &scan.sweeps).total;
+        let is_accurate =
+            |scan: &&PlannedScan| limits.error_mm.is_none_or(|most| error_mm(scan) <= most);
+        let mut scans: Vec<&PlannedScan> = scans.iter().filter(is_accurate).collect();
+        scans.sort_by(|a, b| a.scan_s.total_cmp(&b.scan_s));
+        scans
+    }
+
+    fn fastest_within(&self, scans: &[&PlannedScan], gap_deg: f64) -> Option<PlanRow> {
         const NO_MORE: usize = 0;
         for block in scans.chunks(BLOCK) {
             let hopeful: Vec<&PlannedScan> = block
                 .par_iter()
+                .copied()
                 .filter(|scan| {
                     // Three more than 1 % of few directions for chance.
                     !self.exceeds(scan, gap_deg, GapEffort::ROUGH, (0.01, 3))
@@ -118,12 +185,12 @@ impl ScanPredictor {
         None
     }
 
-    fn densest(&self, mut scans: Vec<PlannedScan>, time_s: f64) -> Option<PlanRow> {
+    fn densest(&self, mut scans: Vec<&PlannedScan>, time_s: f64) -> Option<PlanRow> {
         let longest_s = scans.last()?.scan_s.min(time_s);
         scans.retain(|scan| scan.scan_s >= SHORT * longest_s);
         let rough = scans.par_iter().map(|scan| self.rough_p99_deg(scan));
         let rough: Vec<f64> = rough.collect();
-        let mut ranked: Vec<(&PlannedScan, f64)> = scans.iter().zip(rough).collect();
+        let mut ranked: Vec<(&PlannedScan, f64)> = scans.into_iter().zip(rough).collect();
         ranked.sort_by(|a, b| a.1.total_cmp(&b.1));
         let finalists = ranked.into_iter().take(FINALISTS);
         let gaps = finalists.map(|(scan, _)| (scan, self.brief_row(scan).gap_deg.p99));
@@ -191,6 +258,7 @@ mod tests {
             let predictor = predictor(None);
             scans().iter().map(|scan| predictor.row(scan)).collect()
         };
+        let mut refused = Vec::new();
         for (error_mm, gap_deg) in [
             (None, Some(2.0)),
             (None, Some(0.8)),
@@ -212,16 +280,33 @@ mod tests {
             };
             let best = all.iter().filter(fits).map(|row| row.scan_s);
             let best_s = best.fold(f64::INFINITY, f64::min);
-            let chosen = predictor(gap_deg).choose(scans(), &limits);
+            let chosen = predictor(gap_deg).choose(&scans(), &limits);
             println!("{limits:?}: {best_s} {chosen:?}");
             match chosen {
                 Some(row) => {
                     assert!(fits(&&row), "{row:?}");
                     assert!(row.scan_s <= 1.05 * best_s, "{best_s} {row:?}");
                 }
-                None => assert_eq!(best_s, f64::INFINITY),
+                None => {
+                    assert_eq!(best_s, f64::INFINITY);
+                    let nearest = predictor(gap_deg).nearest(&scans(), &limits).unwrap();
+                    let value = |row: &PlanRow| match nearest.limit {
+                        LimitKind::Error => row.error_mm.total,
+                        LimitKind::Gap => row.gap_deg.p99,
+                        LimitKind::Time => row.scan_s,
+                    };
+                    // None is much better, and none as good is much faster.
+                    let best = all.iter().map(value).fold(f64::INFINITY, f64::min);
+                    let found = value(&nearest.row);
+                    assert!(found <= 1.05 * best, "{best} {nearest:?}");
+                    let as_good = all.iter().filter(|row| value(row) <= found);
+                    let best_s = as_good.map(|row| row.scan_s).fold(f64::INFINITY, f64::min);
+                    assert!(nearest.row.scan_s <= 1.05 * best_s, "{best_s} {nearest:?}");
+                    refused.push(nearest.limit);
+                }
             }
         }
+        assert_eq!(refused, [LimitKind::Error, LimitKind::Gap]);
         // The densest in a given time.
         for time_s in [4.0, 8.0] {
             let limits = PlanLimits {
@@ -232,13 +317,13 @@ mod tests {
             let best = best
                 .map(|row| row.gap_deg.p99)
                 .fold(f64::INFINITY, f64::min);
-            let row = predictor(None).choose(scans(), &limits).unwrap();
+            let row = predictor(None).choose(&scans(), &limits).unwrap();
             assert!(
                 row.scan_s <= time_s && row.gap_deg.p99 <= 1.05 * best,
                 "{best} {row:?}"
             );
         }
-        let free = predictor(None).choose(scans(), &PlanLimits::default());
+        let free = predictor(None).choose(&scans(), &PlanLimits::default());
         assert_eq!(free, None);
     }
 

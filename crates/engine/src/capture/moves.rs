@@ -49,8 +49,17 @@ pub fn steps(
             .map_err(refuse)
     };
     // Both ends are checked before the first move.
-    plan(request.to, request.from)?;
-    let first = plan(request.from, request.to)?;
+    let end = |flag: &str, from, to| {
+        let planned = axis.plan(from, to, request.speed, request.acceleration);
+        planned.map_err(|error| match error {
+            drive::DriveError::Limits { .. } => {
+                Failure::new(Kind::Usage, format!("{flag}: {error}")).help(error.help())
+            }
+            _ => refuse(error),
+        })
+    };
+    end("--from", request.to, request.from)?;
+    let first = end("--to", request.from, request.to)?;
     if first.from == first.to {
         return Err(Failure::new(
             Kind::Usage,

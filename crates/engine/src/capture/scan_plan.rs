@@ -5,11 +5,10 @@
 mod report;
 
 use analysis::plan::{
-    ErrorModel, LinkTiming, PlanLaser, PlanLidar, PlanLimits, PlanRow, PlannedScan, ScanPredictor,
-    ScanSetting, TiltSweep,
+    ErrorModel, LinkTiming, PlanLimits, PlanRow, PlannedScan, ScanPredictor, ScanSetting, TiltSweep,
 };
 use drive::AxisConfig;
-use protocol::vlp16::{Model, models};
+use protocol::vlp16::Model;
 use sim::RigLidar;
 use units::{Degrees, Rpm};
 
@@ -19,6 +18,7 @@ use crate::capture_request::CaptureRequest;
 use crate::config::{Config, Device, DeviceKind};
 use crate::devices::{profile, simulated};
 use crate::failure::{Failure, Kind};
+use crate::lidars::{self, LidarSheet};
 
 pub use report::{CommandRow, PlanReport, UnmetLimit};
 
@@ -30,10 +30,10 @@ pub struct PlanRequest {
     /// The limits.
     pub limits: PlanLimits,
     /// The lidar.
-    pub model: &'static Model,
+    pub lidar: &'static LidarSheet,
     /// Revolutions of the lidar per minute to choose from.
     pub rpm: Vec<u32>,
-    /// Standard deviation of a range, metres; the configuration's without it.
+    /// Standard deviation of a range, metres; the configuration's or the data sheet's without it.
     pub range_sd_m: Option<f64>,
     /// Standard deviation of mount and zero of the tilt, degrees; they count as exact without it.
     pub mount_sd_deg: Option<f64>,
@@ -71,17 +71,18 @@ pub struct ScanPlanner {
     device: Device,
     axis: AxisConfig,
     request: PlanRequest,
+    ranges: RangeSource,
     predictor: ScanPredictor,
 }
 
 impl PlanRequest {
     /// At a distance, with a lidar at one rate, and no limits.
     #[must_use]
-    pub fn new(at_m: f64, model: &'static Model, rpm: u32) -> Self {
+    pub fn new(at_m: f64, lidar: &'static LidarSheet, rpm: u32) -> Self {
         Self {
             at_m,
             limits: PlanLimits::default(),
-            model,
+            lidar,
             rpm: vec![rpm],
             range_sd_m: None,
             mount_sd_deg: None,
@@ -104,15 +105,11 @@ impl ScanPlanner {
     ) -> Result<Self, Failure> {
         let axis = profile::axis(&config.axis)?;
         check(&request)?;
-        let lidar = plan_lidar(request.model, config.mount.d_m);
-        let simulated = profile::simulated(device) && is_simulated(&request);
-        let accuracy = match simulated {
-            true => simulated::lidar(),
-            false => config.lidar.accuracy(),
-        };
+        let lidar = request.lidar.plan_lidar(config.mount.d_m);
+        let ranges = RangeSource::of(config, device, &request);
         let errors = ErrorModel {
             range_m: request.at_m,
-            range_sd_m: request.range_sd_m.unwrap_or(accuracy.range_sd_m),
+            range_sd_m: ranges.sd_m(config, &request),
             count_deg: axis.gearing.degrees_per_qc(),
             link: link(device.kind),
             mount_sd_deg: request.mount_sd_deg,
@@ -128,6 +125,7 @@ impl ScanPlanner {
             device: device.clone(),
             axis,
             request,
+            ranges,
             predictor,
         })
     }
@@ -143,16 +141,17 @@ impl ScanPlanner {
         model: Option<&'static Model>,
         rpm: Option<u32>,
     ) -> Result<Self, Failure> {
-        let (usual_model, usual_rpm) = match profile::simulated(&capture.device) {
+        let (usual_lidar, usual_rpm) = match profile::simulated(&capture.device) {
             true => (SIMULATED, RigLidar::default().rpm),
-            false => (config.lidar.model.model(), config.lidar.rpm),
+            false => (config.lidar.model.sheet(), config.lidar.rpm),
         };
-        let (model, rpm) = (model.unwrap_or(usual_model), rpm.unwrap_or(usual_rpm));
+        let lidar = model.and_then(LidarSheet::of).unwrap_or(usual_lidar);
+        let rpm = rpm.unwrap_or(usual_rpm);
         let first = capture.steps.iter().find(|step| step.sweep);
         let request = PlanRequest {
             from_deg: first.map(|step| step.plan.from.0),
             to_deg: first.map(|step| step.plan.to.0),
-            ..PlanRequest::new(USUAL_M, model, rpm)
+            ..PlanRequest::new(USUAL_M, lidar, rpm)
         };
         Self::new(config, (&capture.name, &capture.device), request)
     }
@@ -175,16 +174,24 @@ impl ScanPlanner {
     /// What to expect of a capture, and a warning about its speed, for people.
     #[must_use]
     pub fn expectation(&self, request: &CaptureRequest, row: &PlanRow) -> Vec<String> {
+        let error = &row.error_mm;
         let expected = format!(
             "expected of a {} at {} rpm: {:.2} million points in {:.1} s with homing; 99 % of directions have a point within {:.2} deg; error \
-             of 95 % of points {:.1} mm at {} m",
+             of 95 % of points {:.1} mm at {} m, {:.1} mm by ranges ({}) and {:.1} mm by angles and times, {}",
             self.predictor.lidar.name,
             row.setting.rpm,
             row.points as f64 * 1e-6,
             row.scan_s,
             row.gap_deg.p99,
-            row.error_mm.total,
+            error.total,
             self.request.at_m,
+            error.of_ranges(),
+            self.ranges.text(&self.request),
+            error.without_ranges(),
+            match error.mount {
+                Some(mm) => format!("mount {mm:.1} mm (standard deviation)"),
+                None => "with an exact mount".to_owned(),
+            },
         );
         let warning = self.resonance(request, row);
         let warning = warning.map(|warning| format!("warning: {warning}"));
@@ -227,6 +234,13 @@ impl ScanPlanner {
     /// [`Kind::Usage`] for ends of the sweep outside the axis's limits.
     pub fn plan(&self) -> Result<PlanReport, Failure> {
         let limits = &self.request.limits;
+        for rpm in &self.request.rpm {
+            let checked = self.request.lidar.check_rpm(*rpm);
+            checked.map_err(|what| {
+                Failure::new(Kind::Usage, format!("--rpm: {what}"))
+                    .help("name a rate that the lidar runs at, with --rpm or as [lidar] rpm of the configuration")
+            })?;
+        }
         // Ends that the axis refuses leave no setting.
         self.steps(&self.capture(self.axis.max_speed, 1.0, 1))?;
         let rows = self.predictor.table(&self.scans(COARSE));
@@ -236,16 +250,21 @@ impl ScanPlanner {
         } else {
             Vec::new()
         };
-        let unmet = has_limits.then(|| self.unmet(&scans));
-        let chosen = self.predictor.choose(scans, limits);
+        let chosen = self.predictor.choose(&scans, limits);
+        let nearest = match &chosen {
+            None if has_limits => self.predictor.nearest(&scans, limits),
+            _ => None,
+        };
         Ok(PlanReport {
             device: self.name.clone(),
             simulated: profile::simulated(&self.device),
             lidar: self.predictor.lidar.name.clone(),
             at_m: self.request.at_m,
             rows: rows.into_iter().map(|row| self.with_command(row)).collect(),
-            unmet: unmet.filter(|_| chosen.is_none()),
+            unmet: nearest.as_ref().map(|nearest| self.unmet(nearest)),
+            nearest: nearest.map(|nearest| self.with_command(nearest.row)),
             chosen: chosen.map(|row| self.with_command(row)),
+            no_command: self.no_command(),
             assumptions: self.assumptions(),
         })
     }
@@ -339,12 +358,56 @@ impl ScanPlanner {
 }
 
 /// The simulator's lidar.
-const SIMULATED: &Model = &models::VLP_16;
+const SIMULATED: &LidarSheet = &lidars::VLP_16;
 
 /// Whether a request is for the simulator's lidar at its rate.
 fn is_simulated(request: &PlanRequest) -> bool {
     let rpm = RigLidar::default().rpm;
-    request.model == SIMULATED && request.rpm.iter().all(|rate| *rate == rpm)
+    request.lidar == SIMULATED && request.rpm.iter().all(|rate| *rate == rpm)
+}
+
+/// Where the standard deviation of a range is from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum RangeSource {
+    Request,
+    Simulator,
+    Configuration,
+    DataSheet,
+}
+
+impl RangeSource {
+    fn of(config: &Config, device: &Device, request: &PlanRequest) -> Self {
+        let is_configured = request.lidar == config.lidar.model.sheet();
+        if request.range_sd_m.is_some() {
+            Self::Request
+        } else if profile::simulated(device) && is_simulated(request) {
+            Self::Simulator
+        } else if is_configured && config.lidar.range_sd_m.is_some() {
+            Self::Configuration
+        } else {
+            Self::DataSheet
+        }
+    }
+
+    fn sd_m(self, config: &Config, request: &PlanRequest) -> f64 {
+        let sheet_m = request.lidar.range_sd_m(request.at_m);
+        match self {
+            Self::Request => request.range_sd_m.unwrap_or(sheet_m),
+            Self::Simulator => simulated::lidar().range_sd_m,
+            Self::Configuration => config.lidar.accuracy().range_sd_m,
+            Self::DataSheet => sheet_m,
+        }
+    }
+
+    /// Its name, for people.
+    const fn text(self, request: &PlanRequest) -> &'static str {
+        match self {
+            Self::Request => "--range-sd",
+            Self::Simulator => "the simulated lidar's: steps of 2 mm, no noise",
+            Self::Configuration => "[lidar] range_sd_m of the configuration",
+            Self::DataSheet => request.lidar.source,
+        }
+    }
 }
 
 /// Refuses impossible limits.
@@ -362,30 +425,15 @@ fn check(request: &PlanRequest) -> Result<(), Failure> {
             return Err(Failure::new(Kind::Usage, message));
         }
     }
-    let nearest = 1.0;
-    if request.at_m < nearest {
-        let message = format!("--at: expected at least {nearest} m, got {}", request.at_m);
+    let range = request.lidar.sensor.range();
+    if !(range.min_m..=range.max_m).contains(&request.at_m) {
+        let message = format!(
+            "--at: expected {} to {} m, the range of the {}, got {}",
+            range.min_m, range.max_m, request.lidar.title, request.at_m
+        );
         return Err(Failure::new(Kind::Usage, message));
     }
     Ok(())
-}
-
-/// A model as the planner sees it.
-fn plan_lidar(model: &Model, d_m: f64) -> PlanLidar {
-    let lasers = model.lasers.iter().map(|laser| PlanLaser {
-        elevation_deg: laser.elevation_deg,
-        height_m: laser.vertical_offset_m,
-        azimuth_deg: laser.azimuth_offset_deg,
-        delay_s: f64::from(laser.delay_ns) * 1e-9,
-    });
-    PlanLidar {
-        name: model.name.to_owned(),
-        lasers: lasers.collect(),
-        firing_period_s: f64::from(model.firing_period_ns) * 1e-9,
-        packet_period_s: f64::from(model.packet_period_ns(false)) * 1e-9,
-        range_step_m: model.distance_unit_m,
-        d_m,
-    }
 }
 
 /// Timing of a device's link; the simulated drive is on USB.

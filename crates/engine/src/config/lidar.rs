@@ -4,6 +4,8 @@ use protocol::vlp16::{Model, models};
 use scanner::config::LidarConfig;
 use serde::Deserialize;
 
+use crate::lidars::{self, LidarSheet};
+
 /// A lidar model, by the name that `--lidar` and `--model` take.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -20,6 +22,17 @@ pub enum LidarName {
 }
 
 impl LidarName {
+    /// Its data sheet.
+    #[must_use]
+    pub const fn sheet(self) -> &'static LidarSheet {
+        match self {
+            Self::Vlp16 => &lidars::VLP_16,
+            Self::HiRes => &lidars::HI_RES,
+            Self::Hdl32e => &lidars::HDL_32E,
+            Self::Vlp32c => &lidars::VLP_32C,
+        }
+    }
+
     /// The model.
     #[must_use]
     pub const fn model(self) -> &'static Model {
@@ -41,8 +54,8 @@ pub struct LidarSettings {
     pub model: LidarName,
     /// Revolutions per minute, as set on its own page.
     pub rpm: u32,
-    /// Standard deviation of a range, including quantisation, metres.
-    pub range_sd_m: f64,
+    /// Standard deviation of a range, including quantisation, metres; the data sheet's without it.
+    pub range_sd_m: Option<f64>,
 }
 
 impl Default for LidarSettings {
@@ -51,7 +64,7 @@ impl Default for LidarSettings {
         Self {
             model: LidarName::Vlp16,
             rpm: 600,
-            range_sd_m: LidarConfig::default().range_sd_m,
+            range_sd_m: None,
         }
     }
 }
@@ -59,9 +72,11 @@ impl Default for LidarSettings {
 impl LidarSettings {
     /// Its accuracy, which logs state.
     #[must_use]
-    pub const fn accuracy(&self) -> LidarConfig {
+    pub fn accuracy(&self) -> LidarConfig {
+        // The same at all ranges for these lidars.
+        let usual_m = self.model.sheet().range_sd_m(0.0);
         LidarConfig {
-            range_sd_m: self.range_sd_m,
+            range_sd_m: self.range_sd_m.unwrap_or(usual_m),
         }
     }
 }

@@ -28,6 +28,10 @@ fn out_of_range_numbers_are_refused() {
         ("[axis]\nmin_deg = -inf", "axis.min_deg"),
         ("[lidar]\nrange_sd_m = -0.01", "lidar.range_sd_m"),
         ("[lidar]\nmodel = 'hi-res'\nrpm = 30", "lidar.rpm"),
+        (
+            "[lidar]\nrpm = 601",
+            "lidar.rpm: expected 300 to 1200 rpm in steps of 60",
+        ),
         ("[axis]\nmax_speed_deg_s = -20.0", "axis.max_speed_deg_s"),
         ("[axis]\nmax_accel_deg_s2 = 0.0", "axis.max_accel_deg_s2"),
         ("[axis]\nquick_stop_deg_s2 = nan", "axis.quick_stop_deg_s2"),

@@ -245,10 +245,23 @@ fn utc_never_locked(request: &Reconstruction<'_>) -> Failure {
     .help("velomotion info shows the reason; omit --time utc to use the recording host's clock")
 }
 
+/// Where returns that do not become points were fired.
+const fn outside_of(alignment: &Alignment) -> &'static str {
+    match alignment.sweeps.is_empty() {
+        false => "fired before, between or after the sweeps, or without a known angle",
+        true => "fired before the first or after the last known angle",
+    }
+}
+
 /// Counts points without UTC as omitted, with a warning.
 fn omit_without_utc(scan: &mut ScanReport, without_utc: u64) {
     if without_utc > 0 {
         scan.left_out += without_utc;
+        let reason = format!("{without_utc} without UTC");
+        scan.left_out_because = Some(match scan.left_out_because.take() {
+            Some(others) => format!("{others}; {reason}"),
+            None => reason,
+        });
         scan.contents.warnings.push(format!(
             "{without_utc} points were omitted: the lidar's clock was not locked to UTC"
         ));
@@ -356,6 +369,7 @@ fn report(
         contents,
         points: placed.points,
         left_out: placed.outside,
+        left_out_because: (placed.outside > 0).then(|| outside_of(alignment).to_owned()),
         clouds: None,
         sweeps: alignment
             .sweeps

@@ -327,8 +327,10 @@ pub struct ScanReport {
     /// Clouds written, if each revolution has its own.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub clouds: Option<u64>,
-    /// Returns omitted: fired outside every sweep or without a known angle.
+    /// Returns omitted.
     pub left_out: u64,
+    /// Why; null if none was.
+    pub left_out_because: Option<String>,
     /// Sweeps.
     pub sweeps: Vec<SweepReport>,
     /// Synchronisation of clocks and angles.

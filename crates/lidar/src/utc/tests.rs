@@ -62,6 +62,13 @@ fn the_hour_follows_from_the_fix() {
         })
     );
     assert_eq!(locked.to_string(), "locked; the host's clock is -5 h off");
+    for (hours, text) in [
+        (6_190, "257 days after that of the recording"),
+        (-48, "2 days before that of the recording"),
+    ] {
+        let apart = UtcState::Locked { hours }.to_string();
+        assert!(apart.contains(text), "{apart}");
+    }
     // UTC is known exactly from the packet on.
     assert_eq!(clock.utc(stamp(at - 1)), None);
     for after in [0, 1, 500_000_000, 1_700 * S] {

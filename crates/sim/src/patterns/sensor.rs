@@ -27,7 +27,8 @@ pub enum PatternSensor {
 
 impl PatternSensor {
     /// Elevations of its lasers in firing order, degrees.
-    pub(super) fn elevations_deg(self) -> Vec<f64> {
+    #[must_use]
+    pub fn elevations_deg(self) -> Vec<f64> {
         let of = |sensor: LidarSensor| {
             let beams = sensor.beams.iter();
             beams.map(|beam| beam.elevation_deg).collect()
@@ -50,7 +51,8 @@ impl PatternSensor {
 
     /// Usual revolutions per minute: the paper's 20 frames per second; 10 of an HDL-64E; those of
     /// the data sheets.
-    pub(super) const fn usual_rpm(self) -> f64 {
+    #[must_use]
+    pub const fn usual_rpm(self) -> f64 {
         match self {
             Self::Hdl64e => 600.0,
             Self::Utm30lx => 2_400.0,
@@ -62,13 +64,35 @@ impl PatternSensor {
     /// Steps of azimuth per second. The paper has 0.4 degrees at 20 frames per second for all,
     /// close to the 18,084 firings of a VLP-16. The HDL-64E S2 has 1.333 million points per second,
     /// the planar scanners 1440 steps per revolution.
-    pub(super) const fn steps_per_s(self) -> f64 {
+    #[must_use]
+    pub const fn steps_per_s(self) -> f64 {
         match self {
             Self::Hdl64e => 1_333_000.0 / 64.0,
             Self::Utm30lx => 1_440.0 * 40.0,
             Self::Lms151 => 1_440.0 * 25.0,
             _ => 18_000.0,
         }
+    }
+
+    /// Whether its head can rotate at a rate, revolutions per minute.
+    ///
+    /// The manuals of the 16 and 32 lasers have 300 to 1200 in steps of 60 (63-9243, section 8.3),
+    /// that of the HDL-64E S2 300 to 900; planar scanners have one rate, an LMS151 two.
+    ///
+    /// # Errors
+    /// The rates that it has.
+    pub fn check_rpm(self, rpm: f64) -> Result<(), &'static str> {
+        let within = |least: f64, most: f64| (least..=most).contains(&rpm);
+        let (accepted, expected) = match self {
+            Self::Hdl64e => (within(300.0, 900.0), "300 to 900 rpm"),
+            Self::Utm30lx => (rpm == 2_400.0, "2400 rpm"),
+            Self::Lms151 => (rpm == 1_500.0 || rpm == 3_000.0, "1500 or 3000 rpm"),
+            _ => (
+                within(300.0, 1_200.0) && rpm % 60.0 == 0.0,
+                "300 to 1200 rpm in steps of 60",
+            ),
+        };
+        accepted.then_some(()).ok_or(expected)
     }
 
     /// Angle that a planar scanner sees, degrees, half of it to either side of its front; `None`

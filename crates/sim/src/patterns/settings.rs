@@ -31,7 +31,8 @@ pub enum PlanarFront {
 
 impl PlanarFront {
     /// Azimuth of the front, degrees.
-    pub(super) const fn azimuth_deg(self) -> f64 {
+    #[must_use]
+    pub const fn azimuth_deg(self) -> f64 {
         match self {
             Self::Roll => 0.0,
             Self::Pitch => -90.0,
@@ -81,7 +82,6 @@ pub struct PatternSettings {
 pub(super) fn check(name: &str, settings: &PatternSettings) -> Result<(), PatternError> {
     let tilt = settings.tilt;
     let rules = [
-        ("rpm", settings.rpm, 1.0, 100_000.0, "1 to 100000 rpm"),
         ("step", settings.step_deg, 1e-3, 90.0, "0.001 to 90 deg"),
         (
             "start",
@@ -119,5 +119,11 @@ pub(super) fn check(name: &str, settings: &PatternSettings) -> Result<(), Patter
             });
         }
     }
-    Ok(())
+    let wrong_rpm = |expected| PatternError::Number {
+        name: name.to_owned(),
+        key: "rpm",
+        expected,
+        got: settings.rpm,
+    };
+    settings.head.check_rpm(settings.rpm).map_err(wrong_rpm)
 }

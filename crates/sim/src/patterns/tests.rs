@@ -380,7 +380,12 @@ fn invalid_patterns_are_reported() {
         ("rmbl:50,seam=thrice", "seam=once or seam=twice"),
         ("rmbl:50,frames=0", "frames as a whole number from 1"),
         ("rmbl:50,frames=2.5", "frames as a whole number from 1"),
-        ("rmbl:50,rpm=0", "rpm: expected 1 to 100000"),
+        (
+            "rmbl:50,rpm=0",
+            "rpm: expected 300 to 1200 rpm in steps of 60",
+        ),
+        ("velomotion16:50,rpm=601", "in steps of 60, got 601"),
+        ("hdl64e:50,rpm=1200", "rpm: expected 300 to 900"),
         ("rmbl:50,step=0", "step: expected 0.001"),
         ("rmbl:50,d=7", "d: expected -5 to 5 m"),
         ("rmbl:0.001", "at most 2000000000 points, got"),

@@ -1,7 +1,5 @@
 //! `[sensor]`, `[motion]`, `[mount]`, `[drive]` and `[link]`.
 
-use std::ops::RangeInclusive;
-
 use serde::Deserialize;
 use units::Gearing;
 
@@ -12,6 +10,7 @@ use crate::effect_models::settings_of::{
 };
 use crate::motion::{AxisMotion, MotionError, Sweeps};
 use crate::packet_maker::HeadRotation;
+use crate::patterns::PatternSensor;
 use crate::scenery::InvalidValue;
 use crate::sensor::{DetectionRange, LidarMount, LidarSensor, ReturnMode};
 use crate::simulate::Polls;
@@ -64,9 +63,6 @@ enum ReturnsName {
     Last,
     Dual,
 }
-
-/// Up to twice the maximum of real heads (63-9243: 300 to 1200).
-const RPM: RangeInclusive<u32> = 1..=2_400;
 
 impl Default for SensorSection {
     fn default() -> Self {
@@ -121,9 +117,12 @@ impl SensorSection {
             ReturnsName::Dual => ReturnMode::Dual,
         };
         let (rpm, start_deg) = (self.rpm, self.start_deg);
-        if !RPM.contains(&rpm) {
-            let what = format!("expected 1 to 2400 revolutions per minute, got {rpm}");
-            return Err(invalid("sensor.rpm", what));
+        // All of them have the same rates.
+        if let Err(expected) = PatternSensor::Vlp16.check_rpm(f64::from(rpm)) {
+            return Err(invalid(
+                "sensor.rpm",
+                format!("expected {expected}, got {rpm}"),
+            ));
         }
         finite("sensor.start_deg", "an azimuth in degrees", start_deg)?;
         Ok((sensor, returns, HeadRotation { rpm, start_deg }))

@@ -4,7 +4,8 @@ use std::net::SocketAddr;
 use std::num::NonZeroUsize;
 use std::ops::RangeInclusive;
 
-use clap::builder::PossibleValuesParser;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use engine::lidars::{LIDARS, LidarSheet};
 
 use super::ALL;
 
@@ -12,6 +13,12 @@ use super::ALL;
 pub(super) fn effect_or_all() -> PossibleValuesParser {
     let names = sim::effect_models::EffectsConfig::NAMES.iter().copied();
     PossibleValuesParser::new(names.chain([ALL]))
+}
+
+/// Parses the name of a lidar that may be planned with.
+pub(super) fn lidar_sheet() -> impl TypedValueParser<Value = &'static LidarSheet> {
+    let names = PossibleValuesParser::new(LIDARS.map(|lidar| lidar.name));
+    names.try_map(|name| LidarSheet::named(&name).ok_or("expected the name of a lidar"))
 }
 
 /// Parses two times, milliseconds.

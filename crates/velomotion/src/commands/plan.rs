@@ -13,7 +13,7 @@ use engine::failure::{Failure, Kind};
 use engine::output::{check_free, make_folder, write_text};
 
 use super::CommandOutput;
-use crate::cli::{self, Common, ModelName};
+use crate::cli::{self, Common};
 
 /// Runs the command.
 ///
@@ -33,7 +33,8 @@ pub fn run(arguments: &cli::Plan, common: &Common) -> Result<CommandOutput, Fail
     let request = request(arguments, &config);
     let mut report = ScanPlanner::new(&config, (&name, &device), request)?.plan()?;
     if let Some(file) = &common.config {
-        let rows = report.rows.iter_mut().chain(&mut report.chosen);
+        let rows = report.rows.iter_mut();
+        let rows = rows.chain(&mut report.chosen).chain(&mut report.nearest);
         for command in rows.filter_map(|row| row.command.as_mut()) {
             *command += &format!(" --config {}", quoted(&file.to_string_lossy()));
         }
@@ -51,19 +52,20 @@ pub fn run(arguments: &cli::Plan, common: &Common) -> Result<CommandOutput, Fail
         write_text(json, &object, arguments.force)?;
     }
     Ok(CommandOutput {
-        failure: report.unmet.as_ref().map(|unmet| {
-            Failure::new(Kind::Incomplete, unmet.clone())
-                .help("give other limits, by the table; --range-sd sets the noise of the ranges")
-        }),
+        failure: report
+            .unmet
+            .as_ref()
+            .map(|unmet| Failure::new(Kind::Incomplete, unmet.clone()).help(help(&report))),
         ..CommandOutput::result(&report, text(&report, written(&files)))
     })
 }
 
 fn request(arguments: &cli::Plan, config: &Config) -> PlanRequest {
-    let model = arguments.lidar.map(ModelName::model);
-    let model = model.unwrap_or_else(|| config.lidar.model.model());
+    let configured = config.lidar.model.sheet();
+    let lidar = arguments.lidar.unwrap_or(configured);
     let rpm = match arguments.rpm.as_slice() {
-        [] => vec![config.lidar.rpm],
+        [] if lidar == configured => vec![config.lidar.rpm],
+        [] => vec![lidar.usual_rpm()],
         given => given.to_vec(),
     };
     PlanRequest {
@@ -78,7 +80,16 @@ fn request(arguments: &cli::Plan, config: &Config) -> PlanRequest {
         mount_sd_deg: arguments.mount_sd,
         from_deg: arguments.from,
         to_deg: arguments.to,
-        ..PlanRequest::new(arguments.at, model, 0)
+        ..PlanRequest::new(arguments.at, lidar, 0)
+    }
+}
+
+/// What to do where no setting keeps the limits.
+fn help(report: &PlanReport) -> String {
+    let nearest = report.nearest.as_ref();
+    match nearest.and_then(|nearest| nearest.command.as_deref()) {
+        Some(command) => format!("give other limits, by the table, or take the nearest: {command}"),
+        None => "give other limits, by the table".to_owned(),
     }
 }
 
@@ -120,6 +131,10 @@ fn text(report: &PlanReport, written: Vec<String>) -> String {
             "\n--error, --gap or --time choose a setting and print its command".to_owned()
         })),
     }
+    let no_command = report.no_command.iter();
+    lines.extend(
+        no_command.map(|why| format!("\n{}", wrapped(&format!("no capture command: {why}")))),
+    );
     lines.push("\nassumed".to_owned());
     let assumptions = report.assumptions.iter();
     lines.extend(assumptions.map(|line| wrapped(&format!("- {line}"))));
@@ -168,8 +183,9 @@ fn table(rows: &[CommandRow]) -> String {
             format!("{:.2}", gap.worst),
             format!("{:.1}", row.error_mm.total),
             format!("{:.2}", row.points as f64 * 1e-6),
-            format!("{:.1}", row.replay_s),
-            format!("{:.1}", megabytes(row.log_bytes)),
+            row.replay_s.map_or("-".to_owned(), |s| format!("{s:.1}")),
+            row.log_bytes
+                .map_or("-".to_owned(), |bytes| format!("{:.1}", megabytes(bytes))),
             format!("{:.1}", megabytes(row.cloud_bytes)),
         ];
         let cells = cells.into_iter();
@@ -201,13 +217,16 @@ fn choice(chosen: &CommandRow, at_m: f64) -> Vec<String> {
     let mount = error
         .mount
         .map_or("not calibrated".to_owned(), |mm| format!("{mm:.2}"));
+    let log = row.replay_s.zip(row.log_bytes);
+    let log = log.map_or(String::new(), |(replay_s, bytes)| {
+        format!("replay {replay_s:.1} s; log {:.1} MB, ", megabytes(bytes))
+    });
     let paragraphs = [
         format!(
-            "{:.1} s with homing; at most {} points; replay {:.1} s; log {:.1} MB, cloud {:.1} MB; mean resolution {:.3} deg",
+            "{:.1} s with homing; at most {} points; {}cloud {:.1} MB; mean resolution {:.3} deg",
             row.scan_s,
             row.points,
-            row.replay_s,
-            megabytes(row.log_bytes),
+            log,
             megabytes(row.cloud_bytes),
             row.resolution_deg,
         ),
@@ -239,8 +258,7 @@ fn choice(chosen: &CommandRow, at_m: f64) -> Vec<String> {
     let first = match &chosen.command {
         Some(command) => format!("\n{command}\n  with the lidar at {} rpm", setting.rpm),
         None => format!(
-            "\n{} deg/s, {} deg/s2, {} rpm, {} sweeps: no command, as the simulated lidar is a VLP-16 at 600 rpm;\n  name a \
-             device with --device",
+            "\n{} deg/s, {} deg/s2, {} rpm, {} sweeps",
             setting.speed_deg_s, setting.accel_deg_s2, setting.rpm, setting.sweeps,
         ),
     };
@@ -250,14 +268,14 @@ fn choice(chosen: &CommandRow, at_m: f64) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use engine::config::{Config, Device};
-    use protocol::vlp16::models;
+    use engine::lidars::{self, LIDARS};
 
     use super::*;
 
     fn report(limits: PlanLimits) -> PlanReport {
         let request = PlanRequest {
             limits,
-            ..PlanRequest::new(20.0, &models::VLP_16, 600)
+            ..PlanRequest::new(20.0, &lidars::VLP_16, 600)
         };
         let device = Device::simulator();
         ScanPlanner::new(&Config::default(), ("sim", &device), request)
@@ -301,9 +319,9 @@ mod tests {
             ..PlanLimits::default()
         };
         for (model, rpm, has_command) in [
-            (&models::VLP_16, 600, true),
-            (&models::VLP_16, 1_200, false),
-            (&models::HDL_32E, 600, false),
+            (&lidars::VLP_16, 600, true),
+            (&lidars::VLP_16, 1_200, false),
+            (&lidars::HDL_32E, 600, false),
         ] {
             let request = PlanRequest {
                 limits,
@@ -316,9 +334,10 @@ mod tests {
                 .iter()
                 .all(|row| row.command.is_some() == has_command);
             assert!(all && !report.rows.is_empty(), "{} {rpm}", model.name);
-            // Ranges of a lidar that is not simulated are those of the configuration.
+            assert_eq!(report.no_command.is_none(), has_command);
+            // Ranges of a lidar that is not simulated are those of the data sheet.
             let ranges_mm = report.rows[0].row.error_mm.range;
-            assert_eq!(ranges_mm > 20.0, !has_command, "{ranges_mm}");
+            assert_eq!(ranges_mm > 6.0, !has_command, "{ranges_mm}");
             for CommandRow { row, unmet, .. } in &report.rows {
                 let names: Vec<&str> = unmet.iter().map(|unmet| unmet.limit).collect();
                 assert_eq!(names.contains(&"gap"), row.gap_deg.p99 > 0.5, "{row:?}");
@@ -329,12 +348,78 @@ mod tests {
         }
     }
 
+    /// Every lidar gives a table, with a setting for the gap. Those that velomotion does not
+    /// capture have no log, replay and command, and the text says so.
+    #[test]
+    fn every_lidar_has_a_plan() {
+        let config = Config::default();
+        for lidar in LIDARS {
+            let request = PlanRequest {
+                limits: PlanLimits {
+                    gap_deg: Some(1.5),
+                    ..PlanLimits::default()
+                },
+                ..PlanRequest::new(20.0, lidar, lidar.usual_rpm())
+            };
+            let planner = ScanPlanner::new(&config, ("found", &Device::found()), request);
+            let report = planner.unwrap().plan().unwrap();
+            let chosen = report
+                .chosen
+                .as_ref()
+                .unwrap_or_else(|| panic!("{report:?}"));
+            let row = &chosen.row;
+            assert!(row.gap_deg.p99 <= 1.5 && row.scan_s < 20.0, "{chosen:?}");
+            let sd_mm = 1e3 * lidar.range_sd_m(20.0);
+            assert!((row.error_mm.range.hypot(row.error_mm.range_step) - sd_mm).abs() < 1e-9);
+            let is_captured = lidar.model.is_some();
+            assert_eq!(chosen.command.is_some(), is_captured, "{}", lidar.name);
+            assert_eq!(row.log_bytes.is_some(), is_captured);
+            let text = text(&report, Vec::new());
+            let says_so = format!(
+                "no capture command: velomotion does not capture the {}",
+                lidar.title
+            );
+            assert_eq!(text.contains(&says_so), !is_captured, "{text}");
+        }
+    }
+
+    #[test]
+    fn rates_that_the_lidar_does_not_have_are_refused() {
+        for (lidar, rpm) in [
+            (&lidars::VLP_16, 601),
+            (&lidars::VLP_16, 1_260),
+            (LIDARS[5], 600),
+        ] {
+            let request = PlanRequest::new(20.0, lidar, rpm);
+            let device = Device::simulator();
+            let planner = ScanPlanner::new(&Config::default(), ("sim", &device), request);
+            let failure = planner.unwrap().plan().unwrap_err();
+            assert_eq!(failure.kind, Kind::Usage);
+            assert!(
+                failure.message.starts_with("--rpm: expected "),
+                "{}",
+                failure.message
+            );
+        }
+        // Farther than a UTM-30LX sees.
+        let request = PlanRequest::new(40.0, LIDARS[5], 2_400);
+        let device = Device::simulator();
+        let planner = ScanPlanner::new(&Config::default(), ("sim", &device), request);
+        assert!(
+            planner
+                .err()
+                .unwrap()
+                .message
+                .contains("0.1 to 30 m, the range of the UTM-30LX")
+        );
+    }
+
     #[test]
     fn sweeps_outside_the_axis_are_refused() {
         for to_deg in [0.0, -50.0, f64::NAN] {
             let request = PlanRequest {
                 to_deg: Some(to_deg),
-                ..PlanRequest::new(20.0, &models::VLP_16, 600)
+                ..PlanRequest::new(20.0, &lidars::VLP_16, 600)
             };
             let device = Device::simulator();
             let planner = ScanPlanner::new(&Config::default(), ("sim", &device), request);
@@ -370,6 +455,8 @@ mod tests {
         ] {
             let report = report(limits);
             assert!(report.chosen.is_none());
+            let nearest = report.nearest.as_ref().unwrap();
+            assert!(help(&report).ends_with(nearest.command.as_deref().unwrap()));
             let unmet = report.unmet.unwrap();
             assert!(unmet.contains(words), "{unmet}");
         }

@@ -1,6 +1,6 @@
 //! A plan for people and programs: commands, causes and assumptions.
 
-use analysis::plan::{PlanRow, PlannedScan, ScanSetting};
+use analysis::plan::{LimitKind, NearestScan, PlanRow, ScanSetting};
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -10,7 +10,7 @@ use crate::devices::profile;
 /// A row with its command.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct CommandRow {
-    /// The capture; null where the device is simulated and has another lidar.
+    /// The capture; null for another lidar than the device has.
     pub command: Option<String>,
     /// The limits that it does not keep, with the cause.
     pub unmet: Vec<UnmetLimit>,
@@ -36,8 +36,12 @@ pub struct PlanReport {
     /// The fastest setting within the limits; with a limit of time only, the densest. Null without
     /// limits, and if no setting meets them.
     pub chosen: Option<CommandRow>,
-    /// Why no setting meets the limits.
+    /// Why no setting meets the limits, and the best that there is.
     pub unmet: Option<String>,
+    /// That setting: the fastest that comes nearest to the limit which none meets.
+    pub nearest: Option<CommandRow>,
+    /// Why rows have no command.
+    pub no_command: Option<String>,
     /// What the figures assume.
     pub assumptions: Vec<String>,
 }
@@ -55,11 +59,27 @@ pub struct UnmetLimit {
 
 impl ScanPlanner {
     pub(super) fn with_command(&self, row: PlanRow) -> CommandRow {
-        let other = profile::simulated(&self.device) && !is_simulated(&self.request);
+        let has_command = self.no_command().is_none();
         CommandRow {
-            command: (!other).then(|| self.command(&row.setting)),
+            command: has_command.then(|| self.command(&row.setting)),
             unmet: self.unmet_of(&row),
             row,
+        }
+    }
+
+    /// Why rows have no command.
+    pub(super) fn no_command(&self) -> Option<String> {
+        let lidar = self.request.lidar;
+        match lidar.model {
+            None => Some(format!(
+                "velomotion does not capture the {}: its packets are not those of a VLP-16's family",
+                lidar.title
+            )),
+            Some(_) if profile::simulated(&self.device) && !is_simulated(&self.request) => Some(
+                "the simulated lidar is a VLP-16 at 600 rpm; name a device with --device"
+                    .to_owned(),
+            ),
+            Some(_) => None,
         }
     }
 
@@ -129,39 +149,43 @@ impl ScanPlanner {
         unmet.collect()
     }
 
-    /// Which limit no setting meets.
-    pub(super) fn unmet(&self, scans: &[PlannedScan]) -> String {
+    /// Which limit no setting meets, what comes nearest, and what it takes.
+    pub(super) fn unmet(&self, nearest: &NearestScan) -> String {
         let limits = &self.request.limits;
-        let budget = |scan: &PlannedScan| {
-            let errors = &self.predictor.errors;
-            errors.budget(&self.predictor.lidar, &scan.sweeps)
+        let (row, at_m) = (&nearest.row, self.request.at_m);
+        let setting = &row.setting;
+        let by = format!(
+            "{} deg/s, {} deg/s2, {} rpm, {} sweeps",
+            trim(setting.speed_deg_s),
+            trim(setting.accel_deg_s2),
+            setting.rpm,
+            setting.sweeps
+        );
+        let others = match nearest.with_others {
+            true => " that keeps the other limits",
+            false => "",
         };
-        let least = scans
-            .iter()
-            .map(budget)
-            .min_by(|a, b| a.total.total_cmp(&b.total));
-        let fastest = scans
-            .iter()
-            .map(|scan| scan.scan_s)
-            .fold(f64::INFINITY, f64::min);
-        match (limits.error_mm, limits.time_s, least) {
-            (Some(limit), _, Some(least)) if least.total > limit => format!(
-                "no setting has an error of {limit} mm at {} m: the least is {:.1} mm, of which {:.1} mm by the ranges (95 %)",
-                self.request.at_m,
-                least.total,
-                least.of_ranges(),
+        match nearest.limit {
+            LimitKind::Error => format!(
+                "no setting has an error of {} mm at {at_m} m: the least is {:.2} mm, of which {:.2} mm by the ranges (95 %), in {:.1} s \
+                 ({by}); only more accurate ranges, --range-sd, lessen the latter",
+                limits.error_mm.unwrap_or_default(),
+                row.error_mm.total,
+                row.error_mm.of_ranges(),
+                row.scan_s,
             ),
-            (_, Some(limit), _) if fastest > limit => {
-                format!("no scan with homing takes {limit} s: the shortest takes {fastest:.1} s")
-            }
-            (_, Some(_), _) => {
-                "no setting meets all limits: allow more time, error or gap".to_owned()
-            }
-            _ => format!(
-                "no setting has a gap of {} deg: firings are {:.2} deg apart in azimuth, and lines never reach the poles of the tilt axis",
+            LimitKind::Gap => format!(
+                "no setting{others} has a gap of {} deg: the least is {:.3} deg, in {:.1} s ({by}); firings are {:.2} deg apart in azimuth, and \
+                 lines never reach the poles of the tilt axis",
                 limits.gap_deg.unwrap_or_default(),
-                6.0 * f64::from(self.request.rpm.iter().copied().min().unwrap_or_default())
-                    * self.predictor.lidar.firing_period_s,
+                row.gap_deg.p99,
+                row.scan_s,
+                6.0 * setting.rpm * self.predictor.lidar.firing_period_s,
+            ),
+            LimitKind::Time => format!(
+                "no scan{others} takes {} s with homing: the shortest takes {:.1} s ({by})",
+                limits.time_s.unwrap_or_default(),
+                row.scan_s,
             ),
         }
     }
@@ -181,12 +205,10 @@ impl ScanPlanner {
             format!(
                 "ranges: standard deviation {:.2} mm, quantisation included; {}",
                 1e3 * errors.range_sd_m,
-                match (self.request.range_sd_m, is_simulated(&self.request)) {
-                    (Some(_), _) => "--range-sd",
-                    (None, true) if profile::simulated(&self.device) => "the simulated lidar's",
-                    (None, _) => "[lidar] range_sd_m of the configuration",
-                }
+                self.ranges.text(&self.request),
             ),
+            "constant errors of the ranges are not included: a few mm from laser to laser, which calibrate measures"
+                .to_owned(),
             format!(
                 "drive: a position every {:.2} ms, {:.0} us off, and a delay of up to {:.2} ms that no scan reveals",
                 1e3 * errors.link.poll_s,
