@@ -38,7 +38,7 @@ fn velodyne_decoder_places_simulated_points_on_the_scenes_surfaces() {
         let folder = tempfile::tempdir().unwrap();
         let (log, points) = (folder.path().join("s.pcapng"), folder.path().join("points"));
         let text = format!(
-            "scene = \"hall\"\n[sensor]\nmodel = \"{model}\"\n[motion]\nkind = \"fixed\"\nduration_s = 0.11\n"
+            "scene = \"hall\"\n[sensor]\nmodel = \"{model}\"\n[effects]\nall = false\n[motion]\nkind = \"fixed\"\nduration_s = 0.11\n"
         );
         let common = Common {
             config: None,

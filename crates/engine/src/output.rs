@@ -39,7 +39,7 @@ impl Target {
             let scratch = ::io::files::scratch_in(&::io::files::scratch_folder());
             let scratch = scratch.map_err(|error| {
                 Failure::new(Kind::BadInput, format!("cannot write to stdout: {error}"))
-                    .help("set TMPDIR to a folder with enough space, or name a file with -o")
+                    .help("set TMPDIR to a folder with enough space, or name a file instead of -")
             })?;
             let scratch = BufferedFile::new(scratch);
             return Ok(Self {
@@ -50,7 +50,7 @@ impl Target {
         }
         let format = Format::from_path(path).map_err(|error| {
             Failure::new(Kind::Usage, format!("{}: {error}", path.display()))
-                .help("use one of those extensions with -o, or - for PLY on stdout")
+                .help("use one of those extensions, or - for PLY on stdout")
         })?;
         Self::file(path, force, |file| {
             format.writer(BufferedFile::new(file), fields)
@@ -178,7 +178,7 @@ pub fn two_files(log: &Path, cloud: &Path) -> Result<(), Failure> {
             Kind::Usage,
             format!("{log} cannot be both the cloud and its recording"),
         )
-        .help("give the cloud another name with -o, with the extension of a cloud such as .ply"));
+        .help("give the cloud another name, with the extension of a cloud such as .ply"));
     }
     Ok(())
 }
@@ -222,9 +222,9 @@ pub fn one_for_stdout(cloud: Option<&Path>, json: bool) -> Result<(), Failure> {
     if json && cloud == Some(Path::new("-")) {
         return Err(Failure::new(
             Kind::Usage,
-            "-o - and --json both write to stdout".to_owned(),
+            "a cloud named - and --json both write to stdout".to_owned(),
         )
-        .help("name a file with -o, or omit --json"));
+        .help("name a file instead of -, or omit --json"));
     }
     Ok(())
 }
@@ -319,7 +319,7 @@ pub fn sink_failure(path: &Path, error: &SinkError) -> Failure {
             Kind::Incomplete,
             "the reader of stdout closed it before the end of the cloud".to_owned(),
         )
-        .help("read all of stdout, or write the cloud to a file with -o");
+        .help("read all of stdout, or write the cloud to a file");
     }
     if path == Path::new("-") {
         return Failure::new(
@@ -328,7 +328,7 @@ pub fn sink_failure(path: &Path, error: &SinkError) -> Failure {
         )
         .help(format!(
             "a PLY begins with its point count, so points are first stored in a scratch file, 29 bytes each: free some space in {}, \
-             set TMPDIR to a folder with more, or name a file with -o",
+             set TMPDIR to a folder with more, or name a file instead of -",
             ::io::files::scratch_folder().display()
         ));
     }

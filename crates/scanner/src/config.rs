@@ -32,6 +32,21 @@ pub struct ScanConfig {
     /// Calibration of axis and lasers; absent without one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub calibration: Option<DeviceCalibration>,
+    /// What was simulated, in a log of `velomotion simulate`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub simulation: Option<SimulatedScene>,
+}
+
+/// A simulated scene.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SimulatedScene {
+    /// Its file, or its name.
+    pub scene: String,
+    /// Random seed, decimal: TOML has no numbers of 64 bits without sign.
+    pub seed: String,
+    /// Effects that were on.
+    pub effects: Vec<String>,
 }
 
 /// Bits of the body of a read request on RS232 (Communication Guide: length, two words, checksum),
@@ -120,6 +135,7 @@ impl Default for ScanConfig {
             rs232_baud: None,
             sweep: None,
             calibration: None,
+            simulation: None,
         }
     }
 }

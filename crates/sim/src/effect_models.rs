@@ -7,7 +7,7 @@
 /// settings that add the effect to its list.
 macro_rules! effect {
     ($effect:ident, $settings:ident, $($list:ident).+: $pointer:ident, $name:literal,
-     idle: $idle:literal, $(needs: $needs:expr,)? new: $new:expr) => {
+     idle: $idle:literal, $(needs: $needs:expr,)? $(usual: $usual:expr,)? new: $new:expr) => {
         impl $effect {
             /// The key in the scene file's `[effects]`.
             pub const NAME: &'static str = $name;
@@ -29,6 +29,10 @@ macro_rules! effect {
         }
 
         impl super::settings::EffectSettings for $settings {
+            $(fn usual() -> Option<Self> {
+                Some($usual)
+            })?
+
             fn add(
                 &self,
                 seed: u64,
@@ -64,6 +68,7 @@ mod own_shadow;
 pub(crate) mod range_noise;
 mod reflectance;
 mod reorder;
+mod request;
 mod returns;
 mod selection;
 mod servo_lag;
@@ -82,17 +87,42 @@ use settings::EffectSettings;
 pub use divergence::{Divergence, DivergenceSettings};
 pub use explain::{EffectExplanation, EffectLine, Explanation};
 pub use moving_objects::{Mover, MovingObjects};
+pub use reflectance::ReflectanceSettings;
+pub use request::EffectRequest;
 pub use settings::InvalidSetting;
 pub use tolerance::EffectTolerance;
+pub(crate) use weather::Weather;
+
+/// Settings of effects that facts of a scene call for.
+pub(crate) mod settings_of {
+    pub(crate) use super::backlash::Backlash;
+    pub(crate) use super::base_drift::BaseDrift;
+    pub(crate) use super::batching::Batching;
+    pub(crate) use super::duplicate::DuplicateSettings;
+    pub(crate) use super::eccentricity::Eccentricity;
+    pub(crate) use super::encoder_quantisation::EncoderQuantisationSettings;
+    pub(crate) use super::gear_ripple::GearRippleSettings;
+    pub(crate) use super::lidar_clock::LidarClockSettings;
+    pub(crate) use super::link_jitter::LinkJitterSettings;
+    pub(crate) use super::loss::LossSettings;
+    pub(crate) use super::own_shadow::OwnShadowSettings;
+    pub(crate) use super::range_noise::RangeNoiseSettings;
+    pub(crate) use super::reorder::ReorderSettings;
+    pub(crate) use super::servo_lag::ServoLagSettings;
+    pub(crate) use super::tilt_limits::TiltLimits;
+    pub(crate) use super::weather::WeatherSettings;
+}
 
 macro_rules! effects_config {
     ($($name:ident: $settings:ty,)*) => {
-        /// `[effects]`: one table per configured effect.
+        /// `[effects]`: one key per effect, with its settings, `true` or `false`.
         #[derive(Clone, Debug, Default, Deserialize)]
         #[serde(deny_unknown_fields, default)]
         pub struct EffectsConfig {
+            /// `all = false`: no effect but those that have a key.
+            pub all: Option<bool>,
             $(#[doc = concat!("`[effects.", stringify!($name), "]`.")]
-            pub $name: Option<$settings>,)*
+            pub $name: EffectRequest<$settings>,)*
         }
 
         impl EffectsConfig {
@@ -101,8 +131,66 @@ macro_rules! effects_config {
 
             /// Names of the configured effects, in the order in which they act.
             pub fn configured(&self) -> impl Iterator<Item = &'static str> {
-                let names = [$(self.$name.is_some().then_some(stringify!($name))),*];
+                let names = [$(self.$name.settings().map(|_| stringify!($name))),*];
                 names.into_iter().flatten()
+            }
+
+            /// Names of the effects that are `true`: they are on in any case.
+            pub fn forced(&self) -> impl Iterator<Item = &'static str> {
+                let names = [
+                    $(matches!(self.$name, EffectRequest::On(_)).then_some(stringify!($name))),*
+                ];
+                names.into_iter().flatten()
+            }
+
+            /// Whether the effect has a key.
+            #[must_use]
+            pub fn has_key(&self, name: &str) -> bool {
+                match name {
+                    $(stringify!($name) => !matches!(self.$name, EffectRequest::Absent),)*
+                    _ => false,
+                }
+            }
+
+            /// Whether the effect is `false`, or has no key and `all` is `false`.
+            #[must_use]
+            pub fn is_off(&self, name: &str) -> bool {
+                match name {
+                    $(stringify!($name) => match &self.$name {
+                        EffectRequest::Off => true,
+                        EffectRequest::Absent => self.all == Some(false),
+                        _ => false,
+                    })*
+                    _ => false,
+                }
+            }
+
+            /// Configures what is not configured here, as there.
+            pub(crate) fn complete(&mut self, other: Self) {
+                $(if self.$name.settings().is_none() {
+                    self.$name = other.$name;
+                })*
+            }
+
+            /// Configures an effect with its usual settings, if it is not configured and has any.
+            pub(crate) fn add_usual(&mut self, name: &str) {
+                match name {
+                    $(stringify!($name) if self.$name.settings().is_none() => {
+                        if let Some(usual) = settings::EffectSettings::usual() {
+                            self.$name = EffectRequest::Settings(usual);
+                        }
+                    })*
+                    _ => {}
+                }
+            }
+
+            /// Only the effects that `keep` selects.
+            #[must_use]
+            pub(crate) fn only(mut self, keep: impl Fn(&str) -> bool) -> Self {
+                $(if !keep(stringify!($name)) {
+                    self.$name = EffectRequest::Absent;
+                })*
+                self
             }
 
             /// Creates the configured effects for a run with `seed`. `stopwatch` measures their
@@ -117,10 +205,12 @@ macro_rules! effects_config {
             ) -> Result<ConfiguredEffects, InvalidSetting> {
                 let mut effects = ConfiguredEffects::default();
                 let mut config = self.clone();
-                if let Some(weather) = &mut config.weather {
-                    weather.reflectance = self.reflectance;
+                if let EffectRequest::On(weather) | EffectRequest::Settings(weather) =
+                    &mut config.weather
+                {
+                    weather.reflectance = self.reflectance.settings().copied();
                 }
-                $(if let Some(settings) = &config.$name {
+                $(if let Some(settings) = config.$name.settings() {
                     settings.add(seed, stopwatch, &mut effects)?;
                 })*
                 Ok(effects)

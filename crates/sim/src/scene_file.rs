@@ -1,12 +1,15 @@
 //! Scene files: TOML in, a [`Simulation`] and its effects out.
 //!
-//! Each key of `[effects]` is a table named after an effect of [`crate::effect_models`]; an effect
-//! without a table is absent. The surroundings are the file's own objects or a shipped scene
-//! (`scene = "hall"`), see [`crate::scenery`]. Unknown keys are errors, and errors name the line.
+//! The facts that a file states call for effects of [`crate::effect_models`] ([`EffectDemand`]),
+//! which are on with usual settings. A key of `[effects]` changes that: `false`, `true`, or a table
+//! of settings. The surroundings are the file's own objects or a shipped scene (`scene = "hall"`),
+//! see [`crate::scenery`]. Unknown keys are errors, and errors name the line.
 
 mod demands;
+mod facts;
 mod sections;
 mod surroundings;
+mod survey;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -16,14 +19,18 @@ use thiserror::Error;
 use toml::Spanned;
 use units::{Host, Stamp};
 
-use crate::effect_models::{EffectsConfig, InvalidSetting, MovingObjects};
+use crate::effect_models::settings_of::{BaseDrift, WeatherSettings};
+use crate::effect_models::{
+    Divergence, EffectTolerance, EffectsConfig, InvalidSetting, MovingObjects,
+};
 use crate::effects::{ConfiguredEffects, FiringSample, MeteredEffect, Stopwatch};
 use crate::scenery::{
     FilePosition, InvalidValue, MaterialTable, ObjectTable, line_of_value, no_files,
 };
 use crate::simulate::Simulation;
 use demands::SceneFacts;
-use sections::{DriveSection, MotionSection, MountSection, SensorSection, invalid};
+use facts::StatedFact;
+use sections::{DriveSection, LinkSection, MotionSection, MountSection, SensorSection, invalid};
 
 pub use crate::effect_models::EffectLine;
 pub use crate::scenery::SHIPPED;
@@ -39,12 +46,20 @@ pub struct SceneFile {
     pub effects: SceneEffects,
     /// Seed of all random draws.
     pub seed: u64,
-    /// Effects that the scene's facts call for, configured or not.
+    /// The tolerance that decides which effects are on, if the file states one.
+    pub tolerance: Option<EffectTolerance>,
+    /// Effects that the scene's facts call for, on or off.
     pub demands: Vec<EffectDemand>,
+    /// `[effects]` of the file.
+    requests: EffectsConfig,
+    /// Settings of all effects that are configured or called for.
     config: EffectsConfig,
+    /// Lines of the file's requests.
     file_lines: Vec<EffectLine>,
     /// The objects of the scene that move.
     movers: MovingObjects,
+    /// The beam, which all selections share: it caches where the scene is plain.
+    beam: Option<Arc<Divergence>>,
 }
 
 /// The effects of a scene.
@@ -98,6 +113,12 @@ struct Sections {
     #[serde(default)]
     drive: DriveSection,
     #[serde(default)]
+    link: LinkSection,
+    weather: Option<WeatherSettings>,
+    base: Option<BaseDrift>,
+    /// The tolerance that decides which effects are on, such as "5mm,0.1%".
+    tolerance: Option<Spanned<String>>,
+    #[serde(default)]
     effects: EffectsConfig,
 }
 
@@ -124,21 +145,6 @@ impl SceneEffects {
     pub fn leave_out(&mut self, is_out: impl Fn(&str) -> bool) {
         self.effects.retain(|name| !is_out(name));
         self.lines.retain(|line| !is_out(line.name));
-    }
-
-    /// Sets all moving objects, those of the scene and those of the effect's table. Without a
-    /// table, `line` configures the effect.
-    fn set_moving_objects(&mut self, all: MovingObjects, line: usize, stopwatch: Stopwatch) {
-        let name = MovingObjects::NAME;
-        // No other effect moves objects.
-        self.effects.firings.objects = vec![MeteredEffect::new(Arc::new(all), stopwatch)];
-        if self.lines.iter().any(|other| other.name == name) {
-            return;
-        }
-        let rank = |name: &str| EffectsConfig::NAMES.iter().position(|known| *known == name);
-        let place = (self.lines).partition_point(|other| rank(other.name) < rank(name));
-        let line = Some(line);
-        self.lines.insert(place, EffectLine { name, line });
     }
 }
 
@@ -172,52 +178,55 @@ impl SceneFile {
             what: error.message().to_owned(),
         })?;
         let seed = seed.unwrap_or(sections.seed);
-        let mut scene =
-            Self::new(&sections, text, seed, stopwatch).map_err(|error| SceneFileError {
-                line: line_of_value(text, &error.path),
-                what: error.what,
-            })?;
-        let boxes = sections.effects.moving_objects.clone().unwrap_or_default();
-        let is_ideal = sections.sensor.is_ideal();
+        let in_file = |error: InvalidValue| SceneFileError {
+            line: line_of_value(text, &error.path),
+            what: error.what,
+        };
+        let mut scene = Self::new(&sections, text, seed).map_err(in_file)?;
+        let (stated_config, stated) = facts::stated(&sections, text);
         let line = |name: &Spanned<String>| FilePosition::of(text, name.span().start).line;
-        let lines: BTreeMap<String, usize> = (sections.materials.keys())
+        let material_lines: BTreeMap<String, usize> = (sections.materials.keys())
             .map(|name| (name.get_ref().clone(), line(name)))
             .collect();
+        let is_ideal = sections.sensor.is_ideal();
+        let scene_line = (sections.scene.as_ref()).map(|_| line_of_value(text, "scene"));
         let surroundings = surroundings::build(text, sections, seed, files)?;
         scene.simulation.scene = surroundings.scene;
-        let line = surroundings.first_mover_line;
-        scene.movers = MovingObjects::of(&boxes)
-            .map_err(|error| SceneFileError {
-                line: line.unwrap_or(1),
-                what: error.to_string(),
-            })?
-            .and(surroundings.movers);
-        if let Some(line) = line {
-            let all = scene.movers.clone();
-            scene.effects.set_moving_objects(all, line, stopwatch);
+        let boxes = scene.requests.moving_objects.settings().cloned();
+        let boxes = MovingObjects::of(&boxes.unwrap_or_default());
+        let boxes = boxes.map_err(|error| in_file(scene.invalid_value(&stated, &error)))?;
+        scene.movers = boxes.and(surroundings.movers);
+        scene.config.complete(stated_config);
+        // Settings for estimates; those that nothing calls for go again below.
+        let mut estimated = scene.config.clone();
+        for name in EffectsConfig::NAMES {
+            estimated.add_usual(name);
         }
-        let of_boxes = scene.effects.line(MovingObjects::NAME);
-        scene.file_lines.clone_from(&scene.effects.lines);
-        let placed = scene.simulation.scene.placed();
         let facts = SceneFacts {
             is_ideal,
-            materials: (placed.materials.iter())
-                .map(|material| (material, lines.get(&material.name).copied()))
-                .collect(),
-            objects: placed.objects.len(),
-            movers: (scene.movers.count(), line.or(of_boxes)),
-            has_drive: scene.simulation.polls.is_some(),
+            simulation: &scene.simulation,
+            movers: scene.movers.movers(),
+            mover_names: &surroundings.names,
+            boxes_line: scene.file_line(MovingObjects::NAME),
+            material_lines: &material_lines,
+            scene_line,
+            stated: &stated,
+            config: &estimated,
         };
         scene.demands = facts.demands();
+        for demand in &scene.demands {
+            scene.config.add_usual(demand.effect);
+        }
+        let beam = scene.config.divergence.settings().map(Divergence::new);
+        let beam = beam.transpose();
+        let beam = beam.map_err(|error| in_file(scene.invalid_value(&stated, &error)))?;
+        scene.beam = beam.map(Arc::new);
+        let effects = scene.select(|name| scene.is_requested(name), stopwatch);
+        scene.effects = effects.map_err(|error| in_file(scene.invalid_value(&stated, &error)))?;
         Ok(scene)
     }
 
-    fn new(
-        sections: &Sections,
-        text: &str,
-        seed: u64,
-        stopwatch: Stopwatch,
-    ) -> Result<Self, InvalidValue> {
+    fn new(sections: &Sections, text: &str, seed: u64) -> Result<Self, InvalidValue> {
         let (sensor, returns, rotation) = sections.sensor.build()?;
         let motion = sections.motion.build()?;
         let polls = match motion.is_fixed() {
@@ -229,15 +238,21 @@ impl SceneFile {
             let what = format!("expected Unix seconds from 0 to 1e10, got {start_s}");
             return Err(invalid("start_unix_s", what));
         }
-        let effects = sections.effects.build(seed, stopwatch).map_err(|error| {
-            let path = format!("effects.{}.{}", error.effect, error.setting);
-            invalid(path, error.to_string())
-        })?;
-        let lines = sections.effects.configured().map(|name| EffectLine {
-            name,
-            line: Some(line_of_value(text, &format!("effects.{name}"))),
-        });
-        let lines: Vec<EffectLine> = lines.collect();
+        let tolerance = sections
+            .tolerance
+            .as_ref()
+            .map(|text| text.get_ref().parse());
+        let tolerance = tolerance
+            .transpose()
+            .map_err(|what: String| invalid("tolerance", what))?;
+        let requests = sections.effects.clone();
+        let lines = EffectsConfig::NAMES.iter().copied();
+        let lines = lines
+            .filter(|name| requests.has_key(name))
+            .map(|name| EffectLine {
+                name,
+                line: Some(line_of_value(text, &format!("effects.{name}"))),
+            });
         Ok(Self {
             simulation: Simulation {
                 scene: Arc::default(),
@@ -250,18 +265,63 @@ impl SceneFile {
                 start: Stamp::<Host>::from_nanos((start_s * 1e9).round() as i64),
                 clock_at_start_us: sections.lidar_clock_us,
             },
-            effects: SceneEffects { effects, lines },
+            effects: SceneEffects::default(),
             seed,
+            tolerance,
             demands: Vec::new(),
-            config: sections.effects.clone(),
-            file_lines: Vec::new(),
+            file_lines: lines.collect(),
+            config: requests.clone(),
+            requests,
             movers: MovingObjects::default(),
+            beam: None,
         })
     }
 
-    /// Those effects that `keep` selects, of the file's and those that the scene's facts call for,
-    /// which have usual settings if the file has none. They draw the same random numbers in every
-    /// selection.
+    /// Whether the effect is on without a tolerance: by the file, or because a fact calls for it.
+    #[must_use]
+    pub fn is_requested(&self, name: &str) -> bool {
+        let is_demanded = || self.demands.iter().any(|demand| demand.effect == name);
+        let is_configured = || {
+            self.requests
+                .configured()
+                .any(|configured| configured == name)
+        };
+        is_configured() || (is_demanded() && !self.requests.is_off(name))
+    }
+
+    /// Whether the effect is on in any case (`true` in the file).
+    #[must_use]
+    pub fn is_forced(&self, name: &str) -> bool {
+        self.requests.forced().any(|forced| forced == name)
+    }
+
+    /// The first demand for an effect.
+    #[must_use]
+    pub fn demand(&self, name: &str) -> Option<&EffectDemand> {
+        self.demands.iter().find(|demand| demand.effect == name)
+    }
+
+    /// The line of the effect's key in `[effects]`, from 1.
+    #[must_use]
+    pub fn file_line(&self, name: &str) -> Option<usize> {
+        let line = self.file_lines.iter().find(|line| line.name == name);
+        line.and_then(|line| line.line)
+    }
+
+    /// An invalid setting at its place in the file: in `[effects]`, or in the section of a fact.
+    fn invalid_value(&self, stated: &[StatedFact], error: &InvalidSetting) -> InvalidValue {
+        let fact = stated.iter().find(|fact| fact.effect == error.effect);
+        let is_requested = self.requests.configured().any(|name| name == error.effect);
+        let table = match fact {
+            Some(fact) if !is_requested => fact.path.to_owned(),
+            _ => format!("effects.{}", error.effect),
+        };
+        invalid(format!("{table}.{}", error.setting), error.to_string())
+    }
+
+    /// Those effects that `keep` selects, of the file's and those that the scene's facts call for.
+    /// They draw the same random numbers in every selection, and share what they know of the scene:
+    /// the simulation must not be changed between runs.
     ///
     /// # Errors
     /// [`InvalidSetting`] for the first setting that is invalid.
@@ -270,25 +330,26 @@ impl SceneFile {
         keep: impl Fn(&str) -> bool,
         stopwatch: Stopwatch,
     ) -> Result<SceneEffects, InvalidSetting> {
-        let mut config = self.config.clone();
-        for demand in &self.demands {
-            config.add_usual(demand.effect);
+        let mut effects = self.config.clone().only(keep).build(self.seed, stopwatch)?;
+        for objects in &mut effects.firings.objects {
+            // No other effect moves objects.
+            *objects = MeteredEffect::new(Arc::new(self.movers.clone()), stopwatch);
         }
-        let mut effects = config.build(self.seed, stopwatch)?;
-        if self.movers.count() > 0 {
-            let movers = Arc::new(self.movers.clone());
-            effects.firings.objects = vec![MeteredEffect::new(movers, stopwatch)];
+        let beams = &mut effects.firings.beam;
+        let footprints = beams
+            .iter_mut()
+            .filter(|beam| beam.effect.name() == Divergence::NAME);
+        for (footprint, beam) in footprints.zip(&self.beam) {
+            *footprint = MeteredEffect::new(Arc::<Divergence>::clone(beam), stopwatch);
         }
-        effects.retain(&keep);
+        let line = |name: &str| {
+            let demand = self.demand(name).and_then(|demand| demand.line);
+            self.file_line(name).or(demand)
+        };
         let lines = (effects.usage().iter())
-            .map(|used| {
-                let demand = self.demands.iter().find(|other| other.effect == used.name);
-                let line = self.file_lines.iter().find(|line| line.name == used.name);
-                let line = line.and_then(|line| line.line);
-                EffectLine {
-                    name: used.name,
-                    line: line.or(demand.and_then(|demand| demand.line)),
-                }
+            .map(|used| EffectLine {
+                name: used.name,
+                line: line(used.name),
             })
             .collect();
         Ok(SceneEffects { effects, lines })
@@ -302,8 +363,9 @@ impl SceneFile {
         &self,
         keep: impl Fn(&str) -> bool,
         every: u64,
+        stopwatch: Stopwatch,
     ) -> Result<ConfiguredEffects, InvalidSetting> {
-        let mut effects = self.select(keep, None)?.effects;
+        let mut effects = self.select(keep, stopwatch)?.effects;
         let sample = Arc::new(FiringSample { every });
         (effects.firings.view).push(MeteredEffect::new(sample, None));
         Ok(effects)

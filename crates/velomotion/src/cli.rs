@@ -271,7 +271,8 @@ pub enum LevelSurface {
 /// `simulate`.
 #[derive(Clone, Debug, Args)]
 pub struct Simulate {
-    /// Scene file (TOML), or the name of a built-in scene: hall
+    /// Scene file (TOML), or the name of a built-in scene: hall, parking, quarry, glass-corridor,
+    /// fog, traffic, room, stairwell, wavy-walls, hollow-sphere, planes, rig
     #[arg(value_name = "SCENE.toml|NAME")]
     pub scene: PathBuf,
     /// Log to write [default: named after the scene]
@@ -290,11 +291,11 @@ pub struct Simulate {
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = threads)]
     pub threads: Option<NonZeroUsize>,
     /// Run with as few effects as keep the cloud this close to one with all that the scene calls
-    /// for: so many percent of the points may be displaced farther, missing or added
+    /// for: so many percent of the points may be displaced farther, missing or added [default: the
+    /// scene's]
     #[arg(long, value_name = "LENGTH,SHARE", allow_hyphen_values = true)]
     pub tolerance: Option<EffectTolerance>,
-    /// Report what each effect changes in the cloud and costs, the line that requested it, and
-    /// effects without influence
+    /// Report what each effect changes in the cloud and costs, and the fact that calls for it
     #[arg(long)]
     pub explain: bool,
     /// Overwrite existing files
@@ -664,6 +665,17 @@ mod tests {
         }
         for option in ["--friction", "--brake-holds"] {
             assert!(!accepts(option, "-0.1"), "{option}");
+        }
+    }
+
+    #[test]
+    fn the_help_names_every_built_in_scene() {
+        let mut command = Cli::command();
+        let simulate = command.find_subcommand_mut("simulate").unwrap();
+        let help = simulate.render_long_help().to_string();
+        let flat = help.split_whitespace().collect::<Vec<_>>().join(" ");
+        for (name, _) in sim::scene_file::SHIPPED {
+            assert!(flat.contains(name), "{name}: {flat}");
         }
     }
 

@@ -38,6 +38,15 @@ pub fn info_table(report: &InfoReport) -> String {
             "device",
             format!("{device}, lidar {d_m} m above the axis; by velomotion {version}"),
         ));
+        if let Some(simulation) = &config.simulation {
+            let (scene, seed) = (&simulation.scene, &simulation.seed);
+            rows.push(("scene", format!("{scene}, seed {seed}")));
+            let effects = match simulation.effects.is_empty() {
+                true => "none".to_owned(),
+                false => simulation.effects.join(", "),
+            };
+            rows.push(("effects", effects));
+        }
     }
     rows.extend(sweep_rows(&report.sweeps));
     rows.extend(warning_rows(contents));

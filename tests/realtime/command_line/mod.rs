@@ -110,16 +110,13 @@ fn whole_recording(name: &str) -> PathBuf {
 fn simulate_writes_a_log_that_replay_reads_and_locates_errors() {
     let place = Place::new();
     place.fails("simulate castle", 3, &["scene castle", "hall"]);
-    let scene = "scene = \"hall\"\n[motion]\nkind = \"fixed\"\nduration_s = 0.05\n";
-    std::fs::write(
-        place.path("wrong.toml"),
-        format!("{scene}[effects]\nrange_nois = 1\n"),
-    )
-    .unwrap();
+    let scene =
+        "scene = \"hall\"\n[motion]\nkind = \"fixed\"\nduration_s = 0.05\n[effects]\nall = false\n";
+    std::fs::write(place.path("wrong.toml"), format!("{scene}range_nois = 1\n")).unwrap();
     place.fails(
         "simulate wrong.toml",
         3,
-        &["wrong.toml, line 6", "range_nois"],
+        &["wrong.toml, line 7", "range_nois"],
     );
     std::fs::write(place.path("stand.toml"), scene).unwrap();
     place.fails("simulate stand.toml --truth t.xyz", 2, &["t.xyz", ".ply"]);
@@ -154,7 +151,7 @@ fn simulate_writes_a_log_that_replay_reads_and_locates_errors() {
     assert_eq!(reported["effect"], "tilt_limits");
     assert_eq!(
         (&reported["line"], &reported["acted"]),
-        (&5.into(), &0.into())
+        (&7.into(), &0.into())
     );
     assert!(reported["not_needed"].as_str().unwrap().contains("stops"));
     let output = place.run("simulate asks.toml --without all --force --json");
@@ -163,7 +160,20 @@ fn simulate_writes_a_log_that_replay_reads_and_locates_errors() {
     assert_eq!(json(&output)["effects"].as_array().unwrap().len(), 1);
     let unknown = place.run("simulate asks.toml --without fog");
     assert_eq!(unknown.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&unknown.stderr).contains("weather"));
+    let printed = String::from_utf8_lossy(&unknown.stderr).into_owned();
+    for name in sim::effect_models::EffectsConfig::NAMES {
+        assert!(printed.contains(name), "{name}: {printed}");
+    }
+    let info = json(&place.run("info asks.pcapng --json"));
+    let simulation = &info["configuration"]["simulation"];
+    assert_eq!(
+        (&simulation["scene"], &simulation["seed"]),
+        (&"asks.toml".into(), &"0".into())
+    );
+    assert_eq!(simulation["effects"][0], "tilt_limits");
+    let info = place.run("info asks.pcapng");
+    let printed = String::from_utf8_lossy(&info.stdout).into_owned();
+    assert!(printed.contains("asks.toml, seed 0"), "{printed}");
     let output = place.run("replay stand.pcapng --tilt none -o s.ply --json");
     assert_eq!(json(&output)["points"].as_u64(), Some(rows as u64));
     assert_eq!(json(&output)["simulated"], true);
@@ -195,6 +205,9 @@ fn invalid_options_and_files_are_one_line_that_names_them() {
         &["hall.ply", ".pcapng or .pcap"],
     );
     place.fails("simulate hall --truth hall.xyzzy", 2, &[".xyzzy", ".laz"]);
+    let refused = place.run("simulate hall --truth hall.xyzzy");
+    let printed = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(!printed.contains(" -o"), "{printed}");
     place.fails("capture --speed 10 --log x.pcap", 2, &["x.pcap", ".pcapng"]);
     let input = recording("vlp16-strongest-gps.pcap");
     std::fs::write(place.path("long.yaml"), "x".repeat(100_000)).unwrap();

@@ -9,7 +9,7 @@ use super::Simulated;
 #[test]
 fn errors_of_a_simulated_scan_are_as_large_as_stated_in_every_bin() {
     let text = "scene = \"hall\"\n[motion]\nkind = \"sweeps\"\nfrom_deg = 0.0\nto_deg = -45.0\nspeed_deg_s = 56.25\naccel_deg_s2 = 5000.0\n\
-                count = 2\nboth_ways = true\n[mount]\nd_m = 0.07\n[effects.range_noise]\nsd_m = 0.01\n";
+                count = 2\nboth_ways = true\n[mount]\nd_m = 0.07\n[effects]\nall = false\n[effects.range_noise]\nsd_m = 0.01\n";
     let scene = Simulated::new(text, |_| {});
     let place = |time_ns: i64, laser: u8| {
         let hits = scene.truth.get(&scene.key(time_ns, laser))?;

@@ -12,7 +12,7 @@ use super::Simulated;
 fn the_mount_of_a_simulated_scanner_is_found_and_its_file_is_read_back() {
     let text = "scene = \"hall\"\n[motion]\nkind = \"sweeps\"\nfrom_deg = 0.0\nto_deg = -45.0\nspeed_deg_s = 56.25\naccel_deg_s2 = 5000.0\n\
                 both_ways = true\n[mount]\nd_m = 0.07\nposition_m = [0.005, 0.0, 0.0]\nrotation_deg = [1.2, 0.0, -0.9]\n\
-                [effects.range_noise]\nsd_m = 0.01\n[effects.laser_errors]\nrange_m = [0.012, -0.008]\nelevation_deg = [0.0, 0.05]\n";
+                [effects]\nall = false\n[effects.range_noise]\nsd_m = 0.01\n[effects.laser_errors]\nrange_m = [0.012, -0.008]\nelevation_deg = [0.0, 0.05]\n";
     let scene = Simulated::new(text, |_| {});
     let interrupt = AtomicBool::new(false);
     let logs = [scene.log()];

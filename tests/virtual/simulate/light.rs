@@ -7,7 +7,9 @@ use super::{Simulated, replayed};
 /// Simulates a VLP-16 in a scene. Returns each decoded return (position from the sensor, metres,
 /// and reflectivity) and the number of shots.
 fn seen(scene: &str, duration_s: f64) -> (Vec<([f64; 3], u8)>, u64) {
-    let text = format!("[motion]\nkind = \"fixed\"\nduration_s = {duration_s}\n{scene}");
+    let text = format!(
+        "[effects]\nall = false\n[motion]\nkind = \"fixed\"\nduration_s = {duration_s}\n{scene}"
+    );
     let scene = Simulated::new(&text, |_| {});
     let (_, cloud) = replayed(&scene.log(), TiltSource::None);
     let reported = cloud.intensity().iter().copied();

@@ -48,7 +48,7 @@ impl BeamEffect for Pane {
 fn scene(model: &str, returns: &str) -> String {
     format!(
         "scene = \"hall\"\nlidar_clock_us = 3_599_990_000\n[sensor]\nmodel = \"{model}\"\nreturns = \"{returns}\"\nstart_deg = 77.7\n\
-         [motion]\nkind = \"fixed\"\nduration_s = 0.06\n"
+         [effects]\nall = false\n[motion]\nkind = \"fixed\"\nduration_s = 0.06\n"
     )
 }
 

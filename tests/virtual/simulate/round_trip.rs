@@ -37,7 +37,7 @@ fn the_hall_is_recovered_from_its_log() {
 /// The ideal motion of scan patterns has no ramps.
 #[test]
 fn sweeps_both_ways_without_ramps_are_recovered() {
-    let text = "scene = \"hall\"\n[motion]\nkind = \"sweeps\"\nfrom_deg = -10.0\nto_deg = 30.0\nspeed_deg_s = 100.0\nboth_ways = true\n\
+    let text = "scene = \"hall\"\n[effects]\nall = false\n[motion]\nkind = \"sweeps\"\nfrom_deg = -10.0\nto_deg = 30.0\nspeed_deg_s = 100.0\nboth_ways = true\n\
                 [mount]\nd_m = 0.1\n";
     let scene = Simulated::new(text, |_| {});
     let (scan, cloud) = replayed(&scene.log(), TiltSource::Log);
@@ -69,8 +69,7 @@ fn range_noise_is_as_large_as_requested() {
 /// The hall with its beam footprint: noise of 1 cm, and at edges some points between two surfaces.
 #[test]
 fn a_realistic_scan_of_the_hall_is_recovered() {
-    let text = shipped("hall").to_owned() + "\n[effects.divergence]\n";
-    let scene = Simulated::new(&text, |_| {});
+    let scene = Simulated::new(shipped("hall"), |_| {});
     assert_eq!(scene.report.effects.len(), 7);
     let (scan, cloud) = replayed(&scene.log(), TiltSource::Log);
     let [sweep] = scan.sweeps[..] else {
@@ -120,7 +119,7 @@ fn lost_answers_of_the_drive_cost_only_samples() {
 /// The log has the whole mount, not its height alone.
 #[test]
 fn a_rotated_and_shifted_mount_is_recovered_from_the_log() {
-    let text = "scene = \"hall\"\n[motion]\nkind = \"sweeps\"\nfrom_deg = -10.0\nto_deg = 30.0\nspeed_deg_s = 100.0\n\
+    let text = "scene = \"hall\"\n[effects]\nall = false\n[motion]\nkind = \"sweeps\"\nfrom_deg = -10.0\nto_deg = 30.0\nspeed_deg_s = 100.0\n\
                 [mount]\nd_m = 0.1\nposition_m = [0.01, -0.02, 0.03]\nrotation_deg = [2.0, -1.0, 170.0]\n";
     let scene = Simulated::new(text, |_| {});
     let (_, cloud) = replayed(&scene.log(), TiltSource::Log);

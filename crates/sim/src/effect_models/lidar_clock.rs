@@ -81,9 +81,14 @@ impl DriftingClock {
     }
 }
 
+/// Drift of the simulated VLP-16 without settings, parts per million: within the 20 ppm of ordinary
+/// quartz oscillators.
+const USUAL_DRIFT_PPM: f64 = 12.0;
+
 effect! {
     DriftingClock, LidarClockSettings, firings.clock: Arc, "lidar_clock",
     idle: "it neither drifts nor wanders",
+    usual: LidarClockSettings { drift_ppm: USUAL_DRIFT_PPM, ..LidarClockSettings::default() },
     new: DriftingClock::new
 }
 

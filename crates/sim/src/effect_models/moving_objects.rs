@@ -84,10 +84,10 @@ impl MovingObjects {
         Ok(Self::new(movers.collect::<Result<_, _>>()?))
     }
 
-    /// Number of bodies.
+    /// The bodies.
     #[must_use]
-    pub const fn count(&self) -> usize {
-        self.movers.len()
+    pub fn movers(&self) -> &[Mover] {
+        &self.movers
     }
 
     /// Adds bodies.

@@ -43,9 +43,13 @@ impl RangeNoise {
     }
 }
 
+/// Standard deviation of a VLP-16: a third of its accuracy ("up to 3 cm, typical", 63-9229).
+const USUAL_SD_M: f64 = 0.01;
+
 effect! {
     RangeNoise, RangeNoiseSettings, firings.surface: Arc, "range_noise",
     idle: "nothing came back",
+    usual: RangeNoiseSettings { sd_m: USUAL_SD_M },
     new: |settings, seed| {
         let sd_m = SettingCheck(RangeNoise::NAME).not_negative("sd_m", settings.sd_m)?;
         Ok(RangeNoise::new(sd_m, seed))

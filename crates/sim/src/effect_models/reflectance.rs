@@ -46,6 +46,26 @@ impl Default for ReflectanceSettings {
     }
 }
 
+impl ReflectanceSettings {
+    /// Light that comes back from a surface over the threshold of detection. `cosine` is that of
+    /// the incidence.
+    pub(crate) fn detection(
+        &self,
+        reflectivity: u8,
+        specular: f64,
+        cosine: f64,
+        range_m: f64,
+    ) -> f64 {
+        let head_on = light::of_reflectivity(f64::from(reflectivity));
+        let light = match self.incidence {
+            true => light::of_surface(head_on, specular, cosine),
+            false => head_on,
+        };
+        let share = self.half_range_m / range_m;
+        light * share * share / light::of_reflectivity(self.half_reflectivity)
+    }
+}
+
 /// Light and its detection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reflectance {

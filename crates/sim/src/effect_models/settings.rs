@@ -4,6 +4,7 @@ use crate::effects::{ConfiguredEffects, Stopwatch};
 use core::ops::RangeInclusive;
 
 use serde::de::DeserializeOwned;
+use serde::de::value::{self, MapDeserializer};
 use thiserror::Error;
 
 /// A setting with an invalid value.
@@ -22,7 +23,13 @@ pub struct InvalidSetting {
 }
 
 /// Settings of an effect, the table `[effects.NAME]`.
-pub(super) trait EffectSettings: DeserializeOwned {
+pub trait EffectSettings: DeserializeOwned {
+    /// The usual settings; `None` for an effect without.
+    fn usual() -> Option<Self> {
+        let nothing = core::iter::empty::<(&str, f64)>();
+        Self::deserialize(MapDeserializer::<_, value::Error>::new(nothing)).ok()
+    }
+
     /// Adds the effect to its list, for a run with `seed`.
     fn add(
         &self,

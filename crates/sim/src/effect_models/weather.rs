@@ -123,7 +123,7 @@ impl Weather {
     }
 
     /// Share of light left after a range, there and back.
-    fn left(&self, range_m: f64) -> f64 {
+    pub(crate) fn left(&self, range_m: f64) -> f64 {
         (-2.0 * self.extinction_per_m * range_m).exp()
     }
 

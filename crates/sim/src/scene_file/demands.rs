@@ -1,124 +1,378 @@
-//! Effects that the facts of a scene call for: its materials, motions, sensor and drive.
+//! Effects that the facts of a scene call for: its materials, motions, weather, sensor, drive and
+//! links.
 //!
-//! A demand says that an effect may matter, and why. How much it matters is measured with the
-//! effect and without it (`velomotion simulate --explain`).
+//! A demand has the fact and an estimate of its size, from a survey of a thousand shots or a bound.
+//! How much an effect matters is measured with it and without it (`velomotion simulate --explain`).
+
+use std::collections::BTreeMap;
 
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use crate::effect_models::{Divergence, EffectsConfig, MovingObjects};
-use crate::scenery::Material;
+use super::facts::StatedFact;
+use super::survey::{MaterialSurvey, SceneSurvey};
+use crate::effect_models::{EffectsConfig, Mover, Weather};
+use crate::simulate::Simulation;
 
 /// A fact of a scene that calls for an effect.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[non_exhaustive]
 pub struct EffectDemand {
     /// Name of the effect.
     pub effect: &'static str,
     /// The fact.
     pub reason: String,
+    /// The material or object that it is about, if any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub object: Option<String>,
     /// The line of the scene file that states it, from 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub line: Option<usize>,
+    /// Estimate of the share of points that the effect adds, removes or displaces, percent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub percent: Option<f64>,
+    /// About the greatest displacement, millimetres.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub displaced_mm: Option<f64>,
 }
+
+/// A moving object: its name and its line.
+pub(super) type MoverName = (String, usize);
 
 /// What demands follow from.
 pub(super) struct SceneFacts<'a> {
     /// Whether the sensor is free of its own errors by request.
     pub is_ideal: bool,
-    /// The materials that objects have, each with its line in the file.
-    pub materials: Vec<(&'a Material, Option<usize>)>,
-    pub objects: usize,
-    /// Number of moving objects, and the line of the first.
-    pub movers: (usize, Option<usize>),
-    /// Whether a drive moves the axis and is polled.
-    pub has_drive: bool,
+    pub simulation: &'a Simulation,
+    /// Moving objects, and the names of those that are not boxes of the effect.
+    pub movers: &'a [Mover],
+    pub mover_names: &'a [MoverName],
+    /// The line of the effect's own boxes.
+    pub boxes_line: Option<usize>,
+    /// Lines of materials.
+    pub material_lines: &'a BTreeMap<String, usize>,
+    /// The line of objects that are those of another scene.
+    pub scene_line: Option<usize>,
+    /// Sections that state facts.
+    pub stated: &'a [StatedFact],
+    /// Settings of all effects that are or may be called for.
+    pub config: &'a EffectsConfig,
 }
 
-/// Standard deviation of ranges, metres: a third of the VLP-16's accuracy ("up to 3 cm, typical",
-/// data sheet 63-9229).
-const RANGE_SD_M: f64 = 0.01;
+impl EffectDemand {
+    fn new(effect: &'static str, reason: impl Into<String>) -> Self {
+        Self {
+            effect,
+            reason: reason.into(),
+            object: None,
+            line: None,
+            percent: None,
+            displaced_mm: None,
+        }
+    }
+
+    fn at(self, line: Option<usize>) -> Self {
+        Self { line, ..self }
+    }
+
+    fn of(self, object: &str) -> Self {
+        let object = (!object.is_empty()).then(|| object.to_owned());
+        Self { object, ..self }
+    }
+
+    fn percent(self, percent: f64) -> Self {
+        Self {
+            percent: Some(percent),
+            ..self
+        }
+    }
+
+    fn displaced(self, displaced_m: f64) -> Self {
+        Self {
+            displaced_mm: Some(1e3 * displaced_m),
+            ..self
+        }
+    }
+
+    /// The estimate in words, if there is one.
+    #[must_use]
+    pub fn estimate(&self) -> Option<String> {
+        let percent = self
+            .percent
+            .map(|percent| format!("{percent:.1} % of the points"));
+        let mm = self.displaced_mm.map(|mm| match mm {
+            mm if mm >= 10.0 => format!("{mm:.0} mm"),
+            mm => format!("{mm:.2} mm"),
+        });
+        match (percent, mm) {
+            (Some(percent), Some(mm)) => Some(format!("about {percent}, up to {mm}")),
+            (Some(percent), None) => Some(format!("about {percent}")),
+            (None, mm) => mm.map(|mm| format!("up to {mm}")),
+        }
+    }
+
+    /// The fact with its line.
+    #[must_use]
+    pub fn reason_and_line(&self) -> String {
+        match self.line {
+            Some(line) => format!("{} (line {line})", self.reason),
+            None => self.reason.clone(),
+        }
+    }
+}
 
 impl SceneFacts<'_> {
-    /// The demands, in the order in which effects act.
+    /// The demands, in the order in which effects act, and the largest of an effect first.
     pub fn demands(&self) -> Vec<EffectDemand> {
-        let mut demands = Vec::new();
-        let mut demand = |effect, reason: String, line| {
-            demands.push(EffectDemand {
-                effect,
-                reason,
-                line,
-            });
+        let detection = self.config.reflectance.settings().copied();
+        let weather = self.config.weather.settings();
+        let weather = weather.and_then(|weather| Weather::new(weather, 0).ok());
+        let survey = match self.is_ideal && self.movers.is_empty() && weather.is_none() {
+            true => SceneSurvey::default(),
+            false => SceneSurvey::new(
+                self.simulation,
+                self.movers,
+                &detection.unwrap_or_default(),
+                weather.as_ref(),
+            ),
         };
-        let (movers, line) = self.movers;
-        if movers > 0 {
-            let reason = format!("{movers} object(s) move or rotate");
-            demand(MovingObjects::NAME, reason, line);
+        let mut demands: Vec<EffectDemand> = self.moving(&survey).into_iter().collect();
+        for fact in self.stated {
+            demands.push(self.sized(fact.effect, &survey).at(Some(fact.line)));
         }
-        if self.is_ideal {
-            return demands;
+        if !self.is_ideal {
+            demands.extend(self.edges(&survey));
+            demands.extend(self.materials(&survey));
+            let of_sensor = ["range_noise", "lidar_clock"];
+            let of_drive = self.simulation.polls.map(|_| "encoder_quantisation");
+            let usual = of_sensor.into_iter().chain(of_drive).chain(["link_jitter"]);
+            for effect in usual.filter(|name| self.stated.iter().all(|fact| fact.effect != *name)) {
+                demands.push(self.sized(effect, &survey));
+            }
         }
-        let objects = self.objects;
-        if objects > 0 {
-            let reason = format!("footprints of beams cross the edges of {objects} object(s)");
-            demand(Divergence::NAME, reason, None);
-        }
-        if let Some((reason, line)) = self.faint() {
-            demand("reflectance", reason, line);
-        }
-        let reason = "the data sheet's accuracy of 3 cm, as three standard deviations";
-        demand("range_noise", reason.to_owned(), None);
-        if self.has_drive {
-            let reason = "the drive reports whole counts of 500 lines behind a gear of 120:1";
-            demand("encoder_quantisation", reason.to_owned(), None);
-        }
-        let links = match self.has_drive {
-            true => "packets and answers are delayed on their way",
-            false => "packets are delayed on their way",
-        };
-        demand("link_jitter", links.to_owned(), None);
+        let rank = |name: &str| EffectsConfig::NAMES.iter().position(|known| *known == name);
+        demands.sort_by_key(|demand| rank(demand.effect));
         demands
     }
 
-    /// The material whose returns are lost first, and why.
-    fn faint(&self) -> Option<(String, Option<usize>)> {
-        let returning = || (self.materials.iter()).filter(|(material, _)| !material.absorbing);
-        let mirrors = returning().filter(|(material, _)| material.specular > 0.0);
-        if let Some((material, line)) =
-            mirrors.max_by(|(a, _), (b, _)| a.specular.total_cmp(&b.specular))
-        {
-            let percent = 100.0 * material.specular;
-            let name = &material.name;
-            return Some((
-                format!("material {name:?} mirrors {percent:.0} % of the light"),
-                *line,
-            ));
-        }
-        let (darkest, line) = returning().min_by_key(|(material, _)| material.reflectivity)?;
-        let (name, percent) = (&darkest.name, darkest.reflectivity);
-        let reason = match name.is_empty() {
-            true => format!("surfaces return {percent} % of the light"),
-            false => format!("material {name:?} returns {percent} % of the light"),
+    fn moving(&self, survey: &SceneSurvey) -> Option<EffectDemand> {
+        let end_s = self.simulation.motion.end_s;
+        let path_m = self.movers.iter().map(|mover| {
+            let travel = &mover.travel;
+            // An object of a metre about its origin.
+            (travel.velocity_m_s.length() + travel.turn_deg_s.length().to_radians()) * end_s
+        });
+        let farthest_m = path_m.fold(0.0, f64::max);
+        let (name, line) = match self.mover_names.first() {
+            Some((name, line)) => (name.as_str(), Some(*line)),
+            None => ("", self.boxes_line),
         };
-        Some((reason, *line))
+        let count = self.movers.len();
+        let reason = format!("{count} object(s) move or rotate");
+        (count > 0).then(|| {
+            EffectDemand::new("moving_objects", reason)
+                .of(name)
+                .at(self.scene_line.or(line))
+                .percent(survey.percent(survey.moving))
+                .displaced(farthest_m)
+        })
+    }
+
+    fn edges(&self, survey: &SceneSurvey) -> Option<EffectDemand> {
+        let objects = self.simulation.scene.placed().objects.len() + self.movers.len();
+        let reason = "edges lie within footprints of beams";
+        let demand = EffectDemand::new("divergence", reason);
+        match survey.edges {
+            // A single surface may have none.
+            0 if objects < 2 || survey.returned == 0 => None,
+            // Unseen in n shots: a share below 3 / n (95 %).
+            0 => Some(demand.percent(300.0 / f64::from(survey.returned))),
+            edges => Some(
+                demand
+                    .percent(survey.percent(edges))
+                    .displaced(survey.mixed_m),
+            ),
+        }
+    }
+
+    /// Materials whose light differs from that of a white wall, the most lost shots first.
+    fn materials(&self, survey: &SceneSurvey) -> Vec<EffectDemand> {
+        let mut seen: Vec<&MaterialSurvey> = survey.materials.values().collect();
+        seen.retain(|seen| !seen.material.absorbing);
+        seen.sort_by_key(|seen| std::cmp::Reverse(seen.lost));
+        let detection = self
+            .config
+            .reflectance
+            .settings()
+            .copied()
+            .unwrap_or_default();
+        let reason = |seen: &MaterialSurvey| {
+            let material = &seen.material;
+            let (name, reflectivity) = (&material.name, material.reflectivity);
+            let subject = match name.is_empty() {
+                true => "objects without a material".to_owned(),
+                false => format!("material {name:?}"),
+            };
+            if material.specular > 0.0 {
+                let percent = 100.0 * material.specular;
+                return Some(format!("{subject} mirrors {percent:.0} % of the light"));
+            }
+            if reflectivity > 100 {
+                return Some(format!("{subject} is retroreflecting ({reflectivity})"));
+            }
+            let share = f64::from(reflectivity) / detection.half_reflectivity;
+            let half_m = detection.half_range_m * share.sqrt();
+            (seen.lost > 0).then(|| {
+                format!(
+                    "{subject} returns {reflectivity} % of the light, enough half the time at {half_m:.0} m head-on"
+                )
+            })
+        };
+        let demand = |seen: &&MaterialSurvey| {
+            let name = &seen.material.name;
+            let line = self.scene_line.or(self.material_lines.get(name).copied());
+            let demand = EffectDemand::new("reflectance", reason(seen)?)
+                .of(name)
+                .at(line);
+            Some(match seen.returned {
+                // Unseen in n shots: a share below 3 / n (95 %).
+                0 => demand.percent(300.0 / f64::from(survey.returned.max(3))),
+                _ => demand.percent(survey.percent(seen.lost)),
+            })
+        };
+        let mut demands: Vec<EffectDemand> = seen.iter().filter_map(demand).collect();
+        if demands.is_empty() && !seen.is_empty() {
+            let reason = "reported reflectivity falls with the incidence";
+            demands.push(EffectDemand::new("reflectance", reason).percent(0.0));
+        }
+        demands
+    }
+
+    /// The demand for an effect by its settings.
+    fn sized(&self, effect: &'static str, survey: &SceneSurvey) -> EffectDemand {
+        let config = self.config;
+        let motion = &self.simulation.motion;
+        let range_m = survey.farthest_m;
+        let speeds = motion.moves.iter().map(|next| next.cruise_deg_s.abs());
+        let speed_deg_s = speeds.fold(0.0, f64::max);
+        let by_angle = |deg: f64| deg.to_radians() * range_m;
+        let by_delay = |us: f64| by_angle(1e-6 * us * speed_deg_s);
+        let demand = |reason: String| EffectDemand::new(effect, reason);
+        let sized = match effect {
+            "own_shadow" => config.own_shadow.settings().map(|shadow| {
+                let width = |from: f64, to: f64| (to - from).rem_euclid(360.0);
+                let hidden_deg: f64 = (shadow.sectors.iter())
+                    .map(|sector| width(sector.azimuth_from_deg, sector.azimuth_to_deg))
+                    .sum();
+                let below = shadow.below_deg.map_or_else(String::new, |deg| {
+                    format!(", and its tripod what is below {deg} deg")
+                });
+                demand(format!(
+                    "the frame hides {hidden_deg} deg of azimuth{below}"
+                ))
+                .percent(hidden_deg / 3.6)
+            }),
+            "base_drift" => config.base_drift.settings().map(|drift| {
+                let length = |three: [f64; 3]| three.iter().map(|x| x * x).sum::<f64>().sqrt();
+                let rate = length(drift.velocity_m_s) + by_angle(length(drift.turn_deg_s));
+                demand("the base moves or turns".to_owned()).displaced(rate * motion.end_s)
+            }),
+            "weather" => config.weather.settings().map(|weather| {
+                let fog = weather.visibility_m.map(|m| format!("visibility of {m} m"));
+                let rain = weather.rain_mm_h.map(|mm_h| format!("rain of {mm_h} mm/h"));
+                let reason: Vec<String> = fog.into_iter().chain(rain).collect();
+                demand(reason.join(", ")).percent(survey.percent(survey.dimmed))
+            }),
+            "range_noise" => config.range_noise.settings().map(|noise| {
+                let mm = 1e3 * noise.sd_m;
+                // One in a hundred is farther than 2.576 standard deviations.
+                demand(format!("ranges have a standard deviation of {mm} mm"))
+                    .displaced(2.576 * noise.sd_m)
+            }),
+            "lidar_clock" => config.lidar_clock.settings().map(|clock| {
+                let us = clock.drift_ppm.abs() * motion.end_s + clock.wander_us;
+                demand(format!(
+                    "the lidar's clock runs free, {} ppm fast",
+                    clock.drift_ppm
+                ))
+                .displaced(by_delay(us))
+            }),
+            "servo_lag" => config.servo_lag.settings().map(|servo| {
+                let corner = std::f64::consts::TAU * servo.frequency_hz;
+                let lag_s = servo.damping.map_or(1.0, |damping| 2.0 * damping) / corner;
+                demand(format!("the servo follows at {} Hz", servo.frequency_hz))
+                    .displaced(by_delay(1e6 * lag_s))
+            }),
+            "tilt_limits" => config.tilt_limits.settings().map(|limits| {
+                let (from, to) = (limits.from_deg, limits.to_deg);
+                let ends = motion
+                    .moves
+                    .iter()
+                    .flat_map(|next| [next.from_deg, next.to_deg]);
+                let over = ends
+                    .map(|deg| (from - deg).max(deg - to))
+                    .fold(0.0, f64::max);
+                demand(format!("stops at {from} and {to} deg")).displaced(by_angle(over))
+            }),
+            "gear_ripple" => config.gear_ripple.settings().map(|ripple| {
+                demand(format!("the gear deviates by {} deg", ripple.amplitude_deg))
+                    .displaced(by_angle(ripple.amplitude_deg.abs()))
+            }),
+            "eccentricity" => config.eccentricity.settings().map(|wheel| {
+                demand(format!(
+                    "the encoder is off centre by {} deg",
+                    wheel.amplitude_deg
+                ))
+                .displaced(by_angle(wheel.amplitude_deg.abs()))
+            }),
+            "backlash" => config.backlash.settings().map(|backlash| {
+                demand(format!("the gear has a play of {} deg", backlash.play_deg))
+                    .displaced(by_angle(backlash.play_deg))
+            }),
+            "encoder_quantisation" => config.encoder_quantisation.settings().map(|encoder| {
+                let [motor, axis] = encoder.gear.map(f64::from);
+                let count_deg = 90.0 / f64::from(encoder.encoder_lines) * axis / motor;
+                let (lines, [motor, axis]) = (encoder.encoder_lines, encoder.gear);
+                demand(format!(
+                    "whole counts of {lines} lines behind a gear of {motor}:{axis}"
+                ))
+                .displaced(by_angle(count_deg))
+            }),
+            "duplicate" => config.duplicate.settings().map(|copies| {
+                let percent = 100.0 * copies.share;
+                demand(format!("{percent} % of the packets arrive twice")).percent(percent)
+            }),
+            "loss" => config.loss.settings().map(|loss| {
+                let [lidar, drive] =
+                    [loss.lidar_share, loss.drive_share].map(|share| 100.0 * share);
+                demand(format!(
+                    "{lidar} % of the packets and {drive} % of the answers are lost"
+                ))
+                .percent(lidar)
+            }),
+            "link_jitter" => config.link_jitter.settings().map(|link| {
+                let us = link.lidar_jitter_us + link.drive_jitter_us;
+                demand(format!("delays of messages vary by {us} us")).displaced(by_delay(us))
+            }),
+            "reorder" => config.reorder.settings().map(|late| {
+                let percent = 100.0 * late.share;
+                demand(format!("{percent} % of the packets are overtaken")).percent(0.0)
+            }),
+            "batching" => config.batching.settings().map(|host| {
+                demand(format!(
+                    "the host reads packets every {} ms",
+                    host.period_ms
+                ))
+                .displaced(by_delay(1e3 * host.period_ms))
+            }),
+            _ => None,
+        };
+        sized.unwrap_or_else(|| demand("the scene states it".to_owned()))
     }
 }
 
-impl EffectsConfig {
-    /// Configures the effect of a demand with usual values, if it is not configured.
-    pub(super) fn add_usual(&mut self, effect: &str) {
-        match effect {
-            "divergence" => _ = self.divergence.get_or_insert_default(),
-            "reflectance" => _ = self.reflectance.get_or_insert_default(),
-            "encoder_quantisation" => _ = self.encoder_quantisation.get_or_insert_default(),
-            "link_jitter" => _ = self.link_jitter.get_or_insert_default(),
-            "moving_objects" => _ = self.moving_objects.get_or_insert_default(),
-            "range_noise" => {
-                self.range_noise.get_or_insert(
-                    crate::effect_models::range_noise::RangeNoiseSettings { sd_m: RANGE_SD_M },
-                );
-            }
-            _ => {}
-        }
+impl SceneSurvey {
+    fn percent(&self, part: u32) -> f64 {
+        100.0 * f64::from(part) / f64::from(self.returned.max(1))
     }
 }

@@ -1,8 +1,13 @@
-//! `[sensor]`, `[motion]`, `[mount]` and `[drive]`.
+//! `[sensor]`, `[motion]`, `[mount]`, `[drive]` and `[link]`.
 
 use serde::Deserialize;
 use units::Gearing;
 
+use crate::effect_models::settings_of::{
+    Backlash, Batching, DuplicateSettings, Eccentricity, EncoderQuantisationSettings,
+    GearRippleSettings, LidarClockSettings, LinkJitterSettings, LossSettings, OwnShadowSettings,
+    RangeNoiseSettings, ReorderSettings, ServoLagSettings, TiltLimits,
+};
 use crate::motion::{AxisMotion, MotionError, Sweeps};
 use crate::packet_maker::HeadRotation;
 use crate::patterns::PatternSensor;
@@ -33,6 +38,10 @@ pub(super) struct SensorSection {
     rpm: u32,
     /// Azimuth of the first firing, degrees.
     start_deg: f64,
+    /// Noise of its ranges.
+    pub noise: Option<RangeNoiseSettings>,
+    /// Its clock.
+    pub clock: Option<LidarClockSettings>,
 }
 
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
@@ -65,6 +74,8 @@ impl Default for SensorSection {
             returns: ReturnsName::default(),
             rpm: 600,
             start_deg: 0.0,
+            noise: None,
+            clock: None,
         }
     }
 }
@@ -233,6 +244,8 @@ pub(super) struct MountSection {
     position_m: [f64; 3],
     /// Rotation about x, then y, then z of the platform, degrees.
     rotation_deg: [f64; 3],
+    /// What the scanner's frame and tripod hide.
+    pub shadow: Option<OwnShadowSettings>,
 }
 
 impl MountSection {
@@ -252,7 +265,8 @@ impl MountSection {
     }
 }
 
-/// `[drive]`: the polling of the drive. The encoder is ideal unless an effect replaces it.
+/// `[drive]`: the polling of the drive, and facts of drive and gear. The encoder is ideal unless an
+/// effect replaces it.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct DriveSection {
@@ -260,6 +274,13 @@ pub(super) struct DriveSection {
     poll_hz: f64,
     /// From a request to its answer, milliseconds.
     answer_ms: f64,
+    pub encoder: Option<EncoderQuantisationSettings>,
+    pub servo: Option<ServoLagSettings>,
+    /// Mechanical stops.
+    pub stops: Option<TiltLimits>,
+    pub gear_ripple: Option<GearRippleSettings>,
+    pub eccentricity: Option<Eccentricity>,
+    pub backlash: Option<Backlash>,
 }
 
 impl Default for DriveSection {
@@ -267,6 +288,12 @@ impl Default for DriveSection {
         Self {
             poll_hz: 400.0,
             answer_ms: 1.0,
+            encoder: None,
+            servo: None,
+            stops: None,
+            gear_ripple: None,
+            eccentricity: None,
+            backlash: None,
         }
     }
 }
@@ -297,6 +324,18 @@ impl DriveSection {
             gearing: IDEAL_ENCODER,
         })
     }
+}
+
+/// `[link]`: the lidar's network, the drive's link and the host.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct LinkSection {
+    pub delay: Option<LinkJitterSettings>,
+    pub loss: Option<LossSettings>,
+    pub duplicate: Option<DuplicateSettings>,
+    pub reorder: Option<ReorderSettings>,
+    /// Periodic reading by the host.
+    pub batching: Option<Batching>,
 }
 
 fn finite(path: &str, what: &str, got: f64) -> Result<(), InvalidValue> {

@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
+use super::demands::MoverName;
 use super::{SHIPPED, SceneFileError, Sections};
 use crate::effect_models::Mover;
 use crate::scene::Scene;
-use crate::scenery::{Scenery, ScenerySections, line_of_value, shipped};
+use crate::scenery::{Scenery, SceneryError, ScenerySections, line_of_value, shipped};
 
 type Files<'a> = &'a mut dyn FnMut(&str) -> Result<Vec<u8>, String>;
 
@@ -14,8 +15,8 @@ type Files<'a> = &'a mut dyn FnMut(&str) -> Result<Vec<u8>, String>;
 pub(super) struct SceneObjects {
     pub scene: Arc<Scene>,
     pub movers: Vec<Mover>,
-    /// The line of the first moving object.
-    pub first_mover_line: Option<usize>,
+    /// Their names and lines.
+    pub names: Vec<MoverName>,
 }
 
 pub(super) fn build(
@@ -46,23 +47,25 @@ pub(super) fn build(
             (line, Scenery::parse(text))
         }
     };
-    let placed = scenery
-        .and_then(|scenery| scenery.place(seed, files))
-        .map_err(|invalid| {
-            let reason = invalid.source.map(|source| format!(": {source}"));
-            let what = invalid.what + &reason.unwrap_or_default();
-            error(invalid.at.line, what)
-        })?;
+    let invalid = |invalid: SceneryError| {
+        let reason = invalid.source.map(|source| format!(": {source}"));
+        let what = invalid.what + &reason.unwrap_or_default();
+        error(invalid.at.line, what)
+    };
+    let scenery = scenery.map_err(invalid)?;
+    let placed = scenery.place(seed, files).map_err(invalid)?;
     let (fixed, moving) = (placed.divided()).map_err(|invalid| error(line, invalid.to_string()))?;
     let scene = Scene::of(fixed).map_err(|invalid| error(line, invalid.to_string()))?;
     let mut objects = SceneObjects {
         scene: Arc::new(scene),
-        first_mover_line: moving.first().map(|(moving, _)| moving.at.line),
         ..SceneObjects::default()
     };
     for (moving, body) in moving {
         let scene = Scene::of(body);
         let scene = scene.map_err(|invalid| error(moving.at.line, invalid.to_string()))?;
+        let table = scenery.objects.iter().find(|(at, _)| *at == moving.at);
+        let name = table.map_or_else(String::new, |(_, table)| table.name.clone());
+        objects.names.push((name, moving.at.line));
         objects.movers.push(Mover {
             scene: Arc::new(scene),
             travel: moving.travel,

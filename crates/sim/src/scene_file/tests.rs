@@ -6,21 +6,38 @@ mod moving;
 
 const LEAST: &str = "scene = \"hall\"\n[motion]\nkind = \"fixed\"\nduration_s = 1.0\n";
 
+/// Names of the effects that are on.
+fn on(scene: &SceneFile) -> Vec<&'static str> {
+    let usage = scene.effects.effects.usage();
+    usage.iter().map(|used| used.name).collect()
+}
+
 fn error(text: &str) -> (usize, String) {
     let error = SceneFile::parse(text, None, None).unwrap_err();
     (error.line, error.what)
 }
 
 #[test]
-fn the_minimal_scene_is_a_static_vlp16_without_effects() {
+fn the_minimal_scene_is_a_static_vlp16_with_the_effects_that_it_calls_for() {
     let scene = SceneFile::parse(LEAST, None, None).unwrap();
     let simulation = &scene.simulation;
     assert_eq!(simulation.sensor.model, PacketModel::Vlp16);
     assert_eq!(simulation.returns, ReturnMode::Strongest);
     assert_eq!(simulation.rotation.rpm, 600);
-    assert!(simulation.polls.is_none());
-    assert!(scene.effects.is_none());
+    assert!(simulation.polls.is_none() && scene.tolerance.is_none());
+    let expected = [
+        "divergence",
+        "reflectance",
+        "range_noise",
+        "lidar_clock",
+        "link_jitter",
+    ];
+    assert_eq!(on(&scene), expected);
+    let none = format!("{LEAST}[effects]\nall = false\n");
+    let scene = SceneFile::parse(&none, None, None).unwrap();
+    assert!(scene.effects.is_none() && scene.effects.lines.is_empty());
     assert!(scene.effects.effects.firings.surface.is_empty());
+    assert_eq!(scene.demands.len(), expected.len());
 }
 
 #[test]
@@ -73,7 +90,7 @@ fn shipped_scenes_are_valid() {
 fn all_keys_take_effect() {
     let text = format!(
         "seed = 7\nlidar_clock_us = 5\nstart_unix_s = 10.5\n{LEAST}[sensor]\nmodel = \"hdl32e\"\nreturns = \"dual\"\nrpm = 1200\n\
-         start_deg = 90.0\nonly_laser = 15\n[mount]\nd_m = 0.25\n\n[effects.range_noise]\nsd_m = 0.02\n"
+         start_deg = 90.0\nonly_laser = 15\n[mount]\nd_m = 0.25\n\n[effects]\nall = false\n[effects.range_noise]\nsd_m = 0.02\n"
     );
     let scene = SceneFile::parse(&text, Some(9), None).unwrap();
     assert_eq!(scene.seed, 9);
@@ -85,7 +102,7 @@ fn all_keys_take_effect() {
     assert_eq!(simulation.start.as_nanos(), 10_500_000_000);
     let line = text
         .lines()
-        .position(|l| l.starts_with("[effects"))
+        .position(|l| l.starts_with("[effects."))
         .unwrap()
         + 1;
     let name = "range_noise";
@@ -103,34 +120,221 @@ fn all_keys_take_effect() {
     let _: &dyn SurfaceEffect = &*listed.effect;
 }
 
-/// Realistic scenes have the effects of a real scanner, ideal ones none; an omitted effect is
-/// absent.
+/// Shipped scenes list no effects: their facts call for those of a real scanner, and their
+/// tolerance decides. Ideal ones have none.
 #[test]
-fn effects_of_shipped_scenes_can_be_omitted() {
+fn effects_of_shipped_scenes_follow_from_their_facts() {
+    let real = [
+        "own_shadow",
+        "divergence",
+        "reflectance",
+        "range_noise",
+        "lidar_clock",
+        "encoder_quantisation",
+        "link_jitter",
+    ];
     for (name, text) in SHIPPED {
         let mut scene = SceneFile::parse(text, None, None).unwrap();
-        let real = !["hollow-sphere", "planes", "rig"].contains(&name);
-        assert_eq!(scene.effects.is_none(), !real, "{name}");
-        let before = scene.effects.effects.usage().len();
-        assert_eq!(before, scene.effects.lines.len());
+        let is_real = !["hollow-sphere", "planes", "rig"].contains(&name);
+        assert_eq!(scene.tolerance.is_some(), is_real, "{name}");
+        let mut expected = real.to_vec();
+        match name {
+            "fog" => expected.insert(2, "weather"),
+            "traffic" => expected.insert(0, "moving_objects"),
+            _ => {}
+        }
+        expected.retain(|_| is_real);
+        assert_eq!(on(&scene), expected, "{name}");
+        let lines = scene.effects.lines.iter().map(|line| line.name);
+        assert_eq!(lines.collect::<Vec<_>>(), expected, "{name}");
+        for demand in &scene.demands {
+            let is_sized = demand.percent.is_some() || demand.displaced_mm.is_some();
+            assert!(is_sized, "{name}: {demand:?}");
+        }
         scene
             .effects
             .leave_out(|effect| ["range_noise", "link_jitter"].contains(&effect));
-        let left: Vec<_> = scene
-            .effects
-            .effects
-            .usage()
-            .iter()
-            .map(|u| u.name)
-            .collect();
-        assert_eq!(left.len(), if real { before - 2 } else { 0 });
-        assert!(
-            left.iter()
-                .all(|left| scene.effects.lines.iter().any(|line| line.name == *left))
-        );
+        expected.retain(|effect| !["range_noise", "link_jitter"].contains(effect));
+        assert_eq!(on(&scene), expected);
         scene.effects.leave_out(|_| true);
-        assert!(scene.effects.is_none() && scene.effects.effects.usage().is_empty());
+        assert!(scene.effects.is_none());
     }
+}
+
+/// A street of a stranger, who lists no effect.
+const STRANGE: &str = r#"
+[motion]
+kind = "sweeps"
+from_deg = 0
+to_deg = -45
+speed_deg_s = 56.25
+
+[weather]
+visibility_m = 80
+
+[drive]
+servo = { frequency_hz = 20 }
+backlash = { play_deg = 0.02 }
+
+[link]
+loss = { lidar_share = 0.01 }
+batching = { period_ms = 10 }
+
+[materials]
+mirror = { reflectivity = 4, specular = 0.95 }
+tar = { reflectivity = 3 }
+plate = { reflectivity = 230 }
+paint = { reflectivity = 60 }
+opening = { absorbing = true }
+
+[[objects]]
+material = "tar"
+plane = {}
+position_m = [0, 0, -1.5]
+
+[[objects]]
+name = "shop window"
+material = "mirror"
+box = { from_m = [6, -20, -1.5], to_m = [7, 20, 4] }
+
+[[objects]]
+name = "sign"
+material = "plate"
+box = { from_m = [-2, 9, 0], to_m = [2, 9.1, 2] }
+
+[[objects]]
+name = "gate"
+material = "opening"
+box = { from_m = [-6, -9, -1], to_m = [-5, 9, 3] }
+
+[[objects]]
+name = "tram"
+material = "paint"
+position_m = [3, -8, 0]
+velocity_m_s = [0, 10, 0]
+box = { size_m = [2, 12, 3] }
+"#;
+
+#[test]
+fn the_facts_of_a_scene_call_for_its_effects() {
+    let scene = SceneFile::parse(STRANGE, None, None).unwrap();
+    let expected = [
+        "moving_objects",
+        "divergence",
+        "weather",
+        "reflectance",
+        "range_noise",
+        "lidar_clock",
+        "servo_lag",
+        "backlash",
+        "encoder_quantisation",
+        "loss",
+        "link_jitter",
+        "batching",
+    ];
+    assert_eq!(on(&scene), expected);
+    let line_of = |start: &str| {
+        let line = STRANGE.lines().position(|line| line.starts_with(start));
+        Some(line.unwrap() + 1)
+    };
+    let demand = |effect: &str, about: &str| {
+        let mut all = scene.demands.iter();
+        let found = all.find(|demand| demand.effect == effect && demand.reason.contains(about));
+        found.unwrap_or_else(|| panic!("{effect} {about}: {:#?}", scene.demands))
+    };
+    let tram = line_of("name = \"tram\"").map(|line| line - 1);
+    for (effect, about, object, line) in [
+        (
+            "reflectance",
+            "\"mirror\" mirrors 95 %",
+            Some("mirror"),
+            line_of("mirror"),
+        ),
+        (
+            "reflectance",
+            "\"tar\" returns 3 %",
+            Some("tar"),
+            line_of("tar"),
+        ),
+        (
+            "reflectance",
+            "\"plate\" is retroreflecting",
+            Some("plate"),
+            line_of("plate"),
+        ),
+        ("moving_objects", "1 object(s) move", Some("tram"), tram),
+        ("weather", "visibility of 80 m", None, line_of("[weather]")),
+        ("servo_lag", "20 Hz", None, line_of("servo")),
+        ("batching", "10 ms", None, line_of("batching")),
+        ("divergence", "edges", None, None),
+    ] {
+        let found = demand(effect, about);
+        assert_eq!(
+            (found.object.as_deref(), found.line),
+            (object, line),
+            "{found:?}"
+        );
+        assert!(found.estimate().is_some(), "{found:?}");
+    }
+    // What absorbs returns nothing without any effect.
+    let absorbing = scene
+        .demands
+        .iter()
+        .find(|demand| demand.reason.contains("opening"));
+    assert!(absorbing.is_none(), "{absorbing:?}");
+    // The tram passes 8 m in the 0.8 s of the sweep, and 2 m in the rests.
+    let moved_mm = demand("moving_objects", "").displaced_mm.unwrap();
+    assert!((moved_mm - 10_000.0).abs() < 50.0, "{moved_mm}");
+    // Half of the shots meet tar, most of them at more than 9 m where 3 % are too faint.
+    let lost = demand("reflectance", "tar").percent.unwrap();
+    assert!((5.0..60.0).contains(&lost), "{lost}");
+    // First order: the shaft is 1 / (2 pi 20 Hz) behind, 0.45 deg at full speed.
+    let lag_mm = demand("servo_lag", "").displaced_mm.unwrap();
+    assert!((300.0..800.0).contains(&lag_mm), "{lag_mm}");
+}
+
+#[test]
+fn demanded_effects_are_switched_off_and_set_in_the_file() {
+    let with = |effects: &str| {
+        SceneFile::parse(&format!("{STRANGE}\n[effects]\n{effects}\n"), None, None).unwrap()
+    };
+    let off = with("reflectance = false\ndivergence = false");
+    assert!(!on(&off).contains(&"reflectance") && !on(&off).contains(&"divergence"));
+    assert!(off.demand("reflectance").is_some() && !off.is_requested("reflectance"));
+    // A table is stronger than a fact and than `all`; `true` has the usual settings.
+    let some = with("all = false\nrange_noise = true\nbacklash = { play_deg = 0.5 }");
+    assert_eq!(on(&some), ["range_noise", "backlash"]);
+    assert!(some.is_forced("range_noise") && !some.is_forced("backlash"));
+    assert_eq!(
+        some.effects.effects.firings.surface[0]
+            .effect
+            .range_variance_m2(),
+        1e-4
+    );
+    let play = some.demand("backlash").unwrap();
+    assert!(play.reason.contains("0.5 deg"), "{play:?}");
+    let all = with("limited_field_of_view = { from_deg = 10, to_deg = 350 }");
+    assert!(on(&all).contains(&"limited_field_of_view"));
+    let (line, what) = error(&format!("{LEAST}[effects]\nlimited_field_of_view = true\n"));
+    assert!(line == 6 && what.contains("no usual"), "{line} {what}");
+    let (line, what) = error(&format!("{LEAST}[effects]\nreflectance = 3\n"));
+    assert!(
+        line == 6 && what.contains("true, false or a table"),
+        "{line} {what}"
+    );
+    let (line, what) = error(&STRANGE.replace("visibility_m = 80", "visibility_m = 0"));
+    assert!(line == 9 && what.contains("visibility_m"), "{line} {what}");
+    let (line, what) = error(&STRANGE.replace("play_deg = 0.02", "play_deg = -1"));
+    assert!(line == 13 && what.contains("play_deg"), "{line} {what}");
+}
+
+#[test]
+fn a_scene_states_its_tolerance() {
+    let scene = SceneFile::parse(&format!("tolerance = \"5mm,0.1%\"\n{LEAST}"), None, None);
+    let tolerance = scene.unwrap().tolerance.unwrap();
+    assert_eq!((tolerance.displaced_mm, tolerance.percent), (5.0, 0.1));
+    let (line, what) = error(&format!("seed = 1\ntolerance = \"5\"\n{LEAST}"));
+    assert!(line == 2 && what.contains("5mm,0.1%"), "{line} {what}");
 }
 
 #[test]
@@ -238,5 +442,5 @@ fn the_documented_example_is_valid() {
     let example = example.split("```").next().unwrap();
     let scene = SceneFile::parse(example, None, None).unwrap();
     assert_eq!(scene.simulation.scene.caster().objects().len(), 1);
-    assert_eq!(scene.effects.lines.len(), 1);
+    assert_eq!(on(&scene)[0], "moving_objects");
 }

@@ -78,7 +78,7 @@ impl TrueScanner {
         };
         format!(
             "[mount]\nd_m = {z}\nposition_m = [{x}, 0.0, 0.0]\nrotation_deg = [{about_x}, 0.0, {about_z}]\n\
-             [effects.own_shadow]\nsectors = [{{ azimuth_from_deg = 175, azimuth_to_deg = 185 }}]\n\
+             [effects]\nall = false\n[effects.own_shadow]\nsectors = [{{ azimuth_from_deg = 175, azimuth_to_deg = 185 }}]\n\
              [effects.reflectance]\n[effects.range_noise]\nsd_m = 0.01\n[effects.encoder_quantisation]\n\
              [effects.lidar_clock]\ndrift_ppm = 12\n[effects.link_jitter]\nlidar_delay_us = {:?}\n\
              [effects.laser_errors]\nrange_m = {:?}\nelevation_deg = {:?}\nazimuth_deg = {:?}\n\

@@ -3,6 +3,7 @@
 mod truth;
 
 use std::fmt::Write;
+use std::path::PathBuf;
 
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use engine::accuracy::{AccuracyReport, AccuracyRequest, ResidualReport, accuracy};
@@ -34,8 +35,9 @@ pub fn run(arguments: &AccuracyStudyArguments, common: &Common) -> Result<Comman
             .try_for_each(|file| check_free(file, arguments.force))?;
     }
     let scene = arguments.scene.as_deref();
+    let first = arguments.logs.first().map(PathBuf::as_path);
     let places = scene
-        .map(|scene| TruePlaces::new(scene, arguments.seed))
+        .map(|scene| TruePlaces::new(scene, arguments.seed, first))
         .transpose()?;
     let place = places
         .as_ref()

@@ -203,6 +203,12 @@ fn usage(error: &clap::Error) -> Failure {
     let mut paragraphs = text.split("\n\n").map(flat);
     let message = paragraphs.next().unwrap_or_default();
     let message = message.strip_prefix("error: ").unwrap_or(&message);
+    // A long list of values is help, which is not cut.
+    let (message, values) = match message.split_once(" [possible values: ") {
+        Some((message, values)) => (message, Some(values.trim_end_matches(']'))),
+        None => (message, None),
+    };
+    let values = values.map(|values| format!("use one of: {values}"));
     let message = match message.char_indices().nth(LONGEST_MESSAGE) {
         Some((end, _)) => format!("{}...", message.get(..end).unwrap_or_default()),
         None => message.to_owned(),
@@ -218,6 +224,7 @@ fn usage(error: &clap::Error) -> Failure {
             None => paragraph,
         })
         .chain(["--help lists all options".to_owned()]);
+    let help = values.into_iter().chain(help);
     Failure::new(Kind::Usage, message).help(help.collect::<Vec<_>>().join("\n"))
 }
 

@@ -40,7 +40,7 @@ impl SimulationSink for Taken {
 const PLATE: &str = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 1 2 3 4\n";
 
 /// Everything but the objects.
-const BEFORE: &str = "[motion]\nkind = \"sweeps\"\nfrom_deg = 0\nto_deg = -20\nspeed_deg_s = 40\n[materials]\nwall = { reflectivity = 60 }\n\
+const BEFORE: &str = "[sensor]\nideal = true\n[motion]\nkind = \"sweeps\"\nfrom_deg = 0\nto_deg = -20\nspeed_deg_s = 40\n[materials]\nwall = { reflectivity = 60 }\n\
                       a = { reflectivity = 1 }\nb = { reflectivity = 2 }\nc = { reflectivity = 3 }\nd = { reflectivity = 4 }\ne = { reflectivity = 5 }\n\
                       f = { reflectivity = 6 }\nplate = { reflectivity = 30 }\n[[objects]]\nmaterial = \"wall\"\nsphere = { radius_m = 20 }\n";
 const BOX: &str = "[[objects]]\nname = \"trolley\"\nposition_m = [1, 4, 0]\nvelocity_m_s = [0, 2, 0]\n\

@@ -6,10 +6,11 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use engine::failure::{Failure, Kind};
+use engine::reconstruct::source::Source;
 use sim::TruePoint;
 use sim::simulate::{SimulationEvent, SimulationSink};
 
-use crate::commands::simulate::{find, read};
+use crate::commands::simulate::{find, invalid_setting, read};
 
 /// True places of the first returns of a scene, by firing and laser.
 pub struct TruePlaces {
@@ -23,13 +24,21 @@ const HOUR_NS: i64 = 3_600_000_000_000;
 const STAMP_NS: i64 = 1_000;
 
 impl TruePlaces {
-    /// Simulates a scene again.
+    /// Simulates a scene again, with the effects that were on in a log of it.
     ///
     /// # Errors
     /// [`Kind::BadInput`] for an invalid scene.
-    pub fn new(scene: &Path, seed: Option<u64>) -> Result<Self, Failure> {
+    pub fn new(scene: &Path, seed: Option<u64>, log: Option<&Path>) -> Result<Self, Failure> {
         let (name, text) = find(scene)?;
         let mut scene = read(&name, &text, seed, None)?;
+        let config = log
+            .map(|log| Source::open(log, None)?.config())
+            .transpose()?;
+        if let Some(simulated) = config.and_then(|config| config.simulation) {
+            let was_on = |effect: &str| simulated.effects.iter().any(|name| name == effect);
+            let selected = scene.select(was_on, None);
+            scene.effects = selected.map_err(|error| invalid_setting(&name, &error))?;
+        }
         let simulation = &scene.simulation;
         if simulation.motion.end_s >= 3_600.0 {
             let what =

@@ -13,7 +13,7 @@ use protocol::epos2::message::{ReadObject, WriteObject};
 use protocol::epos2::objects::{self, Address};
 use protocol::epos2::{SerialFrame, usb};
 use protocol::record::{Direction, DriveLink, Record, Wire};
-use scanner::config::{MountConfig, TiltAxisConfig};
+use scanner::config::{MountConfig, SimulatedScene, TiltAxisConfig};
 use scanner::{LidarConfig, ScanConfig, SweepPlan};
 use sim::TruePoint;
 use sim::effects::SurfaceEffect;
@@ -287,7 +287,7 @@ const fn probe_request(second: bool) -> (Address, CommError) {
 }
 
 /// Configuration stored in the log.
-pub(super) fn scan_config(scene: &SceneFile, gearing: Option<Gearing>) -> ScanConfig {
+pub(super) fn scan_config(name: &str, scene: &SceneFile, gearing: Option<Gearing>) -> ScanConfig {
     let simulation = &scene.simulation;
     let step_m = f64::from(simulation.sensor.model.distance_unit_mm()) * 1e-3;
     let noise_m2 = scene.effects.effects.firings.surface.range_variance_m2();
@@ -305,6 +305,13 @@ pub(super) fn scan_config(scene: &SceneFile, gearing: Option<Gearing>) -> ScanCo
         },
         axis,
         sweep: plan(simulation),
+        simulation: Some(SimulatedScene {
+            scene: name.to_owned(),
+            seed: scene.seed.to_string(),
+            effects: (scene.effects.lines.iter())
+                .map(|line| line.name.to_owned())
+                .collect(),
+        }),
         ..ScanConfig::default()
     }
 }

@@ -5,11 +5,11 @@
 
 mod log;
 mod sizes;
+mod stopwatch;
 
 use std::fs::File;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
@@ -19,9 +19,9 @@ use io::log::{LogConfig, LogError, LogWriter};
 use protocol::record::DriveLink;
 use scanner::ScanConfig;
 use serde::Serialize;
-use sim::effect_models::{Explanation, InvalidSetting};
+use sim::effect_models::{EffectsConfig, Explanation, InvalidSetting};
 use sim::effects::{Effects, FiringEffectSet, Stopwatch};
-use sim::scene_file::{EffectLine, SHIPPED, SceneFile};
+use sim::scene_file::{EffectDemand, EffectLine, SHIPPED, SceneFile};
 use sim::simulate::SimulateError;
 use utoipa::ToSchema;
 
@@ -35,6 +35,7 @@ use engine::output::{self, Target};
 use engine::reconstruct::report::PacketCounts;
 use log::{Log, cannot_write, scan_config};
 use sizes::{EffectChoice, EffectSize, Sampler};
+use stopwatch::nanoseconds;
 
 /// Report on a simulation.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
@@ -78,7 +79,9 @@ pub struct SimulationReport {
     /// What effects change in the cloud, measured on a sample of the scene's firings, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sizes: Option<Vec<EffectSize>>,
-    /// Effects chosen by a tolerance, if requested.
+    /// Facts of the scene that call for effects, the largest of an effect first.
+    pub demands: Vec<EffectDemand>,
+    /// Effects chosen by the tolerance of the scene or of the command.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub choice: Option<EffectChoice>,
 }
@@ -112,10 +115,10 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, 
     let (name, text) = find(&arguments.scene)?;
     let clock: Stopwatch = arguments.explain.then_some(nanoseconds as fn() -> u64);
     let mut scene = read(&name, &text, arguments.seed, clock)?;
-    let out = &arguments.without;
-    scene
-        .effects
-        .leave_out(|effect| out.iter().any(|name| name == effect || name == cli::ALL));
+    let is_out = |effect: &str| {
+        let mut out = arguments.without.iter();
+        out.any(|name| name == effect || name == cli::ALL)
+    };
     let cores = || std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
     let threads = arguments.threads.unwrap_or_else(cores);
     let log = arguments
@@ -134,26 +137,29 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, 
         None => None,
     };
     let stdout_taken = truth.as_ref().is_some_and(Target::is_stdout);
-    let choice = match arguments.tolerance {
-        Some(tolerance) => {
-            let choice = Sampler::new(&scene, threads).choose(tolerance, &|name| {
-                out.iter().any(|other| other == name || other == cli::ALL)
-            })?;
-            let selected = scene.select(|name| choice.on.contains(&name), clock);
-            scene.effects = selected.map_err(|error| invalid_setting(&name, &error))?;
-            Some(choice)
+    let requested: Vec<&'static str> = (EffectsConfig::NAMES.iter().copied())
+        .filter(|effect| scene.is_requested(effect) && !is_out(effect))
+        .collect();
+    let choice = match arguments.tolerance.or(scene.tolerance) {
+        Some(tolerance) if !requested.is_empty() => {
+            let is_of_scene = arguments.tolerance.is_none();
+            Some(Sampler::new(&scene, threads).choose(tolerance, &requested, is_of_scene)?)
         }
-        None => None,
+        _ => None,
+    };
+    let on = choice.as_ref().map_or(&requested, |choice| &choice.on);
+    let selected = scene.select(|name| on.contains(&name), clock);
+    scene.effects = selected.map_err(|error| invalid_setting(&name, &error))?;
+    let sampler = Sampler::new(&scene, threads);
+    let sizes = match arguments.explain {
+        true => Some(sampler.sizes(&sampler.candidates())?),
+        false => None,
     };
     // What a tolerance leaves out is reported with the choice.
-    let sizes = match (arguments.explain, &choice) {
-        (false, Some(_)) => Vec::new(),
-        (explain, _) => Sampler::new(&scene, threads).sizes(!explain)?,
+    let is_chosen_out = |effect: &str| {
+        (choice.iter()).any(|choice| choice.off.iter().any(|out| out.effect == effect))
     };
-    let warnings = match choice {
-        Some(_) => Vec::new(),
-        None => sizes::warnings(&sizes),
-    };
+    let warnings = sizes::unmet(&sampler, sizes.as_deref(), &is_chosen_out)?;
     let request = Request {
         name,
         log: &log,
@@ -166,7 +172,7 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, 
     };
     let (mut report, failure) = make(scene, request)?;
     report.warnings.extend(warnings);
-    report.sizes = arguments.explain.then_some(sizes);
+    report.sizes = sizes;
     report.choice = choice;
     Ok(CommandOutput {
         json: report.to_json(),
@@ -195,13 +201,6 @@ pub(super) fn find(scene: &Path) -> Result<(String, String), Failure> {
         ))
     })?;
     Ok((name, text))
-}
-
-/// Nanoseconds since the first call.
-fn nanoseconds() -> u64 {
-    static BEGINNING: OnceLock<Instant> = OnceLock::new();
-    let since = BEGINNING.get_or_init(Instant::now).elapsed();
-    u64::try_from(since.as_nanos()).unwrap_or(u64::MAX)
 }
 
 /// Parses a scene; mesh paths are relative to it. A stopwatch measures the cost of effects.
@@ -263,7 +262,7 @@ pub fn make(
         let encoder = &scene.effects.effects.encoder;
         encoder.gearing().unwrap_or(polls.gearing)
     });
-    let config = scan_config(&scene, gearing);
+    let config = scan_config(&name, &scene, gearing);
     let writer = create_log(path, &config, gearing.is_some(), force)?;
     if let Some(truth) = &mut truth {
         begin_truth(truth, &name, config.mount.mount())?;
@@ -326,6 +325,7 @@ pub fn make(
         warnings: Vec::new(),
         explanation,
         sizes: None,
+        demands: scene.demands,
         choice: None,
     };
     Ok((report, failure))
@@ -365,22 +365,9 @@ impl SimulationReport {
     /// Text of the report.
     #[must_use]
     pub fn text(&self) -> String {
-        let effects = match self.effects.is_empty() {
-            true => "none".to_owned(),
-            false => {
-                let named = self.effects.iter();
-                let named: Vec<_> = named
-                    .map(|e| match e.line {
-                        Some(line) => format!("{} (line {line})", e.name),
-                        None => e.name.to_owned(),
-                    })
-                    .collect();
-                named.join(", ")
-            }
-        };
         let mut rows = vec![
             ("scene", format!("{}, seed {}", self.scene, self.seed)),
-            ("effects", effects),
+            ("effects", self.effects_text()),
             (
                 "packets",
                 format!("{} over {:.3} s", self.packets.data, self.duration_s),
@@ -405,20 +392,40 @@ impl SimulationReport {
                 self.took_s, self.threads, self.times_real_time
             ),
         ));
-        rows.extend((self.choice.iter()).map(|choice| ("tolerance", choice.text())));
+        rows.extend((self.choice.iter()).map(|choice| ("tolerance", choice.text(self.took_s))));
         rows.push(("log", self.log.clone()));
         rows.extend(self.truth.iter().map(|truth| ("truth", truth.clone())));
         let warnings = self.warnings.iter();
         rows.extend(warnings.map(|warning| ("warning", warning.clone())));
         let table = crate::tables::table(rows);
-        let mut text = table;
-        if let Some(explanation) = &self.explanation {
-            text = format!("{text}\n{explanation}");
+        match (&self.sizes, &self.explanation) {
+            (Some(sizes), Some(explanation)) => {
+                let (size, why) = (sizes::table(sizes), sizes::reasons(sizes, explanation));
+                format!("{table}\n{size}\n{why}")
+            }
+            _ => table,
         }
-        if let Some(sizes) = &self.sizes {
-            text = format!("{text}\n{}", sizes::table(sizes));
+    }
+
+    /// The effects that are on, one per line, each with the fact that calls for it.
+    fn effects_text(&self) -> String {
+        let reason = |effect: &EffectLine| {
+            let demand = self
+                .demands
+                .iter()
+                .find(|demand| demand.effect == effect.name);
+            let line = (effect.line).map_or_else(String::new, |line| format!(" (line {line})"));
+            match demand {
+                Some(demand) => format!("{}: {}{line}", effect.name, demand.reason),
+                None => format!("{}: requested{line}", effect.name),
+            }
+        };
+        match self.effects.is_empty() {
+            true => "none".to_owned(),
+            false => (self.effects.iter().map(reason))
+                .collect::<Vec<_>>()
+                .join("\n"),
         }
-        text
     }
 }
 
@@ -437,7 +444,7 @@ fn metadata(name: &str) -> Metadata {
     }
 }
 
-fn invalid_setting(name: &str, error: &InvalidSetting) -> Failure {
+pub(super) fn invalid_setting(name: &str, error: &InvalidSetting) -> Failure {
     Failure::new(Kind::BadInput, format!("scene {name}: {error}"))
         .help("correct the scene file; docs: Effects")
 }

@@ -1,4 +1,5 @@
 use super::*;
+use sim::effect_models::EffectTolerance;
 
 /// A large hall of window glass, with a train that passes.
 const GLASS: &str = r#"
@@ -40,13 +41,23 @@ fn tolerance(text: &str) -> EffectTolerance {
     text.parse().unwrap()
 }
 
+fn on(scene: &SceneFile) -> Vec<&'static str> {
+    scene.effects.lines.iter().map(|line| line.name).collect()
+}
+
+/// Sizes of all effects that are on or called for.
+fn sizes_of(scene: &SceneFile) -> Vec<EffectSize> {
+    let sampler = Sampler::new(scene, THREADS);
+    sampler.sizes(&sampler.candidates()).unwrap()
+}
+
 #[test]
 fn effects_that_a_scene_calls_for_and_lacks_are_warned_of() {
-    let mut scene = scene(GLASS);
-    scene.effects.leave_out(|name| name == "moving_objects");
-    let sizes = Sampler::new(&scene, THREADS).sizes(true).unwrap();
-    assert!(sizes.iter().all(|size| !size.is_on));
-    let warnings = warnings(&sizes);
+    let off = "[effects]\nmoving_objects = false\nreflectance = false\n";
+    let scene = scene(&format!("{GLASS}\n{off}"));
+    let sampler = Sampler::new(&scene, THREADS);
+    assert_eq!(sampler.off(), ["moving_objects", "reflectance"]);
+    let warnings = unmet(&sampler, None, &|_| false).unwrap();
     let has = |words: &str| warnings.iter().any(|warning| warning.contains(words));
     assert!(
         has("reflectance is off, though material \"glass\" mirrors 80 % of the light (line 10)"),
@@ -56,8 +67,28 @@ fn effects_that_a_scene_calls_for_and_lacks_are_warned_of() {
         has("moving_objects is off, though 1 object(s) move or rotate (line 18)"),
         "{warnings:?}"
     );
+    let sizes = sampler.sizes(&sampler.off()).unwrap();
+    assert!(sizes.iter().all(|size| !size.is_on));
     assert!(size(&sizes, "reflectance").lost_percent > 10.0);
     assert!(size(&sizes, "moving_objects").moved_percent > 0.1);
+    let chosen = unmet(&sampler, Some(&sizes), &|name| name == "reflectance").unwrap();
+    assert_eq!(chosen.len(), 1, "{chosen:?}");
+}
+
+/// Many effects that are off are one warning, with the fact of each and the size of all.
+#[test]
+fn effects_that_are_all_off_are_warned_of_together() {
+    let scene = scene(&format!("{GLASS}\n[effects]\nall = false\n"));
+    let sampler = Sampler::new(&scene, THREADS);
+    let [warning] = &unmet(&sampler, None, &|_| false).unwrap()[..] else {
+        panic!()
+    };
+    for name in sampler.off() {
+        let demand = scene.demand(name).unwrap();
+        let fact = format!("{name} ({})", demand.reason_and_line());
+        assert!(warning.contains(&fact), "{fact}: {warning}");
+    }
+    assert!(warning.contains("Together they would add"), "{warning}");
 }
 
 #[test]
@@ -73,9 +104,10 @@ fn an_ideal_sensor_calls_for_no_errors_of_its_own() {
 fn sizes_are_those_of_the_effects() {
     let noise = "[effects.range_noise]\nsd_m = 0.02\n";
     let shadow = "[[effects.own_shadow.sectors]]\nazimuth_from_deg = 90\nazimuth_to_deg = 126\n";
-    let mut scene = scene(&format!("{GLASS}\n{noise}\n{shadow}"));
-    scene.effects.leave_out(|name| name == "moving_objects");
-    let sizes = Sampler::new(&scene, THREADS).sizes(false).unwrap();
+    let scene = scene(&format!(
+        "{GLASS}\n[effects]\nall = false\n{noise}\n{shadow}"
+    ));
+    let sizes = sizes_of(&scene);
     let noise = size(&sizes, "range_noise");
     // Of a normal distribution: the median of its magnitude, and its 99th percentile. Ranges are
     // whole steps of 2 mm.
@@ -88,33 +120,45 @@ fn sizes_are_those_of_the_effects() {
 
 #[test]
 fn a_tolerance_chooses_effects_whose_cloud_is_close_to_one_with_all() {
-    let scene = scene(GLASS);
-    let sampler = Sampler::new(&scene, THREADS);
+    let with_all = scene(GLASS);
+    let sampler = Sampler::new(&with_all, THREADS);
+    let all = on(&with_all);
     let mut before = usize::MAX;
     for text in ["1mm,0.5%", "5mm,0.5%", "60mm,2%"] {
-        let choice = sampler.choose(tolerance(text), &|_| false).unwrap();
+        let choice = sampler.choose(tolerance(text), &all, false).unwrap();
         assert!(choice.left_percent <= choice.tolerance.percent, "{text}");
         // The same difference by hand.
-        let all = sampler.cloud(&sampler.candidates()).unwrap();
+        let reference = sampler.cloud(&all).unwrap();
         let chosen = sampler.cloud(&choice.on).unwrap();
-        let left = (all.difference(&chosen)).beyond_percent(choice.tolerance.displaced_mm);
+        let left = (reference.difference(&chosen)).beyond_percent(choice.tolerance.displaced_mm);
         assert_eq!(left, choice.left_percent, "{text}");
         assert!(choice.on.contains(&"reflectance"), "{choice:?}");
+        assert_eq!(choice.on.len() + choice.off.len(), all.len());
         assert!(choice.on.len() <= before, "{choice:?}");
         before = choice.on.len();
+        let words = choice.text(1e-3);
+        assert!(words.contains("takes longer than it saves"), "{words}");
     }
-    assert!(before < sampler.candidates().len());
-    let choice = sampler.choose(tolerance("1mm,0.5%"), &|name| name == "reflectance");
-    assert!(!choice.unwrap().on.contains(&"reflectance"));
+    assert!(before < all.len());
+    // `true` is on in any case.
+    let forced = scene(&format!("{GLASS}\n[effects]\nlink_jitter = true\n"));
+    let sampler = Sampler::new(&forced, THREADS);
+    let choice = sampler.choose(tolerance("60mm,2%"), &all, false).unwrap();
+    assert!(choice.on.contains(&"link_jitter") && choice.on.len() <= before + 1);
 }
 
 #[test]
 fn shares_that_the_sample_cannot_show_are_refused() {
     let scene = scene(GLASS);
-    let refused = Sampler::new(&scene, THREADS).choose(tolerance("1mm,0.0001%"), &|_| false);
+    let sampler = Sampler::new(&scene, THREADS);
+    let refused = sampler.choose(tolerance("1mm,0.0001%"), &on(&scene), false);
     let failure = refused.unwrap_err();
     assert_eq!(failure.kind, Kind::Usage);
-    assert!(failure.to_string().contains("sampled points"), "{failure}");
+    let text = failure.to_string();
+    assert!(
+        text.contains("sampled points") && text.contains("up to below 100 %"),
+        "{text}"
+    );
 }
 
 #[test]
@@ -124,7 +168,7 @@ fn a_fixed_axis_has_sizes_too() {
         "[motion]\nkind = \"fixed\"\nduration_s = 0.3\n{}",
         &GLASS[motion..]
     );
-    let sizes = Sampler::new(&scene(&text), THREADS).sizes(false).unwrap();
+    let sizes = sizes_of(&scene(&text));
     assert!(size(&sizes, "moving_objects").is_on);
     assert!(
         sizes
@@ -134,12 +178,28 @@ fn a_fixed_axis_has_sizes_too() {
 }
 
 #[test]
-fn tables_fit_80_columns() {
-    let scene = scene(GLASS);
-    let sizes = Sampler::new(&scene, THREADS).sizes(false).unwrap();
-    let table = table(&sizes);
+fn the_explanation_fits_80_columns_and_names_every_effect() {
+    let scene = scene(&format!("{GLASS}\n[effects]\nlink_jitter = false\n"));
+    let sizes = sizes_of(&scene);
+    let explanation = sim::effect_models::Explanation::new(
+        &scene.effects.effects.usage(),
+        &scene.effects.lines,
+        1,
+    );
+    let text = table(&sizes) + &reasons(&sizes, &explanation);
     assert!(
-        table.lines().all(|line| line.chars().count() <= 80),
-        "{table}"
+        text.lines().all(|line| line.chars().count() <= 80),
+        "{text}"
+    );
+    for name in EffectsConfig::NAMES {
+        assert!(text.contains(name), "{name}: {text}");
+    }
+    let state = |name: &str| {
+        let row = text.lines().find(|line| line.starts_with(name)).unwrap();
+        row.split_whitespace().nth(1).unwrap().to_owned()
+    };
+    assert_eq!(
+        (state("link_jitter"), state("reflectance")),
+        ("off".into(), "on".into())
     );
 }

@@ -1,0 +1,220 @@
+//! What a sensor sees of a scene: some of its shots, cast at the surfaces of their instant.
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+
+use crate::cast::Placement;
+use crate::effect_models::{Mover, ReflectanceSettings, Weather};
+use crate::scene::Scene;
+use crate::scenery::{Material, MaterialAssignment};
+use crate::simulate::Simulation;
+
+/// Shots of a survey. A share below 3 / 1000 may be missed (95 %).
+const SHOTS: u32 = 1_000;
+/// Azimuth from shot to shot, degrees: the golden angle, which is evenly spread for any number.
+const GOLDEN_DEG: f64 = 137.507_764;
+/// Half the divergence of a VLP-16's beam, along and across the scan (63-9243, appendix F).
+const HALF_BEAM: [f64; 2] = [1.5e-3, 0.75e-3];
+/// Smallest deviation from a plane that counts as an edge, metres: the noise of a range exceeds it.
+const EDGE_M: f64 = 0.005;
+/// Surfaces closer than this make one return, metres (63-9243, section 6.2).
+const SEPARATION_M: f64 = 1.0;
+
+/// Shots at a scene, and what they meet.
+#[derive(Debug, Default)]
+pub(super) struct SceneSurvey {
+    /// Shots that meet a returning surface within the sensor's range.
+    pub returned: u32,
+    /// Of them, those at moving objects.
+    pub moving: u32,
+    /// Of them, those whose footprint crosses an edge.
+    pub edges: u32,
+    /// The greatest difference of depth within a footprint whose surfaces make one return, metres.
+    pub mixed_m: f64,
+    /// Of them, those that the weather makes too faint.
+    pub dimmed: u32,
+    /// The farthest surface, metres.
+    pub farthest_m: f64,
+    /// The materials that objects have, and shots at them.
+    pub materials: BTreeMap<String, MaterialSurvey>,
+}
+
+/// A material, and shots at it.
+#[derive(Debug)]
+pub(super) struct MaterialSurvey {
+    pub material: Material,
+    pub returned: u32,
+    /// Of them, those whose light is below the threshold of detection.
+    pub lost: u32,
+}
+
+/// A surface that a shot meets.
+struct SurveyedSurface<'a> {
+    range_m: f64,
+    material: &'a Material,
+    cosine: f64,
+    is_moving: bool,
+}
+
+impl SceneSurvey {
+    /// Shots spread evenly over lasers, azimuths and the time of the simulation.
+    pub fn new(
+        simulation: &Simulation,
+        movers: &[Mover],
+        detection: &ReflectanceSettings,
+        weather: Option<&Weather>,
+    ) -> Self {
+        let mut survey = Self::default();
+        for scene in movers
+            .iter()
+            .map(|mover| &mover.scene)
+            .chain([&simulation.scene])
+        {
+            survey.list(scene);
+        }
+        let sensor = &simulation.sensor;
+        let lasers: Vec<usize> = (0..sensor.beams.len())
+            .filter(|laser| sensor.used >> laser & 1 == 1)
+            .collect();
+        for shot in 0..SHOTS {
+            let share = (f64::from(shot) + 0.5) / f64::from(SHOTS);
+            let time_s = share * simulation.motion.end_s;
+            let Some(laser) = lasers.get(shot as usize % lasers.len().max(1)) else {
+                return survey;
+            };
+            let tilt_deg = simulation.motion.at(time_s).angle_deg;
+            let azimuth_deg = (f64::from(shot) * GOLDEN_DEG).rem_euclid(360.0);
+            let ray = sensor.ray(*laser, azimuth_deg, tilt_deg, &simulation.mount);
+            let Some((origin_m, direction)) = ray else {
+                continue;
+            };
+            let surfaces = Surfaces {
+                simulation,
+                // Of thousands of moving objects a survey would take longer than the simulation.
+                movers: (movers.iter().take(100))
+                    .filter_map(|mover| Some((mover, mover.travel.at(time_s).ok()?)))
+                    .collect(),
+            };
+            survey.shoot(&surfaces, origin_m, direction, detection, weather);
+        }
+        survey
+    }
+
+    /// Lists the materials of a scene's objects.
+    fn list(&mut self, scene: &Scene) {
+        let placed = scene.placed();
+        let numbers = placed.assignments.iter().flat_map(|assignment| {
+            let numbers: &[u32] = match assignment {
+                MaterialAssignment::One(number) => core::slice::from_ref(number),
+                MaterialAssignment::Faces(numbers) => numbers,
+            };
+            numbers.iter()
+        });
+        for material in numbers.filter_map(|number| placed.materials.get(*number as usize)) {
+            if !self.materials.contains_key(&material.name) {
+                let seen = MaterialSurvey {
+                    material: material.clone(),
+                    returned: 0,
+                    lost: 0,
+                };
+                self.materials.insert(material.name.clone(), seen);
+            }
+        }
+    }
+
+    fn shoot(
+        &mut self,
+        surfaces: &Surfaces<'_>,
+        origin_m: DVec3,
+        direction: DVec3,
+        detection: &ReflectanceSettings,
+        weather: Option<&Weather>,
+    ) {
+        let Some(met) = surfaces.first(origin_m, direction) else {
+            return;
+        };
+        self.returned += 1;
+        self.moving += u32::from(met.is_moving);
+        self.farthest_m = self.farthest_m.max(met.range_m);
+        let material = met.material;
+        let light = detection.detection(
+            material.reflectivity,
+            material.specular,
+            met.cosine,
+            met.range_m,
+        );
+        if let Some(seen) = self.materials.get_mut(&material.name) {
+            seen.returned += 1;
+            seen.lost += u32::from(light < 1.0);
+        }
+        let left = weather.map_or(1.0, |weather| weather.left(met.range_m));
+        self.dimmed += u32::from(light >= 1.0 && light * left < 1.0);
+        if let Some(depth_m) = surfaces.edge(origin_m, direction, met.range_m) {
+            self.edges += 1;
+            if depth_m <= SEPARATION_M {
+                self.mixed_m = self.mixed_m.max(depth_m);
+            }
+        }
+    }
+}
+
+/// The surfaces of an instant.
+struct Surfaces<'a> {
+    simulation: &'a Simulation,
+    movers: Vec<(&'a Mover, Placement)>,
+}
+
+impl<'a> Surfaces<'a> {
+    /// The first surface along a ray, if it returns.
+    fn first(&self, origin_m: DVec3, direction: DVec3) -> Option<SurveyedSurface<'a>> {
+        let reach = self.simulation.sensor.range();
+        let of_scene = |scene: &'a Scene, origin_m, direction, is_moving| {
+            let hit = scene.nearest(origin_m, direction, reach.max_m)?;
+            let normal = (scene.caster()).normal(&hit, origin_m + hit.range_m * direction);
+            Some(SurveyedSurface {
+                range_m: hit.range_m,
+                material: scene.material(&hit)?,
+                cosine: normal.dot(direction).abs(),
+                is_moving,
+            })
+        };
+        let fixed = of_scene(&self.simulation.scene, origin_m, direction, false);
+        let moving = self.movers.iter().filter_map(|(mover, placement)| {
+            let origin_m = placement.own_point(origin_m);
+            of_scene(
+                &mover.scene,
+                origin_m,
+                placement.own_direction(direction),
+                true,
+            )
+        });
+        let first = moving.chain(fixed);
+        let first = first.min_by(|a, b| a.range_m.total_cmp(&b.range_m))?;
+        (first.range_m >= reach.min_m && !first.material.absorbing).then_some(first)
+    }
+
+    /// The difference of depth of an edge within the footprint about a ray, metres; infinite at an
+    /// edge against the sky.
+    fn edge(&self, origin_m: DVec3, direction: DVec3, range_m: f64) -> Option<f64> {
+        let across = direction
+            .cross(DVec3::Z)
+            .try_normalize()
+            .unwrap_or(DVec3::X);
+        let up = across.cross(direction);
+        let [x, y] = HALF_BEAM;
+        let corners = [(x, y), (-x, -y), (x, -y), (-x, y)];
+        let ranges_m = corners.map(|(x, y)| {
+            let corner = (direction + x * across + y * up).normalize();
+            self.first(origin_m, corner)
+                .map_or(f64::INFINITY, |met| met.range_m)
+        });
+        // Over a plane, one over the range is linear in the direction.
+        let is_edge = ranges_m.as_chunks::<2>().0.iter().any(|[a, b]| {
+            let bent = 0.5 * (1.0 / a + 1.0 / b) - 1.0 / range_m;
+            bent.abs() * range_m * range_m > EDGE_M
+        });
+        let depths_m = ranges_m.iter().map(|corner_m| (corner_m - range_m).abs());
+        is_edge.then(|| depths_m.fold(0.0, f64::max))
+    }
+}
