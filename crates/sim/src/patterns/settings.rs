@@ -80,6 +80,13 @@ pub struct PatternSettings {
 
 /// Checks the ranges of all numbers.
 pub(super) fn check(name: &str, settings: &PatternSettings) -> Result<(), PatternError> {
+    let wrong_rpm = |expected| PatternError::Number {
+        name: name.to_owned(),
+        key: "rpm",
+        expected,
+        got: settings.rpm,
+    };
+    settings.head.check_rpm(settings.rpm).map_err(wrong_rpm)?;
     let tilt = settings.tilt;
     let rules = [
         ("step", settings.step_deg, 1e-3, 90.0, "0.001 to 90 deg"),
@@ -119,11 +126,5 @@ pub(super) fn check(name: &str, settings: &PatternSettings) -> Result<(), Patter
             });
         }
     }
-    let wrong_rpm = |expected| PatternError::Number {
-        name: name.to_owned(),
-        key: "rpm",
-        expected,
-        got: settings.rpm,
-    };
-    settings.head.check_rpm(settings.rpm).map_err(wrong_rpm)
+    Ok(())
 }

@@ -350,7 +350,10 @@ fn errors_name_the_line_and_the_fault() {
     let (line, what) = error(&with("[effects]\n\nrange_noise = { sd_m = -0.1 }"));
     assert!(line == 7 && what.contains("-0.1"), "{line} {what}");
     let (line, what) = error(&with("[sensor]\nrpm = 0"));
-    assert!(line == 6 && what.contains("1 to 2400"), "{line} {what}");
+    assert!(
+        line == 6 && what.contains("300 to 1200 rpm"),
+        "{line} {what}"
+    );
     let (line, what) = error(&with("[sensor]\nonly_laser = 16"));
     assert!(line == 6 && what.contains("got 16"), "{line} {what}");
     let (line, what) = error(&LEAST.replace("hall", "castle"));
