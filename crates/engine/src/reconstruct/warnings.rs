@@ -68,18 +68,24 @@ fn angle_warning(alignment: &Alignment) -> Option<String> {
     // The clock has its own warning.
     let bound = alignment.trajectory_bound_deg()?;
     let gaps = alignment.sample_gaps;
+    let gaps_text = format!(
+        "the sweeps have {} gap(s) of up to {:.2} s without a position of the drive",
+        gaps.count,
+        gaps.longest.as_secs_f64()
+    );
     let cause = match gaps.count {
-        0 => "the drive's positions are few, late or scattered".to_owned(),
-        count => format!(
-            "the sweeps have {count} gap(s) of up to {:.2} s without a position of the drive",
-            gaps.longest.as_secs_f64()
-        ),
+        0 => "the drive's positions are few, late or scattered",
+        _ => &gaps_text,
     };
-    (bound > WARNING_BOUND_DEG + age_deg).then(|| {
-        format!(
+    if bound > WARNING_BOUND_DEG + age_deg {
+        return Some(format!(
             "{cause}: the angle error may reach {bound:.2} deg, {:.0} mm at 10 m",
             bound.to_radians() * 10e3
-        )
+        ));
+    }
+    // Nothing that happens within a gap shows, so that no bound contains it.
+    (gaps.count > 0).then(|| {
+        format!("{gaps_text}: a knock or a halt of the head within a gap would not show")
     })
 }
 
