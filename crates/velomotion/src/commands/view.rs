@@ -300,9 +300,10 @@ impl Sink for ShareSink<'_> {
     fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
         if let (Some((start, end)), Some(time)) = (self.span, batch.time().last()) {
             let passed = time.saturating_since(start).as_nanos() as f64;
-            let share = passed / (end.saturating_since(start).as_nanos() as f64).max(1.0);
+            let whole = (end.saturating_since(start).as_nanos() as f64).max(1.0);
+            let share = (passed / whole).min(1.0);
             if share >= self.reported + SHARE_STEP {
-                self.reported = share.min(1.0);
+                self.reported = share;
                 (self.report)(self.reported);
             }
         }
