@@ -15,7 +15,6 @@ pub mod scans;
 pub mod server;
 pub mod tilt;
 pub mod tls;
-pub mod view;
 
 use std::net::{SocketAddr, TcpListener};
 use std::sync::Arc;
@@ -117,7 +116,7 @@ fn daemon_router(api: &Arc<Api>, peer: Peer) -> Router {
         .route("/logout", post(page::logout))
         .merge(devices)
         .fallback(page::asset)
-        .method_not_allowed_fallback(method_refused)
+        .method_not_allowed_fallback(no_method)
         .layer(from_fn_with_state(api.waits, guard::limits))
         .layer(from_fn_with_state((Arc::clone(api), peer), guard::guard))
         .layer(from_fn_with_state(Arc::clone(api), count))
@@ -129,7 +128,7 @@ fn daemon_router(api: &Arc<Api>, peer: Peer) -> Router {
 pub(crate) fn command_router(service: &Arc<DeviceService>, waits: Waits) -> Router {
     router(stop_routes())
         .fallback(in_use)
-        .method_not_allowed_fallback(method_refused)
+        .method_not_allowed_fallback(no_method)
         .layer(from_fn_with_state(waits, guard::limits))
         .with_state(Arc::clone(service))
 }
@@ -171,11 +170,7 @@ async fn in_use() -> Refusal {
     .retry_after(refusal::RETRY_S)
 }
 
-async fn method_refused() -> Refusal {
-    no_method()
-}
-
-fn no_method() -> Refusal {
+async fn no_method() -> Refusal {
     Refusal::new(
         StatusCode::METHOD_NOT_ALLOWED,
         Kind::Usage,

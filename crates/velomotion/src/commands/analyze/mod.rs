@@ -4,7 +4,7 @@
 
 mod directions;
 mod folder;
-pub(super) mod input;
+mod input;
 pub(crate) mod report;
 pub(crate) mod sweep;
 mod text;
