@@ -46,8 +46,10 @@ const ROWS: usize = 12;
 const NEARLY_LEAST: f64 = 1.02;
 /// Settings examined at a time.
 const BLOCK: usize = 64;
-/// Settings of which the densest is chosen by a third of the directions.
-const FINALISTS: usize = 6;
+/// Settings of which the densest is chosen by a third of the directions, and of these by all: in a
+/// given time, and of all settings, whose gaps differ little.
+const FINALISTS: (usize, usize) = (6, 1);
+const FINALISTS_OF_ALL: (usize, usize) = (24, 6);
 /// Share of a third of the directions that may be without a point: 1 %, and a quarter for chance.
 const NEAR: f64 = 0.0125;
 /// Part of the given time below which scans are not compared for their density.
@@ -108,7 +110,7 @@ impl ScanPredictor {
         match (limits.gap_deg, limits.error_mm, limits.time_s) {
             (Some(gap_deg), ..) => self.fastest_within(&scans, gap_deg),
             (None, Some(_), _) => scans.first().map(|scan| self.row(scan)),
-            (None, None, Some(time_s)) => self.densest(scans, time_s),
+            (None, None, Some(time_s)) => self.densest(scans, time_s, FINALISTS),
             (None, None, None) => None,
         }
     }
@@ -141,7 +143,7 @@ impl ScanPredictor {
                 row,
             });
         }
-        let densest = self.densest(scans.clone(), f64::INFINITY)?;
+        let densest = self.densest(scans.clone(), f64::INFINITY, FINALISTS_OF_ALL)?;
         let cheaper = self.fastest_within(&scans, NEARLY_LEAST * densest.gap_deg.p99);
         Some(NearestScan {
             limit: LimitKind::Gap,
@@ -185,17 +187,26 @@ impl ScanPredictor {
         None
     }
 
-    fn densest(&self, mut scans: Vec<&PlannedScan>, time_s: f64) -> Option<PlanRow> {
+    fn densest(
+        &self,
+        mut scans: Vec<&PlannedScan>,
+        time_s: f64,
+        (roughly, briefly): (usize, usize),
+    ) -> Option<PlanRow> {
         let longest_s = scans.last()?.scan_s.min(time_s);
         scans.retain(|scan| scan.scan_s >= SHORT * longest_s);
         let rough = scans.par_iter().map(|scan| self.rough_p99_deg(scan));
         let rough: Vec<f64> = rough.collect();
         let mut ranked: Vec<(&PlannedScan, f64)> = scans.into_iter().zip(rough).collect();
         ranked.sort_by(|a, b| a.1.total_cmp(&b.1));
-        let finalists = ranked.into_iter().take(FINALISTS);
-        let gaps = finalists.map(|(scan, _)| (scan, self.brief_row(scan).gap_deg.p99));
-        let (scan, _) = gaps.min_by(|a, b| a.1.total_cmp(&b.1))?;
-        Some(self.row(scan))
+        let finalists = ranked.into_iter().take(roughly);
+        let mut rows: Vec<(&PlannedScan, f64)> = finalists
+            .map(|(scan, _)| (scan, self.brief_row(scan).gap_deg.p99))
+            .collect();
+        rows.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let rows = rows.into_iter().take(briefly);
+        let rows = rows.map(|(scan, _)| self.row(scan));
+        rows.min_by(|a, b| a.gap_deg.p99.total_cmp(&b.gap_deg.p99))
     }
 }
 

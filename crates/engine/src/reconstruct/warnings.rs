@@ -84,9 +84,8 @@ fn angle_warning(alignment: &Alignment) -> Option<String> {
         ));
     }
     // Nothing that happens within a gap shows, so that no bound contains it.
-    (gaps.count > 0).then(|| {
-        format!("{gaps_text}: a knock or a halt of the head within a gap would not show")
-    })
+    (gaps.count > 0)
+        .then(|| format!("{gaps_text}: a knock or a halt of the head within a gap would not show"))
 }
 
 /// Planned sweeps that are cut short or absent. Empty for a log without a plan or

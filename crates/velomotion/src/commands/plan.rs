@@ -259,7 +259,10 @@ fn choice(chosen: &CommandRow, at_m: f64) -> Vec<String> {
         Some(command) => format!("\n{command}\n  with the lidar at {} rpm", setting.rpm),
         None => format!(
             "\n{} deg/s, {} deg/s2, {} rpm, {} sweeps",
-            setting.speed_deg_s, setting.accel_deg_s2, setting.rpm, setting.sweeps,
+            (setting.speed_deg_s * 1e6).round() / 1e6,
+            setting.accel_deg_s2,
+            setting.rpm,
+            setting.sweeps,
         ),
     };
     std::iter::once(first).chain(paragraphs).collect()
@@ -436,7 +439,7 @@ mod tests {
                     error_mm: Some(0.5),
                     ..PlanLimits::default()
                 },
-                "the least is",
+                "the fastest within 2 % of the least has",
             ),
             (
                 PlanLimits {

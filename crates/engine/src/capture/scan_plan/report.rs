@@ -167,7 +167,7 @@ impl ScanPlanner {
         };
         match nearest.limit {
             LimitKind::Error => format!(
-                "no setting has an error of {} mm at {at_m} m: the least is {:.2} mm, of which {:.2} mm by the ranges (95 %), in {:.1} s \
+                "no setting has an error of {} mm at {at_m} m: the fastest within 2 % of the least has {:.2} mm, of which {:.2} mm by the ranges (95 %), in {:.1} s \
                  ({by}); only more accurate ranges, --range-sd, lessen the latter",
                 limits.error_mm.unwrap_or_default(),
                 row.error_mm.total,
@@ -175,7 +175,7 @@ impl ScanPlanner {
                 row.scan_s,
             ),
             LimitKind::Gap => format!(
-                "no setting{others} has a gap of {} deg: the least is {:.3} deg, in {:.1} s ({by}); firings are {:.2} deg apart in azimuth, and \
+                "no setting{others} has a gap of {} deg: the fastest near the least has {:.3} deg, in {:.1} s ({by}); firings are {:.2} deg apart in azimuth, and \
                  lines never reach the poles of the tilt axis",
                 limits.gap_deg.unwrap_or_default(),
                 row.gap_deg.p99,
