@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::fmt::Write;
 
-/// StudyDraws of a seed (SplitMix64).
+/// Random numbers of a seed (SplitMix64).
 pub struct StudyDraws(pub u64);
 
 impl StudyDraws {
