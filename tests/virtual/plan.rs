@@ -224,8 +224,8 @@ fn tight_limits_are_kept_when_measured() {
 }
 
 /// Directions of all rays of a setting with the lidar at these azimuths at the start of the sweeps:
-/// patterns of `sim`, which are independent of it. The sphere of a pattern has 10 m, so the
-/// lidar's height is scaled.
+/// patterns of `sim`, which are independent of the planner. The sphere of a pattern has 10 m, so
+/// the lidar's height is scaled.
 fn rays(setting: &ScanSetting, at_m: f64, starts_deg: [f64; 2]) -> Vec<DVec3> {
     let ends = [(0.0, -45.0), (-45.0, 0.0)]
         .into_iter()
