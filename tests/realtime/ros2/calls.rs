@@ -3,7 +3,7 @@
 use cloud::messages::TRIGGER;
 use serde_json::{Value, json};
 
-use crate::peer::{Peer, connected, daemon, endpoint, figure, python};
+use crate::peer::{Peer, alone, connected, daemon, endpoint, figure, python};
 use crate::rig::{Rig, sweeps};
 
 fn key(service: &str) -> String {
@@ -41,6 +41,7 @@ fn begin(rig: &Rig, router: &mut Peer) -> String {
 #[test]
 #[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
 fn a_capture_is_started_and_stopped_by_service_calls() {
+    let _alone = alone();
     let python = python();
     let place = endpoint();
     let mut router = Peer::start(&python, "router", &place);
@@ -97,6 +98,7 @@ fn scans(rig: &Rig) -> u64 {
 #[test]
 #[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
 fn ros_moves_nothing_unless_configured() {
+    let _alone = alone();
     let python = python();
     let place = endpoint();
     let mut router = Peer::start(&python, "router", &place);

@@ -3,7 +3,7 @@
 use cloud::messages::Topic;
 use serde_json::{Value, json};
 
-use crate::peer::{Peer, connected, daemon, endpoint, figure, python};
+use crate::peer::{Peer, alone, connected, daemon, endpoint, figure, python};
 use crate::rig::{finished, sweep, wait};
 
 const MOUNT: &str = "0/tf_static";
@@ -23,6 +23,7 @@ fn mount(peer: &Peer, who: &str) -> Value {
 #[test]
 #[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
 fn a_router_that_starts_late_or_restarts_gets_everything() {
+    let _alone = alone();
     let python = python();
     let place = endpoint();
     let rig = daemon(&place, "");
@@ -72,6 +73,7 @@ fn a_router_that_starts_late_or_restarts_gets_everything() {
 #[test]
 #[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
 fn a_stalled_router_does_not_affect_the_capture() {
+    let _alone = alone();
     let python = python();
     let place = endpoint();
     let mut router = Peer::start(&python, "router", &place);
@@ -101,6 +103,7 @@ fn a_stalled_router_does_not_affect_the_capture() {
 /// Connecting to a port that does not speak zenoh is retried and disturbs nothing else.
 #[test]
 fn a_port_that_never_answers_is_retried_without_side_effects() {
+    let _alone = alone();
     let silent = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     let rig = daemon(&format!("tcp/{}", silent.local_addr().unwrap()), "");
     let scan = rig.ready().whole_scan(&json!({ "speed_deg_s": 56.25 }));

@@ -4,7 +4,7 @@ use std::io::{BufRead, BufReader, Write};
 use std::net::TcpListener;
 use std::path::Path;
 use std::process::{Child, ChildStdin, Command, Stdio};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use cloud::messages::Topic;
 use serde_json::{Value, json};
@@ -18,6 +18,13 @@ pub struct Peer {
     printed: Arc<Mutex<Vec<Value>>>,
     /// Folder in which it writes clouds.
     pub folder: tempfile::TempDir,
+}
+
+/// Lets one test run at a time: each has routers, peers and a daemon.
+pub fn alone() -> MutexGuard<'static, ()> {
+    static RUNNING: Mutex<()> = Mutex::new(());
+    // A test that failed holds nothing that the next one needs.
+    RUNNING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The Python interpreter of the tests.

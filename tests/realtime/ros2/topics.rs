@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use tungstenite::{Message, WebSocket};
 use xxhash_rust::xxh3::xxh3_128;
 
-use crate::peer::{Peer, connected, daemon, endpoint, figure, python};
+use crate::peer::{Peer, alone, connected, daemon, endpoint, figure, python};
 use crate::rig::{Rig, wait};
 
 /// Topics and the names of their keys. Diagnostics are last: a subscriber that has them has all
@@ -74,6 +74,7 @@ fn stamps(received: &[Value]) -> Vec<i64> {
 #[test]
 #[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
 fn every_client_receives_the_whole_sweep_and_the_capture_loses_nothing() {
+    let _alone = alone();
     let python = python();
     let place = endpoint();
     let mut near = Peer::start(&python, "router", &place);
