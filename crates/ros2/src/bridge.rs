@@ -58,7 +58,7 @@ impl Bridge {
     /// Starts the bridge. An absent router is waited for.
     ///
     /// # Errors
-    /// [`Kind::Usage`] where `[daemon.ros2.capture]` is invalid, [`Kind::NoDevice`] where there is
+    /// [`engine::Kind::Usage`] where `[daemon.ros2.capture]` is invalid, [`engine::Kind::NoDevice`] where there is
     /// no thread.
     pub fn start(
         scans: &Arc<dyn ScanService>,
