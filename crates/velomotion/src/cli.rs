@@ -248,7 +248,7 @@ pub struct AccuracyStudyArguments {
     /// Scene with which the log was simulated, to compare points with the truth
     #[arg(long, value_name = "SCENE")]
     pub scene: Option<PathBuf>,
-    /// Seed with which it was simulated [default: the scene's]
+    /// Seed with which it was simulated [default: the log's]
     #[arg(long, value_name = "N", requires = "scene", allow_negative_numbers = true, value_parser = whole::<u64>(0..=u64::MAX))]
     pub seed: Option<u64>,
     /// Folder for a page with the tables, and the JSON object
