@@ -82,6 +82,8 @@ pub enum Command {
     Replay(Replay),
     /// Simulate a scene into a log, with ground truth
     Simulate(Simulate),
+    /// Show clouds, logs and recordings in the browser
+    View(ViewArguments),
     /// List what a file holds
     Info(Info),
     /// Calibrate mount, tilt axis and lasers by logs of ordinary scans, without targets
@@ -381,6 +383,18 @@ pub struct Output {
     /// Overwrite existing files
     #[arg(long)]
     pub force: bool,
+}
+
+/// `view`.
+#[derive(Clone, Debug, Args)]
+pub struct ViewArguments {
+    /// Clouds (.ply .pcd .las .laz .e57 .mcap .csv .xyz .txt .asc), logs or recordings (pcapng,
+    /// pcap); a log's cloud is made first and plays along its time
+    #[arg(value_name = "FILE", required = true)]
+    pub files: Vec<PathBuf>,
+    /// Print the address only, and open no browser
+    #[arg(long)]
+    pub no_open: bool,
 }
 
 /// `info`.

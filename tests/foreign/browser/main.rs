@@ -5,6 +5,7 @@
 //! pictures, as for docs/src/page.
 
 mod browser;
+mod view;
 
 use std::net::SocketAddr;
 use std::path::Path;
@@ -395,6 +396,54 @@ fn a_sweep_is_displayed_and_stopped_by_key_and_by_touch() {
     daemon.stop(|| true).unwrap();
 }
 
+#[test]
+#[ignore = "needs chromium and chromedriver"]
+fn the_axis_is_moved_by_hand_within_its_limits_and_stopped() {
+    let driver = Driver::start();
+    let folder = tempfile::tempdir().unwrap();
+    let daemon = simulator(folder.path());
+    let url = url(&daemon);
+    for screen in [DESKTOP, PHONE.light(), NARROW] {
+        driver.test(screen, async |page| {
+            ready(&page, &url).await;
+            page.click("#home").await;
+            page.until_has("#drive-facts", "Angle known\nyes").await;
+            page.until_has("#doing", "Ready").await;
+            page.click("#by-hand summary").await;
+            page.fill("#goto-speed", "40").await;
+            page.fill("#goto", "-20").await;
+            page.keys(ENTER).await;
+            page.until_has("#angle", "20.0").await;
+            page.until_has("#doing", "Ready").await;
+            page.audit("the axis by hand").await;
+            page.click("#jog [data-jog='1']").await;
+            page.until_has("#angle", "19.0").await;
+            page.until_has("#doing", "Ready").await;
+            // Beyond the limit: the field says so, and nothing is sent.
+            page.fill("#goto", "10").await;
+            page.click("#go").await;
+            page.until_true("document.querySelector('#goto').validity.rangeOverflow")
+                .await;
+            assert_eq!(page.text("#doing").await, "Ready");
+            page.fill("#goto-speed", "1").await;
+            page.fill("#goto", "-45").await;
+            page.click("#go").await;
+            page.until_has("#doing", "Moving").await;
+            page.click("#stop").await;
+            page.until_has("#doing", "Ready").await;
+            let tilt = page.api("tilt").await;
+            assert_eq!(tilt["velocity_rpm"], 0, "{tilt}");
+            let angle = tilt["angle_deg"].as_f64().unwrap();
+            assert!((-40.0..-18.5).contains(&angle), "{tilt}");
+            assert_eq!(page.text("#axis-error").await, "", "a stop is no error");
+        });
+    }
+    daemon.stop(|| true).unwrap();
+}
+
+/// WebDriver's code of the key.
+const ENTER: &str = "\u{e007}";
+
 const TO_THE_TOP: &str = "scrollTo(0, 0); document.querySelector('.panels').scrollTo(0, 0); document.activeElement.blur();";
 
 /// WebDriver's code of the key.
@@ -492,6 +541,8 @@ fn a_lost_connection_is_reported_and_restored() {
         page.until_has("#lost", "Connection to the daemon lost")
             .await;
         assert_eq!(page.text("#chip-link").await, "Offline");
+        page.until_has("#lost", "The daemon on this machine does not run.")
+            .await;
         page.picture("lost").await;
         page.audit("no connection").await;
         let place = folder.path().to_owned();
