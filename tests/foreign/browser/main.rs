@@ -407,8 +407,9 @@ fn the_axis_is_moved_by_hand_within_its_limits_and_stopped() {
         driver.test(screen, async |page| {
             ready(&page, &url).await;
             page.click("#home").await;
-            page.until_has("#drive-facts", "Angle known\nyes").await;
+            page.until_has("#doing", "Homing").await;
             page.until_has("#doing", "Ready").await;
+            page.until_has("#drive-facts", "Angle known\nyes").await;
             page.click("#by-hand summary").await;
             page.fill("#goto-speed", "40").await;
             page.fill("#goto", "-20").await;

@@ -85,11 +85,14 @@ async fn pick(page: &Page, count: usize) -> [f64; 4] {
         if page.run(&heads).await != true {
             continue;
         }
-        // The mark is where the finger was: the point is the one that is drawn there.
+        // The mark is where the finger was: the point is the one that is drawn there. On a narrow
+        // screen the values take a part of the view's height, by which its scale changes.
+        let (right, down) = (tap_x - x - width / 2.0, tap_y - y - height / 2.0);
         page.until_true(&format!(
-            "((mark) => Math.hypot(mark.cx.baseVal.value - {}, mark.cy.baseVal.value - {}) <= {})(document.querySelectorAll('#overlay .pick')[{}])",
-            tap_x - x,
-            tap_y - y,
+            "(({{ clientWidth: width, clientHeight: height }}, {{ cx, cy }}) => {{
+                const scale = height / {height};
+                return Math.hypot(cx.baseVal.value - width / 2 - scale * {right}, cy.baseVal.value - height / 2 - scale * {down}) <= {};
+            }})(document.querySelector('#canvas'), document.querySelectorAll('#overlay .pick')[{}])",
             if page.is_phone() { 24 } else { 9 },
             count - 1
         ))

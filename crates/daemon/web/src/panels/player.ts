@@ -18,8 +18,10 @@ export class Player {
   constructor(private readonly changed: (until_s: number | null) => void) {
     button.addEventListener("click", () => this.toggle());
     slide.addEventListener("input", () => {
+      // Pausing draws, which moves the slider.
+      const share = Number(slide.value);
       this.pause();
-      this.set(Number(slide.value) * this.end_s);
+      this.set(share * this.end_s);
     });
   }
 
