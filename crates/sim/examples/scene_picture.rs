@@ -5,15 +5,22 @@
 //! turn; nearer walls and the ceiling of what encloses the scanner are cut away. Below, all that
 //! can be seen from the scanner, 360 by 105 degrees: nearer is brighter and warmer, and what
 //! returns nothing is black. Takes the name of a shipped scene, and six numbers for another camera:
-//! where it is and what it looks at (metres).
+//! where it is and what it looks at (metres). With `--scan` behind the name, the points of the
+//! scene's own scan from outside, coloured by height: their true places, without errors of range
+//! and angle.
 
 use std::error::Error;
 use std::io::{Write, stdout};
+use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
 
 use glam::{DMat3, DVec2, DVec3, dvec2, dvec3};
+use sim::TruePoint;
 use sim::cast::{Caster, Cylinder, Hit, Object, Ray, Reach, Surface};
+use sim::scene_file::SceneFile;
 use sim::scenery::{PlacedScenery, Scenery, no_files, shipped};
 use sim::sensor::{LidarMount, LidarSensor};
+use sim::simulate::{SimulationEvent, SimulationSink};
 
 /// Pixels of the view, and of the panorama beneath it.
 const WIDTH: usize = 880;
@@ -44,6 +51,8 @@ fn usual_camera(scene: &str) -> [f64; 6] {
 fn main() -> Result<(), Box<dyn Error>> {
     let mut words = std::env::args().skip(1);
     let name = words.next().unwrap_or_else(|| "hall".to_owned());
+    let mut words = words.peekable();
+    let is_scan = words.next_if(|word| word == "--scan").is_some();
     let numbers = words
         .map(|word| word.parse())
         .collect::<Result<Vec<f64>, _>>()?;
@@ -66,16 +75,49 @@ fn main() -> Result<(), Box<dyn Error>> {
         caster: &caster,
     };
     let camera = Camera::new(camera);
-    let mut image = scene.view(&camera);
-    scene.dots(&camera, &mut image)?;
-    image.extend(scene.panorama());
+    let image = if is_scan {
+        scene.scan(&camera, &scanned(text)?)
+    } else {
+        let mut image = scene.view(&camera);
+        scene.dots(&camera, &mut image)?;
+        image.extend(scene.panorama());
+        image
+    };
+    let rows = image.len() / WIDTH;
     let bytes: Vec<u8> = image.into_iter().flat_map(screen).collect();
     let mut file = Vec::new();
-    let mut encoder = png::Encoder::new(&mut file, WIDTH as u32, (VIEW + PANORAMA) as u32);
+    let mut encoder = png::Encoder::new(&mut file, WIDTH as u32, rows as u32);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_compression(png::Compression::High);
     encoder.write_header()?.write_image_data(&bytes)?;
     Ok(stdout().write_all(&file)?)
+}
+
+/// True places of the scan that a scene file describes.
+fn scanned(text: &str) -> Result<Vec<DVec3>, Box<dyn Error>> {
+    let mut scene = SceneFile::parse(text, None, None)?;
+    let mut points = TruePoints::default();
+    let effects = &mut scene.effects.effects;
+    scene.simulation.run(effects, NonZeroUsize::MIN, &mut points)?;
+    Ok(points.0)
+}
+
+#[derive(Default)]
+struct TruePoints(Vec<DVec3>);
+
+impl SimulationSink for TruePoints {
+    fn event(&mut self, _: &SimulationEvent) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+
+    fn wants_truth(&self) -> bool {
+        true
+    }
+
+    fn truth(&mut self, points: &[TruePoint]) -> ControlFlow<()> {
+        self.0.extend(points.iter().map(|point| point.position_m));
+        ControlFlow::Continue(())
+    }
 }
 
 /// The scene's own seed.
@@ -223,14 +265,29 @@ impl Seen<'_> {
                     .caster
                     .nearest(&Ray::new(from, direction)?, Reach::up_to(100.0));
                 if let Some(hit) = hit {
-                    self.dot(camera, image, from + hit.range_m * direction);
+                    self.dot(camera, image, from + hit.range_m * direction, DOT);
                 }
             }
         }
         Ok(())
     }
 
-    fn dot(&self, camera: &Camera, image: &mut [DVec3], point: DVec3) {
+    /// The points of a scan that the camera sees, coloured by height.
+    fn scan(&self, camera: &Camera, points: &[DVec3]) -> Vec<DVec3> {
+        let mut image = vec![dvec3(0.01, 0.012, 0.02); VIEW * WIDTH];
+        let mut heights: Vec<f64> = points.iter().map(|point| point.z).collect();
+        heights.sort_by(f64::total_cmp);
+        // Single points far above or below do not stretch the colours.
+        let of = |share: usize| heights.get(heights.len() * share / 100).copied();
+        let (low, high) = (of(1).unwrap_or(0.0), of(99).unwrap_or(1.0));
+        for point in points {
+            let above = (point.z - low) / (high - low).max(1e-3);
+            self.dot(camera, &mut image, *point, warmth(1.0 - above));
+        }
+        image
+    }
+
+    fn dot(&self, camera: &Camera, image: &mut [DVec3], point: DVec3, colour: DVec3) {
         let off = point - camera.at_m;
         let Some(at) = camera.pixel(point) else {
             return;
@@ -244,7 +301,7 @@ impl Seen<'_> {
             && within
             && let Some(pixel) = image.get_mut(at.y as usize * WIDTH + at.x as usize)
         {
-            *pixel = pixel.lerp(DOT, 0.8);
+            *pixel = pixel.lerp(colour, 0.8);
         }
     }
 

@@ -25,7 +25,7 @@ use crate::effect_models::{
 };
 use crate::effects::{ConfiguredEffects, FiringSample, MeteredEffect, Stopwatch};
 use crate::scenery::{
-    FilePosition, InvalidValue, MaterialTable, ObjectTable, line_of_value, no_files,
+    FilePosition, InvalidValue, MaterialTable, ObjectTable, line_of_value, no_files, toml_message,
 };
 use crate::simulate::Simulation;
 use demands::SceneFacts;
@@ -175,7 +175,7 @@ impl SceneFile {
     ) -> Result<Self, SceneFileError> {
         let sections: Sections = toml::from_str(text).map_err(|error| SceneFileError {
             line: (error.span()).map_or(1, |span| FilePosition::of(text, span.start).line),
-            what: error.message().to_owned(),
+            what: toml_message(&error),
         })?;
         let seed = seed.unwrap_or(sections.seed);
         let in_file = |error: InvalidValue| SceneFileError {

@@ -14,7 +14,7 @@ mod place;
 mod shipped;
 
 pub use error::{FilePosition, SceneryError};
-pub(crate) use error::{InvalidValue, line_of_value};
+pub(crate) use error::{InvalidValue, line_of_value, toml_message};
 pub use materials::{Material, MaterialAssignment, MaterialTable, PlacedScenery};
 pub use meshes::{MeshFileError, MeshFormat};
 pub use moving::{Moving, Travel};

@@ -82,6 +82,8 @@ pub enum Command {
     Replay(Replay),
     /// Simulate a scene into a log, with ground truth
     Simulate(Simulate),
+    /// Show clouds, logs and recordings in the browser
+    View(ViewArguments),
     /// List what a file holds
     Info(Info),
     /// Calibrate mount, tilt axis and lasers by logs of ordinary scans, without targets
@@ -248,7 +250,7 @@ pub struct AccuracyStudyArguments {
     /// Scene with which the log was simulated, to compare points with the truth
     #[arg(long, value_name = "SCENE")]
     pub scene: Option<PathBuf>,
-    /// Seed with which it was simulated [default: the scene's]
+    /// Seed with which it was simulated [default: the log's]
     #[arg(long, value_name = "N", requires = "scene", allow_negative_numbers = true, value_parser = whole::<u64>(0..=u64::MAX))]
     pub seed: Option<u64>,
     /// Folder for a page with the tables, and the JSON object
@@ -381,6 +383,18 @@ pub struct Output {
     /// Overwrite existing files
     #[arg(long)]
     pub force: bool,
+}
+
+/// `view`.
+#[derive(Clone, Debug, Args)]
+pub struct ViewArguments {
+    /// Clouds (.ply .pcd .las .laz .e57 .mcap .csv .xyz .txt .asc), logs or recordings (pcapng,
+    /// pcap); a log's cloud is made first and plays along its time
+    #[arg(value_name = "FILE", required = true)]
+    pub files: Vec<PathBuf>,
+    /// Print the address only, and open no browser
+    #[arg(long)]
+    pub no_open: bool,
 }
 
 /// `info`.

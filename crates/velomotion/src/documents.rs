@@ -28,6 +28,7 @@ documents! {
     DoctorReport: "doctor-1";
     BringUpReport: "bring-up-1";
     DaemonReport: "daemon-1";
+    ServedView: "view-1";
     SoftwareDrive: "firmware-sim-1";
     HelpText: "help-1";
 }
@@ -43,6 +44,16 @@ pub struct DaemonReport {
     pub scans: String,
     /// Whether the devices are software.
     pub simulated: bool,
+}
+
+/// Printed by `view` once it answers.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct ServedView {
+    /// Its page, with the token.
+    pub url: String,
+    /// The files.
+    #[schema(value_type = Vec<String>)]
+    pub files: Vec<PathBuf>,
 }
 
 /// Printed by `firmware-sim` once the drive answers.
@@ -100,6 +111,7 @@ mod tests {
             of::<DoctorReport>(),
             of::<BringUpReport>(),
             of::<DaemonReport>(),
+            of::<ServedView>(),
             of::<SoftwareDrive>(),
             of::<HelpText>(),
         ]

@@ -26,6 +26,7 @@ pub fn run(cli: &Cli) -> Result<CommandOutput, Failure> {
         Command::Capture(arguments) => commands::capture::run(arguments, &cli.common),
         Command::Replay(arguments) => commands::replay::run(arguments, &cli.common),
         Command::Simulate(arguments) => commands::simulate::run(arguments, &cli.common),
+        Command::View(arguments) => commands::view::run(arguments, &cli.common),
         Command::Info(arguments) => commands::info::run(arguments),
         Command::Calibrate(arguments) => commands::calibrate::run(arguments, &cli.common),
         Command::Accuracy(arguments) => commands::accuracy::run(arguments, &cli.common),

@@ -7,6 +7,10 @@ use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
+use fantoccini::actions::{
+    InputSource, KeyAction, KeyActions, MOUSE_BUTTON_LEFT, MouseActions, PointerAction,
+    TouchActions,
+};
 use fantoccini::{Client, ClientBuilder, Locator};
 use hyper_util::client::legacy::connect::HttpConnector;
 use serde_json::{Value, json};
@@ -29,8 +33,8 @@ pub struct Screen {
 /// A laptop's screen.
 pub const DESKTOP: Screen = Screen {
     name: "desktop",
-    width: 1280,
-    height: 800,
+    width: 1440,
+    height: 900,
     ratio: 1,
     dark: true,
 };
@@ -228,13 +232,20 @@ impl Page {
 
     /// Number of colours in the picture of an element: an empty drawing has few.
     pub async fn colours_of(&self, css: &str) -> usize {
+        let pixels = self.pixels_of(css).await;
+        pixels.into_iter().collect::<BTreeSet<_>>().len()
+    }
+
+    async fn pixels_of(&self, css: &str) -> Vec<[u8; 3]> {
         let element = self.client.find(Locator::Css(css)).await.unwrap();
         let picture = element.screenshot().await.unwrap();
         let mut reader = png::Decoder::new(Cursor::new(picture)).read_info().unwrap();
         let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
         let info = reader.next_frame(&mut bytes).unwrap();
         let pixels = bytes.chunks(info.color_type.samples());
-        pixels.collect::<BTreeSet<_>>().len()
+        pixels
+            .filter_map(|pixel| pixel.first_chunk().copied())
+            .collect()
     }
 
     /// Clicks an element once it rests where a mouse or finger reaches it: a picture that loads
@@ -262,6 +273,42 @@ impl Page {
         element.click().await.unwrap();
     }
 
+    /// Touches a place of the window, in pixels, with a finger on a phone and else the mouse.
+    pub async fn tap(&self, x: f64, y: f64) {
+        let to = PointerAction::MoveTo {
+            duration: None,
+            x,
+            y,
+        };
+        let button = MOUSE_BUTTON_LEFT;
+        let (down, up) = (PointerAction::Down { button }, PointerAction::Up { button });
+        let tapped = match self.is_phone() {
+            true => {
+                let finger = TouchActions::new("finger".to_owned());
+                let finger = finger.then(to).then(down).then(up);
+                self.client.perform_actions(finger).await
+            }
+            false => {
+                let mouse = MouseActions::new("mouse".to_owned());
+                let mouse = mouse.then(to).then(down).then(up);
+                self.client.perform_actions(mouse).await
+            }
+        };
+        tapped.unwrap();
+    }
+
+    /// Whether the window is a phone's.
+    pub const fn is_phone(&self) -> bool {
+        self.screen.width < 600
+    }
+
+    /// Whether a pixel in the picture of an element has about this colour.
+    pub async fn has_colour(&self, css: &str, rgb: [u8; 3]) -> bool {
+        let pixels = self.pixels_of(css).await;
+        let near = |pixel: &[u8]| pixel.iter().zip(rgb).all(|(a, b)| a.abs_diff(b) <= 3);
+        pixels.iter().any(|pixel| near(pixel))
+    }
+
     /// Types into a field and replaces its text.
     pub async fn fill(&self, css: &str, text: &str) {
         let begin = Instant::now();
@@ -280,6 +327,16 @@ impl Page {
     pub async fn keys(&self, keys: &str) {
         let element = self.client.active_element().await.unwrap();
         element.send_keys(keys).await.unwrap();
+    }
+
+    /// Presses a key as a keyboard does, also where the driver would set a value instead.
+    pub async fn press(&self, key: char) {
+        let keyboard = KeyActions::new("keyboard".to_owned());
+        let value = key;
+        let pressed = keyboard
+            .then(KeyAction::Down { value })
+            .then(KeyAction::Up { value });
+        self.client.perform_actions(pressed).await.unwrap();
     }
 
     /// Sets a list to a value.

@@ -5,6 +5,8 @@
 //! pictures, as for docs/src/page.
 
 mod browser;
+mod refusals;
+mod view;
 
 use std::net::SocketAddr;
 use std::path::Path;
@@ -13,7 +15,6 @@ use daemon::{Daemon, Options};
 use engine::config::Config;
 use engine::config::daemon::DaemonConfig;
 use serde_json::Value;
-use tokio::task::spawn_blocking;
 
 use browser::{DESKTOP, Driver, NARROW, PHONE, Page};
 use velomotion_tests::bench::Bench;
@@ -100,40 +101,6 @@ const WATCH: &str = "
       if (document.querySelector('#view-title').textContent.startsWith('Live')) window.live.push(document.querySelector('#view-points').textContent);
     }).observe(document.querySelector('#view-points'), { childList: true, characterData: true, subtree: true });";
 
-/// Requests to the daemon get no answer until `window.answer` is called.
-const SILENT: &str = "
-    const answered = window.fetch;
-    window.stops = 0;
-    window.fetch = (url, init) => new Promise((_, fail) => {
-      window.stops += String(url).endsWith('tilt/stop') ? 1 : 0;
-      init.signal?.addEventListener('abort', () => fail(new Error('no answer')));
-    });
-    window.answer = () => { window.fetch = answered; };";
-
-#[test]
-#[ignore = "needs chromium and chromedriver"]
-fn an_unconfirmed_stop_is_repeated_under_an_alarm_of_full_width() {
-    let driver = Driver::start();
-    let folder = tempfile::tempdir().unwrap();
-    let daemon = simulator(folder.path());
-    let url = url(&daemon);
-    for screen in [DESKTOP, PHONE] {
-        driver.test(screen, async |page| {
-            ready(&page, &url).await;
-            page.run(SILENT).await;
-            page.click("#stop").await;
-            page.until_has("#not-stopped", "NOT STOPPED: cut the supply").await;
-            page.until_true("window.stops >= 3").await;
-            page.until_true("(({ x, y, width }) => x === 0 && y === 0 && width === innerWidth)(document.querySelector('#not-stopped').getBoundingClientRect())")
-                .await;
-            page.picture("not-stopped").await;
-            page.run("window.answer()").await;
-            page.until_true("document.querySelector('#not-stopped').hidden").await;
-        });
-    }
-    daemon.stop(|| true).unwrap();
-}
-
 /// Waits until an element is in the window, and nothing covers it.
 async fn until_in_sight(page: &Page, css: &str) {
     page.until_true(&format!(
@@ -152,131 +119,6 @@ const TOO_MANY: &str = "
     const refusal = JSON.stringify({ error: { message: 'too many downloads at once', help: 'try again when others have ended' } });
     window.fetch = async () => new Response(refusal, { status: 429, headers: { 'content-type': 'application/json' } });
     window.answer = () => { window.fetch = answered; };";
-
-#[test]
-#[ignore = "needs chromium and chromedriver"]
-fn refusals_are_visible_at_their_control() {
-    let driver = Driver::start();
-    let folder = tempfile::tempdir().unwrap();
-    let daemon = simulator(folder.path());
-    let url = url(&daemon);
-    for screen in [DESKTOP, PHONE] {
-        driver.test(screen, async |page| {
-            ready(&page, &url).await;
-            page.run(TOO_MANY).await;
-            page.click("#home").await;
-            page.until_has("#control-error", "Home: too many downloads at once")
-                .await;
-            until_in_sight(&page, "#control-error").await;
-            page.click("#start").await;
-            page.until_has("#control-error", "Start: too many downloads at once")
-                .await;
-            until_in_sight(&page, "#control-error").await;
-        });
-    }
-    daemon.stop(|| true).unwrap();
-}
-
-/// The request to capture is accepted, and an error is answered when the page shows the sweep.
-const ERROR_IN_MOTION: &str = "
-    const answered = window.fetch;
-    window.fetch = async (url, init) => {
-      const answer = await answered(url, init);
-      if (!String(url).endsWith('captures')) return answer;
-      await new Promise((seen) => {
-        const look = setInterval(() => {
-          if (!document.querySelector('#doing').textContent.startsWith('Sweeping')) return;
-          clearInterval(look);
-          seen();
-        }, 20);
-      });
-      return new Response(JSON.stringify({ error: { message: 'the drive reports an error' } }), { status: 500 });
-    };";
-
-/// Records whether the error is ever hidden again, and counts changes of the state's text.
-const WATCH_ERROR: &str = "
-    window.changes = 0;
-    window.hidden_again = document.querySelector('#control-error').hidden;
-    new MutationObserver(() => { window.hidden_again ||= document.querySelector('#control-error').hidden; })
-      .observe(document.querySelector('#control-error'), { attributes: true });
-    new MutationObserver(() => { window.changes += 1; })
-      .observe(document.querySelector('#doing'), { childList: true, characterData: true, subtree: true });";
-
-#[test]
-#[ignore = "needs chromium and chromedriver"]
-fn an_error_during_a_motion_stays_visible() {
-    let driver = Driver::start();
-    let folder = tempfile::tempdir().unwrap();
-    let daemon = simulator(folder.path());
-    let url = url(&daemon);
-    driver.test(PHONE, async |page| {
-        ready(&page, &url).await;
-        page.run(ERROR_IN_MOTION).await;
-        start(&page, "slow", "1", "-45").await;
-        page.until_has("#control-error", "Start: the drive reports an error")
-            .await;
-        page.run(WATCH_ERROR).await;
-        // More than a second of the remaining time, with a status.
-        page.until_true("window.changes > 30").await;
-        assert_eq!(page.run("return window.hidden_again").await, false);
-        until_in_sight(&page, "#control-error").await;
-        page.click("#stop").await;
-        page.until_has(".scan .badge[data-state]", "partial").await;
-    });
-    daemon.stop(|| true).unwrap();
-}
-
-#[test]
-#[ignore = "needs chromium and chromedriver"]
-fn a_refused_download_is_reported_at_its_scan() {
-    let driver = Driver::start();
-    let folder = tempfile::tempdir().unwrap();
-    let first = simulator(folder.path());
-    let first_url = url(&first);
-    driver.test(DESKTOP, async |page| {
-        ready(&page, &first_url).await;
-        start(&page, "short", "5", "-5").await;
-        page.until_has(".scan .badge[data-state]", "complete").await;
-    });
-    first.stop(|| true).unwrap();
-    // No disk has as much: clouds in other formats than PLY cannot be made.
-    let reserve_bytes = 1 << 60;
-    let full = reserving(
-        reserve_bytes,
-        Config::default(),
-        Some("sim"),
-        folder.path(),
-        0,
-    );
-    let url = url(&full);
-    for screen in [DESKTOP, PHONE] {
-        driver.test(screen, async |page| {
-            ready(&page, &url).await;
-            page.until_has(".scan", "short").await;
-            page.choose(".scan [data-role=download]", "las").await;
-            let no_room = page.until_has(".scan .wrong", "Download as las: ").await;
-            assert!(no_room.contains("disk"), "{no_room}");
-            until_in_sight(&page, ".scan .wrong").await;
-            page.picture("no-room").await;
-            for format in ["ply", "log"] {
-                page.run(TOO_MANY).await;
-                page.choose(".scan [data-role=download]", format).await;
-                page.until_has(
-                    ".scan .wrong",
-                    &format!("Download as {format}: too many downloads at once"),
-                )
-                .await;
-                until_in_sight(&page, ".scan .wrong").await;
-                page.run("window.answer()").await;
-            }
-            assert_eq!(page.run("return location.href").await, url);
-            // The next download clears it.
-            page.choose(".scan [data-role=download]", "ply").await;
-            page.until_gone(".scan .wrong").await;
-        });
-    }
-    full.stop(|| true).unwrap();
-}
 
 #[test]
 #[ignore = "needs chromium and chromedriver"]
@@ -395,115 +237,59 @@ fn a_sweep_is_displayed_and_stopped_by_key_and_by_touch() {
     daemon.stop(|| true).unwrap();
 }
 
+#[test]
+#[ignore = "needs chromium and chromedriver"]
+fn the_axis_is_moved_by_hand_within_its_limits_and_stopped() {
+    let driver = Driver::start();
+    let folder = tempfile::tempdir().unwrap();
+    let daemon = simulator(folder.path());
+    let url = url(&daemon);
+    for screen in [DESKTOP, PHONE.light(), NARROW] {
+        driver.test(screen, async |page| {
+            ready(&page, &url).await;
+            page.click("#home").await;
+            page.until_has("#doing", "Homing").await;
+            page.until_has("#doing", "Ready").await;
+            page.until_has("#drive-facts", "Angle known\nyes").await;
+            page.click("#by-hand summary").await;
+            page.fill("#goto-speed", "40").await;
+            page.fill("#goto", "-20").await;
+            page.keys(ENTER).await;
+            page.until_has("#angle", "20.0").await;
+            page.until_has("#doing", "Ready").await;
+            page.audit("the axis by hand").await;
+            page.click("#jog [data-jog='1']").await;
+            page.until_has("#angle", "19.0").await;
+            page.until_has("#doing", "Ready").await;
+            // Beyond the limit: the field says so, and nothing is sent.
+            page.fill("#goto", "10").await;
+            page.click("#go").await;
+            page.until_true("document.querySelector('#goto').validity.rangeOverflow")
+                .await;
+            assert_eq!(page.text("#doing").await, "Ready");
+            page.fill("#goto-speed", "1").await;
+            page.fill("#goto", "-45").await;
+            page.click("#go").await;
+            page.until_has("#doing", "Moving").await;
+            page.click("#stop").await;
+            page.until_has("#doing", "Ready").await;
+            let tilt = page.api("tilt").await;
+            assert_eq!(tilt["velocity_rpm"], 0, "{tilt}");
+            let angle = tilt["angle_deg"].as_f64().unwrap();
+            assert!((-40.0..-18.5).contains(&angle), "{tilt}");
+            assert_eq!(page.text("#axis-error").await, "", "a stop is no error");
+        });
+    }
+    daemon.stop(|| true).unwrap();
+}
+
+/// WebDriver's code of the key.
+const ENTER: &str = "\u{e007}";
+
 const TO_THE_TOP: &str = "scrollTo(0, 0); document.querySelector('.panels').scrollTo(0, 0); document.activeElement.blur();";
 
 /// WebDriver's code of the key.
 const ESCAPE: &str = "\u{e00c}";
-
-#[test]
-#[ignore = "needs chromium and chromedriver"]
-fn a_fault_is_shown_with_advice_and_cleared() {
-    let driver = Driver::start();
-    let folder = tempfile::tempdir().unwrap();
-    let bench = Bench::start();
-    // The drive's own following error, not the client's motion guard, stops the held axis.
-    let mut config = bench.config();
-    config.axis.guard.behind_deg = 30.0;
-    let daemon = daemon(config, None, folder.path(), 0);
-    let url = url(&daemon);
-    driver.test(DESKTOP, async |page| {
-        ready(&page, &url).await;
-        assert_eq!(page.text("#simulated").await, "");
-        start(&page, "held", "10", "-45").await;
-        page.until("#view-points", "a growing cloud", |text| {
-            points(text) > 60_000
-        })
-        .await;
-        bench.hold(true);
-        let fault = page
-            .until_has(".problem[data-device=drive]", "What to do")
-            .await;
-        assert!(
-            fault.contains("Following Error") && fault.contains("moves freely"),
-            "{fault}"
-        );
-        page.until_has(".scan .badge[data-state]", "partial").await;
-        page.until("#view-title", "held", |text| text == "held")
-            .await;
-        page.until_loaded().await;
-        page.run(TO_THE_TOP).await;
-        page.picture("fault").await;
-        page.audit("a fault").await;
-        assert_eq!(page.text("#chip-drive").await, "Drive fault");
-        let start_is_off = page
-            .run("return document.querySelector('#start').disabled")
-            .await;
-        assert_eq!(start_is_off, true);
-        clear_is_refused(&page).await;
-    });
-    driver.test(PHONE.light(), async |page| {
-        page.goto(&url).await;
-        page.until_has(".problem[data-device=drive]", "What to do")
-            .await;
-        page.until_has("#view-points", " points").await;
-        page.until_loaded().await;
-        page.run(TO_THE_TOP).await;
-        page.picture("fault").await;
-        page.audit("a fault").await;
-        clear_is_refused(&page).await;
-        bench.hold(false);
-        page.click("#clear").await;
-        page.until_gone(".problem").await;
-        page.until_has("#chip-drive", "Drive ready").await;
-        // Unplugs the cable.
-        drop(bench);
-        let gone = page
-            .until_has(".problem[data-device=drive]", "What to do")
-            .await;
-        assert!(gone.contains("Drive absent"), "{gone}");
-        page.until_has("#chip-lidar", "Lidar absent").await;
-    });
-    daemon.stop(|| true).unwrap();
-}
-
-/// A refused request to clear the fault is reported beside its button.
-async fn clear_is_refused(page: &Page) {
-    page.run(TOO_MANY).await;
-    page.click("#clear").await;
-    page.until_has("#clear-error", "Clear: too many downloads at once")
-        .await;
-    until_in_sight(page, "#clear-error").await;
-    page.run("window.answer()").await;
-}
-
-#[test]
-#[ignore = "needs chromium and chromedriver"]
-fn a_lost_connection_is_reported_and_restored() {
-    let driver = Driver::start();
-    let folder = tempfile::tempdir().unwrap();
-    let first = simulator(folder.path());
-    let (url, port) = (url(&first), first.address().port());
-    driver.test(PHONE, async |page| {
-        ready(&page, &url).await;
-        // The stop waits for the daemon's threads.
-        spawn_blocking(move || first.stop(|| true).unwrap())
-            .await
-            .unwrap();
-        page.until_has("#lost", "Connection to the daemon lost")
-            .await;
-        assert_eq!(page.text("#chip-link").await, "Offline");
-        page.picture("lost").await;
-        page.audit("no connection").await;
-        let place = folder.path().to_owned();
-        let second = spawn_blocking(move || daemon(Config::default(), Some("sim"), &place, port));
-        let second = second.await.unwrap();
-        page.until_gone("#lost").await;
-        page.until_has("#chip-drive", "Drive ready").await;
-        spawn_blocking(move || second.stop(|| true).unwrap())
-            .await
-            .unwrap();
-    });
-}
 
 #[test]
 #[ignore = "needs chromium and chromedriver"]

@@ -197,6 +197,17 @@ fn logs_have_a_field_of_view_and_clouds_have_none() {
         "{}",
         String::from_utf8_lossy(&made.stderr)
     );
+    // Compared with another scene, points would be metres off.
+    place.fails(
+        "accuracy swept.pcapng --scene hall",
+        2,
+        &["swept.pcapng has the scene swept.toml, not hall"],
+    );
+    place.fails(
+        "accuracy swept.pcapng --scene swept.toml --seed 3",
+        2,
+        &["the seed 0, not 3", "without --seed"],
+    );
     let made = place.run("replay swept.pcapng -o swept.ply");
     assert!(
         made.status.success(),

@@ -118,6 +118,13 @@ fn simulate_writes_a_log_that_replay_reads_and_locates_errors() {
         3,
         &["wrong.toml, line 7", "range_nois"],
     );
+    let wrong = format!("{scene}[materials]\na = {{ reflectivity = 300 }}\n");
+    std::fs::write(place.path("wrong.toml"), wrong).unwrap();
+    place.fails(
+        "simulate wrong.toml",
+        3,
+        &["wrong.toml, line 8", "`300`, expected a whole number from 0 to 255"],
+    );
     std::fs::write(place.path("stand.toml"), scene).unwrap();
     place.fails("simulate stand.toml --truth t.xyz", 2, &["t.xyz", ".ply"]);
     place.fails("simulate stand.toml --truth - --json", 2, &["stdout"]);

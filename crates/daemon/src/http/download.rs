@@ -213,7 +213,7 @@ fn downloading(api: &Api) -> Result<OwnedSemaphorePermit, Refusal> {
 }
 
 /// A file and what the system says of it.
-type OpenFile = (File, Metadata);
+pub(super) type OpenFile = (File, Metadata);
 
 /// Opens a regular file.
 ///
@@ -247,7 +247,7 @@ fn attachment(name: &str) -> String {
 
 /// Sends a file as it is now, a piece at a time: as fast as the client takes it. Of a stored file
 /// the client may ask, by the headers of its request, for a part.
-fn send(
+pub(super) fn send(
     (mut file, metadata): OpenFile,
     id: &str,
     extension: &str,

@@ -112,9 +112,7 @@ impl Sessions {
     /// # Errors
     /// Where the system provides no random bytes.
     pub fn begin(&self, headers: &HeaderMap, secure: bool) -> std::io::Result<String> {
-        let mut random = [0; SECRET_BYTES];
-        std::fs::File::open("/dev/urandom")?.read_exact(&mut random)?;
-        let secret: String = random.iter().map(|byte| format!("{byte:02x}")).collect();
+        let secret = secret()?;
         let mut secrets = self.secrets.lock().unwrap_or_else(PoisonError::into_inner);
         if secrets.len() >= SIGNED_IN {
             secrets.pop_front();
@@ -144,6 +142,16 @@ impl Sessions {
             found | equal(secret.as_bytes(), given.as_bytes())
         })
     }
+}
+
+/// A new secret, as hexadecimal digits.
+///
+/// # Errors
+/// Where the system provides no random bytes.
+pub fn secret() -> std::io::Result<String> {
+    let mut random = [0; SECRET_BYTES];
+    std::fs::File::open("/dev/urandom")?.read_exact(&mut random)?;
+    Ok(random.iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
 /// Refuses requests that are too long, or whose body takes too long.

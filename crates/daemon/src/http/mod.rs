@@ -15,6 +15,7 @@ pub mod scans;
 pub mod server;
 pub mod tilt;
 pub mod tls;
+pub mod view;
 
 use std::net::{SocketAddr, TcpListener};
 use std::sync::Arc;
@@ -116,7 +117,7 @@ fn daemon_router(api: &Arc<Api>, peer: Peer) -> Router {
         .route("/logout", post(page::logout))
         .merge(devices)
         .fallback(page::asset)
-        .method_not_allowed_fallback(no_method)
+        .method_not_allowed_fallback(method_refused)
         .layer(from_fn_with_state(api.waits, guard::limits))
         .layer(from_fn_with_state((Arc::clone(api), peer), guard::guard))
         .layer(from_fn_with_state(Arc::clone(api), count))
@@ -128,7 +129,7 @@ fn daemon_router(api: &Arc<Api>, peer: Peer) -> Router {
 pub(crate) fn command_router(service: &Arc<DeviceService>, waits: Waits) -> Router {
     router(stop_routes())
         .fallback(in_use)
-        .method_not_allowed_fallback(no_method)
+        .method_not_allowed_fallback(method_refused)
         .layer(from_fn_with_state(waits, guard::limits))
         .with_state(Arc::clone(service))
 }
@@ -170,7 +171,11 @@ async fn in_use() -> Refusal {
     .retry_after(refusal::RETRY_S)
 }
 
-async fn no_method() -> Refusal {
+async fn method_refused() -> Refusal {
+    no_method()
+}
+
+fn no_method() -> Refusal {
     Refusal::new(
         StatusCode::METHOD_NOT_ALLOWED,
         Kind::Usage,

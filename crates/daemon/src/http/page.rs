@@ -99,7 +99,21 @@ pub async fn page(request: Request) -> Response {
 
 /// Answers paths without a route.
 pub async fn asset(request: Request) -> Response {
-    let path = match request.uri().path() {
+    file(request.uri().path(), &request)
+}
+
+/// The page for files instead of scans.
+pub(super) fn page_of_files() -> Response {
+    static PAGE: LazyLock<String> = LazyLock::new(|| {
+        let page = include_str!("../../web/dist/index.html");
+        page.replace(r#"data-page="daemon""#, r#"data-page="files""#)
+    });
+    html(StatusCode::OK, HTML, PAGE.as_str())
+}
+
+/// A file of the page at this path.
+pub(super) fn file(path: &str, request: &Request) -> Response {
+    let path = match path {
         "/index.html" => "/",
         path => path,
     };
@@ -114,7 +128,7 @@ pub async fn asset(request: Request) -> Response {
         .into_response();
     };
     if !matches!(*request.method(), Method::GET | Method::HEAD) {
-        let mut response = super::no_method().await.into_response();
+        let mut response = super::no_method().into_response();
         let allow = HeaderValue::from_static("GET,HEAD");
         response.headers_mut().insert(header::ALLOW, allow);
         return response;

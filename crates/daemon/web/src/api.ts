@@ -232,9 +232,9 @@ export const api = {
   goto: (to_deg: number, speed_deg_s: number) => sendRequest<unknown>("POST", "tilt/goto", { to_deg, speed_deg_s }),
 };
 
-/** URL of a scan's cloud. */
-export function cloudUrl(id: string, format: string, uncertainty = false): string {
-  const more = uncertainty ? "&uncertainty=true" : "";
+/** URL of a scan's cloud, with the further columns. */
+export function cloudUrl(id: string, format: string, uncertainty = false, echo = false): string {
+  const more = `${uncertainty ? "&uncertainty=true" : ""}${echo ? "&echo=true" : ""}`;
   return `${ROOT}scans/${encodeURIComponent(id)}/cloud?format=${format}${more}`;
 }
 

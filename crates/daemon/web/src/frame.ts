@@ -6,18 +6,27 @@ const MOST_POINTS = 16_384;
 /** "VMP1", little-endian. */
 const MAGIC = 0x31504d56;
 
-/** Points as columns: 3 N positions, N of each other value. */
+/** Points as columns: 3 N positions, N of each other value, or none of a column that the cloud lacks. */
 export interface Columns {
   count: number;
   /** Metres. */
   positions: Float32Array;
   /** Seconds after the cloud's or frame's first point. */
   times: Float32Array;
-  /** Metres; empty if not computed. */
+  /** Expected errors, metres. */
   sds: Float32Array;
-  intensities: Uint8Array;
+  /** Tilt angles, degrees. */
+  tilts: Float32Array;
+  intensities: Uint8Array | Float32Array;
   rings: Uint8Array;
+  /** Numbers of the lasers in firing order. */
+  lasers: Uint8Array;
+  /** Which returns of their pulses, as docs/src/formats.md numbers them. */
+  echoes: Uint8Array;
 }
+
+/** The columns other than the positions. */
+export const COLUMNS = ["times", "sds", "tilts", "intensities", "rings", "lasers", "echoes"] as const;
 
 export interface Frame extends Columns {
   /** Unix seconds of the first point. */
@@ -46,7 +55,10 @@ export function parseFrame(bytes: ArrayBuffer): Frame | null {
     positions: new Float32Array(bytes, at(0), 3 * count),
     times: new Float32Array(bytes, at(12), count),
     sds: new Float32Array(bytes, at(16), count),
+    tilts: new Float32Array(count).fill(head.getFloat32(24, true)),
     intensities: new Uint8Array(bytes, at(20), count),
     rings: new Uint8Array(bytes, at(21), count),
+    lasers: new Uint8Array(0),
+    echoes: new Uint8Array(0),
   };
 }

@@ -15,7 +15,12 @@ interface Header {
   count: number;
   rowBytes: number;
   columns: Map<string, Get>;
+  /** Whether velomotion's simulator made the points. */
+  simulated: boolean;
 }
+
+/** Coordinates from here on lose millimetres as 32-bit numbers: 2^-24 of 16 km is 1 mm. */
+const FAR_M = 16_384;
 
 function getter(kind: string, offset: number): Get {
   switch (kind) {
@@ -32,7 +37,7 @@ function getter(kind: string, offset: number): Get {
 
 /** Parses the header; throws for other kinds of PLY. */
 export function parseHeader(text: string): Header {
-  const header: Header = { count: -1, rowBytes: 0, columns: new Map() };
+  const header: Header = { count: -1, rowBytes: 0, columns: new Map(), simulated: /^comment SIMULATED/m.test(text) };
   let element = "";
   for (const line of text.split("\n")) {
     const [word, first, second] = line.trim().split(/\s+/);
@@ -60,6 +65,7 @@ export class PlyReader {
   private rest: Uint8Array = new Uint8Array(0);
   private header: Header | null = null;
   private start_s: number | null = null;
+  private shift: [number, number, number] | null = null;
   private read = 0;
 
   /** Points in a batch. */
@@ -68,6 +74,15 @@ export class PlyReader {
   /** Number of points in the header; null before it is read. */
   get count(): number | null {
     return this.header?.count ?? null;
+  }
+
+  /** What was subtracted from the positions, metres: not zero for coordinates of a map. */
+  get origin(): [number, number, number] {
+    return this.shift ?? [0, 0, 0];
+  }
+
+  get simulated(): boolean {
+    return this.header?.simulated ?? false;
   }
 
   /** Points read so far. */
@@ -122,30 +137,35 @@ export class PlyReader {
   private rows(header: Header, count: number): Columns {
     const view = new DataView(this.rest.buffer, this.rest.byteOffset, count * header.rowBytes);
     const { rowBytes, columns } = header;
-    const zero: Get = () => 0;
-    const column = (name: string) => columns.get(name) ?? zero;
-    const [x, y, z] = [column("x"), column("y"), column("z")];
-    const [intensity, ring, time, sd] = [column("intensity"), column("ring"), column("time"), column("sd")];
-    this.start_s ??= time(view, 0);
-    const start_s = this.start_s;
-    const out: Columns = {
-      count,
-      positions: new Float32Array(3 * count),
-      times: new Float32Array(count),
-      sds: new Float32Array(columns.has("sd") ? count : 0),
-      intensities: new Uint8Array(count),
-      rings: new Uint8Array(count),
-    };
-    for (let i = 0; i < count; i += 1) {
-      const at = i * rowBytes;
-      out.positions[3 * i] = x(view, at);
-      out.positions[3 * i + 1] = y(view, at);
-      out.positions[3 * i + 2] = z(view, at);
-      out.times[i] = time(view, at) - start_s;
-      out.intensities[i] = intensity(view, at);
-      out.rings[i] = ring(view, at);
-      if (out.sds.length > 0) out.sds[i] = sd(view, at);
+    const axes = ["x", "y", "z"].map((name) => columns.get(name) as Get);
+    if (this.shift === null) {
+      const first = axes.map((axis) => axis(view, 0));
+      this.shift = first.some((m) => Math.abs(m) >= FAR_M) ? first.map((m) => 100 * Math.round(m / 100)) as [number, number, number] : [0, 0, 0];
     }
-    return out;
+    const positions = new Float32Array(3 * count);
+    axes.forEach((axis, a) => {
+      const shift = this.shift?.[a] ?? 0;
+      for (let i = 0; i < count; i += 1) positions[3 * i + a] = axis(view, i * rowBytes) - shift;
+    });
+    const filled = <T extends Float32Array | Uint8Array>(name: string, make: (n: number) => T, from = 0): T => {
+      const get = columns.get(name);
+      const out = make(get === undefined ? 0 : count);
+      if (get !== undefined) for (let i = 0; i < count; i += 1) out[i] = get(view, i * rowBytes) - from;
+      return out;
+    };
+    const floats = (n: number) => new Float32Array(n);
+    const bytes = (n: number) => new Uint8Array(n);
+    this.start_s ??= columns.get("time")?.(view, 0) ?? 0;
+    return {
+      count,
+      positions,
+      times: filled("time", floats, this.start_s),
+      sds: filled("sd", floats),
+      tilts: filled("tilt", floats),
+      intensities: filled("intensity", floats),
+      rings: filled("ring", bytes),
+      lasers: filled("laser", bytes),
+      echoes: filled("echo", bytes),
+    };
   }
 }

@@ -7,73 +7,102 @@ export interface Range {
   high: number;
 }
 
-/** The range of each field; `sd` is null if the cloud lacks it. */
-export interface Ranges {
+/** A value by which points are coloured. */
+export type Field = "height" | "range" | "intensity" | "ring" | "time" | "sd";
+
+/** The range of each field; null if the cloud lacks it. */
+export interface Ranges extends Record<Field, Range | null> {
   height: Range;
-  intensity: Range;
-  ring: Range;
-  time: Range;
-  sd: Range | null;
+  range: Range;
   /** Height of the ceiling's lower edge above the tilt axis, metres; null without a ceiling. */
   ceiling_m: number | null;
-  /** Radius around the scanner with 97 % of the points, metres. */
+  /** Centre of the view: the scanner, or the middle of a cloud that is not around its origin. */
+  centre: [number, number, number];
+  /** Radius around the centre with 97 % of the points, metres. */
   reach_m: number;
+  /** The latest time, seconds. */
+  end_s: number;
+  /** Times in order, seconds, and the tilt angles then, degrees. */
+  track: { times: number[]; tilts: number[] };
 }
 
 const MOST = 8_192;
 
+/** A row of the sample. */
+type Row = { x: number; y: number; z: number; range: number; intensity: number; sd: number; time: number; tilt: number };
+
 /** A sample of bounded size: every `stride`th point; the stride doubles when the sample is full. */
 export class Sample {
-  private heights: number[] = [];
-  private intensities: number[] = [];
-  private distances: number[] = [];
-  private sds: number[] = [];
-  private rings = 0;
-  private latest_s = 0;
+  private rows: Row[] = [];
+  private highest_ring = 0;
+  private end_s = 0;
   private stride = 1;
   private skip = 0;
+  private has = { intensity: false, ring: false, time: false, sd: false, tilt: false };
 
   add(points: Columns, time_offset_s = 0): void {
     const { positions: p, count } = points;
-    if (count > 0) this.latest_s = Math.max(this.latest_s, (points.times[count - 1] ?? 0) + time_offset_s);
+    this.has = {
+      intensity: points.intensities.length > 0, ring: points.rings.length > 0, time: points.times.length > 0, sd: points.sds.length > 0, tilt: points.tilts.length > 0,
+    };
+    if (count > 0) this.end_s = Math.max(this.end_s, (points.times[count - 1] ?? 0) + time_offset_s);
     let i = this.skip;
     for (; i < count; i += this.stride) {
       const [x, y, z] = [p[3 * i] ?? 0, p[3 * i + 1] ?? 0, p[3 * i + 2] ?? 0];
-      this.heights.push(z);
-      this.distances.push(Math.hypot(x, y, z));
-      this.intensities.push(points.intensities[i] ?? 0);
-      this.rings = Math.max(this.rings, points.rings[i] ?? 0);
-      if (points.sds.length > 0) this.sds.push(points.sds[i] ?? 0);
-      if (this.heights.length >= MOST) this.halve();
+      this.rows.push({
+        x, y, z, range: Math.hypot(x, y, z), intensity: points.intensities[i] ?? 0, sd: points.sds[i] ?? 0,
+        time: (points.times[i] ?? 0) + time_offset_s, tilt: points.tilts[i] ?? 0,
+      });
+      this.highest_ring = Math.max(this.highest_ring, points.rings[i] ?? 0);
+      if (this.rows.length >= MOST) this.halve();
     }
     this.skip = i - count;
   }
 
   ranges(): Ranges | null {
-    if (this.heights.length === 0) return null;
-    const reach = quantile(ascending(this.distances), 0.97);
+    if (this.rows.length === 0) return null;
+    const column = (name: keyof Row) => this.rows.map((row) => row[name]);
+    const [x, y, z] = [ascending(column("x")), ascending(column("y")), ascending(column("z"))];
+    const centre: [number, number, number] = around(x) && around(y) ? [0, 0, 0] : [quantile(x, 0.5), quantile(y, 0.5), quantile(z, 0.5)];
+    const away = this.rows.map((row) => Math.hypot(row.x - centre[0], row.y - centre[1], row.z - centre[2]));
+    const timed = this.has.time && this.end_s > 0;
+    const track = timed && this.has.tilt ? [...this.rows].sort((a, b) => a.time - b.time) : [];
     return {
-      height: between(this.heights, 0.01, 0.99),
-      intensity: between(this.intensities, 0.02, 0.98),
-      ring: { low: 0, high: Math.max(this.rings, 1) },
-      time: { low: 0, high: Math.max(this.latest_s, 1e-3) },
-      sd: this.sds.length > 0 ? between(this.sds, 0.01, 0.97) : null,
-      ceiling_m: ceiling(ascending(this.heights)),
-      reach_m: reach,
+      height: between(z, 0.01, 0.99),
+      range: between(ascending(column("range")), 0.01, 0.99),
+      intensity: this.has.intensity ? between(ascending(column("intensity")), 0.02, 0.98) : null,
+      ring: this.has.ring ? { low: 0, high: Math.max(this.highest_ring, 1) } : null,
+      time: timed ? { low: 0, high: Math.max(this.end_s, 1e-3) } : null,
+      sd: this.has.sd ? between(ascending(column("sd")), 0.01, 0.97) : null,
+      ceiling_m: ceiling(z),
+      centre,
+      reach_m: quantile(ascending(away), 0.97),
+      end_s: timed ? this.end_s : 0,
+      track: { times: track.map((row) => row.time), tilts: track.map((row) => row.tilt) },
     };
   }
 
   private halve(): void {
-    const half = (values: number[]) => values.filter((_, i) => i % 2 === 0);
-    this.heights = half(this.heights);
-    this.intensities = half(this.intensities);
-    this.distances = half(this.distances);
-    this.sds = half(this.sds);
+    this.rows = this.rows.filter((_, i) => i % 2 === 0);
     this.stride *= 2;
   }
 }
 
+/** The tilt angle at a time, from the nearest earlier sample; null without samples. */
+export function tiltAt({ times, tilts }: Ranges["track"], time_s: number): number | null {
+  let [low, high] = [0, times.length];
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if ((times[middle] ?? 0) <= time_s) low = middle + 1;
+    else high = middle;
+  }
+  return tilts[Math.max(0, low - 1)] ?? null;
+}
+
 const ascending = (values: number[]) => [...values].sort((a, b) => a - b);
+
+/** Whether the origin is between the outermost points. */
+const around = (sorted: number[]) => quantile(sorted, 0) <= 0 && quantile(sorted, 1) >= 0;
 
 /** Detects a ceiling: many points at nearly the greatest height. */
 function ceiling(sorted: number[]): number | null {
@@ -87,8 +116,7 @@ function quantile(sorted: number[], share: number): number {
   return sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))] ?? 0;
 }
 
-function between(values: number[], low: number, high: number): Range {
-  const sorted = ascending(values);
+function between(sorted: number[], low: number, high: number): Range {
   const range = { low: quantile(sorted, low), high: quantile(sorted, high) };
   return range.high > range.low ? range : { low: range.low, high: range.low + 1e-3 };
 }

@@ -1,52 +1,99 @@
 // The view: its cloud, colours, tools and legend. view/ draws it.
 
-import { type Scan, cloudUrl } from "./api.ts";
 import { attribute, id, show, text } from "./dom.ts";
 import { count, digits, fixed } from "./format.ts";
-import type { Frame } from "./frame.ts";
-import type { Range, Ranges } from "./sample.ts";
+import { COLUMNS, type Columns, type Frame } from "./frame.ts";
+import * as clip from "./panels/clip.ts";
+import { announce } from "./panels/messages.ts";
+import * as picked from "./panels/picks.ts";
+import { Player } from "./panels/player.ts";
+import * as picture from "./picture.ts";
+import { type Field, type Range, type Ranges, tiltAt } from "./sample.ts";
 import { Live, Loaded } from "./view/cloud.ts";
-import { type MapName, css, table } from "./view/maps.ts";
-import { RING_STEP_M, Stage } from "./view/stage.ts";
+import { type ViewState, fromHash, toHash } from "./view/link.ts";
+import { scaleBar } from "./view/measure.ts";
+import { type MapName, MARKS, css, table } from "./view/maps.ts";
+import { Overlay } from "./view/overlay.ts";
+import { type Picked, type Preset, RING_STEP_M, Stage } from "./view/stage.ts";
 import type { LoadRequest, LoadEvent } from "./worker.ts";
 
-type Field = "height" | "intensity" | "ring" | "time" | "sd";
-const FIELDS: Field[] = ["height", "intensity", "ring", "time", "sd"];
+const FIELDS: Field[] = ["height", "range", "intensity", "ring", "time", "sd"];
 const NOTES: Record<Field, string> = {
-  height: "above the tilt axis", intensity: "calibrated by the lidar", ring: "0 is the lowest", time: "since the first point", sd: "expected error, RMS",
+  height: "z", range: "from the origin", intensity: "as stored", ring: "0 is the lowest", time: "since the first point", sd: "expected error, RMS",
 };
 /** Phones have less memory on the graphics card. */
 const small = matchMedia("(max-width: 899px)");
 const dark = matchMedia("(prefers-color-scheme: dark)");
+const still = matchMedia("(prefers-reduced-motion: reduce)");
+const NO_COLUMNS = Object.fromEntries(COLUMNS.map((name) => [name, false])) as picked.Known;
+
+/** A cloud that can be shown. */
+export interface CloudSource {
+  id: string;
+  title: string;
+  simulated: boolean;
+  /** Address of its PLY. */
+  url: (uncertainty: boolean) => string;
+  /** Whether the column sd can be requested. */
+  certain: boolean;
+  /** Whether the origin is on velomotion's tilt axis. */
+  scanner: boolean;
+  /** Whether it plays once it is loaded. */
+  plays: boolean;
+}
 
 export class Viewer {
-  /** The scan in view, finished or running. */
+  /** Id of the scan in view, finished or running. */
   shown: string | null = null;
+  /** Called when the user leaves the full screen with the browser's own key. */
+  left_full_screen: () => void = () => {};
   private readonly stage: Stage;
+  private readonly overlay = new Overlay(document.querySelector("#overlay") as SVGSVGElement);
+  private readonly player: Player;
   private begun: string | null = null;
   private live: Live | null = null;
   private loaded: Loaded | null = null;
   private worker: Worker | null = null;
-  private opened: Scan | null = null;
+  private opened: CloudSource | null = null;
   private field: Field = "height";
   private map: MapName = "viridis";
   private ranges: Ranges | null = null;
+  private origin: [number, number, number] = [0, 0, 0];
+  private known = NO_COLUMNS;
+  private picks: Picked[] = [];
   private fitted = false;
   private legend_ms = 0;
+  /** The view of the page's address, until its scan is shown. */
+  private linked: ViewState | null;
 
   constructor(private readonly changed: (shown: string | null) => void) {
     const canvas = id<HTMLCanvasElement>("canvas");
+    const linked = fromHash(location.hash);
+    this.linked = Object.keys(linked).length > 0 ? linked : null;
     this.stage = new Stage(canvas);
     this.stage.share = (share) => this.loaded?.share(share);
+    this.stage.drawn = () => this.overlay.draw(this.stage, this.picks);
+    this.stage.orbit.tapped = (event) => {
+      const { left, top } = canvas.getBoundingClientRect();
+      this.pick(event.clientX - left, event.clientY - top, event.pointerType === "touch");
+    };
+    this.player = new Player((until_s) => this.until(until_s));
     canvas.addEventListener("webglcontextrestored", () => {
       if (this.opened !== null) this.open(this.opened);
     });
     canvas.addEventListener("keydown", (event) => {
       if (event.key === "0" || event.key === "Home") this.fit();
+      else if (event.key === "Enter") this.pick(canvas.clientWidth / 2, canvas.clientHeight / 2, true);
+      else if (event.key === "Delete" || event.key === "Backspace") this.unpick();
     });
     this.tools();
     dark.addEventListener("change", () => this.paint());
     this.paint();
+  }
+
+  /** Id of the scan that the page's address names. */
+  get linked_scan(): string | null {
+    return this.linked?.scan ?? null;
   }
 
   /** Shows the live points of a new scan. */
@@ -58,6 +105,7 @@ export class Viewer {
     this.shown = scan;
     this.live = new Live(this.stage.points, small.matches ? 1_500_000 : 6_000_000);
     this.stage.scene.add(this.live.group);
+    this.stage.setScanner(true);
     this.head(`Live: ${title}`, simulated);
     this.describe(0, "");
     this.changed(scan);
@@ -74,6 +122,7 @@ export class Viewer {
     this.stage.setTilt(frame.tilt_deg);
     const live = this.live;
     if (live === null) return;
+    this.learn(frame);
     live.add(frame, frame.start_s);
     this.describe(live.received, [thin > 1 ? `every ${thin}th point` : "", live.count < live.received ? `${count(live.count)} drawn` : "", frame.left_out > 0 ? `${count(frame.left_out)} records not shown live, but recorded` : ""].filter(Boolean).join("; "));
     const now_ms = performance.now();
@@ -88,19 +137,21 @@ export class Viewer {
     this.stage.setTilt(tilt_deg);
   }
 
-  /** Shows a scan from the list. Live points of the same scan stay in view until the cloud is loaded. */
-  open(scan: Scan): void {
-    const follows = this.live !== null && this.shown === scan.id;
-    const again = this.shown === scan.id;
+  /** Shows a finished cloud. Live points of the same scan stay in view until the cloud is loaded. */
+  open(source: CloudSource): void {
+    const follows = this.live !== null && this.shown === source.id;
+    const again = this.shown === source.id;
     if (follows) this.worker?.terminate();
     else this.clear();
-    this.shown = scan.id;
-    this.opened = scan;
+    this.shown = source.id;
+    this.opened = source;
     if (!again) this.fitted = false;
-    this.head(scan.name || scan.id, scan.simulated);
+    this.stage.setScanner(source.scanner);
+    this.stage.uniform("cutaway", source.scanner && id<HTMLInputElement>("cutaway").checked);
+    this.head(source.title, source.simulated);
     text(id("view-note"), follows ? "live points; the cloud is loading" : "");
-    this.download(scan, this.field === "sd", follows);
-    this.changed(scan.id);
+    this.download(source, this.field === "sd" && source.certain, follows);
+    this.changed(source.id);
   }
 
   /** Removes a deleted scan from the view. */
@@ -119,7 +170,7 @@ export class Viewer {
     this.stage.draw();
   }
 
-  private download(scan: Scan, uncertainty: boolean, follows: boolean): void {
+  private download(source: CloudSource, uncertainty: boolean, follows: boolean): void {
     const worker = new Worker("worker.js", { type: "module" });
     const cloud = new Loaded(this.stage.points);
     this.worker = worker;
@@ -130,6 +181,7 @@ export class Viewer {
     worker.onmessage = ({ data }: MessageEvent<LoadEvent>) => {
       if (worker !== this.worker) return;
       if (data.kind === "points") {
+        this.learn(data.columns);
         cloud.add(data.columns, data.ranges);
         attribute(progress, "value", String(data.read / Math.max(1, data.total)));
         if (this.loaded !== cloud) return;
@@ -141,13 +193,18 @@ export class Viewer {
         worker.terminate();
         if (data.kind === "failed") return this.failed(data.error);
         this.swap(cloud);
+        this.origin = data.origin;
+        if (data.simulated) show(id("view-simulated"), true);
         this.range(cloud.ranges);
         this.describe(data.total, data.every > 1 ? `every ${data.every}th drawn` : "");
+        this.player.setEnd(this.ranges?.end_s ?? 0);
+        this.follow_link();
         this.stage.draw();
+        if (source.plays && !still.matches && this.player.until_s === null) this.player.play();
       }
     };
     worker.onerror = () => this.failed("the cloud cannot be read");
-    const order: LoadRequest = { url: new URL(cloudUrl(scan.id, "ply", uncertainty), location.href).href, most: small.matches ? 3_000_000 : 12_000_000 };
+    const order: LoadRequest = { url: new URL(source.url(uncertainty), location.href).href, most: small.matches ? 3_000_000 : 12_000_000 };
     worker.postMessage(order);
   }
 
@@ -176,6 +233,10 @@ export class Viewer {
     this.loaded = null;
     this.opened = null;
     this.ranges = null;
+    this.origin = [0, 0, 0];
+    this.unpick();
+    this.player.reset();
+    this.player.setEnd(0);
     show(id("view-progress"), false);
     show(id("view-failed"), false);
     if (!this.stage.orbit.touched) this.fitted = false;
@@ -192,10 +253,16 @@ export class Viewer {
     text(id("view-note"), more);
   }
 
+  /** Remembers which columns the points have. */
+  private learn(columns: Columns): void {
+    this.known = Object.fromEntries(COLUMNS.map((name) => [name, columns[name].length > 0])) as picked.Known;
+  }
+
   private range(ranges: Ranges | null): void {
     if (ranges === null) return;
     const wider = this.ranges === null || ranges.reach_m > 1.3 * this.ranges.reach_m;
     this.ranges = { ...ranges, reach_m: Math.max(ranges.reach_m, this.ranges?.reach_m ?? 0) };
+    clip.setReach(this.ranges.reach_m);
     if (!this.fitted || (wider && !this.stage.orbit.touched)) {
       this.fitted = true;
       this.fit();
@@ -203,8 +270,44 @@ export class Viewer {
     this.colour();
   }
 
-  private fit(from: "usual" | "top" | "scanner" = "usual"): void {
-    this.stage.fit(this.ranges?.reach_m ?? 15, from);
+  private fit(from: Preset = "usual"): void {
+    this.stage.fit(this.ranges?.reach_m ?? 15, this.ranges?.centre ?? [0, 0, 0], from);
+  }
+
+  /** Shows the points up to a time, and the platform's tilt then. */
+  private until(until_s: number | null): void {
+    this.stage.uniform("until_s", until_s ?? 1e6);
+    if (until_s === null || this.ranges === null) return;
+    const tilt_deg = tiltAt(this.ranges.track, until_s);
+    if (tilt_deg !== null) this.stage.setTilt(tilt_deg);
+    this.stage.animate();
+  }
+
+  /** Picks the point at a place; a third one begins anew. */
+  private pick(x: number, y: number, touch: boolean): void {
+    const found = this.stage.pickAt(x, y, touch);
+    if (found === null) return announce("No point there");
+    this.picks = this.picks.length === 1 ? [...this.picks, found] : [found];
+    this.show_picks();
+    announce(id("picked").textContent ?? "");
+  }
+
+  private unpick(): void {
+    this.picks = [];
+    this.show_picks();
+  }
+
+  private show_picks(): void {
+    picked.draw(this.picks, this.known, this.origin, () => {
+      this.unpick();
+      id("canvas").focus();
+    });
+    this.stage.draw();
+  }
+
+  /** Limits of the colours that the user gave; null where automatic. */
+  private get limits(): [number | null, number | null] {
+    return [clip.limit(id<HTMLInputElement>("limit-low")), clip.limit(id<HTMLInputElement>("limit-high"))];
   }
 
   /** Updates range and legend of the selected field. */
@@ -213,23 +316,32 @@ export class Viewer {
     const legend = id("legend");
     show(legend, this.ranges !== null);
     if (this.ranges === null) return;
-    const of: Range = range ?? { low: 0, high: 1 };
-    this.stage.setField(FIELDS.indexOf(this.field), of);
+    const [low, high] = this.limits;
+    const scale = this.field === "sd" ? 1e-3 : 1;
+    const automatic: Range = range ?? { low: 0, high: 1 };
+    const of = { low: low === null ? automatic.low : scale * low, high: high === null ? automatic.high : scale * high };
+    this.stage.setField(FIELDS.indexOf(this.field), of.high > of.low ? of : { low: of.low, high: of.low + 1e-6 });
+    this.stage.setMarks([low === null ? null : MARKS[0], high === null ? null : MARKS[1]]);
     text(id("legend-note"), `${NOTES[this.field]} \u00b7 rings ${RING_STEP_M} m apart`);
     this.stage.uniform("ceiling_m", this.ranges.ceiling_m ?? 1e6);
     const words = (value: number) => {
       if (range === null) return "";
       switch (this.field) {
-        case "height": return `${fixed(value, 1)} m`;
-        case "intensity": return fixed(value, 0);
+        case "height": case "range": return `${fixed(value, 1)} m`;
+        case "intensity": return digits(value);
         case "ring": return Number.isInteger(value) ? fixed(value, 0) : "";
         case "time": return `${digits(value)} s`;
         case "sd": return `${digits(1e3 * value, 2)} mm`;
       }
     };
+    text(id("limits-unit"), { height: "m", range: "m", intensity: "", ring: "", time: "s", sd: "mm" }[this.field]);
     text(id("legend-low"), range === null ? "not in this cloud" : words(of.low));
     text(id("legend-middle"), words((of.low + of.high) / 2));
     text(id("legend-high"), words(of.high));
+    show(id("legend-below"), low !== null);
+    text(id("legend-below"), `below ${words(of.low)}`);
+    show(id("legend-above"), high !== null);
+    text(id("legend-above"), `above ${words(of.high)}`);
   }
 
   /** Applies the colours of the theme and of the selected map. */
@@ -248,14 +360,60 @@ export class Viewer {
     this.colour();
   }
 
+  private choose_field(field: Field): void {
+    this.field = field;
+    // Stored clouds mostly lack that column; the daemon adds it on request.
+    if (field === "sd" && this.ranges !== null && this.ranges.sd === null && this.opened?.certain === true) this.open(this.opened);
+    this.colour();
+  }
+
+  /** The view as it is now. */
+  private state(): ViewState {
+    const { azimuth, elevation, distance_m } = this.stage.orbit.pose;
+    const [x, y, z] = this.stage.orbit.target.toArray();
+    const until_s = this.player.until_s;
+    return {
+      ...(this.shown === null ? {} : { scan: this.shown }), camera: [azimuth, elevation, distance_m, x, y, z], parallel: this.stage.orbit.parallel, field: this.field,
+      map: this.map, limits: this.limits, ...clip.state(), ...(until_s === null ? {} : { until_s }),
+    };
+  }
+
+  /** Takes the view from the page's address, once its scan is shown. */
+  private follow_link(): void {
+    const state = this.linked;
+    if (state === null || (state.scan !== undefined && state.scan !== this.shown)) return;
+    this.linked = null;
+    const input = (name: string) => id<HTMLInputElement>(name);
+    if (state.parallel === true) {
+      input("parallel").checked = true;
+      this.stage.orbit.setParallel(true);
+    }
+    if (state.camera !== undefined) {
+      const [azimuth, elevation, distance_m, ...target] = state.camera;
+      this.stage.orbit.look(azimuth, elevation, distance_m, this.stage.orbit.target.clone().fromArray(target));
+      this.stage.orbit.touched = true;
+    }
+    if (state.map !== undefined) id<HTMLSelectElement>("map").value = this.map = state.map;
+    state.limits?.forEach((limit, i) => {
+      input(i === 0 ? "limit-low" : "limit-high").value = limit === null ? "" : String(limit);
+    });
+    clip.set(this.stage, state);
+    if (state.until_s !== undefined) this.player.set(state.until_s);
+    if (state.field !== undefined) {
+      id<HTMLSelectElement>("field").value = state.field;
+      this.choose_field(state.field);
+    }
+    this.paint();
+  }
+
   private tools(): void {
     const field = id<HTMLSelectElement>("field");
+    const limits = ["limit-low", "limit-high"].map((name) => id<HTMLInputElement>(name));
     field.addEventListener("change", () => {
-      this.field = field.value as Field;
-      // Stored clouds mostly lack that column; the daemon adds it on request.
-      if (this.field === "sd" && this.ranges !== null && this.ranges.sd === null && this.opened !== null) this.open(this.opened);
-      this.colour();
+      for (const limit of limits) limit.value = "";
+      this.choose_field(field.value as Field);
     });
+    for (const limit of limits) limit.addEventListener("input", () => this.colour());
     const map = id<HTMLSelectElement>("map");
     map.addEventListener("change", () => {
       this.map = map.value as MapName;
@@ -265,22 +423,67 @@ export class Viewer {
     const resize = () => this.stage.uniform("size", Number(size.value) * Math.min(devicePixelRatio, 2));
     size.addEventListener("input", resize);
     resize();
-    const below = id<HTMLInputElement>("below");
-    below.addEventListener("input", () => {
-      const { low, high } = this.ranges?.height ?? { low: -2, high: 10 };
-      const all = Number(below.value) === 100;
-      const limit = low + ((high - low) * Number(below.value)) / 100;
-      text(id("hidden-heights"), all ? "nothing" : `above ${fixed(limit, 1)} m`);
-      this.stage.uniform("below_m", all ? 1e6 : limit);
-    });
     const check = (name: string, set: (on: boolean) => void) => {
       const box = id<HTMLInputElement>(name);
       box.addEventListener("change", () => set(box.checked));
     };
     check("cutaway", (on) => this.stage.uniform("cutaway", on));
     check("shading", (on) => this.stage.setShading(on));
+    check("parallel", (on) => this.stage.orbit.setParallel(on));
     id("fit").addEventListener("click", () => this.fit());
-    id("top").addEventListener("click", () => this.fit("top"));
-    id("inside").addEventListener("click", () => this.fit("scanner"));
+    for (const preset of ["top", "front", "side", "scanner"] as const) id(preset).addEventListener("click", () => this.fit(preset));
+    clip.wire(this.stage);
+    id("picture").addEventListener("click", () => void this.save_picture());
+    id("link").addEventListener("click", () => void this.copy_link());
+    id("large").addEventListener("click", () => this.enlarge(!document.body.classList.contains("large")));
+    document.addEventListener("fullscreenchange", () => {
+      if (document.fullscreenElement !== null || !document.body.classList.contains("large")) return;
+      this.enlarge(false);
+      this.left_full_screen();
+    });
+  }
+
+  /** The view on the whole screen, or in the whole window where the browser has no full screen. */
+  private enlarge(on: boolean): void {
+    document.body.classList.toggle("large", on);
+    attribute(id("large"), "aria-pressed", String(on));
+    text(id("large"), on ? "Leave full screen" : "Full screen");
+    // A browser may refuse; the window is used then.
+    if (on) void document.documentElement.requestFullscreen?.().catch(() => {});
+    else if (document.fullscreenElement !== null) void document.exitFullscreen();
+  }
+
+  private async save_picture(): Promise<void> {
+    const words = (name: string) => id(name).textContent ?? "";
+    const simulated = id("view-simulated").hidden ? "" : "SIMULATED \u00b7 ";
+    const title = words("view-title");
+    const lines = [`${simulated}${title} \u00b7 ${words("view-points")} ${words("view-note")}`, `coloured by ${id<HTMLSelectElement>("field").selectedOptions[0]?.text ?? ""}`];
+    if (this.picks.length === 2) lines.push(`A to B: ${document.querySelector("#picked .distance")?.textContent ?? ""}`);
+    try {
+      const points = this.stage.picture();
+      await picture.save(points, title, {
+        lines, legend: { low: words("legend-low"), high: words("legend-high") }, scale: scaleBar(this.stage.metres_per_px, 96),
+        picks: this.picks.map((pick) => this.stage.project(pick.position)),
+      });
+      this.told("Picture saved");
+    } catch (error) {
+      this.told(String(error));
+    }
+  }
+
+  /** Puts the view into the page's address, and that on the clipboard. */
+  private async copy_link(): Promise<void> {
+    history.replaceState(null, "", toHash(this.state()));
+    try {
+      await navigator.clipboard.writeText(location.href);
+      this.told("Link copied");
+    } catch {
+      this.told("The address of this page is now the link");
+    }
+  }
+
+  private told(words: string): void {
+    text(id("tool-done"), words);
+    announce(words);
   }
 }

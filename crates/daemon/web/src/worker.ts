@@ -3,7 +3,7 @@
 // Each batch is shuffled, so that its first points are an even sample, which the moving view draws.
 
 import type { Problem } from "./api.ts";
-import type { Columns } from "./frame.ts";
+import { COLUMNS, type Columns } from "./frame.ts";
 import { PlyReader } from "./ply.ts";
 import { type Ranges, Sample } from "./sample.ts";
 
@@ -15,7 +15,7 @@ export interface LoadRequest {
 
 export type LoadEvent =
   | { kind: "points"; columns: Columns; ranges: Ranges; read: number; total: number; every: number }
-  | { kind: "done"; read: number; total: number; every: number }
+  | { kind: "done"; read: number; total: number; every: number; origin: [number, number, number]; simulated: boolean }
   | { kind: "failed"; error: string; status: number };
 
 const BATCH = 65_536;
@@ -51,7 +51,7 @@ async function load(order: LoadRequest): Promise<void> {
     sample.add(columns);
     const ranges = sample.ranges();
     if (ranges === null) return;
-    const transfer = [kept.positions, kept.times, kept.sds, kept.intensities, kept.rings].map((array) => array.buffer);
+    const transfer = [kept.positions, ...COLUMNS.map((name) => kept[name])].map((array) => array.buffer);
     here.postMessage({ kind: "points", columns: kept, ranges, read: ply.done + columns.count, total, every }, transfer);
   };
   for (;;) {
@@ -61,7 +61,7 @@ async function load(order: LoadRequest): Promise<void> {
   }
   for (const columns of ply.end()) deliver(columns);
   const total = ply.count ?? 0;
-  here.postMessage({ kind: "done", read: ply.done, total, every: Math.max(1, Math.ceil(total / order.most)) });
+  here.postMessage({ kind: "done", read: ply.done, total, every: Math.max(1, Math.ceil(total / order.most)), origin: ply.origin, simulated: ply.simulated });
 }
 
 /** `keep` of the points in a random order, with a fixed seed. */
@@ -78,21 +78,18 @@ function shuffled(columns: Columns, keep: number): Columns {
     order[j] = order[i] ?? 0;
     order[i] = other;
   }
-  const out: Columns = {
-    count: keep,
-    positions: new Float32Array(3 * keep),
-    times: new Float32Array(keep),
-    sds: new Float32Array(columns.sds.length > 0 ? keep : 0),
-    intensities: new Uint8Array(keep),
-    rings: new Uint8Array(keep),
+  const pick = <T extends Float32Array | Uint8Array>(from: T): T => {
+    const to = new (from.constructor as new (n: number) => T)(from.length > 0 ? keep : 0);
+    for (let i = 0; i < to.length; i += 1) to[i] = from[order[i] ?? 0] ?? 0;
+    return to;
   };
+  const positions = new Float32Array(3 * keep);
   for (let i = 0; i < keep; i += 1) {
-    const from = order[i] ?? 0;
-    out.positions.set(columns.positions.subarray(3 * from, 3 * from + 3), 3 * i);
-    out.times[i] = columns.times[from] ?? 0;
-    out.intensities[i] = columns.intensities[from] ?? 0;
-    out.rings[i] = columns.rings[from] ?? 0;
-    if (out.sds.length > 0) out.sds[i] = columns.sds[from] ?? 0;
+    const from = 3 * (order[i] ?? 0);
+    positions.set(columns.positions.subarray(from, from + 3), 3 * i);
   }
-  return out;
+  const { times, sds, tilts, intensities, rings, lasers, echoes } = columns;
+  return {
+    count: keep, positions, times: pick(times), sds: pick(sds), tilts: pick(tilts), intensities: pick(intensities), rings: pick(rings), lasers: pick(lasers), echoes: pick(echoes),
+  };
 }

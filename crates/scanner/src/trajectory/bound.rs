@@ -58,8 +58,10 @@ pub(super) fn of_corner(samples: &[AngleSample], profile: &Profile) -> f64 {
     profile.speed_deg_s.abs() * longest_s.max(median_s) / 4.0
 }
 
-/// The same where a ramp is so short that most such ramps have no sample in them: below a quarter
-/// of the interval. The servo's lag there is not determined. Zero for longer ramps.
+/// Half of it where a ramp is so short that most such ramps have no sample in them: below a quarter
+/// of the interval. The servo's lag there is not determined, but it turns the speed evenly rather
+/// than at once, and an even change within an interval leaves the corner by an eighth. Zero for
+/// longer ramps.
 pub(super) fn of_short_ramps(samples: &[AngleSample], profile: &Profile) -> f64 {
     let (Some(first), Some(last)) = (samples.first(), samples.last()) else {
         return 0.0;
@@ -67,7 +69,7 @@ pub(super) fn of_short_ramps(samples: &[AngleSample], profile: &Profile) -> f64 
     let intervals = samples.len().saturating_sub(1).max(1);
     let mean_s = noise::seconds(first, last) / intervals as f64;
     match profile.ramp_up_s.min(profile.ramp_down_s) < mean_s / 4.0 {
-        true => of_corner(samples, profile),
+        true => of_corner(samples, profile) / 2.0,
         false => 0.0,
     }
 }

@@ -58,9 +58,16 @@ impl SceneryError {
 
     pub(super) fn toml(text: &str, error: &toml::de::Error) -> Self {
         let offset = error.span().map_or(0, |span| span.start);
-        let what = error.message().trim().replace('\n', ", ");
-        Self::new(FilePosition::of(text, offset), what)
+        Self::new(FilePosition::of(text, offset), toml_message(error))
     }
+}
+
+/// The message of a TOML error in one line, with ranges in place of types.
+pub(crate) fn toml_message(error: &toml::de::Error) -> String {
+    let line = error.message().trim().replace('\n', ", ");
+    line.replace("expected u8", "expected a whole number from 0 to 255")
+        .replace("expected u32", "expected a whole number from 0 to 4294967295")
+        .replace("expected u64", "expected a whole number from 0")
 }
 
 /// An invalid value, before its position is known.

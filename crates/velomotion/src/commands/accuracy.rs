@@ -3,12 +3,11 @@
 mod truth;
 
 use std::fmt::Write;
-use std::path::PathBuf;
 
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use engine::accuracy::{AccuracyReport, AccuracyRequest, ResidualReport, accuracy};
 use engine::config::load_mount;
-use engine::document::Document;
+use engine::document::{Document, counted};
 use engine::failure::Failure;
 use engine::output::{check_free, make_folder, write_text};
 
@@ -35,9 +34,8 @@ pub fn run(arguments: &AccuracyStudyArguments, common: &Common) -> Result<Comman
             .try_for_each(|file| check_free(file, arguments.force))?;
     }
     let scene = arguments.scene.as_deref();
-    let first = arguments.logs.first().map(PathBuf::as_path);
     let places = scene
-        .map(|scene| TruePlaces::new(scene, arguments.seed, first))
+        .map(|scene| TruePlaces::new(scene, arguments.seed, &arguments.logs))
         .transpose()?;
     let place = places
         .as_ref()
@@ -239,11 +237,11 @@ fn summary(report: &AccuracyReport) -> String {
         "not calibrated"
     };
     format!(
-        "{}, {state}: {} shots on {} surface elements of {} logs",
+        "{}, {state}: {} shots on {} surface elements of {}",
         report.model,
         report.shots,
         report.patches,
-        report.logs.len()
+        counted(report.logs.len() as u64, "log")
     )
 }
 

@@ -82,7 +82,14 @@ pub fn run(arguments: &cli::Capture, common: &Common) -> Result<CommandOutput, F
         older_log.replaced();
     }
     let (scan, failure): (ScanReport, _) = run::conclude(made, outcome, (&plan.cloud, &plan.log))?;
-    Ok(CommandOutput::scan(&scan, failure, stdout))
+    let mut output = CommandOutput::scan(&scan, failure, stdout);
+    if !stdout {
+        let cloud = plan.cloud.display();
+        output
+            .text
+            .push_str(&format!("\nshow it: velomotion view {cloud}"));
+    }
+    Ok(output)
 }
 
 /// Records with the devices of this process, which are closed before the cloud is made.

@@ -13,7 +13,7 @@ use crate::documents::HelpText;
 use crate::terminal::{width_of, wrapped};
 
 /// Two examples of each command, and the page of the book about it.
-const EXAMPLES: [(&str, [&str; 2], &str); 15] = [
+const EXAMPLES: [(&str, [&str; 2], &str); 16] = [
     (
         "velomotion",
         ["capture --speed 56.25", "replay scan.pcapng -o scan.laz"],
@@ -68,6 +68,11 @@ const EXAMPLES: [(&str, [&str; 2], &str); 15] = [
         "scenes",
     ),
     (
+        "view",
+        ["view hall.ply", "view hall.pcapng before.laz --no-open"],
+        "view",
+    ),
+    (
         "info",
         ["info hall.pcapng", "info street.pcap --json"],
         "replay",
@@ -118,12 +123,13 @@ macro_rules! pages {
 }
 
 /// The pages of the book for users, in its order.
-const PAGES: [(&str, &str); 25] = pages!(
+const PAGES: [(&str, &str); 26] = pages!(
     "quick-start",
     "install",
     "plan",
     "capture",
     "replay",
+    "view",
     "calibration",
     "accuracy-study",
     "tilt",

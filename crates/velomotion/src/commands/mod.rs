@@ -16,6 +16,7 @@ pub mod replay;
 pub mod simulate;
 pub mod tilt;
 pub mod tradeoff;
+pub mod view;
 
 use std::path::{Path, PathBuf};
 

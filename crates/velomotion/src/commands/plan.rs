@@ -8,7 +8,7 @@ use comfy_table::{CellAlignment, Table};
 use engine::capture::scan_plan::{CommandRow, PlanReport, PlanRequest, ScanPlanner};
 use engine::config::{self, Config};
 use engine::devices::profile;
-use engine::document::Document;
+use engine::document::{Document, counted};
 use engine::failure::{Failure, Kind};
 use engine::output::{check_free, make_folder, write_text};
 
@@ -258,11 +258,11 @@ fn choice(chosen: &CommandRow, at_m: f64) -> Vec<String> {
     let first = match &chosen.command {
         Some(command) => format!("\n{command}\n  with the lidar at {} rpm", setting.rpm),
         None => format!(
-            "\n{} deg/s, {} deg/s2, {} rpm, {} sweeps",
+            "\n{} deg/s, {} deg/s2, {} rpm, {}",
             (setting.speed_deg_s * 1e6).round() / 1e6,
             setting.accel_deg_s2,
             setting.rpm,
-            setting.sweeps,
+            counted(setting.sweeps, "sweep"),
         ),
     };
     std::iter::once(first).chain(paragraphs).collect()

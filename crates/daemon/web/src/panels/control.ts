@@ -18,6 +18,8 @@ const WORDS: Record<string, string> = {
   idle: "Ready", connecting: "Connecting", homing: "Homing", moving: "Moving", capturing: "Sweeping", stopping: "Stopping",
 };
 
+/** Called when it changes whether the axis may be moved by hand. */
+let ready: (ready: boolean) => void = () => {};
 let status: Status | null = null;
 let connected = false;
 let asking = false;
@@ -27,7 +29,8 @@ let stopping: AbortController | null = null;
 let whole_s = 0;
 let stepped = 0;
 
-export function wire(start_capture: () => void): void {
+export function wire(start_capture: () => void, axis_ready: (ready: boolean) => void): void {
+  ready = axis_ready;
   stop.addEventListener("click", () => void halt());
   home.addEventListener("click", () => void command("Home", () => api.home()));
   id("not-stopped-end").addEventListener("click", () => stopping?.abort());
@@ -38,8 +41,13 @@ export function wire(start_capture: () => void): void {
   document.addEventListener("keydown", (event) => {
     if (event.key !== "Escape" || status === null || status.activity.doing === "idle") return;
     event.preventDefault();
-    void halt();
+    stop_motion();
   }, { capture: true });
+}
+
+/** Stops a motion, if there may be one. */
+export function stop_motion(): void {
+  if (status !== null && status.activity.doing !== "idle") void halt();
 }
 
 /** Sends a command and reports its error, at its control too. */
@@ -144,6 +152,7 @@ function draw(): void {
   const homes = obstacle_now === null || (connected && status !== null && status.drive.state !== "absent");
   start.disabled = asking || moving || obstacle_now !== null;
   home.disabled = asking || moving || !homes;
+  ready(connected && status?.drive.state === "connected" && !asking && !moving);
   text(why, moving ? "" : (obstacle_now ?? ""));
   show(why, why.textContent !== "");
   attribute(stop, "data-moving", String(moving));

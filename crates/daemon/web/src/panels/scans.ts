@@ -6,6 +6,8 @@ import { bytes, compact, moment } from "../format.ts";
 import { command, refused } from "./control.ts";
 import { announce } from "./messages.ts";
 
+/** Marks the choice of a format with the columns sd and echo. */
+const MORE = "+";
 /** Cloud formats: extension and displayed name. */
 const FORMATS: [string, string][] = [
   ["ply", "PLY"], ["laz", "LAZ"], ["las", "LAS"], ["pcd", "PCD"], ["e57", "E57"], ["csv", "CSV"], ["mcap", "MCAP (ROS 2)"],
@@ -130,7 +132,7 @@ function content(scan: Scan): Node[] {
       h("p", { class: "badges" }, h("span", { class: "badge", "data-state": scan.state }, scan.waits_for_room ? "no cloud yet" : (STATES[scan.state] ?? scan.state)), " ",
         scan.simulated ? h("span", { class: "badge", "data-state": "simulated" }, "SIMULATED") : null),
     ),
-    ...(scan.summary ? [h("p", { class: "why", title: scan.summary }, scan.summary)] : []),
+    ...(scan.summary ? [h("p", { class: "why", tabindex: 0 }, scan.summary)] : []),
     row,
   ];
 }
@@ -139,7 +141,8 @@ function content(scan: Scan): Node[] {
 function downloads(scan: Scan, title: string, has_cloud: boolean): HTMLElement {
   const choose = h("select", { "data-role": "download", "aria-label": `Download ${title} as` }, h("option", { value: "" }, "Download"),
     ...(has_cloud ? formats.map(([format, words]) => h("option", { value: format }, words)) : []),
-    h("option", { value: "log" }, "log (pcapng)"));
+    h("option", { value: "log" }, "log (pcapng)"),
+    has_cloud ? h("optgroup", { label: "With uncertainty and echo" }, ...formats.map(([format, words]) => h("option", { value: `${format}${MORE}` }, words))) : null);
   choose.addEventListener("change", () => {
     const format = choose.value;
     choose.value = "";
@@ -150,12 +153,14 @@ function downloads(scan: Scan, title: string, has_cloud: boolean): HTMLElement {
 }
 
 /** Downloads a file; a refusal is shown at its scan. */
-async function download(scan: Scan, title: string, format: string): Promise<void> {
+async function download(scan: Scan, title: string, choice: string): Promise<void> {
+  const more = choice.endsWith(MORE);
+  const format = choice.replace(MORE, "");
   const at = error_of(scan);
   show(at, false);
   announce(`Downloading ${title} as ${format}`);
   try {
-    const [url, exists] = format === "log" ? [logUrl(scan.id), true] : [cloudUrl(scan.id, format), format === "ply"];
+    const [url, exists] = format === "log" ? [logUrl(scan.id), true] : [cloudUrl(scan.id, format, more, more), format === "ply" && !more];
     const href = await fileUrl(url, exists);
     h("a", { href, download: `${scan.id}.${format === "log" ? "pcapng" : format}` }).click();
     // The browser has begun to read it by then.

@@ -2,21 +2,23 @@
 
 import { BufferAttribute, BufferGeometry, DynamicDrawUsage, Group, Points, type RawShaderMaterial, Sphere, Vector3 } from "three";
 
-import type { Columns } from "../frame.ts";
+import { COLUMNS, type Columns } from "../frame.ts";
 import { type Ranges, Sample } from "../sample.ts";
 
 /** Points per chunk of a growing cloud. */
 const CHUNK = 65_536;
 const FAR = new Sphere(new Vector3(), 1e4);
 
+/** The shader's name of a column. */
+const ATTRIBUTES: Record<(typeof COLUMNS)[number], string> = { times: "time", sds: "sd", tilts: "tilt", intensities: "intensity", rings: "ring", lasers: "laser", echoes: "echo" };
+
 function chunk(columns: Columns, material: RawShaderMaterial): Points {
   const geometry = new BufferGeometry();
-  const add = (name: string, array: Float32Array | Uint8Array, size: number) => geometry.setAttribute(name, new BufferAttribute(array, size));
-  add("position", columns.positions, 3);
-  add("time", columns.times, 1);
-  add("intensity", columns.intensities, 1);
-  add("ring", columns.rings, 1);
-  if (columns.sds.length > 0) add("sd", columns.sds, 1);
+  geometry.setAttribute("position", new BufferAttribute(columns.positions, 3));
+  for (const name of COLUMNS) {
+    // Without an attribute the shader reads zero.
+    if (columns[name].length > 0) geometry.setAttribute(ATTRIBUTES[name], new BufferAttribute(columns[name], 1));
+  }
   return new Points(geometry, material);
 }
 
@@ -115,10 +117,8 @@ export class Live {
     to.positions[3 * at] = from.positions[3 * i] ?? 0;
     to.positions[3 * at + 1] = from.positions[3 * i + 1] ?? 0;
     to.positions[3 * at + 2] = from.positions[3 * i + 2] ?? 0;
+    for (const name of COLUMNS) if (to[name].length > 0) to[name][at] = from[name][i] ?? 0;
     to.times[at] = (from.times[i] ?? 0) + offset_s;
-    to.sds[at] = from.sds[i] ?? 0;
-    to.intensities[at] = from.intensities[i] ?? 0;
-    to.rings[at] = from.rings[i] ?? 0;
     to.count += 1;
     this.kept += 1;
   }
@@ -129,8 +129,11 @@ export class Live {
       positions: new Float32Array(3 * CHUNK),
       times: new Float32Array(CHUNK),
       sds: new Float32Array(CHUNK),
+      tilts: new Float32Array(CHUNK),
       intensities: new Uint8Array(CHUNK),
       rings: new Uint8Array(CHUNK),
+      lasers: new Uint8Array(0),
+      echoes: new Uint8Array(0),
     };
     const points = chunk(columns, this.material);
     points.geometry.boundingSphere = FAR;

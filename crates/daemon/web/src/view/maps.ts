@@ -17,6 +17,9 @@ const SAMPLES: Record<Exclude<MapName, "grey">, string> = {
 
 type Rgb = [number, number, number];
 
+/** Colours of values below and above manual limits, sky blue and vermilion: no map has them, and any colour vision tells them apart (Okabe and Ito 2008). */
+export const MARKS: [Rgb, Rgb] = [[0.34, 0.71, 0.91], [0.84, 0.37, 0]];
+
 function samples(name: MapName): Rgb[] {
   if (name === "grey") return Array.from({ length: 64 }, (_, i) => [4 * i, 4 * i, 4 * i]);
   const hex = SAMPLES[name];

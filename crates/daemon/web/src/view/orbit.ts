@@ -2,6 +2,10 @@
 
 import { type PerspectiveCamera, Spherical, Vector3 } from "three";
 
+/** A touch that moves less picks a point. */
+const TAP_PX = 6;
+/** Behind the target everything is drawn up to here. */
+const REACH_M = 600;
 const LEAST_M = 0.3;
 const MOST_M = 1_000;
 const UP = new Vector3(0, 0, 1);
@@ -10,12 +14,17 @@ export class Orbit {
   readonly target = new Vector3();
   /** Whether the user has moved the camera since the last `look`. */
   touched = false;
+  /** Whether the projection is parallel (orthographic). */
+  parallel = false;
+  /** Called when a mouse, finger or pen touches a place without moving. */
+  tapped: (event: PointerEvent) => void = () => {};
   private distance_m = 30;
   /** Direction from the target to the camera, from x towards y, radians. */
   private azimuth = -2.2;
   /** Above the horizon, radians. */
   private elevation = 0.6;
   private readonly pointers = new Map<number, PointerEvent>();
+  private pressed: PointerEvent | null = null;
 
   constructor(
     private readonly camera: PerspectiveCamera,
@@ -25,7 +34,8 @@ export class Orbit {
     camera.up.copy(UP);
     canvas.addEventListener("pointerdown", (event) => this.down(event));
     canvas.addEventListener("pointermove", (event) => this.move(event));
-    for (const end of ["pointerup", "pointercancel"] as const) canvas.addEventListener(end, (event) => this.pointers.delete(event.pointerId));
+    canvas.addEventListener("pointerup", (event) => this.up(event));
+    canvas.addEventListener("pointercancel", (event) => this.pointers.delete(event.pointerId));
     canvas.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
     canvas.addEventListener("keydown", (event) => this.key(event));
@@ -42,6 +52,21 @@ export class Orbit {
     this.apply();
   }
 
+  /** The camera: radians, metres. */
+  get pose(): { azimuth: number; elevation: number; distance_m: number } {
+    return { azimuth: this.azimuth, elevation: this.elevation, distance_m: this.distance_m };
+  }
+
+  /** Height of the view at the target, metres. */
+  get span_m(): number {
+    return 2 * this.distance_m * Math.tan((this.camera.fov * Math.PI) / 360);
+  }
+
+  setParallel(on: boolean): void {
+    this.parallel = on;
+    this.apply();
+  }
+
   turn(azimuth: number, elevation: number): void {
     this.azimuth += azimuth;
     this.elevation = Math.min(Math.PI / 2 - 1e-3, Math.max(-Math.PI / 2 + 1e-3, this.elevation + elevation));
@@ -55,7 +80,7 @@ export class Orbit {
 
   /** Pans by shares of the view's height, right and up. */
   pan(right: number, up: number): void {
-    const span = 2 * this.distance_m * Math.tan((this.camera.fov * Math.PI) / 360);
+    const span = this.span_m;
     const matrix = this.camera.matrix.elements;
     this.target.addScaledVector(new Vector3(matrix[0], matrix[1], matrix[2]), right * span);
     this.target.addScaledVector(new Vector3(matrix[4], matrix[5], matrix[6]), up * span);
@@ -67,15 +92,20 @@ export class Orbit {
     this.apply();
   }
 
-  private apply(): void {
+  /** Updates the camera. */
+  apply(): void {
     const eye = new Vector3().setFromSpherical(new Spherical(this.distance_m, Math.PI / 2 - this.elevation, 0));
     // Spherical has y up; rotate so that z is up.
     const flat = eye.z;
     this.camera.position.set(flat * Math.cos(this.azimuth), flat * Math.sin(this.azimuth), eye.y).add(this.target);
-    this.camera.near = Math.max(0.02, this.distance_m / 200);
-    this.camera.far = this.distance_m + 600;
+    this.camera.far = this.distance_m + REACH_M;
+    this.camera.near = this.parallel ? -this.camera.far : Math.max(0.02, this.distance_m / 200);
     this.camera.lookAt(this.target);
-    this.camera.updateProjectionMatrix();
+    if (this.parallel) {
+      const [half, wide] = [this.span_m / 2, (this.camera.aspect * this.span_m) / 2];
+      this.camera.projectionMatrix.makeOrthographic(-wide, wide, half, -half, this.camera.near, this.camera.far);
+      this.camera.projectionMatrixInverse.copy(this.camera.projectionMatrix).invert();
+    } else this.camera.updateProjectionMatrix();
     this.camera.updateMatrix();
     this.changed();
   }
@@ -83,6 +113,15 @@ export class Orbit {
   private down(event: PointerEvent): void {
     this.canvas.setPointerCapture(event.pointerId);
     this.pointers.set(event.pointerId, event);
+    this.pressed = this.pointers.size === 1 && event.button === 0 ? event : null;
+  }
+
+  private up(event: PointerEvent): void {
+    this.pointers.delete(event.pointerId);
+    const { pressed } = this;
+    this.pressed = null;
+    if (pressed === null || pressed.pointerId !== event.pointerId) return;
+    if (Math.hypot(event.clientX - pressed.clientX, event.clientY - pressed.clientY) < TAP_PX) this.tapped(event);
   }
 
   private move(event: PointerEvent): void {

@@ -1,38 +1,88 @@
 // Shaders: place and colour the points, then shade edges by depth.
 
-/** `field`: 0 height, 1 intensity, 2 ring, 3 time, 4 uncertainty. */
-export const POINT_VERTEX = /* glsl */ `
+/** Which points are drawn, and how large. */
+const POINT_HEAD = /* glsl */ `
 precision highp float;
 uniform mat4 modelViewMatrix;
 uniform mat4 projectionMatrix;
 uniform vec3 eye;
 uniform float size;
 uniform float height_px;
-uniform int field;
-uniform vec2 range;
-uniform float below_m;
+uniform float parallel_m;
+uniform vec3 box_low;
+uniform vec3 box_high;
+uniform vec4 section;
+uniform float section_half_m;
+uniform float until_s;
 uniform bool cutaway;
 uniform float ceiling_m;
-uniform highp sampler2D colours;
 in vec3 position;
 in float intensity;
 in float ring;
 in float time;
 in float sd;
+
+void place() {
+  vec4 seen = modelViewMatrix * vec4(position, 1.0);
+  gl_Position = projectionMatrix * seen;
+  // Points grow towards the camera, so that near surfaces look closed; in a parallel view by its width.
+  float away = parallel_m > 0.0 ? parallel_m : -seen.z;
+  gl_PointSize = clamp(size * height_px * 0.012 / away, size, 4.0 * size);
+  // Every surface faces the scanner at the origin: a surface whose back faces the camera hides the interior.
+  bool hidden = cutaway && position.z > -0.5 && dot(normalize(-position), normalize(eye - position)) < -0.1;
+  hidden = hidden || (cutaway && position.z > ceiling_m && eye.z > ceiling_m);
+  hidden = hidden || any(lessThan(position, box_low)) || any(greaterThan(position, box_high));
+  hidden = hidden || abs(dot(section.xyz, position) - section.w) > section_half_m || time > until_s;
+  if (hidden) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+}`;
+
+/** `field`: 0 height, 1 range, 2 intensity, 3 ring, 4 time, 5 uncertainty. */
+export const POINT_VERTEX = `${POINT_HEAD}
+uniform int field;
+uniform vec2 limits;
+uniform vec4 below;
+uniform vec4 above;
+uniform highp sampler2D colours;
 flat out vec3 colour;
 
 void main() {
-  vec4 seen = modelViewMatrix * vec4(position, 1.0);
-  gl_Position = projectionMatrix * seen;
-  // Points grow towards the camera, so that near surfaces look closed.
-  gl_PointSize = clamp(size * height_px * 0.012 / -seen.z, size, 4.0 * size);
-  // Every surface faces the scanner at the origin: a surface whose back faces the camera hides the interior.
-  bool back = cutaway && position.z > -0.5 && dot(normalize(-position), normalize(eye - position)) < -0.1;
-  back = back || (cutaway && position.z > ceiling_m && eye.z > ceiling_m);
-  if (back || position.z > below_m) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
-  float value = field == 0 ? position.z : field == 1 ? intensity : field == 2 ? ring : field == 3 ? time : sd;
-  float share = clamp((value - range.x) / (range.y - range.x), 0.0, 1.0);
-  colour = texture(colours, vec2((share * 255.0 + 0.5) / 256.0, 0.5)).rgb;
+  place();
+  float value = field == 0 ? position.z : field == 1 ? length(position) : field == 2 ? intensity : field == 3 ? ring : field == 4 ? time : sd;
+  float share = (value - limits.x) / (limits.y - limits.x);
+  colour = texture(colours, vec2((clamp(share, 0.0, 1.0) * 255.0 + 0.5) / 256.0, 0.5)).rgb;
+  // The fourth number says whether there is such a colour.
+  if (share < 0.0) colour = mix(colour, below.rgb, below.a);
+  if (share > 1.0) colour = mix(colour, above.rgb, above.a);
+}`;
+
+/** Writes the values of points instead of colours: position and time; uncertainty, tilt and the whole numbers. */
+export const PICK_VERTEX = `${POINT_HEAD}
+in float tilt;
+in float laser;
+in float echo;
+flat out uvec4 place_time;
+flat out uvec4 others;
+
+void main() {
+  place();
+  place_time = floatBitsToUint(vec4(position, time));
+  // The highest bit marks a hit.
+  others = uvec4(floatBitsToUint(vec3(sd, tilt, intensity)), 0x80000000u | (uint(laser) << 16) | (uint(echo) << 8) | uint(ring));
+}`;
+
+export const PICK_FRAGMENT = /* glsl */ `
+precision highp float;
+precision highp int;
+flat in uvec4 place_time;
+flat in uvec4 others;
+layout(location = 0) out uvec4 first;
+layout(location = 1) out uvec4 second;
+
+void main() {
+  vec2 off = gl_PointCoord - 0.5;
+  if (dot(off, off) > 0.27) discard;
+  first = place_time;
+  second = others;
 }`;
 
 export const POINT_FRAGMENT = /* glsl */ `
@@ -82,12 +132,15 @@ uniform highp sampler2D depth;
 uniform vec2 pixel_size;
 uniform vec2 clip;
 uniform float strength;
+uniform float parallel_m;
 in vec2 at;
 out vec4 pixel;
 
 float distance_log2(vec2 where) {
   float d = texture(depth, where).r;
-  if (d >= 1.0) return -1.0;
+  if (d >= 1.0) return -1e9;
+  // In a parallel view depth is linear: relative to the distance, as the logarithm is at the target.
+  if (parallel_m > 0.0) return 1.44 * (clip.x + d * (clip.y - clip.x)) / parallel_m;
   return log2(clip.x * clip.y / (clip.y - d * (clip.y - clip.x)));
 }
 
@@ -98,9 +151,9 @@ void main() {
   for (int i = 0; i < 8; i++) {
     float turn = float(i) * 0.7853981634;
     float there = distance_log2(at + 1.4 * pixel_size * vec2(cos(turn), sin(turn)));
-    if (there < 0.0) continue;
+    if (there < -1e8) continue;
     // Only points are shaded, not the background next to them.
-    behind += here < 0.0 ? 0.0 : max(0.0, here - there);
+    behind += here < -1e8 ? 0.0 : max(0.0, here - there);
   }
   pixel = vec4(colour.rgb * exp(-strength * behind / 8.0), 1.0);
 }`;

@@ -2,7 +2,8 @@
 
 import {
   BufferAttribute, BufferGeometry, ClampToEdgeWrapping, ColorManagement, DataTexture, DepthTexture, GLSL3, Group, LinearSRGBColorSpace, LineSegments,
-  Mesh, NearestFilter, OrthographicCamera, PerspectiveCamera, RawShaderMaterial, RGBAFormat, Scene, Vector2, Vector3, WebGLRenderer, WebGLRenderTarget,
+  Matrix4, Mesh, NearestFilter, NoBlending, OrthographicCamera, PerspectiveCamera, RawShaderMaterial, RGBAFormat, RGBAIntegerFormat, Scene, UnsignedIntType,
+  Vector2, Vector3, Vector4, WebGLRenderer, WebGLRenderTarget,
 } from "three";
 
 import type { Range } from "../sample.ts";
@@ -18,12 +19,35 @@ type Rgb = [number, number, number];
 const SLOW_MS = 45;
 const QUICK_MS = 20;
 
+/** A direction to look from. */
+export type Preset = "usual" | "top" | "front" | "side" | "scanner";
+
+/** The values of a point. */
+export interface Picked {
+  position: [number, number, number];
+  time_s: number;
+  sd_m: number;
+  tilt_deg: number;
+  intensity: number;
+  ring: number;
+  laser: number;
+  echo: number;
+}
+
+/** Radius in which a pick takes the nearest point, pixels of the page: a finger is less precise. */
+const PICK_PX = { mouse: 6, touch: 16 };
+
 export class Stage {
   readonly orbit: Orbit;
   readonly points: RawShaderMaterial;
   readonly scene = new Scene();
   /** Called with the share of the points to draw. */
   share: (share: number) => void = () => {};
+  /** Called after each picture. */
+  drawn: () => void = () => {};
+  /** What is drawn besides the points. */
+  private readonly furniture = new Group();
+  private readonly pick: RawShaderMaterial;
   private readonly renderer: WebGLRenderer;
   private readonly camera = new PerspectiveCamera(50, 1, 0.1, 1_000);
   private readonly target = new WebGLRenderTarget(1, 1, { minFilter: NearestFilter, magFilter: NearestFilter });
@@ -51,9 +75,14 @@ export class Stage {
       vertexShader: shaders.POINT_VERTEX,
       fragmentShader: shaders.POINT_FRAGMENT,
       uniforms: {
-        eye: { value: new Vector3() }, size: { value: 2 }, height_px: { value: 1 }, field: { value: 0 },
-        range: { value: new Vector2(0, 1) }, below_m: { value: 1e6 }, cutaway: { value: true }, ceiling_m: { value: 1e6 }, colours: { value: this.colours },
+        eye: { value: new Vector3() }, size: { value: 2 }, height_px: { value: 1 }, field: { value: 0 }, parallel_m: { value: 0 },
+        limits: { value: new Vector2(0, 1) }, below: { value: new Vector4() }, above: { value: new Vector4() },
+        box_low: { value: new Vector3(-1e6, -1e6, -1e6) }, box_high: { value: new Vector3(1e6, 1e6, 1e6) }, section: { value: new Vector4() },
+        section_half_m: { value: 1e6 }, until_s: { value: 1e6 }, cutaway: { value: true }, ceiling_m: { value: 1e6 }, colours: { value: this.colours },
       },
+    });
+    this.pick = new RawShaderMaterial({
+      glslVersion: GLSL3, vertexShader: shaders.PICK_VERTEX, fragmentShader: shaders.PICK_FRAGMENT, uniforms: this.points.uniforms, blending: NoBlending,
     });
     this.target.depthTexture = new DepthTexture(1, 1);
     this.shade = new RawShaderMaterial({
@@ -63,27 +92,128 @@ export class Stage {
       depthTest: false,
       uniforms: {
         picture: { value: this.target.texture }, depth: { value: this.target.depthTexture }, pixel_size: { value: new Vector2() },
-        clip: { value: new Vector2() }, strength: { value: 9 },
+        clip: { value: new Vector2() }, strength: { value: 9 }, parallel_m: { value: 0 },
       },
     });
     const triangle = new BufferGeometry().setAttribute("position", new BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3));
     const cover = new Mesh(triangle, this.shade);
     cover.frustumCulled = false;
     this.screen.add(cover);
-    this.scene.add(rings(this.ink.grid), tripod(this.ink.scanner), this.head);
+    this.furniture.add(rings(this.ink.grid), tripod(this.ink.scanner), this.head);
+    this.scene.add(this.furniture);
     this.head.add(scanner(this.ink.beam));
     this.orbit = new Orbit(this.camera, canvas, () => this.moved());
     new ResizeObserver(() => this.resize()).observe(canvas);
     this.resize();
   }
 
-  /** Sets one of the standard views at a distance where `reach_m` fits. */
-  fit(reach_m: number, from: "usual" | "top" | "scanner" = "usual"): void {
+  /** Sets one of the standard views at a distance where `reach_m` around the centre fits. Front looks forward, side to the left. */
+  fit(reach_m: number, centre: [number, number, number], from: Preset = "usual"): void {
+    const target = new Vector3(...centre);
     const wide = 2.4 / this.camera.aspect;
-    const away = Math.max(1.5, wide) * reach_m;
-    if (from === "top") this.orbit.look(-Math.PI / 2, Math.PI / 2 - 1e-3, Math.max(2.2, wide) * reach_m);
+    const whole = Math.max(2.2, wide) * reach_m;
+    if (from === "top") this.orbit.look(-Math.PI / 2, Math.PI / 2 - 1e-3, whole, target);
+    else if (from === "front") this.orbit.look(-Math.PI / 2, 0, whole, target);
+    else if (from === "side") this.orbit.look(0, 0, whole, target);
     else if (from === "scanner") this.orbit.look(-Math.PI / 2, 0.15, Math.max(2, reach_m / 8));
-    else this.orbit.look(-2.05, 0.62, away);
+    else this.orbit.look(-2.05, 0.62, Math.max(1.5, wide) * reach_m, target);
+  }
+
+  /** Shows or hides the scanner and the rings at its foot: other clouds have other origins. */
+  setScanner(shown: boolean): void {
+    this.furniture.visible = shown;
+    this.draw();
+  }
+
+  /** The values of the point that is drawn nearest to a place of the canvas, in pixels of the page; null if none is near. */
+  pickAt(x: number, y: number, touch: boolean): Picked | null {
+    const size = this.renderer.getDrawingBufferSize(new Vector2());
+    const scale = size.y / Math.max(1, this.canvas.clientHeight);
+    const side = 2 * Math.round(PICK_PX[touch ? "touch" : "mouse"] * scale) + 1;
+    const integers = { count: 2, format: RGBAIntegerFormat, type: UnsignedIntType, internalFormat: "RGBA32UI", minFilter: NearestFilter, magFilter: NearestFilter } as const;
+    const target = new WebGLRenderTarget(side, side, integers);
+    // Enlarges the square around the place to the whole target.
+    const [right, up] = [(2 * x) / this.canvas.clientWidth - 1, 1 - (2 * y) / this.canvas.clientHeight];
+    const enlarge = new Matrix4().makeScale(size.x / side, size.y / side, 1).multiply(new Matrix4().makeTranslation(-right, -up, 0));
+    const projection = this.camera.projectionMatrix.clone();
+    const context = this.renderer.getContext() as WebGL2RenderingContext;
+    const shown = this.furniture.visible;
+    const read = new Uint32Array(8 * side * side);
+    try {
+      this.share(1);
+      this.prepare();
+      this.camera.projectionMatrix.premultiply(enlarge);
+      this.furniture.visible = false;
+      this.scene.overrideMaterial = this.pick;
+      this.renderer.setRenderTarget(target);
+      this.renderer.state.buffers.depth.setMask(true);
+      for (const buffer of [0, 1]) context.clearBufferuiv(context.COLOR, buffer, new Uint32Array(4));
+      context.clear(context.DEPTH_BUFFER_BIT);
+      this.renderer.render(this.scene, this.camera);
+      for (const buffer of [0, 1]) {
+        context.readBuffer(context.COLOR_ATTACHMENT0 + buffer);
+        context.readPixels(0, 0, side, side, context.RGBA_INTEGER, context.UNSIGNED_INT, read, 4 * side * side * buffer);
+      }
+    } finally {
+      this.scene.overrideMaterial = null;
+      this.furniture.visible = shown;
+      this.camera.projectionMatrix.copy(projection);
+      this.renderer.setRenderTarget(null);
+      target.dispose();
+    }
+    return nearest(read, side);
+  }
+
+  /** Place of a point on the canvas, in pixels of the page; null behind the camera. */
+  project(position: [number, number, number]): [number, number] | null {
+    const at = new Vector3(...position).project(this.camera);
+    if (Math.abs(at.z) > 1) return null;
+    return [((at.x + 1) / 2) * this.canvas.clientWidth, ((1 - at.y) / 2) * this.canvas.clientHeight];
+  }
+
+  /** Directions of x, y and z on the canvas: right and down, at most 1 long. */
+  axes(): [number, number][] {
+    const m = this.camera.matrix.elements;
+    return [0, 1, 2].map((axis) => [m[axis] ?? 0, -(m[4 + axis] ?? 0)]);
+  }
+
+  /** Direction in which the camera looks. */
+  get forward(): [number, number, number] {
+    const m = this.camera.matrix.elements;
+    return [-m[8], -m[9], -m[10]];
+  }
+
+  /** Metres per pixel of the page at the target. */
+  get metres_per_px(): number {
+    return this.orbit.span_m / Math.max(1, this.canvas.clientHeight);
+  }
+
+  /** The picture as it is now. */
+  picture(): HTMLCanvasElement {
+    this.render();
+    return this.canvas;
+  }
+
+  /** Points outside of these limits are hidden, metres. */
+  setBox(low: number[], high: number[]): void {
+    (this.points.uniforms["box_low"] as { value: Vector3 }).value.fromArray(low);
+    (this.points.uniforms["box_high"] as { value: Vector3 }).value.fromArray(high);
+    this.draw();
+  }
+
+  /** Points farther than half a thickness from a plane are hidden. */
+  setSection(normal: number[], offset_m: number, half_m: number): void {
+    (this.points.uniforms["section"] as { value: Vector4 }).value.fromArray([...normal, offset_m]);
+    this.uniform("section_half_m", half_m);
+  }
+
+  /** Colours of the values below and above the limits; null colours them like the limit. */
+  setMarks(marks: (Rgb | null)[]): void {
+    for (const [i, name] of ["below", "above"].entries()) {
+      const mark = marks[i] ?? null;
+      (this.points.uniforms[name] as { value: Vector4 }).value.set(...(mark ?? [0, 0, 0]), mark === null ? 0 : 1);
+    }
+    this.draw();
   }
 
   setBackground(background: Rgb, grid: Rgb, scanner: Rgb, beam: Rgb): void {
@@ -102,11 +232,11 @@ export class Stage {
 
   setField(field: number, range: Range): void {
     this.uniform("field", field);
-    (this.points.uniforms["range"] as { value: Vector2 }).value.set(range.low, range.high);
+    (this.points.uniforms["limits"] as { value: Vector2 }).value.set(range.low, range.high);
     this.draw();
   }
 
-  uniform(name: "size" | "below_m" | "ceiling_m" | "cutaway" | "field", value: number | boolean): void {
+  uniform(name: "size" | "section_half_m" | "until_s" | "ceiling_m" | "cutaway" | "field", value: number | boolean): void {
     (this.points.uniforms[name] as { value: unknown }).value = value;
     this.draw();
   }
@@ -122,6 +252,11 @@ export class Stage {
     if (Math.abs(this.head.rotation.y - turn) < 1e-4) return;
     this.head.rotation.y = turn;
     this.draw();
+  }
+
+  /** Schedules a picture of a changing view, with fewer points on a slow graphics card. */
+  animate(): void {
+    this.moved();
   }
 
   /** Schedules a picture. */
@@ -149,15 +284,14 @@ export class Stage {
     (this.shade.uniforms["pixel_size"] as { value: Vector2 }).value.set(1 / size.x, 1 / size.y).multiplyScalar(ratio);
     (this.points.uniforms["height_px"] as { value: number }).value = size.y;
     this.camera.aspect = width / height;
-    this.camera.updateProjectionMatrix();
-    this.draw();
+    this.orbit.apply();
   }
 
   private render(): void {
     this.frame = 0;
     this.adapt();
     this.share(this.moving ? this.part : 1);
-    (this.points.uniforms["eye"] as { value: Vector3 }).value.copy(this.camera.position);
+    this.prepare();
     (this.shade.uniforms["clip"] as { value: Vector2 }).value.set(this.camera.near, this.camera.far);
     const [r, g, b] = this.background;
     const context = this.renderer.getContext();
@@ -168,6 +302,16 @@ export class Stage {
     this.renderer.render(this.scene, this.camera);
     this.renderer.setRenderTarget(null);
     this.renderer.render(this.screen, this.flat);
+    this.drawn();
+  }
+
+  /** Passes the camera to the shaders. */
+  private prepare(): void {
+    const { parallel, pose } = this.orbit;
+    // The camera of a parallel view is far away: all its rays have one direction.
+    const eye = (this.points.uniforms["eye"] as { value: Vector3 }).value.copy(this.camera.position);
+    if (parallel) eye.addScaledVector(new Vector3(...this.forward), -1e4);
+    for (const material of [this.points, this.shade]) (material.uniforms["parallel_m"] as { value: number }).value = parallel ? pose.distance_m : 0;
   }
 
   /** Draws fewer points while pictures are slow, more while they are fast. */
@@ -179,6 +323,26 @@ export class Stage {
     if (took_ms > SLOW_MS) this.part = Math.max(0.02, this.part / 1.6);
     else if (took_ms < QUICK_MS) this.part = Math.min(1, this.part * 1.15);
   }
+}
+
+/** The hit that is nearest to the middle of a square of picked values. */
+function nearest(read: Uint32Array, side: number): Picked | null {
+  const floats = new Float32Array(read.buffer);
+  const second = 4 * side * side;
+  let found: { at: number; square: number } | null = null;
+  for (let at = 0; at < side * side; at += 1) {
+    if (((read[second + 4 * at + 3] ?? 0) & 0x80000000) === 0) continue;
+    const square = (((at % side) - (side - 1) / 2) ** 2) + ((Math.floor(at / side) - (side - 1) / 2) ** 2);
+    if (found === null || square < found.square) found = { at, square };
+  }
+  if (found === null) return null;
+  const first = 4 * found.at;
+  const float = (i: number) => floats[i] ?? 0;
+  const whole = read[second + first + 3] ?? 0;
+  return {
+    position: [float(first), float(first + 1), float(first + 2)], time_s: float(first + 3), sd_m: float(second + first), tilt_deg: float(second + first + 1),
+    intensity: float(second + first + 2), ring: whole & 255, laser: (whole >> 16) & 255, echo: (whole >> 8) & 255,
+  };
 }
 
 function line(): RawShaderMaterial {

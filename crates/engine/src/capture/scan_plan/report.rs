@@ -6,6 +6,7 @@ use utoipa::ToSchema;
 
 use super::{ScanPlanner, is_simulated, trim};
 use crate::devices::profile;
+use crate::document::counted;
 
 /// A row with its command.
 #[derive(Clone, Debug, Serialize, ToSchema)]
@@ -125,15 +126,16 @@ impl ScanPlanner {
             (
                 ("gap", row.gap_deg.p99, limits.gap_deg),
                 format!(
-                    "{tilt_deg:.2} deg of tilt per revolution, {} sweeps",
-                    setting.sweeps
+                    "{tilt_deg:.2} deg of tilt per revolution, {}",
+                    counted(setting.sweeps, "sweep")
                 ),
             ),
             (
                 ("time", row.scan_s, limits.time_s),
                 format!(
-                    "homing and {} sweeps of {:.1} deg/s",
-                    setting.sweeps, setting.speed_deg_s
+                    "homing and {} of {:.1} deg/s",
+                    counted(setting.sweeps, "sweep"),
+                    setting.speed_deg_s
                 ),
             ),
         ];
@@ -155,11 +157,11 @@ impl ScanPlanner {
         let (row, at_m) = (&nearest.row, self.request.at_m);
         let setting = &row.setting;
         let by = format!(
-            "{} deg/s, {} deg/s2, {} rpm, {} sweeps",
+            "{} deg/s, {} deg/s2, {} rpm, {}",
             trim(setting.speed_deg_s),
             trim(setting.accel_deg_s2),
             setting.rpm,
-            setting.sweeps
+            counted(setting.sweeps, "sweep")
         );
         let others = match nearest.with_others {
             true => " that keeps the other limits",

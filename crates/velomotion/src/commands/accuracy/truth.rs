@@ -1,12 +1,14 @@
 //! The truth of a simulated log: one scene and one seed give the same shots again.
 
 use std::collections::HashMap;
+use std::fmt::Display;
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use engine::failure::{Failure, Kind};
 use engine::reconstruct::source::Source;
+use scanner::config::SimulatedScene;
 use sim::TruePoint;
 use sim::simulate::{SimulationEvent, SimulationSink};
 
@@ -24,17 +26,16 @@ const HOUR_NS: i64 = 3_600_000_000_000;
 const STAMP_NS: i64 = 1_000;
 
 impl TruePlaces {
-    /// Simulates a scene again, with the effects that were on in a log of it.
+    /// Simulates a scene again, with seed and effects of the logs of it.
     ///
     /// # Errors
-    /// [`Kind::BadInput`] for an invalid scene.
-    pub fn new(scene: &Path, seed: Option<u64>, log: Option<&Path>) -> Result<Self, Failure> {
+    /// [`Kind::BadInput`] for an invalid scene; [`Kind::Usage`] for one that the logs are not of.
+    pub fn new(scene: &Path, seed: Option<u64>, logs: &[PathBuf]) -> Result<Self, Failure> {
         let (name, text) = find(scene)?;
-        let mut scene = read(&name, &text, seed, None)?;
-        let config = log
-            .map(|log| Source::open(log, None)?.config())
-            .transpose()?;
-        if let Some(simulated) = config.and_then(|config| config.simulation) {
+        let simulated = simulated(logs, scene, seed)?;
+        let seed_of_logs = (simulated.as_ref()).and_then(|simulated| simulated.seed.parse().ok());
+        let mut scene = read(&name, &text, seed.or(seed_of_logs), None)?;
+        if let Some(simulated) = simulated {
             let was_on = |effect: &str| simulated.effects.iter().any(|name| name == effect);
             let selected = scene.select(was_on, None);
             scene.effects = selected.map_err(|error| invalid_setting(&name, &error))?;
@@ -68,6 +69,41 @@ impl TruePlaces {
     const fn firing(&self, since_ns: i64, laser: u8) -> (i64, u8) {
         ((since_ns + STAMP_NS) / self.firing_ns, laser)
     }
+}
+
+/// What the logs say of their simulation; none if the first says nothing.
+///
+/// # Errors
+/// [`Kind::Usage`] where it is not this scene with this seed.
+fn simulated(
+    logs: &[PathBuf],
+    scene: &Path,
+    seed: Option<u64>,
+) -> Result<Option<SimulatedScene>, Failure> {
+    let mut first: Option<SimulatedScene> = None;
+    for (index, log) in logs.iter().enumerate() {
+        let found = Source::open(log, None)?.config()?.simulation;
+        if index > 0 && found != first {
+            let what = format!("{} is of another simulation than the first log", log.display());
+            return Err(Failure::new(Kind::Usage, what).help("compare one log at a time with a scene"));
+        }
+        let Some(found) = found else { continue };
+        let other = |what: &str, given: &dyn Display, expected: &str| {
+            let what = format!("{} has the {what} {expected}, not {given}", log.display());
+            Failure::new(Kind::Usage, what).help(format!(
+                "compare it with: --scene {}, and without --seed",
+                found.scene
+            ))
+        };
+        if Path::new(&found.scene).file_name() != scene.file_name() {
+            return Err(other("scene", &scene.display(), &found.scene));
+        }
+        if let Some(seed) = seed.filter(|seed| seed.to_string() != found.seed) {
+            return Err(other("seed", &seed, &found.seed));
+        }
+        first = Some(found);
+    }
+    Ok(first)
 }
 
 impl SimulationSink for TruePlaces {

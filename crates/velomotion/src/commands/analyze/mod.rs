@@ -4,7 +4,7 @@
 
 mod directions;
 mod folder;
-mod input;
+pub(super) mod input;
 pub(crate) mod report;
 pub(crate) mod sweep;
 mod text;

@@ -4,6 +4,7 @@ use std::fmt::{Display, Write};
 
 use analysis::density::{EmptyBand, HistogramClass, Statistics};
 use analysis::device::VisibleRange;
+use engine::document::counted;
 
 use super::report::{AnalyzeReport, BAND_DEG, DeviceReport, HoleReport, KReport, PatternReport};
 
@@ -66,14 +67,6 @@ pub(super) fn aligned<T: Display>(
     let cells = cells.into_iter().zip(widths);
     let cells = cells.map(|(cell, width)| format!("{cell:>width$}"));
     cells.collect::<Vec<_>>().join(" ")
-}
-
-/// A number of things.
-fn counted(number: u64, noun: &str) -> String {
-    match number {
-        1 => format!("1 {noun}"),
-        _ => format!("{number} {noun}s"),
-    }
 }
 
 /// Longest name of a row label.

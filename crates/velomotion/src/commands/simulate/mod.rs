@@ -29,7 +29,7 @@ use super::CommandOutput;
 use crate::cli::{self, Common};
 use crate::signals;
 use crate::terminal::Progress;
-use engine::document::Document;
+use engine::document::{Document, counted};
 use engine::failure::{Failure, Kind};
 use engine::output::{self, Target};
 use engine::reconstruct::report::PacketCounts;
@@ -127,6 +127,7 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, 
         .unwrap_or_else(|| PathBuf::from(stem(&name)).with_extension("pcapng"));
     output::refuse_overwrite(&arguments.scene, &log)?;
     output::log_is_file(&log, "-o", &["pcapng", "pcap"])?;
+    output::check_free(&log, arguments.force)?;
     if let Some(truth) = &arguments.truth {
         output::refuse_overwrite(&arguments.scene, truth)?;
         output::two_files(&log, truth)?;
@@ -159,7 +160,10 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, 
     let is_chosen_out = |effect: &str| {
         (choice.iter()).any(|choice| choice.off.iter().any(|out| out.effect == effect))
     };
-    let warnings = sizes::unmet(&sampler, sizes.as_deref(), &is_chosen_out)?;
+    let mut warnings = sizes::unmet(&sampler, sizes.as_deref(), &is_chosen_out)?;
+    let without_use = (arguments.without.iter())
+        .filter(|name| *name != cli::ALL && !scene.is_requested(name));
+    warnings.extend(without_use.map(|name| format!("--without {name}: the scene does not have it")));
     let request = Request {
         name,
         log: &log,
@@ -172,6 +176,10 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, 
     };
     let (mut report, failure) = make(scene, request)?;
     report.warnings.extend(warnings);
+    if report.returned == 0 && report.shots > 0 {
+        let nothing = "no shot returned: name a scene (scene = \"hall\") or add [[objects]] to the file";
+        report.warnings.push(nothing.to_owned());
+    }
     report.sizes = sizes;
     report.choice = choice;
     Ok(CommandOutput {
@@ -388,8 +396,10 @@ impl SimulationReport {
         rows.push((
             "took",
             format!(
-                "{:.2} s on {} threads, {:.0} times faster than real time",
-                self.took_s, self.threads, self.times_real_time
+                "{:.2} s on {}, {:.1} times real time",
+                self.took_s,
+                counted(self.threads as u64, "thread"),
+                self.times_real_time
             ),
         ));
         rows.extend((self.choice.iter()).map(|choice| ("tolerance", choice.text(self.took_s))));

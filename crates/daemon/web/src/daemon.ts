@@ -1,0 +1,191 @@
+// The page of a daemon: passes its events to the panels and the view.
+
+import { type Scan, type Status, RequestError, api, cloudUrl, sendRequest } from "./api.ts";
+import { id, show, text } from "./dom.ts";
+import { Events, type Listener } from "./events.ts";
+import { count } from "./format.ts";
+import { REFUSAL_MS, outage } from "./outage.ts";
+import * as axis from "./panels/axis.ts";
+import * as control from "./panels/control.ts";
+import * as devices from "./panels/devices.ts";
+import { alarm, announce, note } from "./panels/messages.ts";
+import * as scans from "./panels/scans.ts";
+import * as signin from "./panels/signin.ts";
+import * as sweep from "./panels/sweep.ts";
+import type { CloudSource, Viewer } from "./viewer.ts";
+
+/** Largest newest scan that is opened automatically. */
+const SMALL_POINTS = 3_000_000;
+
+let viewer: Viewer | null = null;
+let connected = false;
+
+/** The cloud of a scan. */
+function source(scan: Scan): CloudSource {
+  const { id, simulated } = scan;
+  return { id, title: scan.name || id, simulated, url: (uncertainty) => cloudUrl(id, "ply", uncertainty), certain: true, scanner: true, plays: false };
+}
+
+const listener: Listener = {
+  opened() {
+    connected = true;
+    devices.setLink("Connected", "good");
+    show(id("lost"), false);
+    control.setConnected(true);
+    void signin.offer();
+    void list();
+  },
+  lost(retry_s) {
+    if (connected) alarm("Connection to the daemon lost.");
+    connected = false;
+    control.setConnected(false);
+    devices.setLink("Offline", "bad");
+    if (id("lost").hidden) text(id("lost"), "Connection to the daemon lost: displayed values are old.");
+    show(id("lost"), true);
+    void probe((why) => {
+      if (connected) return;
+      const kept = why.includes("daemon") ? "What is recorded stays" : "A running scan continues";
+      text(id("lost"), `Connection to the daemon lost: displayed values are old. ${why} ${kept}. Reconnecting${retry_s >= 1 ? ` in ${retry_s} s` : ""}.`);
+    });
+  },
+  status(status: Status) {
+    axis.setStatus(status);
+    control.setStatus(status);
+    devices.setStatus(status);
+    sweep.setStatus(status);
+    const { scan } = status.activity;
+    if (typeof scan === "string" && status.activity.doing === "capturing") {
+      const known = scans.get(scan);
+      viewer?.begin(scan, known?.name || scan, status.simulated);
+    }
+    if (typeof status.drive.angle_deg === "number") viewer?.setTilt(status.drive.angle_deg);
+  },
+  motion(motion) {
+    axis.setAngle(motion.angle_deg);
+    control.setMotion(motion);
+    devices.setMotion(motion);
+    viewer?.setTilt(motion.angle_deg);
+  },
+  scan(scan, deleted) {
+    if (deleted) {
+      scans.remove(scan.id);
+      viewer?.forget(scan.id);
+      return;
+    }
+    const before = scans.get(scan.id)?.state;
+    scans.set(scan);
+    if (scan.state === "recording" && before !== "recording") viewer?.begin(scan.id, scan.name || scan.id, scan.simulated);
+    if (before !== scan.state) void finished(scan);
+  },
+  message(message) {
+    note(message.level, message.text, message.help);
+  },
+  points(frame) {
+    viewer?.frame(frame, events.every);
+  },
+};
+
+const events = new Events(listener);
+
+/** Reports the end of a scan, and opens its cloud if the scan is in view. */
+async function finished(scan: Scan): Promise<void> {
+  if (scan.state === "recording" || scan.state === "making") return;
+  const title = scan.name || scan.id;
+  if (scan.state === "whole") announce(`Scan ${title} is complete: ${count(scan.points ?? 0)} points`);
+  else note(scan.state === "failed" ? "error" : "warning", `Scan ${title} ${scan.state === "failed" ? "has no cloud" : "is partial"}.`, scan.summary);
+  if (viewer?.shown === scan.id) {
+    if (scan.state === "failed") viewer.ended(scan.id, title, scan.simulated);
+    else viewer.open(source(scan));
+  }
+  await last();
+}
+
+/** Shows clock and angle of the newest scan with a cloud. */
+async function last(): Promise<void> {
+  const newest = scans.all().find((scan) => scan.state === "whole" || scan.state === "partial");
+  if (newest === undefined) return devices.setLast(null);
+  try {
+    const scan = await api.scan(newest.id);
+    scans.set(scan);
+    devices.setLast(scan);
+  } catch {
+    devices.setLast(newest);
+  }
+}
+
+async function list(): Promise<void> {
+  try {
+    await scans.load(api.scans);
+    const newest = scans.all().find((scan) => scan.state === "whole" || scan.state === "partial");
+    const linked = viewer?.linked_scan == null ? undefined : scans.get(viewer.linked_scan);
+    if (viewer !== null && viewer.shown === null) {
+      if (linked !== undefined) viewer.open(source(linked));
+      else if (newest !== undefined && (newest.points ?? 0) <= SMALL_POINTS) viewer.open(source(newest));
+    }
+    await last();
+  } catch (error) {
+    control.refused("List of scans", error, id("scans-error"));
+  }
+}
+
+/** Checks whether the daemon requires a token, which a refused WebSocket does not say, and passes on why it does not answer. */
+async function probe(silent: (why: string) => void = () => {}): Promise<void> {
+  const begin_ms = performance.now();
+  const why = (failed_ms: number | null) => silent(outage(navigator.onLine, location.hostname, failed_ms));
+  const late = setTimeout(() => why(null), REFUSAL_MS);
+  try {
+    listener.status(await api.status());
+  } catch (error) {
+    if (error instanceof RequestError && error.status === 401) {
+      events.close();
+      show(id("lost"), false);
+      devices.setLink("Sign in", "warn");
+      signin.open();
+    } else if (error instanceof RequestError && error.status === 0) why(performance.now() - begin_ms);
+  } finally {
+    clearTimeout(late);
+  }
+}
+
+/** Reads the daemon's cloud formats from its API description. */
+async function formats(): Promise<void> {
+  try {
+    const description = await sendRequest<{ paths?: Record<string, { get?: { parameters?: { name: string; schema?: { enum?: string[] } }[] } }> }>("GET", "openapi.json");
+    const path = Object.entries(description.paths ?? {}).find(([name]) => name.endsWith("/cloud"))?.[1];
+    const known = path?.get?.parameters?.find((parameter) => parameter.name === "format")?.schema?.enum;
+    if (known !== undefined && known.length > 0) scans.setFormats(known);
+  } catch {
+    // The default list remains.
+  }
+}
+
+/** Starts the page; without a view everything else works. */
+export function start(view: Viewer | null): void {
+  viewer = view;
+  // The browser takes the Escape key that ends the full screen: it stops the axis too.
+  if (viewer !== null) viewer.left_full_screen = control.stop_motion;
+  control.wire(() => {
+    const capture = sweep.capture_request();
+    if (capture !== null) void control.command("Start", () => api.capture(capture));
+  }, axis.setReady);
+  axis.wire();
+  sweep.wire();
+  scans.wire((scan) => {
+    viewer?.open(source(scan));
+    id("canvas").scrollIntoView({ block: "nearest" });
+  });
+  signin.wire(() => {
+    events.open();
+    void formats();
+  });
+  // A phone that wakes up reconnects at once.
+  document.addEventListener("visibilitychange", () => {
+    if (!document.hidden && !connected) events.open();
+  });
+  addEventListener("online", () => {
+    if (!connected) events.open();
+  });
+  void formats();
+  events.open();
+  void probe();
+}

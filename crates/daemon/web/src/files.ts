@@ -1,0 +1,106 @@
+// The page of `velomotion view`: its files, and the progress of their clouds.
+
+import { h, id, show, text } from "./dom.ts";
+import { compact } from "./format.ts";
+import { alarm, announce } from "./panels/messages.ts";
+import type { Viewer } from "./viewer.ts";
+
+/** A file, as the program describes it. */
+interface ViewFile {
+  name: string;
+  /** `making`: the cloud of a log, or another format is read. */
+  state: "making" | "ready" | "failed";
+  /** Part of the work that is done, if known. */
+  share?: number | null;
+  points?: number | null;
+  simulated: boolean;
+  /** Whether the origin is on the tilt axis. */
+  scanner: boolean;
+  /** Whether it is a log or recording, which plays. */
+  log: boolean;
+  error?: string | null;
+  help?: string | null;
+}
+
+const list = id<HTMLUListElement>("scans");
+let files: ViewFile[] = [];
+let current: string | null = null;
+let viewer: Viewer | null = null;
+
+export function start(view: Viewer | null): void {
+  viewer = view;
+  text(id("scans-title"), "Files");
+  show(id("no-scans"), false);
+  const events = new EventSource("events");
+  events.onmessage = ({ data }: MessageEvent<string>) => {
+    show(id("lost"), false);
+    update(JSON.parse(data) as ViewFile[]);
+  };
+  events.onerror = () => {
+    text(id("lost"), "velomotion view has ended: what is in view stays, other files cannot be opened.");
+    show(id("lost"), true);
+  };
+}
+
+export function setCurrent(shown: string | null): void {
+  current = shown;
+  for (const entry of list.children) {
+    if ((entry as HTMLElement).dataset["id"] === shown) entry.setAttribute("aria-current", "true");
+    else entry.removeAttribute("aria-current");
+  }
+}
+
+/** Files are named by their places, since names may repeat. */
+const key = (place: number) => String(place);
+
+function update(now: ViewFile[]): void {
+  const before = files;
+  files = now;
+  list.replaceChildren(...files.map(card));
+  setCurrent(current);
+  const only = files.length === 1 ? files[0] : undefined;
+  document.body.dataset["files"] = String(files.length);
+  document.title = `${only?.name ?? `${files.length} files`} \u2013 velomotion`;
+  files.forEach((file, place) => {
+    if (file.state === before[place]?.state) return;
+    if (file.state === "ready") announce(`${file.name}: the cloud is made`);
+    if (file.state === "failed") alarm(`${file.name}: ${file.error ?? "failed"}`);
+  });
+  const wanted = viewer?.linked_scan ?? null;
+  const first = files.findIndex((file, place) => file.state === "ready" && (wanted === null || wanted === key(place)));
+  if (current === null && first >= 0) open(first);
+  if (current === null) waiting(only ?? files.find((file) => file.state === "making"));
+}
+
+/** What is done before the first cloud can be shown. */
+function waiting(file: ViewFile | undefined): void {
+  if (file === undefined) return;
+  const failed = file.state === "failed";
+  text(id("view-title"), file.name);
+  show(id("view-empty"), !failed);
+  show(id("view-failed"), failed);
+  const progress = id<HTMLProgressElement>("view-progress");
+  show(progress, !failed);
+  if (failed) return text(id("view-failed"), [file.error, file.help].filter(Boolean).join("\n"));
+  if (typeof file.share === "number") progress.value = file.share;
+  else progress.removeAttribute("value");
+  const words = !file.log ? "Reading the cloud" : typeof file.share === "number" ? `Making the cloud: ${Math.round(100 * file.share)} %` : "Finding clock and angles";
+  id("view-empty").replaceChildren(h("p", {}, words));
+}
+
+function open(place: number): void {
+  const file = files[place];
+  if (file === undefined || viewer === null) return;
+  const { name, simulated, scanner, log } = file;
+  viewer.open({ id: key(place), title: name, simulated, url: () => `clouds/${place}.ply`, certain: false, scanner, plays: log });
+}
+
+function card(file: ViewFile, place: number): HTMLElement {
+  const state = file.state === "ready" ? (typeof file.points === "number" ? `${compact(file.points)} points` : "") : file.state === "failed" ? "" : typeof file.share === "number" ? `${Math.round(100 * file.share)} %` : "waiting";
+  return h("li", { class: "scan file", "data-id": key(place) },
+    h("div", {},
+      h("h3", { title: file.name }, file.name),
+      h("p", {}, state, " ", file.simulated ? h("span", { class: "badge", "data-state": "simulated" }, "SIMULATED") : null)),
+    file.state === "failed" ? h("p", { class: "wrong" }, [file.error, file.help].filter(Boolean).join("\n")) : null,
+    file.state === "ready" ? h("button", { type: "button", "aria-label": `Open ${file.name} in the view`, click: () => open(place) }, "Open") : null);
+}

@@ -1,0 +1,55 @@
+// The values of picked points, and the distance of two.
+
+import { h, id, show } from "../dom.ts";
+import { count, digits, fixed } from "../format.ts";
+import type { Columns } from "../frame.ts";
+import { distance } from "../view/measure.ts";
+import type { Picked } from "../view/stage.ts";
+
+/** The columns that a cloud has. */
+export type Known = { [key in keyof Omit<Columns, "count" | "positions">]: boolean };
+
+const box = id("picked");
+const ECHOES: Record<number, string> = { 1: "strongest", 2: "last", 3: "strongest and last", 4: "second return" };
+
+export const mm = (m: number) => `${digits(1_000 * m, 2)} mm`;
+
+/** Shows up to two points; `origin` was subtracted from their positions. */
+export function draw(picks: Picked[], known: Known, origin: [number, number, number], clear: () => void): void {
+  show(box, picks.length > 0);
+  if (picks.length === 0) return;
+  const [a, b] = picks;
+  const parts: Node[] = [];
+  if (a !== undefined && b !== undefined) {
+    const found = distance(a, b);
+    const along = found.along_m.map((m) => fixed(m, 3)).join(", ");
+    parts.push(
+      h("p", { class: "distance" }, h("b", {}, `${found.m.toFixed(3)} m`), found.sd_m === null ? "" : ` \u00b1 ${mm(found.sd_m)}`),
+      h("p", { class: "hint" }, `x, y, z: ${along} m \u00b7 ${found.sd_m === null ? "uncertainty: colour by it first" : "standard error, at most: sd of both points, independent"}`),
+    );
+  }
+  parts.push(table(picks, known, origin));
+  if (b === undefined) parts.push(h("p", { class: "hint" }, "Pick another point for the distance."));
+  parts.push(h("button", { type: "button", id: "unpick", click: clear }, "Clear"));
+  box.replaceChildren(...parts);
+}
+
+function table(picks: Picked[], known: Known, origin: [number, number, number]): HTMLElement {
+  const axis = (i: 0 | 1 | 2) => (pick: Picked) => `${fixed(pick.position[i] + origin[i], 3)} m`;
+  const rows: [string, boolean, (pick: Picked) => string][] = [
+    ["x", true, axis(0)],
+    ["y", true, axis(1)],
+    ["z", true, axis(2)],
+    ["Range", true, ({ position }) => `${Math.hypot(...position).toFixed(3)} m`],
+    ["sd", known.sds, ({ sd_m }) => (sd_m > 0 ? mm(sd_m) : "not known")],
+    ["Time", known.times, ({ time_s }) => `${time_s.toFixed(4)} s`],
+    ["Tilt", known.tilts, ({ tilt_deg }) => `${fixed(tilt_deg, 3)}\u00b0`],
+    ["Ring", known.rings, ({ ring }) => count(ring)],
+    ["Laser", known.lasers, ({ laser }) => count(laser)],
+    ["Intensity", known.intensities, ({ intensity }) => digits(intensity)],
+    ["Return", known.echoes, ({ echo }) => ECHOES[echo] ?? "not known"],
+  ];
+  const head = h("tr", {}, h("td"), ...picks.map((_, i) => h("th", { scope: "col" }, `Point ${"AB"[i] ?? ""}`)));
+  const body = rows.filter(([, shown]) => shown).map(([name, , value]) => h("tr", {}, h("th", { scope: "row" }, name), ...picks.map((pick) => h("td", {}, value(pick)))));
+  return h("table", {}, h("thead", {}, head), h("tbody", {}, ...body));
+}

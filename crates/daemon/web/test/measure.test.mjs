@@ -1,0 +1,23 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { load } from "./bundle.mjs";
+
+const { distance, scaleBar } = await load("view/measure.ts");
+const point = (x, y, z, sd_m) => ({ position: [x, y, z], sd_m });
+
+test("the uncertainty of a distance adds those of its ends in quadrature", () => {
+  const found = distance(point(1, 2, 3, 0.003), point(1, 5, 7, 0.004));
+  assert.equal(found.m, 5);
+  assert.ok(Math.abs(found.sd_m - 0.005) < 1e-12);
+  assert.deepEqual(found.along_m, [0, 3, 4]);
+  assert.equal(distance(point(0, 0, 0, 0), point(1, 0, 0, 0.004)).sd_m, null);
+});
+
+test("scale bars have round lengths and fit", () => {
+  for (const [metres_per_px, words] of [[0.1, "5 m"], [0.0123, "1 m"], [0.0055, "50 cm"], [0.0001, "5 mm"], [3, "200 m"]]) {
+    const bar = scaleBar(metres_per_px, 96);
+    assert.equal(bar.words, words);
+    assert.ok(bar.px <= 96 && bar.px > 96 / 2.6, `${bar.px} px`);
+    assert.ok(Math.abs(bar.px * metres_per_px - bar.m) < 1e-9);
+  }
+});

@@ -1,0 +1,464 @@
+//! `velomotion view`: clouds, logs and recordings in the browser.
+
+use std::fs::File;
+use std::io::{BufWriter, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use cloud::formats::Format;
+use cloud::formats::ply::PlyWriter;
+use cloud::read::positions;
+use cloud::{Fields, Points, Sink, SinkError, TiltTrack};
+use daemon::http::view::{FileState, ViewServer, ViewedFile, ViewedFiles};
+use engine::document::Document;
+use engine::failure::{Failure, Kind};
+use engine::reconstruct::decoder_options::{DecoderRequest, decoder_options};
+use engine::reconstruct::replay::{self, Reconstruction};
+use engine::reconstruct::source::Source;
+use protocol::record::Wire;
+use scanner::{Accuracy, TiltSource};
+use units::{Host, Stamp};
+
+use super::CommandOutput;
+use super::analyze::input::InputArgument;
+use crate::cli::{self, Common};
+use crate::documents::ServedView;
+use crate::logging;
+use crate::signals;
+use crate::terminal::{Progress, to_stderr};
+
+/// Between two polls of signals and pages.
+const POLL: Duration = Duration::from_millis(100);
+/// Longest header of a PLY that is served as it is.
+const HEADER_BYTES: u64 = 64 << 10;
+/// Steps in which the progress of a cloud is shown.
+const SHARE_STEP: f64 = 0.01;
+
+/// Runs the command.
+///
+/// # Errors
+/// [`Failure`] if no file can be shown.
+pub fn run(arguments: &cli::ViewArguments, common: &Common) -> Result<CommandOutput, Failure> {
+    let interrupt = signals::interrupt_flag()?;
+    show(&arguments.files, common, &interrupt, |url| {
+        greet(url, arguments, common);
+        if !arguments.no_open {
+            open_browser(url);
+        }
+    })?;
+    Ok(CommandOutput::default())
+}
+
+/// Serves the files until `interrupt`, or until their last page is closed. `served` gets the
+/// address.
+///
+/// # Errors
+/// [`Failure`] of the first file that cannot be shown.
+pub fn show(
+    paths: &[PathBuf],
+    common: &Common,
+    interrupt: &AtomicBool,
+    served: impl FnOnce(&str),
+) -> Result<(), Failure> {
+    let mut inputs = Vec::new();
+    for path in paths {
+        inputs.push(ViewInput::open(path)?);
+    }
+    let server = ViewServer::start(inputs.iter().map(ViewInput::listed).collect())?;
+    served(&server.url());
+    let files = Arc::clone(&server.files);
+    let failures = std::thread::scope(|scope| {
+        let making = scope.spawn(|| make_all(&inputs, &files, common, interrupt));
+        // Without a cloud and without a page nothing is left to do.
+        while !interrupt.load(Ordering::Acquire)
+            && !files.is_left()
+            && (files.is_open() || !making.is_finished() || files.has_cloud())
+        {
+            std::thread::sleep(POLL);
+        }
+        interrupt.store(true, Ordering::Release);
+        making.join()
+    });
+    server.stop();
+    let failures = failures.map_err(|_| {
+        Failure::new(Kind::Incomplete, "a thread of the command had panicked")
+            .help("run it with -vv and report the messages")
+    })?;
+    failures.into_iter().next().map_or(Ok(()), Err)
+}
+
+/// A file, classified by its name.
+enum ViewInput<'a> {
+    Cloud(&'a Path, Format),
+    Log(Box<Source>),
+}
+
+impl<'a> ViewInput<'a> {
+    fn open(path: &'a Path) -> Result<Self, Failure> {
+        let name = path.to_string_lossy();
+        if name != "-" && !path.exists() {
+            let what = format!("{name}: there is no such file");
+            return Err(Failure::new(Kind::BadInput, what).help("check the name"));
+        }
+        Ok(match InputArgument::new(&name)? {
+            InputArgument::Cloud(_, format) => Self::Cloud(path, format),
+            // A file may have the name of a pattern.
+            InputArgument::Log(_) | InputArgument::Pattern(_) => {
+                Self::Log(Box::new(Source::open(path, None)?))
+            }
+        })
+    }
+
+    fn path(&self) -> &Path {
+        match self {
+            Self::Cloud(path, _) => path,
+            Self::Log(source) => source.path(),
+        }
+    }
+
+    fn listed(&self) -> ViewedFile {
+        let path = self.path();
+        let name = path.file_name().unwrap_or(path.as_os_str());
+        let is_log = matches!(self, Self::Log(_));
+        ViewedFile::new(name.to_string_lossy().into_owned(), is_log)
+    }
+}
+
+/// Prints the address.
+fn greet(url: &str, arguments: &cli::ViewArguments, common: &Common) {
+    if common.json {
+        let report = ServedView {
+            url: url.to_owned(),
+            files: arguments.files.clone(),
+        };
+        let mut out = std::io::stdout().lock();
+        // A closed pipe is not a failure.
+        let _ = writeln!(out, "{}", report.to_json()).and_then(|()| out.flush());
+        return;
+    }
+    // The address is the result: --quiet keeps it.
+    to_stderr(&format!(
+        "{url} (only from this machine; ends with its tab or Ctrl-C)"
+    ));
+}
+
+/// Opens the user's browser, if there is a screen for one.
+fn open_browser(url: &str) {
+    let has_screen = ["DISPLAY", "WAYLAND_DISPLAY"]
+        .iter()
+        .any(|name| std::env::var_os(name).is_some_and(|value| !value.is_empty()));
+    if !has_screen {
+        return;
+    }
+    let opener = Command::new("xdg-open")
+        .arg(url)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn();
+    match opener {
+        Ok(mut opener) => drop(std::thread::spawn(move || opener.wait())),
+        Err(error) => tracing::info!("no browser opened: xdg-open: {error}"),
+    }
+}
+
+/// Makes every cloud and returns the failures.
+fn make_all(
+    inputs: &[ViewInput<'_>],
+    files: &ViewedFiles,
+    common: &Common,
+    interrupt: &AtomicBool,
+) -> Vec<Failure> {
+    let progress = Progress::new(common);
+    let mut failures = Vec::new();
+    for (index, input) in inputs.iter().enumerate() {
+        let made = match input {
+            ViewInput::Cloud(path, format) => cloud(path, *format),
+            ViewInput::Log(source) => {
+                progress.say(&format!("making the cloud of {}", input.path().display()));
+                let share = |share| files.update(index, |file| file.share = Some(share));
+                log(source, &share, interrupt)
+            }
+        };
+        match made {
+            Ok(made) => {
+                if made.simulated {
+                    let name = input.path().display();
+                    progress.say(&format!("SIMULATED: {name} is not of a real scan"));
+                }
+                files.update(index, |file| {
+                    file.state = FileState::Ready;
+                    file.points = Some(made.points);
+                    file.simulated = made.simulated;
+                    file.scanner = made.scanner;
+                    file.cloud = Some(Arc::new(made.file));
+                });
+            }
+            Err(failure) if failure.kind == Kind::Interrupted => break,
+            Err(failure) => {
+                files.update(index, |file| {
+                    file.state = FileState::Failed;
+                    file.error = Some(failure.message.clone());
+                    file.help.clone_from(&failure.help);
+                });
+                // The first one is printed at the end.
+                if !failures.is_empty() {
+                    logging::failed(&failure);
+                }
+                failures.push(failure);
+            }
+        }
+    }
+    failures
+}
+
+/// A cloud as binary PLY.
+struct MadeCloud {
+    file: File,
+    points: u64,
+    simulated: bool,
+    scanner: bool,
+}
+
+fn no_scratch(error: std::io::Error) -> Failure {
+    let what = format!("no room for the cloud: {error}");
+    Failure::new(Kind::Incomplete, what)
+        .help("free some space there, or name another folder with TMPDIR")
+}
+
+fn scratch() -> Result<File, Failure> {
+    io::files::scratch_in(&io::files::scratch_folder()).map_err(no_scratch)
+}
+
+/// The cloud of a log or recording, without tilt if that has no drive.
+fn log(source: &Source, share: &dyn Fn(f64), interrupt: &AtomicBool) -> Result<MadeCloud, Failure> {
+    let mut tilted = false;
+    source.read_until(|record| {
+        tilted = matches!(record.wire, Wire::Drive { .. });
+        !tilted
+    })?;
+    let request = Reconstruction {
+        tilt: match tilted {
+            true => TiltSource::Log,
+            false => TiltSource::None,
+        },
+        options: decoder_options(&DecoderRequest::default(), source)?,
+        ..Reconstruction::of_log(source, Accuracy::Best, interrupt)?
+    };
+    let file = scratch()?;
+    let fields = Fields::FILE | Fields::LASER | Fields::SD | Fields::ECHO;
+    let writer = PlyWriter::new(file.try_clone().map_err(no_scratch)?, fields);
+    let mut sinks = (writer, ShareSink::new(share));
+    let output = PathBuf::from("the cloud");
+    let scan = replay::scan(&request, &mut sinks, &output)?;
+    sinks
+        .finish()
+        .map_err(|error| engine::output::sink_failure(&output, &error))?;
+    Ok(MadeCloud {
+        file,
+        points: scan.points,
+        simulated: scan.contents.simulated,
+        scanner: tilted,
+    })
+}
+
+/// Reports which part of the sweeps has been placed.
+struct ShareSink<'a> {
+    report: &'a dyn Fn(f64),
+    span: Option<(Stamp<Host>, Stamp<Host>)>,
+    reported: f64,
+}
+
+impl<'a> ShareSink<'a> {
+    const fn new(report: &'a dyn Fn(f64)) -> Self {
+        Self {
+            report,
+            span: None,
+            reported: 0.0,
+        }
+    }
+}
+
+impl Sink for ShareSink<'_> {
+    fn fields(&self) -> Fields {
+        Fields::TIME
+    }
+
+    fn wants_tilt(&self) -> bool {
+        true
+    }
+
+    fn tilt(&mut self, track: &TiltTrack) -> Result<(), SinkError> {
+        let begin = track.sweeps.iter().map(|(start, _)| *start).min();
+        self.span = begin.zip(track.sweeps.iter().map(|(_, end)| *end).max());
+        Ok(())
+    }
+
+    fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
+        if let (Some((start, end)), Some(time)) = (self.span, batch.time().last()) {
+            let passed = time.saturating_since(start).as_nanos() as f64;
+            let whole = (end.saturating_since(start).as_nanos() as f64).max(1.0);
+            let share = (passed / whole).min(1.0);
+            if share >= self.reported + SHARE_STEP {
+                self.reported = share;
+                (self.report)(self.reported);
+            }
+        }
+        Ok(())
+    }
+}
+
+fn unreadable(path: &Path, error: &std::io::Error) -> Failure {
+    let what = format!("{}: cannot read: {error}", path.display());
+    Failure::new(Kind::BadInput, what).help("check the name and the read permission")
+}
+
+/// A stored cloud: its file where the page can read it, else its positions.
+fn cloud(path: &Path, format: Format) -> Result<MadeCloud, Failure> {
+    let wrong = |error: std::io::Error| unreadable(path, &error);
+    let mut file = File::open(path).map_err(wrong)?;
+    if format == Format::Ply {
+        let mut head = Vec::new();
+        let read = Read::take(&file, HEADER_BYTES).read_to_end(&mut head);
+        read.map_err(wrong)?;
+        if let Some(points) = plain_ply(&head) {
+            return Ok(MadeCloud {
+                points,
+                simulated: contains(&head, SIMULATED),
+                scanner: contains(&head, FROM_AXIS),
+                file,
+            });
+        }
+        file.seek(SeekFrom::Start(0)).map_err(wrong)?;
+    }
+    let mut bytes = Vec::new();
+    file.read_to_end(&mut bytes).map_err(wrong)?;
+    let (simulated, scanner) = (contains(&bytes, SIMULATED), contains(&bytes, FROM_AXIS));
+    let read = positions(format, bytes).map_err(|error| {
+        let what = format!("{}: {error}", path.display());
+        Failure::new(Kind::BadInput, what)
+            .help("see whether the file is whole, and is what its extension says")
+    })?;
+    let file = scratch()?;
+    write_ply(&file, &read.positions).map_err(no_scratch)?;
+    Ok(MadeCloud {
+        file,
+        points: read.positions.len() as u64,
+        simulated,
+        scanner,
+    })
+}
+
+/// Marks of velomotion's own clouds in every format.
+const SIMULATED: &[u8] = b"SIMULATED";
+const FROM_AXIS: &[u8] = b"z up in metres from the tilt axis";
+
+fn contains(bytes: &[u8], mark: &[u8]) -> bool {
+    bytes.windows(mark.len()).any(|window| window == mark)
+}
+
+/// Number of vertices of a PLY that the page reads: binary, little-endian, the vertices first and
+/// without lists.
+fn plain_ply(head: &[u8]) -> Option<u64> {
+    let end = head
+        .windows(11)
+        .position(|window| window == b"end_header\n")?;
+    let text = std::str::from_utf8(head.get(..end)?).ok()?;
+    let mut vertices = None;
+    for line in text.lines() {
+        let words: Vec<&str> = line.split_ascii_whitespace().collect();
+        match (words.as_slice(), vertices) {
+            (["format", kind, ..], _) if *kind != "binary_little_endian" => return None,
+            (["element", "vertex", count], None) => vertices = Some(count.parse().ok()?),
+            (["element", ..], None) | (["property", "list", ..], Some(_)) => return None,
+            (["element", ..], Some(_)) => break,
+            _ => {}
+        }
+    }
+    vertices.filter(|_| text.starts_with("ply"))
+}
+
+/// Positions as a PLY of doubles: coordinates of a map need them.
+fn write_ply(file: &File, positions: &[[f64; 3]]) -> std::io::Result<()> {
+    let mut out = BufWriter::new(file);
+    write!(
+        out,
+        "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\nend_header\n",
+        positions.len()
+    )?;
+    for axis in positions.as_flattened() {
+        out.write_all(&axis.to_le_bytes())?;
+    }
+    out.flush()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HEAD: &str = "ply\nformat binary_little_endian 1.0\ncomment SIMULATED: software\nelement vertex 7\nproperty float x\n";
+
+    #[test]
+    fn a_ply_is_served_as_it_is_if_the_page_reads_it() {
+        let plain = |head: &str| plain_ply(head.as_bytes());
+        assert_eq!(plain(&format!("{HEAD}end_header\n")), Some(7));
+        let faces = "element face 2\nproperty list uchar int vertex_indices\n";
+        assert_eq!(plain(&format!("{HEAD}{faces}end_header\n")), Some(7));
+        for head in [
+            HEAD.to_owned(),
+            format!("{HEAD}property list uchar int neighbours\nend_header\n"),
+            format!("{}end_header\n", HEAD.replace("little", "big")),
+            format!(
+                "{}end_header\n",
+                HEAD.replace("element", &format!("{faces}element"))
+            ),
+            format!("{}end_header\n", HEAD.replace("7", "many")),
+        ] {
+            assert_eq!(plain(&head), None, "{head}");
+        }
+    }
+
+    #[test]
+    fn other_formats_become_a_ply_of_their_positions() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("map.csv");
+        std::fs::write(&path, "x,y,z\n500000.125,4600000.5,-2\n1,2,3\n").unwrap();
+        let made = cloud(&path, Format::Csv).unwrap();
+        assert_eq!(
+            (made.points, made.simulated, made.scanner),
+            (2, false, false)
+        );
+        let mut bytes = Vec::new();
+        let mut file = made.file;
+        file.seek(SeekFrom::Start(0)).unwrap();
+        file.read_to_end(&mut bytes).unwrap();
+        assert_eq!(plain_ply(&bytes), Some(2));
+        let read = positions(Format::Ply, bytes).unwrap().positions;
+        assert_eq!(read, [[500_000.125, 4_600_000.5, -2.0], [1.0, 2.0, 3.0]]);
+    }
+
+    #[test]
+    fn progress_is_the_part_of_the_sweeps_that_is_placed() {
+        let shares = std::cell::RefCell::new(Vec::new());
+        let report = |share| shares.borrow_mut().push(share);
+        let mut sink = ShareSink::new(&report);
+        let at = Stamp::<Host>::from_nanos;
+        let track = TiltTrack {
+            sweeps: vec![(at(100), at(200)), (at(300), at(1_100))],
+            ..TiltTrack::default()
+        };
+        sink.tilt(&track).unwrap();
+        for ns in [100, 105, 600, 1_100, 1_200] {
+            let mut batch = Points::new(sink.fields());
+            batch.push(cloud::Point {
+                time: at(ns),
+                ..cloud::Point::default()
+            });
+            sink.points(&batch).unwrap();
+        }
+        assert_eq!(shares.into_inner(), [0.5, 1.0]);
+    }
+}
