@@ -162,11 +162,12 @@ pub(crate) fn read(
         interrupt,
     };
     let mut points = Points::new(Scan::FIELDS);
-    let report = replay::scan(&request, &mut points, path).map_err(|failure| match failure.kind {
-        // The advice is for a cloud, and there are options that these commands lack.
-        Kind::BadInput => failure.help("use logs of captures with whole sweeps"),
-        _ => failure,
-    })?;
+    let report =
+        replay::scan(&request, &mut points, path).map_err(|failure| match failure.kind {
+            // The advice is for a cloud, and there are options that these commands lack.
+            Kind::BadInput => failure.help("use logs of captures with whole sweeps"),
+            _ => failure,
+        })?;
     let name = report.contents.model.as_deref();
     let model = ALL
         .into_iter()

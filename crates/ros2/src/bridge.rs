@@ -58,8 +58,8 @@ impl Bridge {
     /// Starts the bridge. An absent router is waited for.
     ///
     /// # Errors
-    /// [`engine::Kind::Usage`] where `[daemon.ros2.capture]` is invalid, [`engine::Kind::NoDevice`] where there is
-    /// no thread.
+    /// [`engine::Kind::Usage`] where `[daemon.ros2.capture]` is invalid,
+    /// [`engine::Kind::NoDevice`] where there is no thread.
     pub fn start(
         scans: &Arc<dyn ScanService>,
         settings: Ros2Config,

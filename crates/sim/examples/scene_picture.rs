@@ -98,7 +98,9 @@ fn scanned(text: &str) -> Result<Vec<DVec3>, Box<dyn Error>> {
     let mut scene = SceneFile::parse(text, None, None)?;
     let mut points = TruePoints::default();
     let effects = &mut scene.effects.effects;
-    scene.simulation.run(effects, NonZeroUsize::MIN, &mut points)?;
+    scene
+        .simulation
+        .run(effects, NonZeroUsize::MIN, &mut points)?;
     Ok(points.0)
 }
 

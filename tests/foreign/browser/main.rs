@@ -17,7 +17,6 @@ use engine::config::daemon::DaemonConfig;
 use serde_json::Value;
 
 use browser::{DESKTOP, Driver, NARROW, PHONE, Page};
-use velomotion_tests::bench::Bench;
 
 /// A daemon with its own folder; port 0 takes a free one.
 fn daemon(config: Config, device: Option<&str>, folder: &Path, port: u16) -> Daemon {

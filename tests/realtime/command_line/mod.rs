@@ -123,7 +123,10 @@ fn simulate_writes_a_log_that_replay_reads_and_locates_errors() {
     place.fails(
         "simulate wrong.toml",
         3,
-        &["wrong.toml, line 8", "`300`, expected a whole number from 0 to 255"],
+        &[
+            "wrong.toml, line 8",
+            "`300`, expected a whole number from 0 to 255",
+        ],
     );
     std::fs::write(place.path("stand.toml"), scene).unwrap();
     place.fails("simulate stand.toml --truth t.xyz", 2, &["t.xyz", ".ply"]);

@@ -66,7 +66,10 @@ impl SceneryError {
 pub(crate) fn toml_message(error: &toml::de::Error) -> String {
     let line = error.message().trim().replace('\n', ", ");
     line.replace("expected u8", "expected a whole number from 0 to 255")
-        .replace("expected u32", "expected a whole number from 0 to 4294967295")
+        .replace(
+            "expected u32",
+            "expected a whole number from 0 to 4294967295",
+        )
         .replace("expected u64", "expected a whole number from 0")
 }
 

@@ -84,8 +84,13 @@ fn simulated(
     for (index, log) in logs.iter().enumerate() {
         let found = Source::open(log, None)?.config()?.simulation;
         if index > 0 && found != first {
-            let what = format!("{} is of another simulation than the first log", log.display());
-            return Err(Failure::new(Kind::Usage, what).help("compare one log at a time with a scene"));
+            let what = format!(
+                "{} is of another simulation than the first log",
+                log.display()
+            );
+            return Err(
+                Failure::new(Kind::Usage, what).help("compare one log at a time with a scene")
+            );
         }
         let Some(found) = found else { continue };
         let other = |what: &str, given: &dyn Display, expected: &str| {

@@ -161,9 +161,10 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, 
         (choice.iter()).any(|choice| choice.off.iter().any(|out| out.effect == effect))
     };
     let mut warnings = sizes::unmet(&sampler, sizes.as_deref(), &is_chosen_out)?;
-    let without_use = (arguments.without.iter())
-        .filter(|name| *name != cli::ALL && !scene.is_requested(name));
-    warnings.extend(without_use.map(|name| format!("--without {name}: the scene does not have it")));
+    let without_use =
+        (arguments.without.iter()).filter(|name| *name != cli::ALL && !scene.is_requested(name));
+    warnings
+        .extend(without_use.map(|name| format!("--without {name}: the scene does not have it")));
     let request = Request {
         name,
         log: &log,
@@ -177,7 +178,8 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, 
     let (mut report, failure) = make(scene, request)?;
     report.warnings.extend(warnings);
     if report.returned == 0 && report.shots > 0 {
-        let nothing = "no shot returned: name a scene (scene = \"hall\") or add [[objects]] to the file";
+        let nothing =
+            "no shot returned: name a scene (scene = \"hall\") or add [[objects]] to the file";
         report.warnings.push(nothing.to_owned());
     }
     report.sizes = sizes;
