@@ -236,7 +236,8 @@ impl Page {
         pixels.into_iter().collect::<BTreeSet<_>>().len()
     }
 
-    async fn pixels_of(&self, css: &str) -> Vec<[u8; 3]> {
+    /// The pixels in the picture of an element.
+    pub async fn pixels_of(&self, css: &str) -> Vec<[u8; 3]> {
         let element = self.client.find(Locator::Css(css)).await.unwrap();
         let picture = element.screenshot().await.unwrap();
         let mut reader = png::Decoder::new(Cursor::new(picture)).read_info().unwrap();
@@ -246,6 +247,22 @@ impl Page {
         pixels
             .filter_map(|pixel| pixel.first_chunk().copied())
             .collect()
+    }
+
+    /// Waits until this share of the pixels of an element differs from an earlier picture of it.
+    pub async fn until_changed(&self, css: &str, before: &[[u8; 3]], share: f64) {
+        let begin = Instant::now();
+        loop {
+            let now = self.pixels_of(css).await;
+            let changed = now.iter().zip(before).filter(|(a, b)| a != b).count();
+            if changed as f64 > share * now.len() as f64 {
+                return;
+            }
+            assert!(
+                begin.elapsed() < TIME_LIMIT,
+                "only {changed} pixels of {css} changed"
+            );
+        }
     }
 
     /// Clicks an element once it rests where a mouse or finger reaches it: a picture that loads
