@@ -18,6 +18,7 @@ pub mod output;
 pub mod reconstruct;
 pub mod service;
 mod threads;
+pub mod words;
 
 pub use failure::{Failure, Kind};
 pub use threads::{no_resource, spawn};

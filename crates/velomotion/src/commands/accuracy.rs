@@ -7,9 +7,10 @@ use std::fmt::Write;
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use engine::accuracy::{AccuracyReport, AccuracyRequest, ResidualReport, accuracy};
 use engine::config::load_mount;
-use engine::document::{Document, counted};
+use engine::document::Document;
 use engine::failure::Failure;
 use engine::output::{check_free, make_folder, write_text};
+use engine::words::counted;
 
 use super::CommandOutput;
 use crate::cli::{AccuracyStudyArguments, Common};

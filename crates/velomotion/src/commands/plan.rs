@@ -8,9 +8,10 @@ use comfy_table::{CellAlignment, Table};
 use engine::capture::scan_plan::{CommandRow, PlanReport, PlanRequest, ScanPlanner};
 use engine::config::{self, Config};
 use engine::devices::profile;
-use engine::document::{Document, counted};
+use engine::document::Document;
 use engine::failure::{Failure, Kind};
 use engine::output::{check_free, make_folder, write_text};
+use engine::words::counted;
 
 use super::CommandOutput;
 use crate::cli::{self, Common};

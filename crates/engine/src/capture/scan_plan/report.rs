@@ -6,7 +6,7 @@ use utoipa::ToSchema;
 
 use super::{ScanPlanner, is_simulated, trim};
 use crate::devices::profile;
-use crate::document::counted;
+use crate::words::counted;
 
 /// A row with its command.
 #[derive(Clone, Debug, Serialize, ToSchema)]

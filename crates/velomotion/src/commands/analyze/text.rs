@@ -4,7 +4,7 @@ use std::fmt::{Display, Write};
 
 use analysis::density::{EmptyBand, HistogramClass, Statistics};
 use analysis::device::VisibleRange;
-use engine::document::counted;
+use engine::words::counted;
 
 use super::report::{AnalyzeReport, BAND_DEG, DeviceReport, HoleReport, KReport, PatternReport};
 
