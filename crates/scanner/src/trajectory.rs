@@ -366,7 +366,7 @@ impl Trajectory {
                     let inner = bound::of_fit(pieces, *span, fit, self.step_deg);
                     match &fit.profile {
                         Some(profile) if is_open => inner + bound::of_corner(samples, profile),
-                        Some(profile) => inner.max(bound::of_short_ramps(samples, profile)),
+                        Some(profile) => inner + bound::of_short_ramps(samples, profile),
                         None => inner,
                     }
                 }

@@ -260,7 +260,7 @@ fn a_lost_connection_is_reported_and_restored() {
         page.until_has("#lost", "Connection to the daemon lost")
             .await;
         assert_eq!(page.text("#chip-link").await, "Offline");
-        page.until_has("#lost", "The daemon on this machine does not run.")
+        page.until_has("#lost", "The daemon on this machine does not answer")
             .await;
         page.picture("lost").await;
         page.audit("no connection").await;

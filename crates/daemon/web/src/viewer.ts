@@ -262,7 +262,7 @@ export class Viewer {
     if (ranges === null) return;
     const wider = this.ranges === null || ranges.reach_m > 1.3 * this.ranges.reach_m;
     this.ranges = { ...ranges, reach_m: Math.max(ranges.reach_m, this.ranges?.reach_m ?? 0) };
-    clip.setReach(this.ranges.reach_m);
+    clip.setFrame(this.stage, this.origin, this.ranges.centre, this.ranges.reach_m);
     if (!this.fitted || (wider && !this.stage.orbit.touched)) {
       this.fitted = true;
       this.fit();
@@ -318,16 +318,19 @@ export class Viewer {
     if (this.ranges === null) return;
     const [low, high] = this.limits;
     const scale = this.field === "sd" ? 1e-3 : 1;
+    // Heights that people read and type are the cloud's own.
+    const shift = this.field === "height" ? this.origin[2] : 0;
     const automatic: Range = range ?? { low: 0, high: 1 };
-    const of = { low: low === null ? automatic.low : scale * low, high: high === null ? automatic.high : scale * high };
+    const of = { low: low === null ? automatic.low : scale * low - shift, high: high === null ? automatic.high : scale * high - shift };
     this.stage.setField(FIELDS.indexOf(this.field), of.high > of.low ? of : { low: of.low, high: of.low + 1e-6 });
     this.stage.setMarks([low === null ? null : MARKS[0], high === null ? null : MARKS[1]]);
-    text(id("legend-note"), `${NOTES[this.field]} \u00b7 rings ${RING_STEP_M} m apart`);
+    const note = this.field === "range" && this.origin.some((m) => m !== 0) ? `from ${this.origin.join(", ")} m` : NOTES[this.field];
+    text(id("legend-note"), `${note} \u00b7 rings ${RING_STEP_M} m apart`);
     this.stage.uniform("ceiling_m", this.ranges.ceiling_m ?? 1e6);
     const words = (value: number) => {
       if (range === null) return "";
       switch (this.field) {
-        case "height": case "range": return `${fixed(value, 1)} m`;
+        case "height": case "range": return `${fixed(value + shift, 1)} m`;
         case "intensity": return digits(value);
         case "ring": return Number.isInteger(value) ? fixed(value, 0) : "";
         case "time": return `${digits(value)} s`;

@@ -362,7 +362,9 @@ fn wait_for_alarm(socket: &mut UnixStream) -> io::Result<Option<bool>> {
                 io::ErrorKind::Interrupted => {}
                 io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut => {
                     let elapsed = silence.checked.elapsed();
-                    silence.add(elapsed, threads.is_delayed(elapsed));
+                    // Between heartbeats in time nothing is read of the parent.
+                    let is_overdue = silence.total + elapsed > 2 * HEARTBEAT;
+                    silence.add(elapsed, is_overdue && threads.is_delayed(elapsed));
                     if silence.is_alarm() {
                         return Ok(Some(false));
                     }

@@ -80,6 +80,8 @@ pub fn show(
             std::thread::sleep(POLL);
         }
         interrupt.store(true, Ordering::Release);
+        // No device is open: a second signal need not wait until a large file is read.
+        signals::end_process_on_signal();
         making.join()
     });
     server.stop();
@@ -319,12 +321,17 @@ fn unreadable(path: &Path, error: &std::io::Error) -> Failure {
 /// A stored cloud: its file where the page can read it, else its positions.
 fn cloud(path: &Path, format: Format) -> Result<MadeCloud, Failure> {
     let wrong = |error: std::io::Error| unreadable(path, &error);
+    // A FIFO without a writer would block.
+    if !path.metadata().map_err(wrong)?.is_file() {
+        return Err(wrong(std::io::Error::other("not a regular file")));
+    }
     let mut file = File::open(path).map_err(wrong)?;
+    let length = file.metadata().map_err(wrong)?.len();
     if format == Format::Ply {
         let mut head = Vec::new();
         let read = Read::take(&file, HEADER_BYTES).read_to_end(&mut head);
         read.map_err(wrong)?;
-        if let Some(points) = plain_ply(&head) {
+        if let Some(points) = own_ply(&head, length) {
             return Ok(MadeCloud {
                 points,
                 simulated: contains(&head, SIMULATED),
@@ -354,31 +361,38 @@ fn cloud(path: &Path, format: Format) -> Result<MadeCloud, Failure> {
 
 /// Marks of velomotion's own clouds in every format.
 const SIMULATED: &[u8] = b"SIMULATED";
+const FRAME: &[u8] = b"frame: x right, y forward, z up in metres from ";
 const FROM_AXIS: &[u8] = b"z up in metres from the tilt axis";
 
 fn contains(bytes: &[u8], mark: &[u8]) -> bool {
     bytes.windows(mark.len()).any(|window| window == mark)
 }
 
-/// Number of vertices of a PLY that the page reads: binary, little-endian, the vertices first and
-/// without lists.
-fn plain_ply(head: &[u8]) -> Option<u64> {
-    let end = head
-        .windows(11)
-        .position(|window| window == b"end_header\n")?;
+/// Number of points of a PLY of velomotion, which the page reads as it is: binary, little-endian,
+/// finite coordinates and nothing but points. A file of other programs, or one that is not whole,
+/// is none.
+fn own_ply(head: &[u8], length: u64) -> Option<u64> {
+    const END: &[u8] = b"end_header\n";
+    let end = head.windows(END.len()).position(|window| window == END)?;
     let text = std::str::from_utf8(head.get(..end)?).ok()?;
-    let mut vertices = None;
+    let (mut points, mut row_bytes) = (None, 0);
     for line in text.lines() {
         let words: Vec<&str> = line.split_ascii_whitespace().collect();
-        match (words.as_slice(), vertices) {
-            (["format", kind, ..], _) if *kind != "binary_little_endian" => return None,
-            (["element", "vertex", count], None) => vertices = Some(count.parse().ok()?),
-            (["element", ..], None) | (["property", "list", ..], Some(_)) => return None,
-            (["element", ..], Some(_)) => break,
+        match words.as_slice() {
+            ["format", kind, ..] if *kind != "binary_little_endian" => return None,
+            ["element", "vertex", count] => points = Some(count.parse::<u64>().ok()?),
+            ["element", ..] => return None,
+            ["property", "uchar", _] => row_bytes += 1,
+            ["property", "ushort", _] => row_bytes += 2,
+            ["property", "float" | "uint", _] => row_bytes += 4,
+            ["property", "double", _] => row_bytes += 8,
+            ["property", ..] => return None,
             _ => {}
         }
     }
-    vertices.filter(|_| text.starts_with("ply"))
+    let header_bytes = (end + END.len()) as u64;
+    let is_whole = |points: &u64| points.checked_mul(row_bytes) == length.checked_sub(header_bytes);
+    points.filter(is_whole).filter(|_| contains(head, FRAME))
 }
 
 /// Positions as a PLY of doubles: coordinates of a map need them.
@@ -399,26 +413,42 @@ fn write_ply(file: &File, positions: &[[f64; 3]]) -> std::io::Result<()> {
 mod tests {
     use super::*;
 
-    const HEAD: &str = "ply\nformat binary_little_endian 1.0\ncomment SIMULATED: software\nelement vertex 7\nproperty float x\n";
+    const HEAD: &str = "ply\nformat binary_little_endian 1.0\ncomment SIMULATED: software\ncomment frame: x right, y forward, z up in metres from the tilt axis; tilt in degrees\nelement vertex 7\nproperty float x\nproperty uchar ring\n";
 
     #[test]
-    fn a_ply_is_served_as_it_is_if_the_page_reads_it() {
-        let plain = |head: &str| plain_ply(head.as_bytes());
-        assert_eq!(plain(&format!("{HEAD}end_header\n")), Some(7));
-        let faces = "element face 2\nproperty list uchar int vertex_indices\n";
-        assert_eq!(plain(&format!("{HEAD}{faces}end_header\n")), Some(7));
+    fn only_a_whole_ply_of_velomotion_is_served_as_it_is() {
+        let own = |head: &str, more: u64| own_ply(head.as_bytes(), head.len() as u64 + more);
+        let whole = format!("{HEAD}end_header\n");
+        assert_eq!(own(&whole, 35), Some(7));
+        // Cut off, or with bytes that are no points.
+        assert_eq!([34, 36].map(|more| own(&whole, more)), [None, None]);
         for head in [
             HEAD.to_owned(),
             format!("{HEAD}property list uchar int neighbours\nend_header\n"),
-            format!("{}end_header\n", HEAD.replace("little", "big")),
-            format!(
-                "{}end_header\n",
-                HEAD.replace("element", &format!("{faces}element"))
-            ),
-            format!("{}end_header\n", HEAD.replace("7", "many")),
+            format!("{HEAD}element face 2\nproperty list uchar int vertices\nend_header\n"),
+            whole.replace("little", "big"),
+            whole.replace("frame: ", ""),
+            whole.replace("vertex 7", "vertex many"),
         ] {
-            assert_eq!(plain(&head), None, "{head}");
+            assert_eq!(own(&head, 35), None, "{head}");
         }
+    }
+
+    /// As a program writes it that keeps pixels without a point: such rows are no points.
+    #[test]
+    fn rows_without_a_number_are_left_out() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("organised.ply");
+        let mut bytes = b"ply\nformat binary_little_endian 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nend_header\n".to_vec();
+        for value in [f32::NAN, f32::NAN, f32::NAN, 1.0, 2.0, 3.0] {
+            bytes.extend(value.to_le_bytes());
+        }
+        std::fs::write(&path, &bytes).unwrap();
+        assert_eq!(cloud(&path, Format::Ply).unwrap().points, 1);
+        bytes.pop();
+        std::fs::write(&path, &bytes).unwrap();
+        let failure = cloud(&path, Format::Ply).err().unwrap();
+        assert_eq!(failure.kind, Kind::BadInput, "{failure}");
     }
 
     #[test]
@@ -435,7 +465,6 @@ mod tests {
         let mut file = made.file;
         file.seek(SeekFrom::Start(0)).unwrap();
         file.read_to_end(&mut bytes).unwrap();
-        assert_eq!(plain_ply(&bytes), Some(2));
         let read = positions(Format::Ply, bytes).unwrap().positions;
         assert_eq!(read, [[500_000.125, 4_600_000.5, -2.0], [1.0, 2.0, 3.0]]);
     }

@@ -40,7 +40,7 @@ function table(picks: Picked[], known: Known, origin: [number, number, number]):
     ["x", true, axis(0)],
     ["y", true, axis(1)],
     ["z", true, axis(2)],
-    ["Range", true, ({ position }) => `${Math.hypot(...position).toFixed(3)} m`],
+    ["Range", origin.every((m) => m === 0), ({ position }) => `${Math.hypot(...position).toFixed(3)} m`],
     ["sd", known.sds, ({ sd_m }) => (sd_m > 0 ? mm(sd_m) : "not known")],
     ["Time", known.times, ({ time_s }) => `${time_s.toFixed(4)} s`],
     ["Tilt", known.tilts, ({ tilt_deg }) => `${fixed(tilt_deg, 3)}\u00b0`],

@@ -33,7 +33,9 @@ impl TruePlaces {
     pub fn new(scene: &Path, seed: Option<u64>, logs: &[PathBuf]) -> Result<Self, Failure> {
         let (name, text) = find(scene)?;
         let simulated = simulated(logs, scene, seed)?;
-        let seed_of_logs = (simulated.as_ref()).and_then(|simulated| simulated.seed.parse().ok());
+        let seed_of_logs = (simulated.as_ref())
+            .map(|simulated| simulated.seed.parse().map_err(|_| no_seed(simulated)))
+            .transpose()?;
         let mut scene = read(&name, &text, seed.or(seed_of_logs), None)?;
         if let Some(simulated) = simulated {
             let was_on = |effect: &str| simulated.effects.iter().any(|name| name == effect);
@@ -69,6 +71,11 @@ impl TruePlaces {
     const fn firing(&self, since_ns: i64, laser: u8) -> (i64, u8) {
         ((since_ns + STAMP_NS) / self.firing_ns, laser)
     }
+}
+
+fn no_seed(simulated: &SimulatedScene) -> Failure {
+    let what = format!("the log's seed is no number: {}", simulated.seed);
+    Failure::new(Kind::BadInput, what).help("simulate the scene again")
 }
 
 /// What the logs say of their simulation; none if the first says nothing.

@@ -179,8 +179,7 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, 
     let (mut report, failure) = make(scene, request)?;
     report.warnings.extend(warnings);
     if report.returned == 0 && report.shots > 0 {
-        let nothing =
-            "no shot returned: name a scene (scene = \"hall\") or add [[objects]] to the file";
+        let nothing = "no shot returned; a file without objects needs a scene (scene = \"hall\") or [[objects]]";
         report.warnings.push(nothing.to_owned());
     }
     report.sizes = sizes;
