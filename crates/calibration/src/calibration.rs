@@ -126,6 +126,14 @@ pub enum CalibrationRefusal {
     /// The caller ended it.
     #[error("interrupted")]
     Interrupted,
+    /// A name to be fixed that no parameter begins with.
+    #[error("no parameter begins with {name:?}; there are {}", known.join(", "))]
+    UnknownParameter {
+        /// The name.
+        name: String,
+        /// The parameters of the device.
+        known: Vec<String>,
+    },
     /// A matrix without inverse: the numbers of the scans are not finite.
     #[error("the normal equations have no solution")]
     Singular,

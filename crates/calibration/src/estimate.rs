@@ -11,7 +11,9 @@ use crate::calibration::{
 use crate::equations::{Equations, Residuals, ShotWeights};
 use crate::linear::{Cholesky, Matrix};
 use crate::model::{Fixed, ScannerModel};
-use crate::parameters::{DELAY, Layout, POSITION_X, POSITION_Z, Parameter, ROTATION_X, ROTATION_Z};
+use crate::parameters::{
+    DELAY, DEVICE, Layout, POSITION_X, POSITION_Z, Parameter, ROTATION_X, ROTATION_Z,
+};
 use crate::patches::{Patches, SETTLED_SCALE};
 use crate::shots::{NominalLaser, Scan, noise_of_all_m};
 
@@ -84,6 +86,23 @@ pub fn calibrate(
     progress: &mut dyn FnMut(usize, f64) -> bool,
 ) -> Result<Calibration, CalibrationRefusal> {
     let estimator = Estimator::new(request);
+    let is_known = |name: &str| {
+        estimator
+            .parameters
+            .iter()
+            .any(|p| p.name.starts_with(name))
+    };
+    if let Some(name) = request.fixed.iter().find(|name| !is_known(name)) {
+        let known = estimator
+            .parameters
+            .iter()
+            .take(DEVICE)
+            .map(|p| p.name.clone());
+        return Err(CalibrationRefusal::UnknownParameter {
+            name: name.clone(),
+            known: known.chain(["laser_".into(), "drift_".into()]).collect(),
+        });
+    }
     let before = estimator.residuals(&estimator.start)?;
     let mut solution = estimator.solve(&estimator.start, None, progress)?;
     estimator.judge(&solution)?;

@@ -18,6 +18,7 @@ use scanner::{Accuracy, ScanConfig, TiltSource};
 pub use file::to_toml;
 pub use report::{CalibrateReport, LaserResiduals, LogReport, ParameterReport};
 
+use crate::capture::completeness;
 use crate::config::MountSettings;
 use crate::failure::{Failure, Kind};
 use crate::reconstruct::replay::{self, Reconstruction, TimeReference};
@@ -127,6 +128,26 @@ pub(crate) fn one_scanner<'a>(
     let Some(first) = logs.first() else {
         return Err(Failure::new(Kind::Usage, "no log").help("name one or more"));
     };
+    // Other scans do not last as long to the nanosecond.
+    let same = |a: &ReadLog, b: &ReadLog| {
+        let of = |log: &ReadLog| (log.report.contents.duration_s.to_bits(), log.scan.len());
+        of(a) == of(b)
+    };
+    for (index, log) in logs.iter().enumerate() {
+        if let Some(twin) = logs
+            .iter()
+            .take(index)
+            .position(|earlier| same(earlier, log))
+        {
+            let name = |index: usize| {
+                paths
+                    .get(index)
+                    .map_or_else(String::new, |path| path.display().to_string())
+            };
+            let what = format!("{} and {} are the same scan", name(twin), name(index));
+            return Err(Failure::new(Kind::Usage, what).help("name each scan once"));
+        }
+    }
     let is_other = |log: &ReadLog| log.model != first.model || log.gear != first.gear;
     match logs.iter().zip(paths).find(|(log, _)| is_other(log)) {
         None => Ok(first),
@@ -168,6 +189,9 @@ pub(crate) fn read(
             Kind::BadInput => failure.help("use logs of captures with whole sweeps"),
             _ => failure,
         })?;
+    if let Some(missing) = completeness::missing(&report) {
+        tracing::warn!("{}: {missing}", path.display());
+    }
     let name = report.contents.model.as_deref();
     let model = ALL
         .into_iter()
@@ -207,12 +231,19 @@ fn refused(refusal: &CalibrationRefusal, request: &CalibrateRequest<'_>) -> Fail
         )
         .help("nothing was written; run the command again");
     }
+    if matches!(refusal, CalibrationRefusal::UnknownParameter { .. }) {
+        return Failure::new(Kind::Usage, format!("--fix: {refusal}"))
+            .help("name a parameter, or how several begin, such as mount_rotation");
+    }
     let help = match refusal {
         CalibrationRefusal::FewPatches { .. } => {
             "scan where walls, floors or other smooth surfaces are within 50 m"
         }
         CalibrationRefusal::Drift { .. } => {
             "fasten the base and scan again; a soft floor or a tripod gives way"
+        }
+        CalibrationRefusal::Misfit { chi2 } if *chi2 < 1.0 => {
+            "the ranges agree better than their stated noise: state a smaller range_sd_m in [lidar] before the scan"
         }
         CalibrationRefusal::Misfit { .. } => {
             "the scene moved, or the scanner has an error that is not in the model; scan another place"

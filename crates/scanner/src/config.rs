@@ -47,6 +47,20 @@ pub struct SimulatedScene {
     pub seed: String,
     /// Effects that were on.
     pub effects: Vec<String>,
+    /// [`SimulatedScene::fingerprint_of`] the scene's text; absent in older logs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fingerprint: Option<String>,
+}
+
+impl SimulatedScene {
+    /// Tells texts of scenes apart: their FNV-1a hash of 64 bits, hexadecimal.
+    #[must_use]
+    pub fn fingerprint_of(text: &str) -> String {
+        let hash = text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+        });
+        format!("{hash:016x}")
+    }
 }
 
 /// Bits of the body of a read request on RS232 (Communication Guide: length, two words, checksum),

@@ -44,6 +44,8 @@ pub struct SceneFile {
     pub simulation: Simulation,
     /// The effects and the lines that configure them.
     pub effects: SceneEffects,
+    /// Its text.
+    pub text: String,
     /// Seed of all random draws.
     pub seed: u64,
     /// The tolerance that decides which effects are on, if the file states one.
@@ -266,6 +268,7 @@ impl SceneFile {
                 clock_at_start_us: sections.lidar_clock_us,
             },
             effects: SceneEffects::default(),
+            text: text.to_owned(),
             seed,
             tolerance,
             demands: Vec::new(),

@@ -214,7 +214,11 @@ impl Simulation {
         Ok(summary)
     }
 
-    fn check(&self) -> Result<(), SimulateError> {
+    /// Whether it can be run: files need not be opened for one that cannot.
+    ///
+    /// # Errors
+    /// [`SimulateError`] for a motion that is too long and for impossible times of polls.
+    pub fn check(&self) -> Result<(), SimulateError> {
         let got_s = self.motion.end_s;
         if got_s > MAX_DURATION_S {
             return Err(SimulateError::TooLong { got_s });

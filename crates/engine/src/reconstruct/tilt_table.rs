@@ -18,7 +18,8 @@ pub fn tilt_source(text: &str) -> Result<TiltSource, Failure> {
     }
 }
 
-/// Reads a CSV of time_s,angle_deg. A first line without numbers is a header.
+/// Reads a CSV of time_s,angle_deg. A first line without numbers is a header; its units must be
+/// these.
 fn angle_table(path: &Path) -> Result<AngleTable, Failure> {
     let wrong = |what: String| {
         Failure::new(Kind::BadInput, format!("{}: {what}", path.display())).help(
@@ -39,7 +40,15 @@ fn angle_table(path: &Path) -> Result<AngleTable, Failure> {
                 lines.push(number + 1);
             }
             None if blank => {}
-            None if rows.is_empty() && !heading => heading = true,
+            None if rows.is_empty() && !heading => {
+                if !has_units(line) {
+                    return Err(wrong(format!(
+                        "line {}: expected the columns time_s,angle_deg, got {line:?}",
+                        number + 1
+                    )));
+                }
+                heading = true;
+            }
             None => {
                 return Err(wrong(format!(
                     "line {}: expected two finite numbers, got {line:?}",
@@ -57,6 +66,18 @@ fn angle_table(path: &Path) -> Result<AngleTable, Failure> {
     })
 }
 
+/// Whether no column of a header has another unit: `time,angle` has none.
+fn has_units(header: &str) -> bool {
+    let units = ["s", "deg"];
+    header.split([',', ';']).zip(units).all(|(name, unit)| {
+        let name = name.trim().to_lowercase();
+        match name.rsplit_once('_') {
+            Some((_, found)) => found == unit,
+            None => !name.is_empty(),
+        }
+    })
+}
+
 fn parse_row(line: &str) -> Option<(f64, f64)> {
     let mut cells = line
         .split([',', ';'])
@@ -66,5 +87,29 @@ fn parse_row(line: &str) -> Option<(f64, f64)> {
             Some((time, angle))
         }
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn headers_name_seconds_and_degrees_or_no_unit() {
+        for header in [
+            "time_s,angle_deg",
+            "Time;Angle",
+            "t_s, tilt_deg",
+            "time_s,angle_deg,note",
+        ] {
+            assert!(has_units(header), "{header}");
+        }
+        for header in [
+            "time_s,angle_rad",
+            "time_ms,angle_deg",
+            "time_s,position_qc",
+        ] {
+            assert!(!has_units(header), "{header}");
+        }
     }
 }

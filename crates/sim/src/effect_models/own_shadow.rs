@@ -82,9 +82,16 @@ impl OwnShadow {
 
 impl ShadowSector {
     fn hides(&self, azimuth_deg: f64, tilt_deg: f64) -> bool {
-        let width_deg = (self.azimuth_to_deg - self.azimuth_from_deg).rem_euclid(360.0);
         (self.tilt_from_deg..=self.tilt_to_deg).contains(&tilt_deg)
-            && (azimuth_deg - self.azimuth_from_deg).rem_euclid(360.0) < width_deg
+            && (azimuth_deg - self.azimuth_from_deg).rem_euclid(360.0) < self.width_deg()
+    }
+
+    /// From one azimuth clockwise to the other; 0 to 360 is the full circle.
+    pub(crate) fn width_deg(&self) -> f64 {
+        match self.azimuth_to_deg - self.azimuth_from_deg {
+            360.0 => 360.0,
+            width_deg => width_deg.rem_euclid(360.0),
+        }
     }
 }
 
@@ -117,6 +124,22 @@ impl ViewEffect for OwnShadow {
 mod tests {
     use super::*;
     use crate::effect_models::testing::firing;
+
+    #[test]
+    fn from_0_to_360_is_the_full_circle() {
+        let width = |from: f64, to: f64| {
+            let sector = ShadowSector {
+                azimuth_from_deg: from,
+                azimuth_to_deg: to,
+                tilt_from_deg: -45.0,
+                tilt_to_deg: 0.0,
+            };
+            sector.width_deg()
+        };
+        assert_eq!(width(0.0, 360.0), 360.0);
+        assert_eq!(width(350.0, 10.0), 20.0);
+        assert_eq!(width(10.0, 10.0), 0.0);
+    }
 
     #[test]
     fn a_sector_blocks_its_azimuths_at_its_tilts() {

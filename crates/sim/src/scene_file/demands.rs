@@ -260,9 +260,8 @@ impl SceneFacts<'_> {
         let demand = |reason: String| EffectDemand::new(effect, reason);
         let sized = match effect {
             "own_shadow" => config.own_shadow.settings().map(|shadow| {
-                let width = |from: f64, to: f64| (to - from).rem_euclid(360.0);
                 let hidden_deg: f64 = (shadow.sectors.iter())
-                    .map(|sector| width(sector.azimuth_from_deg, sector.azimuth_to_deg))
+                    .map(|sector| sector.width_deg())
                     .sum();
                 let below = shadow.below_deg.map_or_else(String::new, |deg| {
                     format!(", and its tripod what is below {deg} deg")

@@ -29,6 +29,7 @@ pub fn run(arguments: &cli::Calibrate, common: &Common) -> Result<CommandOutput,
             refuse_overwrite(log, output)?;
         }
         check_free(output, arguments.force)?;
+        replaces_only_a_mount(output)?;
     }
     let files = arguments
         .report
@@ -73,6 +74,23 @@ pub fn run(arguments: &cli::Calibrate, common: &Common) -> Result<CommandOutput,
         report.output = Some(output.display().to_string());
     }
     Ok(CommandOutput::result(&report, text(&report)))
+}
+
+/// Refuses other extensions than `.toml`, and to replace a file that is no mount: it may be the
+/// configuration or a scene.
+fn replaces_only_a_mount(output: &Path) -> Result<(), Failure> {
+    let wrong =
+        |what: String| Err(Failure::new(Kind::Usage, what).help("name another file with -o"));
+    if output.extension() != Some("toml".as_ref()) {
+        return wrong(format!(
+            "the mount {}: expected the extension .toml",
+            output.display()
+        ));
+    }
+    match output.exists() && load_mount(output).is_err() {
+        true => wrong(format!("{} exists and is no mount", output.display())),
+        false => Ok(()),
+    }
 }
 
 fn cannot_write(path: &Path, error: &str) -> Failure {

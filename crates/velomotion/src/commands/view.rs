@@ -63,9 +63,13 @@ pub fn show(
     interrupt: &AtomicBool,
     served: impl FnOnce(&str),
 ) -> Result<(), Failure> {
-    let mut inputs = Vec::new();
-    for path in paths {
-        inputs.push(ViewInput::open(path)?);
+    let inputs: Vec<ViewInput<'_>> = paths.iter().map(|path| ViewInput::open(path)).collect();
+    // With nothing to show there is no page.
+    let is_failed = |input: &ViewInput<'_>| matches!(input, ViewInput::Failed(..));
+    if let Some(ViewInput::Failed(_, failure)) = inputs.first()
+        && inputs.iter().all(is_failed)
+    {
+        return Err(failure.clone());
     }
     let server = ViewServer::start(inputs.iter().map(ViewInput::listed).collect())?;
     served(&server.url());
@@ -96,10 +100,16 @@ pub fn show(
 enum ViewInput<'a> {
     Cloud(&'a Path, Format),
     Log(Box<Source>),
+    Failed(&'a Path, Failure),
 }
 
 impl<'a> ViewInput<'a> {
-    fn open(path: &'a Path) -> Result<Self, Failure> {
+    /// The failure of a file that is none is for the list.
+    fn open(path: &'a Path) -> Self {
+        Self::opened(path).unwrap_or_else(|failure| Self::Failed(path, failure))
+    }
+
+    fn opened(path: &'a Path) -> Result<Self, Failure> {
         let name = path.to_string_lossy();
         if name != "-" && !path.exists() {
             let what = format!("{name}: there is no such file");
@@ -116,7 +126,7 @@ impl<'a> ViewInput<'a> {
 
     fn path(&self) -> &Path {
         match self {
-            Self::Cloud(path, _) => path,
+            Self::Cloud(path, _) | Self::Failed(path, _) => path,
             Self::Log(source) => source.path(),
         }
     }
@@ -179,6 +189,7 @@ fn make_all(
     for (index, input) in inputs.iter().enumerate() {
         let made = match input {
             ViewInput::Cloud(path, format) => cloud(path, *format),
+            ViewInput::Failed(_, failure) => Err(failure.clone()),
             ViewInput::Log(source) => {
                 progress.say(&format!("making the cloud of {}", input.path().display()));
                 let share = |share| files.update(index, |file| file.share = Some(share));

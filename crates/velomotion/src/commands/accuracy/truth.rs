@@ -32,7 +32,7 @@ impl TruePlaces {
     /// [`Kind::BadInput`] for an invalid scene; [`Kind::Usage`] for one that the logs are not of.
     pub fn new(scene: &Path, seed: Option<u64>, logs: &[PathBuf]) -> Result<Self, Failure> {
         let (name, text) = find(scene)?;
-        let simulated = simulated(logs, scene, seed)?;
+        let simulated = simulated(logs, scene, &text, seed)?;
         let seed_of_logs = (simulated.as_ref())
             .map(|simulated| simulated.seed.parse().map_err(|_| no_seed(simulated)))
             .transpose()?;
@@ -85,6 +85,7 @@ fn no_seed(simulated: &SimulatedScene) -> Failure {
 fn simulated(
     logs: &[PathBuf],
     scene: &Path,
+    text: &str,
     seed: Option<u64>,
 ) -> Result<Option<SimulatedScene>, Failure> {
     let mut first: Option<SimulatedScene> = None;
@@ -99,7 +100,11 @@ fn simulated(
                 Failure::new(Kind::Usage, what).help("compare one log at a time with a scene")
             );
         }
-        let Some(found) = found else { continue };
+        let Some(found) = found else {
+            let what = format!("{} does not say that a scene was simulated", log.display());
+            return Err(Failure::new(Kind::Usage, what)
+                .help("compare a log (.pcapng) of velomotion simulate with its scene"));
+        };
         let other = |what: &str, given: &dyn Display, expected: &str| {
             let what = format!("{} has the {what} {expected}, not {given}", log.display());
             Failure::new(Kind::Usage, what).help(format!(
@@ -107,7 +112,19 @@ fn simulated(
                 found.scene
             ))
         };
-        if Path::new(&found.scene).file_name() != scene.file_name() {
+        let is_other = match &found.fingerprint {
+            Some(fingerprint) => *fingerprint != SimulatedScene::fingerprint_of(text),
+            None => Path::new(&found.scene).file_name() != scene.file_name(),
+        };
+        if is_other && Path::new(&found.scene) == scene {
+            let what = format!(
+                "{scene} has changed since {log} was simulated",
+                scene = scene.display(),
+                log = log.display()
+            );
+            return Err(Failure::new(Kind::Usage, what).help("simulate the scene again"));
+        }
+        if is_other {
             return Err(other("scene", &scene.display(), &found.scene));
         }
         if let Some(seed) = seed.filter(|seed| seed.to_string() != found.seed) {

@@ -49,6 +49,8 @@ pub(super) struct Log<'a> {
     began: Stamp<Host>,
     last: Stamp<Host>,
     failure: Option<Failure>,
+    /// Whether the truth could not be written.
+    truth_failed: bool,
 }
 
 impl<'a> Log<'a> {
@@ -73,6 +75,7 @@ impl<'a> Log<'a> {
             began: simulation.start,
             last: simulation.start,
             failure: None,
+            truth_failed: false,
         }
     }
 
@@ -112,12 +115,22 @@ impl<'a> Log<'a> {
         let Some(truth) = &mut self.truth else {
             return ControlFlow::Continue(());
         };
+        if self.truth_failed {
+            return ControlFlow::Break(());
+        }
         let written = truth.sink().points(&self.batch);
-        let written = written.map_err(|error| sink_failure(truth.path(), &error));
+        let written = written.map_err(|error| {
+            sink_failure(truth.path(), &error).help(
+                "free some space or choose another folder with --truth, and run the command again: the log ends here, too",
+            )
+        });
         self.batch.clear();
         match written {
             Ok(()) => ControlFlow::Continue(()),
-            Err(failure) => self.fail(failure),
+            Err(failure) => {
+                self.truth_failed = true;
+                self.fail(failure)
+            }
         }
     }
 
@@ -129,6 +142,8 @@ impl<'a> Log<'a> {
             .finish()
             .map_err(|error| cannot_write(path, &error))?;
         let name = match self.truth {
+            // Part of a truth is not kept under its name.
+            Some(_) if self.truth_failed => None,
             Some(truth) => {
                 let name = truth.path().to_owned();
                 truth.commit()?;
@@ -311,6 +326,7 @@ pub(super) fn scan_config(name: &str, scene: &SceneFile, gearing: Option<Gearing
             effects: (scene.effects.lines.iter())
                 .map(|line| line.name.to_owned())
                 .collect(),
+            fingerprint: Some(SimulatedScene::fingerprint_of(&scene.text)),
         }),
         ..ScanConfig::default()
     }

@@ -273,6 +273,8 @@ pub fn make(
         encoder.gearing().unwrap_or(polls.gearing)
     });
     let config = scan_config(&name, &scene, gearing);
+    // Before an older log is replaced.
+    (scene.simulation.check()).map_err(|error| cannot_simulate(&name, &error))?;
     let writer = create_log(path, &config, gearing.is_some(), force)?;
     if let Some(truth) = &mut truth {
         begin_truth(truth, &name, config.mount.mount())?;
