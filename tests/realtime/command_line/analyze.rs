@@ -234,7 +234,7 @@ fn logs_have_a_field_of_view_and_clouds_have_none() {
     place.fails(
         "calibrate swept.pcapng -o swept.toml --force",
         2,
-        &["swept.toml exists and is no mount"],
+        &["swept.toml exists and is no calibration"],
     );
     // A motion that cannot be simulated replaces no log.
     let before = std::fs::read(place.path("swept.pcapng")).unwrap();

@@ -29,7 +29,7 @@ pub fn run(arguments: &cli::Calibrate, common: &Common) -> Result<CommandOutput,
             refuse_overwrite(log, output)?;
         }
         check_free(output, arguments.force)?;
-        replaces_only_a_mount(output)?;
+        replaces_only_a_calibration(output)?;
     }
     let files = arguments
         .report
@@ -76,9 +76,14 @@ pub fn run(arguments: &cli::Calibrate, common: &Common) -> Result<CommandOutput,
     Ok(CommandOutput::result(&report, text(&report)))
 }
 
-/// Refuses other extensions than `.toml`, and to replace a file that is no mount: it may be the
-/// configuration or a scene.
-fn replaces_only_a_mount(output: &Path) -> Result<(), Failure> {
+/// Whether a file is of an earlier calibration.
+fn is_calibration(file: &Path) -> bool {
+    load_mount(file).is_ok_and(|mount| mount.calibration().is_some())
+}
+
+/// Refuses other extensions than `.toml`, and to replace a file that is no calibration: it may be
+/// the configuration or a scene.
+fn replaces_only_a_calibration(output: &Path) -> Result<(), Failure> {
     let wrong =
         |what: String| Err(Failure::new(Kind::Usage, what).help("name another file with -o"));
     if output.extension() != Some("toml".as_ref()) {
@@ -87,8 +92,8 @@ fn replaces_only_a_mount(output: &Path) -> Result<(), Failure> {
             output.display()
         ));
     }
-    match output.exists() && load_mount(output).is_err() {
-        true => wrong(format!("{} exists and is no mount", output.display())),
+    match output.exists() && !is_calibration(output) {
+        true => wrong(format!("{} exists and is no calibration", output.display())),
         false => Ok(()),
     }
 }
