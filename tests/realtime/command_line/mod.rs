@@ -7,6 +7,7 @@ mod frames;
 mod packets;
 mod recordings;
 mod schemas;
+mod simulated_logs;
 mod tradeoff;
 
 use std::path::{Path, PathBuf};

@@ -1,0 +1,74 @@
+//! Logs of `simulate`: what may be compared with them, and what replaces which file.
+
+use super::*;
+
+const SCENE: &str = "[sensor]\nideal = true\nrpm = 600\n[mount]\nd_m = 0.06\n[motion]\nkind = \"sweeps\"\nfrom_deg = 0\nto_deg = -45\nspeed_deg_s = 50\n[[objects]]\nsphere = { radius_m = 10 }\n";
+
+fn simulated() -> Place {
+    let place = Place::new();
+    std::fs::write(place.path("swept.toml"), SCENE).unwrap();
+    let made = place.run("simulate swept.toml -o swept.pcapng");
+    assert!(made.status.success(), "{made:?}");
+    place
+}
+
+/// Compared with another scene, points would be metres off.
+#[test]
+fn only_the_scene_of_a_log_is_its_truth() {
+    let place = simulated();
+    place.fails(
+        "accuracy swept.pcapng --scene hall",
+        2,
+        &["swept.pcapng has the scene swept.toml, not hall"],
+    );
+    place.fails(
+        "accuracy swept.pcapng --scene swept.toml --seed 3",
+        2,
+        &["the seed 0, not 3", "without --seed"],
+    );
+    std::fs::write(place.path("swept.toml"), SCENE.replace("= 10", "= 11")).unwrap();
+    place.fails(
+        "accuracy swept.pcapng --scene swept.toml",
+        2,
+        &["swept.toml has changed since swept.pcapng was simulated"],
+    );
+    let lidar = place.run("replay swept.pcapng -o lidar.pcap");
+    assert!(lidar.status.success());
+    place.fails(
+        "accuracy lidar.pcap --scene swept.toml",
+        2,
+        &["lidar.pcap does not say that a scene was simulated"],
+    );
+}
+
+#[test]
+fn a_calibration_needs_different_scans_and_replaces_only_a_calibration() {
+    let place = simulated();
+    place.fails(
+        "calibrate swept.pcapng swept.pcapng",
+        2,
+        &["swept.pcapng and swept.pcapng are the same scan"],
+    );
+    place.fails(
+        "calibrate swept.pcapng --fix lasers",
+        2,
+        &["no parameter begins with \"lasers\"", "play_deg"],
+    );
+    place.fails(
+        "calibrate swept.pcapng -o swept.toml --force",
+        2,
+        &["swept.toml exists and is no calibration"],
+    );
+}
+
+#[test]
+fn a_motion_that_cannot_be_simulated_replaces_no_log() {
+    let place = simulated();
+    let endless = SCENE.replace("speed_deg_s = 50", "speed_deg_s = 1e-9");
+    std::fs::write(place.path("endless.toml"), endless).unwrap();
+    place.fails(
+        "simulate endless.toml -o swept.pcapng --force",
+        3,
+        &["at most 86400 s"],
+    );
+}
