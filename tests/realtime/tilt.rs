@@ -224,19 +224,24 @@ fn tilt_stop_stops_a_move_of_another_process() {
 #[test]
 fn tilt_stop_finds_a_process_with_another_runtime_folder() {
     let bench = Bench::new("--usb");
-    bench.json("tilt home");
-    let mut moving = bench.command("tilt goto -40 --speed 1");
-    let mut moving = moving.env_remove("XDG_RUNTIME_DIR").spawn().unwrap();
-    let begin = std::time::Instant::now();
-    let moves = |status: &Output| {
-        serde_json::from_slice::<serde_json::Value>(&status.stdout)
-            .is_ok_and(|status| status["activity"] == "moving")
-    };
-    while !moves(&bench.run("tilt status --json")) {
-        assert!(begin.elapsed().as_secs() < 20, "no motion");
+    let other = tempfile::tempdir().unwrap();
+    for variable in [None, Some("XDG_RUNTIME_DIR"), Some("TMPDIR")] {
+        bench.json("tilt home");
+        let mut moving = bench.command("tilt goto -40 --speed 1");
+        moving.env_remove("XDG_RUNTIME_DIR");
+        moving.envs(variable.map(|variable| (variable, other.path())));
+        let mut moving = moving.spawn().unwrap();
+        let begin = std::time::Instant::now();
+        let moves = |status: &Output| {
+            serde_json::from_slice::<serde_json::Value>(&status.stdout)
+                .is_ok_and(|status| status["activity"] == "moving")
+        };
+        while !moves(&bench.run("tilt status --json")) {
+            assert!(begin.elapsed().as_secs() < 20, "no motion: {variable:?}");
+        }
+        assert_eq!(bench.json("tilt stop")["stopped"], true, "{variable:?}");
+        assert_eq!(moving.wait().unwrap().code(), Some(130), "{variable:?}");
     }
-    assert_eq!(bench.json("tilt stop")["stopped"], true);
-    assert_eq!(moving.wait().unwrap().code(), Some(130));
 }
 
 #[test]

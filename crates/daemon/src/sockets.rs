@@ -15,6 +15,9 @@ const SERVICE: &str = "/run/velomotion";
 /// Folders of the sockets of logged-in users, named by user id (systemd's pam_systemd(8)).
 const USERS: &str = "/run/user";
 
+/// The machine's Unix sockets (proc_net_unix(5)): the path is the last field.
+const LISTENING: &str = "/proc/net/unix";
+
 /// The files of this process belong to its user.
 const SELF: &str = "/proc/self";
 
@@ -97,10 +100,42 @@ fn trusted(kind: DeviceKind, names: Vec<String>) -> Vec<PathBuf> {
     }
     let mut seen = BTreeSet::new();
     folders.retain(|folder| seen.insert(folder.clone()));
-    let sockets = folders
-        .into_iter()
-        .flat_map(|folder| names.iter().map(move |name| folder.join(name)));
-    sockets.filter(|socket| is_trusted(socket)).collect()
+    let mut sockets: Vec<PathBuf> = folders
+        .iter()
+        .flat_map(|folder| names.iter().map(move |name| folder.join(name)))
+        .collect();
+    if kind != DeviceKind::Sim {
+        let table = std::fs::read_to_string(LISTENING).unwrap_or_default();
+        let listening = listening(&table, &names).filter(|socket| !sockets.contains(socket));
+        let listening: Vec<PathBuf> = listening.collect();
+        sockets.extend(listening);
+    }
+    sockets.retain(|socket| is_trusted(socket));
+    sockets
+}
+
+/// Sockets of a table with these names, whatever the folders that their processes chose.
+fn listening(table: &str, names: &[String]) -> impl Iterator<Item = PathBuf> {
+    let paths = table.lines().filter_map(|line| {
+        let begin = line.find(" /")?;
+        Some(Path::new(&line[begin + 1..]))
+    });
+    paths
+        .filter(|path| names.iter().any(|name| path.ends_with(name)))
+        .map(Path::to_owned)
+}
+
+/// Gives a socket the group of the drive's port: who may open the port may stop its axis, also that
+/// of a command run by sudo. Root alone can, and needs to.
+pub(crate) fn share_with_port(socket: &Path, profile: &str, device: &Device) {
+    let port = port_path(profile, device).ok();
+    let group = port.and_then(|port| Some(std::fs::metadata(port).ok()?.gid()));
+    if group.is_some() && owner(SELF) == Some(0) {
+        let shared = std::os::unix::fs::chown(socket, None, group);
+        if let Err(error) = shared {
+            tracing::debug!("the socket {} stays with root: {error}", socket.display());
+        }
+    }
 }
 
 /// The target of a port's symbolic link, and other links to it in `/dev` and in the port's folder.
@@ -174,6 +209,18 @@ mod tests {
             name_of(Path::new("/dev/velomotion-epos2")),
             "velomotion-dev-velomotion-epos2.daemon.sock"
         );
+    }
+
+    #[test]
+    fn sockets_in_any_folder_are_found_by_name() {
+        let table = "Num       RefCount Protocol Flags    Type St Inode Path\n\
+            0000000000000000: 00000002 00000000 00010000 0001 01 20 /a b/velomotion-x.daemon.sock\n\
+            0000000000000000: 00000002 00000000 00010000 0001 01 21 @/abstract/velomotion-x.daemon.sock\n\
+            0000000000000000: 00000002 00000000 00010000 0001 01 22\n\
+            0000000000000000: 00000002 00000000 00010000 0001 01 23 /a/other.sock\n";
+        let found: Vec<PathBuf> =
+            listening(table, &["velomotion-x.daemon.sock".to_owned()]).collect();
+        assert_eq!(found, [PathBuf::from("/a b/velomotion-x.daemon.sock")]);
     }
 
     #[test]

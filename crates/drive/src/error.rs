@@ -284,6 +284,26 @@ pub enum DriveError {
         /// The range between the limits, the home offset and the margin.
         bound: Degrees,
     },
+    /// Homing began, and neither the demand nor the position moves.
+    #[error("homing by method {method} does not move the axis: at {:.2} deg since {:.1} s", at.0, waited.as_secs_f64())]
+    HomingRest {
+        /// Homing method.
+        method: i8,
+        /// Position, from an arbitrary zero.
+        at: Degrees,
+        /// Time since the start of homing.
+        waited: Span,
+    },
+    /// Homing ended at another position than the configured one.
+    #[error("homing by method {method} ended at {:.2} deg: expected the home position, {:.2} deg", got.0, expected.0)]
+    HomePosition {
+        /// Homing method.
+        method: i8,
+        /// The home position (2081).
+        expected: Degrees,
+        /// Position after homing.
+        got: Degrees,
+    },
     /// A limit switch is pressed that a move must not reach, and the drive does not react.
     #[error("the {} limit switch is pressed (2071:1 is {inputs:#06X}), which the move must not reach", if *positive { "positive" } else { "negative" })]
     LimitSwitch {
@@ -491,7 +511,13 @@ impl DriveError {
             Self::LimitSwitch { .. } => {
                 "check the switch, its input and the drive's limit settings (2071:4), then home again"
             }
-            Self::Homing { .. } | Self::HomingTime { .. } | Self::HomingTravel { .. } => {
+            Self::HomePosition { .. } => {
+                "compare the drive's home position and offset (2081, 607C) with [axis.homing] of the configuration"
+            }
+            Self::Homing { .. }
+            | Self::HomingTime { .. }
+            | Self::HomingTravel { .. }
+            | Self::HomingRest { .. } => {
                 "check the switch the method searches for and its input, the homing direction and \
                  speeds, and that nothing blocks the axis"
             }

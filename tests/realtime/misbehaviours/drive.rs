@@ -51,7 +51,7 @@ pub struct Drive {
     pub booted: bool,
     /// NMT state operational.
     pub operational: bool,
-    objects: BTreeMap<(u16, u8), (u8, bool, u32)>,
+    pub(crate) objects: BTreeMap<(u16, u8), (u8, bool, u32)>,
     pub(crate) referenced: bool,
     /// Quadcounts added to those of the encoder.
     pub(crate) offset: i64,
@@ -309,7 +309,9 @@ impl Drive {
             return;
         }
         if word & 0x02 == 0 {
-            if !(is_on && self.faults.ignores_disable) {
+            if let Some(fewer) = self.faults.lost_disables.checked_sub(1) {
+                self.faults.lost_disables = fewer;
+            } else if !(is_on && self.faults.ignores_disable) {
                 self.power_off_at = Some(self.now + self.faults.disables_after);
             }
             return;

@@ -169,6 +169,8 @@ pub struct Faults {
     pub ignores_switches: bool,
     pub ignores_quick_stop: bool,
     pub ignores_disable: bool,
+    /// So many commands of power off have no effect.
+    pub lost_disables: u32,
     pub ignores_writes: bool,
     pub ignores_targets: bool,
     pub never_acknowledges: bool,
@@ -218,6 +220,7 @@ impl Default for Faults {
             ignores_switches: false,
             ignores_quick_stop: false,
             ignores_disable: false,
+            lost_disables: 0,
             ignores_writes: false,
             ignores_targets: false,
             never_acknowledges: false,

@@ -71,6 +71,14 @@ pub const ROWS: &[Misbehaviour] = &[
         unguarded(d);
         d.faults.motor = Motor::RunsAt(-60.0);
     }),
+    row("homing: the switch is dead, the demand is refused (6062)", Start, HomingBound, |d| {
+        d.faults.switches = Switches::Dead;
+        d.objects.remove(&(0x6062, 0));
+    }),
+    row("homing: the switch is dead, demand and position freeze", Start, HomingBound, |d| {
+        (d.faults.switches, d.faults.report) = (Switches::Dead, Report::Held);
+        d.objects.remove(&(0x6062, 0));
+    }),
     row("homing: fault 2310", Homing, Stopped, |d| d.fail(0x2310, false)),
     row("homing: no answers", Homing, Silent, |d| d.faults.damage = Damage::Silence),
     row("homing: supply lost for 0.3 s", Homing, Safe, |d| d.lose_supply(0.3)),
@@ -135,6 +143,11 @@ pub const ROWS: &[Misbehaviour] = &[
         unguarded(d);
         d.faults.motor = Motor::KeepsOn;
         (d.faults.ignores_quick_stop, d.faults.ignores_disable) = (true, true);
+    }),
+    row("it ignores quick stop and loses the first power off", Braking, Safe, |d| {
+        unguarded(d);
+        d.faults.motor = Motor::KeepsOn;
+        (d.faults.ignores_quick_stop, d.faults.lost_disables) = (true, 1);
     }),
     row("it turns round and ignores quick stop", MidSweep, Braked, |d| {
         unguarded(d);

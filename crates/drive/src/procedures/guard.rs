@@ -13,6 +13,9 @@ use crate::error::{Deviation, DriveError};
 use crate::event::ShaftSample;
 use crate::plan::MovePlan;
 
+/// Time of a reply up to which a deviation is confirmed by a second one: the stop leaves within
+/// 50 ms of the sample that shows it.
+const CONFIRMATION: Span = Span::from_millis(40);
 /// Longest time from the receipt of the command to the start of the profile: some control cycles.
 const START_DELAY: Span = Span::from_millis(10);
 /// Share by which the drive's clock may differ from the host's, in progress of the move.
@@ -28,8 +31,8 @@ pub(super) struct MotionGuard {
     ahead: f64,
     lowest: f64,
     highest: f64,
-    /// The previous sample deviated.
-    is_suspicious: bool,
+    /// Whether the latest sample and the one before it deviated.
+    deviated: [bool; 2],
     /// How far the latest sample was behind the plan.
     pub lag: Degrees,
 }
@@ -53,7 +56,7 @@ impl MotionGuard {
             // A move may begin beyond a limit, where homing or a person has left the axis.
             lowest: config.limits.min.0.min(plan.from.0) - guard.beyond_limits.0 - dither,
             highest: config.limits.max.0.max(plan.from.0) + guard.beyond_limits.0 + dither,
-            is_suspicious: false,
+            deviated: [false; 2],
             lag: Degrees(0.0),
         }
     }
@@ -66,22 +69,29 @@ impl MotionGuard {
     /// Compares a sample at an angle with the plan.
     ///
     /// # Errors
-    /// [`DriveError::OffPlan`] at the second deviating sample in a row: a single one may be a
-    /// damaged reply.
+    /// [`DriveError::OffPlan`] at the second deviating sample of three: a single one may be a
+    /// damaged reply. Where replies take longer than [`CONFIRMATION`], at the first.
     pub fn check(&mut self, sample: &ShaftSample, angle: Degrees) -> Result<(), DriveError> {
         let since_start = sample.answer.saturating_since(self.sent);
         let lag = self.plan.travelled(since_start).0 - self.progress(angle.0);
         self.lag = Degrees(lag.clamp(0.0, self.behind));
         let deviation = self.deviation(sample, angle.0);
-        let was_suspicious = std::mem::replace(&mut self.is_suspicious, deviation.is_some());
+        let is_slow = sample.answer.saturating_since(sample.request) > CONFIRMATION;
+        let is_confirmed = is_slow || self.deviated != [false; 2];
+        self.deviated = [deviation.is_some(), self.deviated[0]];
         match deviation {
-            Some((deviation, expected)) if was_suspicious => Err(DriveError::OffPlan {
+            Some((deviation, expected)) if is_confirmed => Err(DriveError::OffPlan {
                 deviation,
                 expected: Degrees(expected),
                 got: angle,
             }),
             _ => Ok(()),
         }
+    }
+
+    /// Whether the latest sample deviated: the next one must follow at once.
+    pub const fn is_suspicious(&self) -> bool {
+        self.deviated[0]
     }
 
     /// Distance from the start in the direction of the move, degrees.
@@ -232,9 +242,27 @@ mod tests {
         let mut guard = guard(-45.0, 0.0);
         let sample = |ms: i64| sample_at(Stamp::from_nanos(ms * 1_000_000));
         let on_plan = Degrees(-45.0 + guard.plan.travelled(Span::from_millis(300)).0);
-        for (ms, angle) in [(300, Degrees(40.0)), (301, on_plan), (302, Degrees(-60.0))] {
+        for (ms, angle) in [
+            (300, Degrees(40.0)),
+            (301, on_plan),
+            (302, on_plan),
+            (303, Degrees(-60.0)),
+            (304, on_plan),
+        ] {
             assert_eq!(guard.check(&sample(ms), angle), Ok(()), "{ms} ms");
         }
+        // A position that jumps to and fro.
+        assert!(guard.check(&sample(305), Degrees(40.0)).is_err());
+    }
+
+    #[test]
+    fn a_deviation_in_a_slow_reply_needs_no_second_one() {
+        let mut guard = guard(-45.0, 0.0);
+        let sample = ShaftSample {
+            answer: Stamp::from_nanos(350_000_000),
+            ..sample_at(Stamp::from_nanos(300_000_000))
+        };
+        assert!(guard.check(&sample, Degrees(-60.0)).is_err());
     }
 
     #[test]

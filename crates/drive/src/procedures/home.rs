@@ -86,7 +86,10 @@ async fn configure(ops: &Ops) -> Result<(), DriveError> {
 async fn wait_until_attained(ops: &mut Ops) -> Result<(), DriveError> {
     const DONE: u16 = status::TARGET_REACHED | status::HOMING_ATTAINED;
     let homing = ops.config.homing;
-    let limit = ops.now().saturating_add(homing.time_limit);
+    let began = ops.now();
+    let time_limit = time_limit(&ops.config);
+    let limit = began.saturating_add(time_limit);
+    let must_move_by = began.saturating_add(rest_limit(&ops.config));
     let mut travel = HomingTravel::default();
     let mut switches = SwitchWatch::of_homing(&ops.config);
     let mut switch_check = PeriodicCheck::new(ops, SWITCH_CHECKS);
@@ -106,22 +109,37 @@ async fn wait_until_attained(ops: &mut Ops) -> Result<(), DriveError> {
         if got & DONE == DONE {
             return Ok(());
         }
-        // An error here does not end homing. A lost link fails the next check.
-        if let Ok((demand, reply)) = ops.read_timed(objects::POSITION_DEMAND).await {
-            travel
-                .demand
-                .add(&ops.config, demand, reply.request, reply.answer);
-            if let Ok((position, later)) = ops.read_timed(objects::POSITION_ACTUAL).await {
-                travel.add_position(
-                    &ops.config,
-                    position,
-                    [reply.request, later.request, later.answer],
-                );
+        // A missing answer does not end homing: a lost link fails the next check. A drive that
+        // refuses to report its demand is watched by its position alone.
+        match ops.read_timed(objects::POSITION_DEMAND).await {
+            Ok((demand, reply)) => {
+                travel
+                    .demand
+                    .add(&ops.config, demand, reply.request, reply.answer);
+                if let Ok((position, later)) = ops.read_timed(objects::POSITION_ACTUAL).await {
+                    travel.add_position(
+                        &ops.config,
+                        position,
+                        [reply.request, later.request, later.answer],
+                    );
+                }
+                ops.report(CommandProgress::Searching {
+                    at: reply.answer,
+                    demand: Quadcounts(demand),
+                });
             }
-            travel.check(&ops.config)?;
-            ops.report(CommandProgress::Searching {
-                at: reply.answer,
-                demand: Quadcounts(demand),
+            Err(DriveError::Refused { .. }) => {
+                let (position, reply) = ops.read_timed(objects::POSITION_ACTUAL).await?;
+                (travel.position).add(&ops.config, position, reply.request, reply.answer);
+            }
+            Err(_) => {}
+        }
+        travel.check(&ops.config)?;
+        if requested > must_move_by && travel.is_at_rest(&ops.config) {
+            return Err(DriveError::HomingRest {
+                method: homing.method,
+                at: Degrees(travel.position.angle(&ops.config)),
+                waited: ops.now().saturating_since(began),
             });
         }
         if switch_check.is_due(ops.now()) {
@@ -130,11 +148,39 @@ async fn wait_until_attained(ops: &mut Ops) -> Result<(), DriveError> {
         if requested > limit {
             return Err(DriveError::HomingTime {
                 method: homing.method,
-                limit: homing.time_limit,
+                limit: time_limit,
                 got,
             });
         }
     }
+}
+
+/// Time in which homing is done: the whole way at the speed of the search, the margin again at the
+/// speed of leaving the switch, and the ramps.
+fn time_limit(config: &AxisConfig) -> Span {
+    let rate = |speed| config.gearing.rate(speed).0;
+    let homing = &config.homing;
+    let seconds = travel_bound(config) / rate(homing.switch_speed)
+        + config.guard.homing_margin.0 / rate(homing.zero_speed);
+    Span::from_secs_f64(seconds)
+        .saturating_add(rest_limit(config))
+        .min(homing.time_limit)
+}
+
+/// Time after the start of homing in which the axis, or its demand, must have begun to move: a
+/// second, the brake, and twice the spread of an axis at rest at the slower speed.
+fn rest_limit(config: &AxisConfig) -> Span {
+    let slower = config.gearing.rate(config.homing.zero_speed).0;
+    let brake = config.brake.map_or(Span::ZERO, |brake| brake.rise);
+    Span::from_secs_f64(2.0 * config.standstill_spread.0 / slower)
+        .saturating_add(brake)
+        .saturating_add(Span::from_secs(1))
+}
+
+/// The farthest that homing may move the axis: its range, the home offset and the margin, degrees.
+fn travel_bound(config: &AxisConfig) -> f64 {
+    let range = config.limits.max.0 - config.limits.min.0;
+    range + config.homing.offset.0.abs() + config.guard.homing_margin.0
 }
 
 /// The way of the axis in homing: of the demand, and of the position, since a drive may report a
@@ -205,6 +251,12 @@ impl HomingTravel {
         }
     }
 
+    /// Whether neither the demand nor the position has moved.
+    fn is_at_rest(&self, config: &AxisConfig) -> bool {
+        let ways = [&self.demand, &self.position];
+        (ways.iter()).all(|way| way.angle(config).abs() <= config.standstill_spread.0)
+    }
+
     /// Compares the distance from the start with the range of the axis, and the way of the position
     /// with that of the demand.
     fn check(&mut self, config: &AxisConfig) -> Result<(), DriveError> {
@@ -233,8 +285,7 @@ impl HomingTravel {
             });
         }
         let travelled = demand.abs().max(position.abs());
-        let range = config.limits.max.0 - config.limits.min.0;
-        let bound = range + config.homing.offset.0.abs() + config.guard.homing_margin.0;
+        let bound = travel_bound(config);
         if travelled > bound {
             return Err(DriveError::HomingTravel {
                 method: config.homing.method,
@@ -259,6 +310,16 @@ async fn check_result(ops: &mut Ops) -> Result<CommandOutcome, DriveError> {
             at: angle,
             min: ops.config.limits.min,
             max: ops.config.limits.max,
+        });
+    }
+    let (homing, guard) = (&ops.config.homing, &ops.config.guard);
+    let lag = ops.config.gearing.rate(homing.switch_speed).0 * guard.servo_lag.as_secs_f64();
+    let tolerance = guard.behind.0 + lag + ops.config.arrival_tolerance.0;
+    if (angle.0 - homing.home_position.0).abs() > tolerance {
+        return Err(DriveError::HomePosition {
+            method: homing.method,
+            expected: homing.home_position,
+            got: angle,
         });
     }
     Ok(CommandOutcome::Homed { position, angle })

@@ -169,6 +169,9 @@ async fn start(ops: &mut Ops, plan: MovePlan) -> Result<(MotionGuard, Stamp<Host
         // The axis accelerates and only samples show how: every other request goes between two of
         // them.
         guarded_sample(ops, &mut guard).await?;
+        if guard.is_suspicious() {
+            continue;
+        }
         let requested = ops.now();
         let got = check_enabled(ops).await?;
         if got & status::SETPOINT_ACKNOWLEDGE != 0 {
@@ -238,6 +241,9 @@ async fn sample_until_arrival(
             });
         }
         is_overdue = ops.now() > limit;
+        if guard.is_suspicious() {
+            continue;
+        }
         if is_overdue || check.is_due(ops.now()) {
             reached = check_enabled(ops).await? & status::TARGET_REACHED != 0;
         } else if switch_check.is_due(ops.now()) {

@@ -11,7 +11,7 @@ use crate::event::ShaftSample;
 const SPEED_SPAN: Span = Span::from_millis(12);
 /// Share of the overshoot at the end of a move (`ahead`) that a stop may have: a servo overshoots
 /// less than the tolerance for deviations from a whole move.
-const OVERSHOOT_SHARE: f64 = 0.4;
+const OVERSHOOT_SHARE: f64 = 0.2;
 
 /// Compares the samples after a quick stop with its ramp.
 pub(super) struct QuickStopRamp {

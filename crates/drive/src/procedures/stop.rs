@@ -26,6 +26,8 @@ use super::power::{is_fault, is_held, is_off, is_referenced, wait_for};
 use super::ramp::QuickStopRamp;
 use super::report::newest_error;
 
+/// Time between two commands of power off while the axis still moves: two standstill windows.
+const POWER_OFF_PERIOD: Span = Span::from_millis(100);
 /// Share of the standstill spread by which the mean position may drift within the window: 0.3 deg/s
 /// with the defaults.
 const DRIFT_SHARE: f64 = 0.25;
@@ -261,7 +263,15 @@ async fn wait_for_standstill(ops: &mut Ops) -> Result<Quadcounts, DriveError> {
     let mut window = StandstillWindow::new(&ops.config);
     let mut ramp = (!ops.is_coasting).then(|| QuickStopRamp::new(&ops.config, ops.lag()));
     let mut is_overdue = false;
+    let mut repeat_at = began.saturating_add(POWER_OFF_PERIOD);
     loop {
+        // The drive may have lost the first one. A lost link fails the next sample.
+        if ops.is_coasting && ops.now() >= repeat_at {
+            let _ = ops
+                .write_last_attempt(objects::CONTROLWORD, control::DISABLE_VOLTAGE)
+                .await;
+            repeat_at = ops.now().saturating_add(POWER_OFF_PERIOD);
+        }
         let sample = ops.next_sample().await?;
         if window.is_at_rest_with(&sample) {
             return Ok(sample.position);
