@@ -165,3 +165,16 @@ fn type_names_are_unique() {
         counts.repeated_types
     );
 }
+
+/// The binary interprets a command line and prints; what it does is in the libraries.
+#[test]
+fn the_binary_is_thin() {
+    let counts = counts_of_sources();
+    let lines = counts.crates["velomotion"].lines;
+    assert!(lines <= 8_000, "{lines} lines");
+    let files = counts.capture_files["velomotion"];
+    assert!(
+        files <= 12,
+        "commands/capture.rs needs {files} files of the binary"
+    );
+}

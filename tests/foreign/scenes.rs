@@ -4,10 +4,8 @@ use std::num::NonZeroUsize;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
+use engine::simulate;
 use glam::DVec3;
-use velomotion::cli::Common;
-use velomotion::commands::simulate;
-use velomotion::terminal::Progress;
 
 use crate::run_script;
 
@@ -40,13 +38,7 @@ fn velodyne_decoder_places_simulated_points_on_the_scenes_surfaces() {
         let text = format!(
             "scene = \"hall\"\n[sensor]\nmodel = \"{model}\"\n[effects]\nall = false\n[motion]\nkind = \"fixed\"\nduration_s = 0.11\n"
         );
-        let common = Common {
-            config: None,
-            json: false,
-            quiet: true,
-            verbose: 0,
-        };
-        let request = simulate::Request {
+        let request = simulate::SimulationRequest {
             name: model.to_owned(),
             log: &log,
             truth: None,
@@ -54,7 +46,7 @@ fn velodyne_decoder_places_simulated_points_on_the_scenes_surfaces() {
             explain: false,
             force: false,
             interrupt: &AtomicBool::new(false),
-            progress: Progress::new(&common),
+            progressed: &mut |_| {},
         };
         let scene = simulate::read(model, &text, None, None).unwrap();
         let (report, _) = simulate::make(scene, request).unwrap();

@@ -1,6 +1,7 @@
 //! How accurate a scanner is, by its logs.
 
 mod report;
+mod truth;
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -17,6 +18,7 @@ pub use report::{
     AccuracyReport, BudgetReport, LaserNoise, PointErrors, ResidualGroup, ResidualReport,
     StationReport, SweepDifference,
 };
+pub use truth::TruePlaces;
 
 use crate::calibrate::{ReadLog, one_scanner, read, tables};
 use crate::config::MountSettings;
@@ -50,6 +52,8 @@ pub struct Studied {
     pub calibrated: bool,
     /// The logs with their shots.
     pub logs: Vec<(PathBuf, usize)>,
+    /// Points without a true place and all points, if the truth is known.
+    pub without_truth: Option<[usize; 2]>,
 }
 
 /// Parameters of a motion that a fit estimates.
@@ -87,6 +91,10 @@ pub fn accuracy(
         Some(truth) => vec![point_errors(request, truth, first.report.points)?],
         None => Vec::new(),
     };
+    let without_truth = truth.first().map(|points| {
+        let without = points.iter().filter(|point| point.error_m.is_nan());
+        [without.count(), points.len()]
+    });
     let corrections = calibration.as_ref().map(|all| corrections(all, model));
     let covariance = calibration.as_ref().and_then(|all| all.covariance.as_ref());
     let rows = covariance.map(rows).unwrap_or_default();
@@ -117,6 +125,7 @@ pub fn accuracy(
             .cloned()
             .zip(scans.iter().map(Scan::len))
             .collect(),
+        without_truth,
     })
 }
 

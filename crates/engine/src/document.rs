@@ -15,6 +15,7 @@ use crate::failure::Failure;
 use crate::reconstruct::lidar_copy::LidarCopyReport;
 use crate::reconstruct::report::{InfoReport, ScanReport};
 use crate::service::axis_report::{AxisReport, StoppedCommand};
+use crate::simulate::SimulationReport;
 
 /// An object that a command prints with `--json`.
 pub trait Document: Serialize + ToSchema {
@@ -67,6 +68,10 @@ impl Document for PlanReport {
 
 impl Document for CalibrateReport {
     const SCHEMA: &'static str = "calibrate-1";
+}
+
+impl Document for SimulationReport {
+    const SCHEMA: &'static str = "simulate-1";
 }
 
 impl Document for TradeoffReport {

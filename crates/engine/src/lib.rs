@@ -2,6 +2,14 @@
 //!
 //! `devices` opens the drive and the lidar, `capture` plans and records a scan, `reconstruct` makes
 //! a cloud of a log or recording. The engine parses no arguments and prints nothing.
+//!
+//! ```no_run
+//! use engine::reconstruct::source::Source;
+//!
+//! let log = Source::open("hall.pcapng".as_ref(), None)?;
+//! println!("simulated: {}", log.config()?.simulated);
+//! # Ok::<(), engine::Failure>(())
+//! ```
 
 pub mod accuracy;
 pub mod bring_up;
@@ -17,6 +25,7 @@ pub mod lidars;
 pub mod output;
 pub mod reconstruct;
 pub mod service;
+pub mod simulate;
 mod threads;
 pub mod words;
 

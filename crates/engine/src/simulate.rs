@@ -1,4 +1,4 @@
-//! `velomotion simulate`: a log of a simulated scene, and its ground truth.
+//! A log of a simulated scene, and its ground truth.
 //!
 //! The log holds the lidar's datagrams, and the drive's USB frames if the scene has a drive.
 //! `sim::simulate` does the simulation.
@@ -7,36 +7,31 @@ mod log;
 mod sizes;
 mod stopwatch;
 
-use std::fs::File;
+pub use stopwatch::nanoseconds;
+
+pub use sizes::{EffectChoice, EffectSize, Sampler, unmet};
+pub use std::fs::File;
 use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use cloud::mount::Mount;
-use cloud::{Fields, Metadata, TiltTrack};
+use cloud::{Metadata, TiltTrack};
 use io::log::{LogConfig, LogError, LogWriter};
 use protocol::record::DriveLink;
 use scanner::ScanConfig;
 use serde::Serialize;
-use sim::effect_models::{EffectsConfig, Explanation, InvalidSetting};
+use sim::effect_models::{Explanation, InvalidSetting};
 use sim::effects::{Effects, FiringEffectSet, Stopwatch};
 use sim::scene_file::{EffectDemand, EffectLine, SHIPPED, SceneFile};
 use sim::simulate::SimulateError;
 use utoipa::ToSchema;
 
-use super::CommandOutput;
-use crate::cli::{self, Common};
-use crate::signals;
-use crate::terminal::Progress;
-use engine::document::Document;
-use engine::failure::{Failure, Kind};
-use engine::output::{self, Target};
-use engine::reconstruct::report::PacketCounts;
-use engine::words::counted;
+use crate::failure::{Failure, Kind};
+use crate::output::{self, Target};
+use crate::reconstruct::report::PacketCounts;
 use log::{Log, cannot_write, scan_config};
-use sizes::{EffectChoice, EffectSize, Sampler};
-use stopwatch::nanoseconds;
 
 /// Report on a simulation.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
@@ -88,7 +83,7 @@ pub struct SimulationReport {
 }
 
 /// A simulation to run.
-pub struct Request<'a> {
+pub struct SimulationRequest<'a> {
     /// Name of the scene.
     pub name: String,
     /// The log to write.
@@ -103,98 +98,15 @@ pub struct Request<'a> {
     pub force: bool,
     /// Stops the simulation when set.
     pub interrupt: &'a AtomicBool,
-    /// Progress display.
-    pub progress: Progress,
+    /// Called with the simulated seconds.
+    pub progressed: &'a mut dyn FnMut(f64),
 }
 
-/// Runs the command.
+/// Finds a scene by path or name: its name and its text.
 ///
 /// # Errors
-/// [`Failure`] for an invalid scene or an unwritable file.
-pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, Failure> {
-    let interrupt = signals::interrupt_flag()?;
-    let (name, text) = find(&arguments.scene)?;
-    let clock: Stopwatch = arguments.explain.then_some(nanoseconds as fn() -> u64);
-    let mut scene = read(&name, &text, arguments.seed, clock)?;
-    let is_out = |effect: &str| {
-        let mut out = arguments.without.iter();
-        out.any(|name| name == effect || name == cli::ALL)
-    };
-    let cores = || std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
-    let threads = arguments.threads.unwrap_or_else(cores);
-    let log = arguments
-        .output
-        .clone()
-        .unwrap_or_else(|| PathBuf::from(stem(&name)).with_extension("pcapng"));
-    output::refuse_overwrite(&arguments.scene, &log)?;
-    output::log_is_file(&log, "-o", &["pcapng", "pcap"])?;
-    output::check_free(&log, arguments.force)?;
-    if let Some(truth) = &arguments.truth {
-        output::refuse_overwrite(&arguments.scene, truth)?;
-        output::two_files(&log, truth)?;
-        output::one_for_stdout(Some(truth), common.json)?;
-    }
-    let truth = match &arguments.truth {
-        Some(truth) => Some(Target::open(truth, Fields::FILE, arguments.force)?),
-        None => None,
-    };
-    let stdout_taken = truth.as_ref().is_some_and(Target::is_stdout);
-    let requested: Vec<&'static str> = (EffectsConfig::NAMES.iter().copied())
-        .filter(|effect| scene.is_requested(effect) && !is_out(effect))
-        .collect();
-    let choice = match arguments.tolerance.or(scene.tolerance) {
-        Some(tolerance) if !requested.is_empty() => {
-            let is_of_scene = arguments.tolerance.is_none();
-            Some(Sampler::new(&scene, threads).choose(tolerance, &requested, is_of_scene)?)
-        }
-        _ => None,
-    };
-    let on = choice.as_ref().map_or(&requested, |choice| &choice.on);
-    let selected = scene.select(|name| on.contains(&name), clock);
-    scene.effects = selected.map_err(|error| invalid_setting(&name, &error))?;
-    let sampler = Sampler::new(&scene, threads);
-    let sizes = match arguments.explain {
-        true => Some(sampler.sizes(&sampler.candidates())?),
-        false => None,
-    };
-    // What a tolerance leaves out is reported with the choice.
-    let is_chosen_out = |effect: &str| {
-        (choice.iter()).any(|choice| choice.off.iter().any(|out| out.effect == effect))
-    };
-    let mut warnings = sizes::unmet(&sampler, sizes.as_deref(), &is_chosen_out)?;
-    let without_use =
-        (arguments.without.iter()).filter(|name| *name != cli::ALL && !scene.is_requested(name));
-    warnings
-        .extend(without_use.map(|name| format!("--without {name}: the scene does not have it")));
-    let request = Request {
-        name,
-        log: &log,
-        truth,
-        threads,
-        explain: arguments.explain,
-        force: arguments.force,
-        interrupt: &interrupt,
-        progress: Progress::new(common),
-    };
-    let (mut report, failure) = make(scene, request)?;
-    report.warnings.extend(warnings);
-    if report.returned == 0 && report.shots > 0 {
-        let nothing = "no shot returned; a file without objects needs a scene (scene = \"hall\") or [[objects]]";
-        report.warnings.push(nothing.to_owned());
-    }
-    report.sizes = sizes;
-    report.choice = choice;
-    Ok(CommandOutput {
-        json: report.to_json(),
-        text: report.text(),
-        failure,
-        stdout_taken,
-        is_result: false,
-    })
-}
-
-/// Finds a scene by path or name.
-pub(super) fn find(scene: &Path) -> Result<(String, String), Failure> {
+/// [`Kind::BadInput`] without one.
+pub fn find(scene: &Path) -> Result<(String, String), Failure> {
     let name = scene.display().to_string();
     if let Some((_, text)) = SHIPPED.iter().find(|(shipped, _)| *shipped == name) {
         return Ok((name, (*text).to_owned()));
@@ -244,7 +156,9 @@ fn is_pcap(path: &Path) -> bool {
     extension.eq_ignore_ascii_case("pcap")
 }
 
-fn stem(name: &str) -> &str {
+/// A scene's name for files: that of its file without extension.
+#[must_use]
+pub fn stem(name: &str) -> &str {
     let stem = Path::new(name).file_stem().and_then(|stem| stem.to_str());
     stem.unwrap_or("scene")
 }
@@ -255,9 +169,9 @@ fn stem(name: &str) -> &str {
 /// [`Failure`] without a log.
 pub fn make(
     mut scene: SceneFile,
-    request: Request<'_>,
+    request: SimulationRequest<'_>,
 ) -> Result<(SimulationReport, Option<Failure>), Failure> {
-    let Request {
+    let SimulationRequest {
         name,
         log: path,
         mut truth,
@@ -265,7 +179,7 @@ pub fn make(
         explain,
         force,
         interrupt,
-        progress,
+        progressed,
     } = request;
     let gearing = scene.simulation.polls.map(|polls| {
         use sim::effects::EncoderEffect;
@@ -286,7 +200,7 @@ pub fn make(
         gearing,
         truth,
         interrupt,
-        progress,
+        progressed,
     );
     // Separate instances, so that a scene without effects pays nothing for them.
     let summary = match scene.effects.is_none() {
@@ -373,76 +287,6 @@ fn begin_truth(truth: &mut Target, name: &str, mount: Mount) -> Result<(), Failu
     begun.map_err(|error| output::sink_failure(truth.path(), &error))
 }
 
-impl SimulationReport {
-    /// Text of the report.
-    #[must_use]
-    pub fn text(&self) -> String {
-        let mut rows = vec![
-            ("scene", format!("{}, seed {}", self.scene, self.seed)),
-            ("effects", self.effects_text()),
-            (
-                "packets",
-                format!("{} over {:.3} s", self.packets.data, self.duration_s),
-            ),
-            (
-                "returned",
-                format!(
-                    "{} of {} shots, {:.1} %",
-                    self.returned,
-                    self.shots,
-                    100.0 * self.share_returned
-                ),
-            ),
-        ];
-        if self.polls > 0 {
-            rows.push(("drive", format!("asked {} times", self.polls)));
-        }
-        rows.push((
-            "took",
-            format!(
-                "{:.2} s on {}, {:.1} times real time",
-                self.took_s,
-                counted(self.threads as u64, "thread"),
-                self.times_real_time
-            ),
-        ));
-        rows.extend((self.choice.iter()).map(|choice| ("tolerance", choice.text(self.took_s))));
-        rows.push(("log", self.log.clone()));
-        rows.extend(self.truth.iter().map(|truth| ("truth", truth.clone())));
-        let warnings = self.warnings.iter();
-        rows.extend(warnings.map(|warning| ("warning", warning.clone())));
-        let table = crate::tables::table(rows);
-        match (&self.sizes, &self.explanation) {
-            (Some(sizes), Some(explanation)) => {
-                let (size, why) = (sizes::table(sizes), sizes::reasons(sizes, explanation));
-                format!("{table}\n{size}\n{why}")
-            }
-            _ => table,
-        }
-    }
-
-    /// The effects that are on, one per line, each with the fact that calls for it.
-    fn effects_text(&self) -> String {
-        let reason = |effect: &EffectLine| {
-            let demand = self
-                .demands
-                .iter()
-                .find(|demand| demand.effect == effect.name);
-            let line = (effect.line).map_or_else(String::new, |line| format!(" (line {line})"));
-            match demand {
-                Some(demand) => format!("{}: {}{line}", effect.name, demand.reason),
-                None => format!("{}: requested{line}", effect.name),
-            }
-        };
-        match self.effects.is_empty() {
-            true => "none".to_owned(),
-            false => (self.effects.iter().map(reason))
-                .collect::<Vec<_>>()
-                .join("\n"),
-        }
-    }
-}
-
 /// A quotient, 0 of nothing.
 fn ratio(part: f64, of: f64) -> f64 {
     if of > 0.0 { part / of } else { 0.0 }
@@ -458,7 +302,9 @@ fn metadata(name: &str) -> Metadata {
     }
 }
 
-pub(super) fn invalid_setting(name: &str, error: &InvalidSetting) -> Failure {
+/// The failure for an invalid setting of an effect.
+#[must_use]
+pub fn invalid_setting(name: &str, error: &InvalidSetting) -> Failure {
     Failure::new(Kind::BadInput, format!("scene {name}: {error}"))
         .help("correct the scene file; docs: Effects")
 }

@@ -10,7 +10,6 @@ use crate::commands::analyze::report::AnalyzeReport;
 use crate::commands::analyze::sweep::SettingsReport;
 use crate::commands::doctor::DoctorReport;
 use crate::commands::doctor::bring_up::BringUpReport;
-use crate::commands::simulate::SimulationReport;
 
 /// Names schemas.
 macro_rules! documents {
@@ -24,7 +23,6 @@ macro_rules! documents {
 documents! {
     AnalyzeReport: "analyze-1";
     SettingsReport: "analyze-sweep-1";
-    SimulationReport: "simulate-1";
     DoctorReport: "doctor-1";
     BringUpReport: "bring-up-1";
     DaemonReport: "daemon-1";
@@ -86,6 +84,7 @@ mod tests {
     use engine::reconstruct::lidar_copy::LidarCopyReport;
     use engine::reconstruct::report::{InfoReport, ScanReport};
     use engine::service::axis_report::{AxisReport, StoppedCommand};
+    use engine::simulate::SimulationReport;
     use serde_json::Value;
 
     use super::*;

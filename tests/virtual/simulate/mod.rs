@@ -16,14 +16,12 @@ use cloud::{Fields, Points};
 use engine::reconstruct::replay;
 use engine::reconstruct::report::ScanReport;
 use engine::reconstruct::source::Source;
+use engine::simulate;
 use scanner::TiltSource;
 use sim::TruePoint;
 use sim::scene_file::SceneFile;
 use sim::simulate::{SimulationEvent, SimulationSink};
 use tempfile::TempDir;
-use velomotion::cli::Common;
-use velomotion::commands::simulate;
-use velomotion::terminal::Progress;
 
 /// A simulated scene: its log, and the truth by firing and laser.
 struct Simulated {
@@ -61,13 +59,7 @@ impl Simulated {
             scene
         };
         let folder = tempfile::tempdir().unwrap();
-        let common = Common {
-            config: None,
-            json: false,
-            quiet: true,
-            verbose: 0,
-        };
-        let request = simulate::Request {
+        let request = simulate::SimulationRequest {
             name: "test".to_owned(),
             log: &folder.path().join("scene.pcapng"),
             truth: None,
@@ -75,7 +67,7 @@ impl Simulated {
             explain: false,
             force: false,
             interrupt: &AtomicBool::new(false),
-            progress: Progress::new(&common),
+            progressed: &mut |_| {},
         };
         let (report, failure) = simulate::make(read(), request).unwrap();
         assert!(failure.is_none(), "{failure:?}");

@@ -32,6 +32,11 @@ pub struct AccuracyReport {
     pub stations: Vec<StationReport>,
     /// Errors of points by their distance, each alone and all together.
     pub budget: Vec<BudgetReport>,
+    /// Points that no surface returned, such as echoes of fog: they have no error; null without a
+    /// truth.
+    pub points_without_truth: Option<usize>,
+    /// Points compared with the truth, these included; null without one.
+    pub points: Option<usize>,
 }
 
 /// A laser.
@@ -192,6 +197,8 @@ impl AccuracyReport {
             sweeps: study.sweeps.iter().map(SweepDifference::new).collect(),
             stations: study.stations.iter().map(StationReport::new).collect(),
             budget: study.budget.iter().map(BudgetReport::new).collect(),
+            points_without_truth: studied.without_truth.map(|[without, _]| without),
+            points: studied.without_truth.map(|[_, points]| points),
         }
     }
 }

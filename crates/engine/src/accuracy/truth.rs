@@ -6,13 +6,13 @@ use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use engine::failure::{Failure, Kind};
-use engine::reconstruct::source::Source;
+use crate::failure::{Failure, Kind};
+use crate::reconstruct::source::Source;
 use scanner::config::SimulatedScene;
 use sim::TruePoint;
 use sim::simulate::{SimulationEvent, SimulationSink};
 
-use crate::commands::simulate::{find, invalid_setting, read};
+use crate::simulate::{find, invalid_setting, read};
 
 /// True places of the first returns of a scene, by firing and laser.
 pub struct TruePlaces {

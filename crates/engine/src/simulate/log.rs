@@ -22,9 +22,8 @@ use sim::sensor::LidarMount;
 use sim::simulate::{DriveRequest, Simulation, SimulationEvent, SimulationSink};
 use units::{Degrees, Gearing, Host, Lidar, Span, Stamp};
 
-use crate::terminal::Progress;
-use engine::failure::{Failure, Kind};
-use engine::output::{Target, sink_failure};
+use crate::failure::{Failure, Kind};
+use crate::output::{Target, sink_failure};
 
 /// Factory address of a sensor (63-9243).
 pub(super) const SOURCE: [u8; 4] = [192, 168, 1, 201];
@@ -45,7 +44,7 @@ pub(super) struct Log<'a> {
     rings: Vec<u8>,
     clock_ns: i64,
     interrupt: &'a AtomicBool,
-    progress: Progress,
+    progressed: &'a mut dyn FnMut(f64),
     began: Stamp<Host>,
     last: Stamp<Host>,
     failure: Option<Failure>,
@@ -60,9 +59,8 @@ impl<'a> Log<'a> {
         gearing: Option<Gearing>,
         truth: Option<Target>,
         interrupt: &'a AtomicBool,
-        mut progress: Progress,
+        progressed: &'a mut dyn FnMut(f64),
     ) -> Self {
-        progress.begin_run(simulation.motion.end_s);
         Self {
             writer,
             gearing,
@@ -71,7 +69,7 @@ impl<'a> Log<'a> {
             rings: rings(simulation),
             clock_ns: i64::from(simulation.clock_at_start_us).saturating_mul(1_000),
             interrupt,
-            progress,
+            progressed,
             began: simulation.start,
             last: simulation.start,
             failure: None,
@@ -136,7 +134,6 @@ impl<'a> Log<'a> {
 
     /// Completes the files. Returns the path of the truth and the cause of an early end.
     pub fn finish(mut self, path: &Path) -> Result<(Option<PathBuf>, Option<Cut>), Failure> {
-        self.progress.end_run();
         let _ = self.flush();
         self.writer
             .finish()
@@ -160,7 +157,7 @@ impl SimulationSink for Log<'_> {
     fn event(&mut self, event: &SimulationEvent) -> ControlFlow<()> {
         match event {
             SimulationEvent::Datagram { at, port, payload } => {
-                self.progress.ran((*at - self.began).as_secs_f64());
+                (self.progressed)((*at - self.began).as_secs_f64());
                 self.last = *at;
                 if self.interrupt.load(Ordering::Relaxed) {
                     return self.fail(

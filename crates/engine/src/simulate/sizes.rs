@@ -5,7 +5,7 @@
 //! of the effect.
 
 mod choice;
-mod words;
+mod unmet;
 
 use std::collections::HashMap;
 use std::num::NonZeroUsize;
@@ -25,12 +25,12 @@ use sim::simulate::{SimulationEvent, SimulationSink};
 use units::{Host, Stamp};
 use utoipa::ToSchema;
 
-pub(super) use choice::EffectChoice;
-pub(super) use words::{reasons, table, unmet};
+pub use choice::EffectChoice;
+pub use unmet::unmet;
 
 use super::log::{SOURCE, frame_of, scan_config};
 use super::stopwatch::nanoseconds;
-use engine::failure::{Failure, Kind};
+use crate::failure::{Failure, Kind};
 
 /// Firings of a sample, about: 65,000 shots of a VLP-16.
 const FIRINGS: f64 = 4_096.0;
@@ -79,7 +79,7 @@ struct SampleCloud {
 }
 
 /// Measures effects of a scene.
-pub(super) struct Sampler<'a> {
+pub struct Sampler<'a> {
     scene: &'a SceneFile,
     /// The effects of the simulation.
     on: Vec<&'static str>,
@@ -88,6 +88,8 @@ pub(super) struct Sampler<'a> {
 }
 
 impl<'a> Sampler<'a> {
+    /// A sampler of a scene with the effects that it has now.
+    #[must_use]
     pub fn new(scene: &'a SceneFile, threads: NonZeroUsize) -> Self {
         let sampled_s = scene.simulation.motion.end_s.min(SAMPLED_S);
         let period_s = 1e-9 * scene.simulation.sensor.model.firing_period_ns() as f64;

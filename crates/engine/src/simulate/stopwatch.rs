@@ -4,7 +4,8 @@ use std::sync::OnceLock;
 use std::time::Instant;
 
 /// Nanoseconds since the first call.
-pub(super) fn nanoseconds() -> u64 {
+#[must_use]
+pub fn nanoseconds() -> u64 {
     static BEGINNING: OnceLock<Instant> = OnceLock::new();
     let since = BEGINNING.get_or_init(Instant::now).elapsed();
     u64::try_from(since.as_nanos()).unwrap_or(u64::MAX)

@@ -11,24 +11,16 @@ use cloud::{Fields, Points};
 use engine::config::MountSettings;
 use engine::reconstruct::replay::{Reconstruction, scan};
 use engine::reconstruct::source::Source;
+use engine::simulate::{SimulationRequest, make, read};
 use scanner::Accuracy;
 use sim::TruePoint;
 use sim::simulate::{SimulationEvent, SimulationSink};
-use velomotion::cli::Common;
-use velomotion::commands::simulate::{Request, make, read};
-use velomotion::terminal::Progress;
 
 /// Simulates a scene file into a log.
 pub fn simulate(text: &str, seed: u64, log: &Path) -> Result<(), Box<dyn Error>> {
     let scene = read("study", text, Some(seed), None).map_err(|failure| failure.message)?;
     let interrupt = AtomicBool::new(false);
-    let common = Common {
-        config: None,
-        json: false,
-        quiet: true,
-        verbose: 0,
-    };
-    let request = Request {
+    let request = SimulationRequest {
         name: "study".to_owned(),
         log,
         truth: None,
@@ -36,7 +28,7 @@ pub fn simulate(text: &str, seed: u64, log: &Path) -> Result<(), Box<dyn Error>>
         explain: false,
         force: true,
         interrupt: &interrupt,
-        progress: Progress::new(&common),
+        progressed: &mut |_| {},
     };
     make(scene, request).map_err(|failure| failure.message)?;
     Ok(())

@@ -1,11 +1,9 @@
 //! `velomotion accuracy`: how accurate the points of logs are.
 
-mod truth;
-
 use std::fmt::Write;
 
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
-use engine::accuracy::{AccuracyReport, AccuracyRequest, ResidualReport, accuracy};
+use engine::accuracy::{AccuracyReport, AccuracyRequest, ResidualReport, TruePlaces, accuracy};
 use engine::config::load_mount;
 use engine::document::Document;
 use engine::failure::Failure;
@@ -16,7 +14,6 @@ use super::CommandOutput;
 use crate::cli::{AccuracyStudyArguments, Common};
 use crate::signals;
 use crate::terminal::Progress;
-use truth::TruePlaces;
 
 /// Runs the command.
 ///
@@ -237,8 +234,14 @@ fn summary(report: &AccuracyReport) -> String {
     } else {
         "not calibrated"
     };
+    let without_truth = match (report.points_without_truth, report.points) {
+        (Some(without), Some(points)) if without > 0 => format!(
+            "; {without} of {points} points have no truth (no surface returned them) and no error"
+        ),
+        _ => String::new(),
+    };
     format!(
-        "{}, {state}: {} shots on {} surface elements of {}",
+        "{}, {state}: {} shots on {} surface elements of {}{without_truth}",
         report.model,
         report.shots,
         report.patches,

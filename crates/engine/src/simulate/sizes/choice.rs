@@ -7,7 +7,7 @@ use sim::effect_models::EffectTolerance;
 use utoipa::ToSchema;
 
 use super::Sampler;
-use engine::failure::{Failure, Kind};
+use crate::failure::{Failure, Kind};
 
 /// Instructions of an effect relative to the simulation without effects, percent
 /// (benches/effect_costs.rs). Measured times would make the choice, and the log, depend on the
@@ -141,7 +141,8 @@ impl LeftOut {
 
 impl EffectChoice {
     /// One paragraph of the report. `run_s` is the computing time of the simulation.
-    pub(in crate::commands::simulate) fn text(&self, run_s: f64) -> String {
+    #[must_use]
+    pub fn text(&self, run_s: f64) -> String {
         let off: Vec<String> = (self.off.iter())
             .map(|out| format!("{} ({:.3} %)", out.effect, out.percent))
             .collect();

@@ -176,30 +176,3 @@ fn a_fixed_axis_has_sizes_too() {
             .all(|size| size.effect != "encoder_quantisation")
     );
 }
-
-#[test]
-fn the_explanation_fits_80_columns_and_names_every_effect() {
-    let scene = scene(&format!("{GLASS}\n[effects]\nlink_jitter = false\n"));
-    let sizes = sizes_of(&scene);
-    let explanation = sim::effect_models::Explanation::new(
-        &scene.effects.effects.usage(),
-        &scene.effects.lines,
-        1,
-    );
-    let text = table(&sizes) + &reasons(&sizes, &explanation);
-    assert!(
-        text.lines().all(|line| line.chars().count() <= 80),
-        "{text}"
-    );
-    for name in EffectsConfig::NAMES {
-        assert!(text.contains(name), "{name}: {text}");
-    }
-    let state = |name: &str| {
-        let row = text.lines().find(|line| line.starts_with(name)).unwrap();
-        row.split_whitespace().nth(1).unwrap().to_owned()
-    };
-    assert_eq!(
-        (state("link_jitter"), state("reflectance")),
-        ("off".into(), "on".into())
-    );
-}

@@ -1,77 +1,16 @@
 //! Sizes of effects in words.
 
-use std::fmt::Write;
+use std::fmt::Write as _;
 
 use sim::effect_models::Explanation;
 use sim::scene_file::EffectDemand;
 
-use super::{EffectSize, Sampler};
-use engine::failure::Failure;
+use engine::simulate::EffectSize;
 
 /// Width of the text, columns.
 const WIDTH: usize = 80;
-/// Effects that are off are reported from these sizes on: percent of the points, and millimetres of
-/// the 99 % displacement.
-const NOTABLE: (f64, f64) = (0.1, 1.0);
-/// Up to this number, each effect that is off is measured for its warning.
-const FEW: usize = 2;
-
-/// Warnings about effects that are off, though facts of the scene call for them. `measured` has
-/// their sizes, if they are known; a tolerance has left out those of `is_chosen_out`.
-pub(in crate::commands::simulate) fn unmet(
-    sampler: &Sampler<'_>,
-    measured: Option<&[EffectSize]>,
-    is_chosen_out: &dyn Fn(&str) -> bool,
-) -> Result<Vec<String>, Failure> {
-    let mut off = sampler.off();
-    off.retain(|name| !is_chosen_out(name));
-    if measured.is_none() && off.len() > FEW {
-        let Some(size) = sampler.size_of_all(&off)?.filter(is_notable) else {
-            return Ok(Vec::new());
-        };
-        let facts: Vec<String> = off.iter().map(|name| fact(sampler, name)).collect();
-        let facts = facts.join("; ");
-        return Ok(vec![format!(
-            "off, though the scene calls for them: {facts}. Together they would {}",
-            would(&size)
-        )]);
-    }
-    let measured = match measured {
-        Some(measured) => measured.to_vec(),
-        None => sampler.sizes(&off)?,
-    };
-    let unmet = (measured.iter()).filter(|size| off.contains(&size.effect) && is_notable(size));
-    Ok(unmet
-        .map(|size| {
-            let why = size.demand.as_ref().map(EffectDemand::reason_and_line);
-            let why = why.map_or_else(String::new, |why| format!(", though {why}"));
-            format!("{} is off{why}: it would {}", size.effect, would(size))
-        })
-        .collect())
-}
-
-fn is_notable(size: &EffectSize) -> bool {
-    let (percent, mm) = NOTABLE;
-    size.gained_percent + size.lost_percent >= percent || size.p99_mm >= mm
-}
-
-fn would(size: &EffectSize) -> String {
-    format!(
-        "add {:.1} % of the points, remove {:.1} %, and move 1 in 100 by {:.1} mm or more",
-        size.gained_percent, size.lost_percent, size.p99_mm
-    )
-}
-
-/// An effect and the fact that calls for it.
-fn fact(sampler: &Sampler<'_>, name: &str) -> String {
-    match sampler.scene.demand(name) {
-        Some(demand) => format!("{name} ({})", demand.reason_and_line()),
-        None => name.to_owned(),
-    }
-}
-
 /// The sizes as a table of at most 80 columns, and how to read it.
-pub(in crate::commands::simulate) fn table(sizes: &[EffectSize]) -> String {
+pub(super) fn table(sizes: &[EffectSize]) -> String {
     let mut text = format!(
         "{:<20} {:>5} {:>6} {:>7} {:>6} {:>7} {:>6} {:>7} {:>5}\n{:<20} {:>5} {:>6} {:>7} {:>6} {:>7} {:>6} {:>7} {:>5}\n",
         "effect",
@@ -120,10 +59,7 @@ pub(in crate::commands::simulate) fn table(sizes: &[EffectSize]) -> String {
 }
 
 /// Why each effect is on or off, how often it acted, and those that are not simulated.
-pub(in crate::commands::simulate) fn reasons(
-    sizes: &[EffectSize],
-    explanation: &Explanation,
-) -> String {
+pub(super) fn reasons(sizes: &[EffectSize], explanation: &Explanation) -> String {
     let mut text = String::from("why\n");
     let mut add = |line: &str| {
         let options = textwrap::Options::new(WIDTH)
@@ -164,4 +100,41 @@ pub(in crate::commands::simulate) fn reasons(
         ));
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use std::num::NonZeroUsize;
+
+    use engine::simulate::{Sampler, nanoseconds, read};
+    use sim::effect_models::EffectsConfig;
+
+    use super::*;
+
+    #[test]
+    fn the_explanation_fits_80_columns_and_names_every_effect() {
+        let text = "scene = \"hall\"\n[motion]\nkind = \"sweeps\"\nfrom_deg = 0\nto_deg = -30\n\
+                    speed_deg_s = 60\naccel_deg_s2 = 500\n[effects]\nlink_jitter = false\n";
+        let scene = read("test", text, None, Some(nanoseconds)).unwrap();
+        let sampler = Sampler::new(&scene, NonZeroUsize::MIN);
+        let sizes = sampler.sizes(&sampler.candidates()).unwrap();
+        let effects = &scene.effects;
+        let explanation = Explanation::new(&effects.effects.usage(), &effects.lines, 1);
+        let text = table(&sizes) + &reasons(&sizes, &explanation);
+        assert!(
+            text.lines().all(|line| line.chars().count() <= 80),
+            "{text}"
+        );
+        for name in EffectsConfig::NAMES {
+            assert!(text.contains(name), "{name}: {text}");
+        }
+        let state = |name: &str| {
+            let row = text.lines().find(|line| line.starts_with(name)).unwrap();
+            row.split_whitespace().nth(1).unwrap().to_owned()
+        };
+        assert_eq!(
+            (state("link_jitter"), state("reflectance")),
+            ("off".into(), "on".into())
+        );
+    }
 }

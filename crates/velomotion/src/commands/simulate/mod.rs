@@ -1,0 +1,186 @@
+//! `velomotion simulate`: a log of a simulated scene, and its ground truth.
+
+mod words;
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+use cloud::Fields;
+use engine::document::Document;
+use engine::failure::Failure;
+use engine::output::{self, Target};
+use engine::simulate::{
+    Sampler, SimulationReport, SimulationRequest, find, invalid_setting, make, nanoseconds, read,
+    stem, unmet,
+};
+use engine::words::counted;
+use sim::effect_models::EffectsConfig;
+use sim::effects::Stopwatch;
+use sim::scene_file::EffectLine;
+
+use super::CommandOutput;
+use crate::cli::{self, Common};
+use crate::signals;
+use crate::terminal::{Progress, to_stderr};
+
+/// Runs the command.
+///
+/// # Errors
+/// [`Failure`] for an invalid scene or an unwritable file.
+pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, Failure> {
+    let interrupt = signals::interrupt_flag()?;
+    let (name, text) = find(&arguments.scene)?;
+    let clock: Stopwatch = arguments.explain.then_some(nanoseconds as fn() -> u64);
+    let mut scene = read(&name, &text, arguments.seed, clock)?;
+    let is_out = |effect: &str| {
+        let mut out = arguments.without.iter();
+        out.any(|name| name == effect || name == cli::ALL)
+    };
+    let cores = || std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
+    let threads = arguments.threads.unwrap_or_else(cores);
+    let log = arguments
+        .output
+        .clone()
+        .unwrap_or_else(|| PathBuf::from(stem(&name)).with_extension("pcapng"));
+    output::refuse_overwrite(&arguments.scene, &log)?;
+    output::log_is_file(&log, "-o", &["pcapng", "pcap"])?;
+    output::check_free(&log, arguments.force)?;
+    if let Some(truth) = &arguments.truth {
+        output::refuse_overwrite(&arguments.scene, truth)?;
+        output::two_files(&log, truth)?;
+        output::one_for_stdout(Some(truth), common.json)?;
+    }
+    let truth = match &arguments.truth {
+        Some(truth) => Some(Target::open(truth, Fields::FILE, arguments.force)?),
+        None => None,
+    };
+    let stdout_taken = truth.as_ref().is_some_and(Target::is_stdout);
+    let requested: Vec<&'static str> = (EffectsConfig::NAMES.iter().copied())
+        .filter(|effect| scene.is_requested(effect) && !is_out(effect))
+        .collect();
+    let choice = match arguments.tolerance.or(scene.tolerance) {
+        Some(tolerance) if !requested.is_empty() => {
+            let is_of_scene = arguments.tolerance.is_none();
+            Some(Sampler::new(&scene, threads).choose(tolerance, &requested, is_of_scene)?)
+        }
+        _ => None,
+    };
+    let on = choice.as_ref().map_or(&requested, |choice| &choice.on);
+    let selected = scene.select(|name| on.contains(&name), clock);
+    scene.effects = selected.map_err(|error| invalid_setting(&name, &error))?;
+    let sampler = Sampler::new(&scene, threads);
+    let sizes = match arguments.explain {
+        true => Some(sampler.sizes(&sampler.candidates())?),
+        false => None,
+    };
+    // What a tolerance leaves out is reported with the choice.
+    let is_chosen_out = |effect: &str| {
+        (choice.iter()).any(|choice| choice.off.iter().any(|out| out.effect == effect))
+    };
+    let mut warnings = unmet(&sampler, sizes.as_deref(), &is_chosen_out)?;
+    let without_use =
+        (arguments.without.iter()).filter(|name| *name != cli::ALL && !scene.is_requested(name));
+    warnings
+        .extend(without_use.map(|name| format!("--without {name}: the scene does not have it")));
+    let mut progress = Progress::new(common);
+    progress.begin_run(scene.simulation.motion.end_s);
+    let request = SimulationRequest {
+        name,
+        log: &log,
+        truth,
+        threads,
+        explain: arguments.explain,
+        force: arguments.force,
+        interrupt: &interrupt,
+        progressed: &mut |seconds| progress.ran(seconds),
+    };
+    let made = make(scene, request);
+    progress.end_run();
+    let (mut report, failure) = made?;
+    report.warnings.extend(warnings);
+    if report.returned == 0 && report.shots > 0 {
+        let nothing = "no shot returned; a file without objects needs a scene (scene = \"hall\") or [[objects]]";
+        report.warnings.push(nothing.to_owned());
+    }
+    if common.quiet && !common.json {
+        for warning in &report.warnings {
+            to_stderr(&format!("warning: {warning}"));
+        }
+    }
+    report.sizes = sizes;
+    report.choice = choice;
+    Ok(CommandOutput {
+        json: report.to_json(),
+        text: report_text(&report),
+        failure,
+        stdout_taken,
+        is_result: false,
+    })
+}
+
+/// Text of the report.
+fn report_text(report: &SimulationReport) -> String {
+    let mut rows = vec![
+        ("scene", format!("{}, seed {}", report.scene, report.seed)),
+        ("effects", effects_text(report)),
+        (
+            "packets",
+            format!("{} over {:.3} s", report.packets.data, report.duration_s),
+        ),
+        (
+            "returned",
+            format!(
+                "{} of {} shots, {:.1} %",
+                report.returned,
+                report.shots,
+                100.0 * report.share_returned
+            ),
+        ),
+    ];
+    if report.polls > 0 {
+        rows.push(("drive", format!("asked {} times", report.polls)));
+    }
+    rows.push((
+        "took",
+        format!(
+            "{:.2} s on {}, {:.1} times real time",
+            report.took_s,
+            counted(report.threads as u64, "thread"),
+            report.times_real_time
+        ),
+    ));
+    rows.extend((report.choice.iter()).map(|choice| ("tolerance", choice.text(report.took_s))));
+    rows.push(("log", report.log.clone()));
+    rows.extend(report.truth.iter().map(|truth| ("truth", truth.clone())));
+    let warnings = report.warnings.iter();
+    rows.extend(warnings.map(|warning| ("warning", warning.clone())));
+    let table = crate::tables::table(rows);
+    match (&report.sizes, &report.explanation) {
+        (Some(sizes), Some(explanation)) => {
+            let (size, why) = (words::table(sizes), words::reasons(sizes, explanation));
+            format!("{table}\n{size}\n{why}")
+        }
+        _ => table,
+    }
+}
+
+/// The effects that are on, one per line, each with the fact that calls for it.
+fn effects_text(report: &SimulationReport) -> String {
+    let reason = |effect: &EffectLine| {
+        let demand = report
+            .demands
+            .iter()
+            .find(|demand| demand.effect == effect.name);
+        let line = (effect.line).map_or_else(String::new, |line| format!(" (line {line})"));
+        match demand {
+            Some(demand) => format!("{}: {}{line}", effect.name, demand.reason),
+            None => format!("{}: requested{line}", effect.name),
+        }
+    };
+    match report.effects.is_empty() {
+        true => "none".to_owned(),
+        false => (report.effects.iter().map(reason))
+            .collect::<Vec<_>>()
+            .join("\n"),
+    }
+}
