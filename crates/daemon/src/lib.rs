@@ -2,6 +2,11 @@
 //!
 //! The device thread belongs to [`engine::service`]. Threads of the daemon make clouds and monitor
 //! disk and lidar; a small runtime serves HTTP.
+//!
+//! ```
+//! // Where the socket of this user's daemon or command is, through which others stop its axis.
+//! println!("{}", daemon::sockets::folder().display());
+//! ```
 
 pub mod client;
 pub mod cloud_builder;

@@ -10,7 +10,7 @@ use crate::failure::{Failure, Kind};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
-#[schema(example = json!({"speed_deg_s": 56.25, "from_deg": -45, "to_deg": 45, "both_ways": true, "name": "hall"}))]
+#[schema(example = json!({"speed_deg_s": 56.25, "from_deg": 0, "to_deg": -45, "both_ways": true, "name": "hall"}))]
 pub struct CaptureRequest {
     /// Cruise speed of the tilt axis, degrees per second.
     pub speed_deg_s: f64,

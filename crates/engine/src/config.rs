@@ -58,9 +58,9 @@ pub fn load(file: Option<&Path>) -> Result<Config, Failure> {
         Failure::new(
             Kind::BadInput,
             format!(
-                "the configuration {} is invalid:\n{}",
+                "the configuration {}, {}",
                 path.display(),
-                error.to_string().trim_end()
+                toml_error(&text, &error)
             ),
         )
         .help("correct that line; velomotion help wiring shows every key")
@@ -92,6 +92,21 @@ impl Config {
 }
 
 /// Refuses a number outside `low..=high`, NaN included.
+/// An error of TOML in one line, with its place.
+fn toml_error(text: &str, error: &toml::de::Error) -> String {
+    let message = error.message().trim().replace('\n', ", ");
+    let Some(span) = error.span() else {
+        return message;
+    };
+    let before = text.get(..span.start).unwrap_or(text);
+    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+    let line = before.matches('\n').count() + 1;
+    let column = before.get(line_start..).unwrap_or_default().chars().count() + 1;
+    let rest = text.get(line_start..).unwrap_or_default();
+    let quoted = rest.lines().next().unwrap_or_default().trim();
+    format!("line {line}, column {column}: {message}: {quoted}")
+}
+
 fn between(name: &str, value: f64, low: f64, high: f64) -> Result<(), String> {
     match (low..=high).contains(&value) {
         true => Ok(()),

@@ -288,6 +288,12 @@ pub fn overwrite(force: bool) -> Overwrite {
     }
 }
 
+/// Whether there is no space left for a file.
+fn is_full(error: &stdio::Error) -> bool {
+    use stdio::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
+    matches!(error.kind(), StorageFull | QuotaExceeded | FileTooLarge)
+}
+
 /// The failure for a file error.
 #[must_use]
 pub fn file_failure(error: &FileError) -> Failure {
@@ -300,6 +306,9 @@ pub fn file_failure(error: &FileError) -> Failure {
         FileError::NoFolder { .. } => (Kind::Usage, "create the folder, or name another"),
         FileError::Io { source, .. } if source.kind() == stdio::ErrorKind::InvalidFilename => {
             (Kind::Usage, "choose a shorter name")
+        }
+        FileError::Io { source, .. } if is_full(source) => {
+            (Kind::Incomplete, "free some space, or name another folder")
         }
         FileError::Io { .. } => (
             Kind::BadInput,

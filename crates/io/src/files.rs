@@ -10,22 +10,31 @@ use std::os::unix::fs::{OpenOptionsExt, PermissionsExt};
 use std::path::{Path, PathBuf};
 
 use nix::fcntl::OFlag;
+use nix::sys::stat::Mode;
 use tempfile::{Builder, NamedTempFile};
 
 /// Suffix of the temporary name.
 const PARTIAL: &str = ".partial";
 
-/// Opens a regular file of this name to read it. A symbolic link may lead out of a folder, and a
-/// FIFO without a writer would block.
+/// Opens a regular file of this name to read it. A symbolic link, also of its folder, may lead
+/// elsewhere, and a FIFO without a writer would block.
 ///
 /// # Errors
-/// The system's, and [`io::ErrorKind::InvalidInput`] for anything but a regular file.
+/// The system's, and [`io::ErrorKind::InvalidInput`] for anything but a regular file in a folder.
 pub fn open_regular(path: &Path) -> io::Result<File> {
-    let flags = OFlag::O_NOFOLLOW | OFlag::O_NONBLOCK;
-    let file = OpenOptions::new()
+    let (Some(folder), Some(name)) = (path.parent(), path.file_name()) else {
+        return Err(io::ErrorKind::InvalidInput.into());
+    };
+    let folder = match folder.as_os_str().is_empty() {
+        true => Path::new("."),
+        false => folder,
+    };
+    let folder = OpenOptions::new()
         .read(true)
-        .custom_flags(flags.bits())
-        .open(path)?;
+        .custom_flags((OFlag::O_NOFOLLOW | OFlag::O_DIRECTORY).bits())
+        .open(folder)?;
+    let flags = OFlag::O_NOFOLLOW | OFlag::O_NONBLOCK | OFlag::O_CLOEXEC;
+    let file = File::from(nix::fcntl::openat(folder, name, flags, Mode::empty())?);
     match file.metadata()?.is_file() {
         true => Ok(file),
         false => Err(io::Error::new(

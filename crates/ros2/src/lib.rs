@@ -5,6 +5,13 @@
 //! Four threads: one follows events, one queues finished scans, one sends their clouds, one answers
 //! calls. Nothing waits for them: what the network does not take is left out and counted. ROS 2's
 //! parameters, actions, time from `/clock`, and DDS are left out.
+//!
+//! ```
+//! # #[cfg(feature = "zenoh")]
+//! for (name, meaning, count) in ros2::Counts::default().counters() {
+//!     println!("{name} {count}: {meaning}");
+//! }
+//! ```
 #![cfg(feature = "zenoh")]
 
 mod bridge;

@@ -64,7 +64,7 @@ pub struct AxisMotion {
 
 /// An invalid motion.
 #[derive(Clone, Debug, Error, PartialEq)]
-#[error("sim: motion: {what}")]
+#[error("motion: {what}")]
 pub struct MotionError {
     /// The invalid number's name in [`Sweeps`] or [`AxisMotion::fixed`].
     pub key: &'static str,
@@ -319,7 +319,7 @@ mod tests {
         let message = error.unwrap_err().to_string();
         assert_eq!(
             message,
-            "sim: motion: speed_deg_s: expected a speed above 0 deg/s, got 0"
+            "motion: speed_deg_s: expected a speed above 0 deg/s, got 0"
         );
         assert!(AxisMotion::fixed(f64::NAN, 1.0).is_err());
         assert!(AxisMotion::fixed(0.0, 0.0).is_err());

@@ -161,14 +161,14 @@ pub struct SimulationSummary {
 #[non_exhaustive]
 pub enum SimulateError {
     /// A motion that is too long.
-    #[error("sim: expected a motion of at most {MAX_DURATION_S} s, got {got_s} s")]
+    #[error("expected a motion of at most {MAX_DURATION_S} s, got {got_s} s")]
     TooLong {
         /// Its duration, seconds.
         got_s: f64,
     },
     /// Polls that do not advance.
     #[error(
-        "sim: polls: expected a period above 0 ns and an answer 0 ns later or more, got {period_ns} ns and {answer_ns} ns"
+        "polls: expected a period above 0 ns and an answer 0 ns later or more, got {period_ns} ns and {answer_ns} ns"
     )]
     Polls {
         /// From one request to the next.

@@ -231,7 +231,7 @@ pub struct Calibrate {
     #[arg(long, value_name = "DIR")]
     pub report: Option<PathBuf>,
     /// Surface that sets the zero of the tilt
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, allow_hyphen_values = true)]
     pub level: Option<LevelSurface>,
     /// Overwrite existing files
     #[arg(long)]

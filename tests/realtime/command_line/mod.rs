@@ -2,6 +2,7 @@
 //! without `--force`.
 
 mod analyze;
+mod book;
 mod captures;
 mod frames;
 mod packets;

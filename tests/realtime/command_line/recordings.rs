@@ -103,8 +103,15 @@ fn a_recording_with_missing_packets_is_incomplete() {
     let place = Place::new();
     let cut = [&whole[..ends[9]], &whole[ends[12]..]].concat();
     std::fs::write(place.path("cut.pcap"), cut).unwrap();
-    for quiet in ["", " -q"] {
-        let line = format!("replay cut.pcap --tilt none -o cloud.ply --force{quiet}");
+    let cloud = ("--tilt none -o cloud.ply", "cloud.ply");
+    // A copy of the packets has the same gap.
+    let copy = ("-o copy.pcap", "copy.pcap");
+    for (options, made, quiet) in [
+        (cloud.0, cloud.1, ""),
+        (cloud.0, cloud.1, " -q"),
+        (copy.0, copy.1, " -q"),
+    ] {
+        let line = format!("replay cut.pcap {options} --force{quiet}");
         let output = place.run(&line);
         let printed = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(6), "{printed}");
@@ -112,7 +119,7 @@ fn a_recording_with_missing_packets_is_incomplete() {
             printed.contains("3 of 26 lidar packets are missing at 0.01"),
             "{printed}"
         );
-        assert!(place.path("cloud.ply").is_file());
+        assert!(place.path(made).is_file());
     }
 }
 
@@ -179,6 +186,9 @@ fn angles_of_another_device_can_be_attached() {
     std::fs::write(place.path("empty.toml"), "[mount]\n").unwrap();
     place.fails(&format!("{line} --mount empty.toml"), 3, &["d_m"]);
     std::fs::write(place.path("other.toml"), "[mount]\nd_m = 0.25\n").unwrap();
+    // Nobody knows how accurate the angles are.
+    let uncertain = format!("{line} --mount other.toml --uncertainty");
+    place.fails(&uncertain, 2, &["--uncertainty with --tilt"]);
     let output = place.run(&format!("{line} --mount other.toml"));
     assert!(
         output.status.success(),

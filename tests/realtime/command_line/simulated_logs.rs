@@ -72,3 +72,41 @@ fn a_motion_that_cannot_be_simulated_replaces_no_log() {
         &["at most 86400 s"],
     );
 }
+
+/// A droplet of fog is no surface, so its echo can be compared with nothing.
+#[test]
+fn echoes_of_fog_are_named_as_points_without_a_truth() {
+    let place = Place::new();
+    let scene = SCENE.replace(
+        "[[objects]]",
+        "[effects.weather]\nvisibility_m = 30\n[[objects]]",
+    );
+    std::fs::write(place.path("fog.toml"), scene).unwrap();
+    assert!(
+        place
+            .run("simulate fog.toml -o fog.pcapng")
+            .status
+            .success()
+    );
+    let compared = place.run("accuracy fog.pcapng --scene fog.toml");
+    assert!(compared.status.success(), "{compared:?}");
+    let text = String::from_utf8_lossy(&compared.stdout).into_owned();
+    assert!(text.contains("points have no truth"), "{text}");
+}
+
+/// Where nothing is in range, a cloud is no result.
+#[test]
+fn a_cloud_without_points_is_incomplete() {
+    let place = Place::new();
+    let scene = SCENE.replace("= 10", "= 500");
+    std::fs::write(place.path("far.toml"), scene).unwrap();
+    let made = place.run("simulate far.toml -o far.pcapng -q");
+    assert!(made.status.success(), "{made:?}");
+    let said = String::from_utf8_lossy(&made.stderr).into_owned();
+    assert!(said.contains("warning: no shot returned"), "{said}");
+    place.fails(
+        "replay far.pcapng",
+        6,
+        &["far.pcapng: the cloud has no point: the lidar had no return"],
+    );
+}

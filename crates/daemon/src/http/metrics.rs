@@ -15,6 +15,7 @@ use prometheus_client::metrics::info::Info;
 use prometheus_client::registry::Registry;
 
 use super::Api;
+use super::accept::quality;
 use super::refusal::Refusal;
 use crate::state::DaemonState;
 use engine::service::status::{AxisTask, DeviceHealth};
@@ -24,7 +25,10 @@ const TICKS_PER_S: f64 = 100.0;
 
 /// Metrics for Prometheus: OpenMetrics, or the text format 0.0.4 for clients that accept only that.
 #[utoipa::path(get, path = "/metrics", tag = "daemon", responses(
-    (status = 200, body = String, content_type = "application/openmetrics-text"),
+    (status = 200, content(
+        (String = "application/openmetrics-text"),
+        (String = "text/plain"),
+    )),
 ))]
 pub async fn metrics(State(api): State<Arc<Api>>, headers: HeaderMap) -> Result<Response, Refusal> {
     let mut registry = Registry::default();
@@ -37,10 +41,15 @@ pub async fn metrics(State(api): State<Arc<Api>>, headers: HeaderMap) -> Result<
     let accept = headers
         .get(header::ACCEPT)
         .and_then(|accept| accept.to_str().ok());
-    let plain_only = |accept: &str| {
-        accept.contains("text/plain") && !accept.contains("application/openmetrics-text")
+    let prefers_plain = |accept: &str| {
+        let plain = quality(accept, &["text/plain", "text/*", "*/*"]);
+        let open = quality(
+            accept,
+            &["application/openmetrics-text", "application/*", "*/*"],
+        );
+        plain > open
     };
-    let content = match accept.is_some_and(plain_only) {
+    let content = match accept.is_some_and(prefers_plain) {
         true => {
             metrics = as_plain_text(&metrics);
             "text/plain; version=0.0.4; charset=utf-8"

@@ -1,6 +1,7 @@
 //! The daemon's HTTP: lists of routes, each answered by a function of a few lines.
 //! docs/src/daemon.md and `openapi` document them.
 
+mod accept;
 pub mod captures;
 pub mod connection_limits;
 pub mod download;

@@ -17,6 +17,7 @@ use utoipa::ToSchema;
 use engine::failure::Kind;
 
 use super::Api;
+use super::accept::quality;
 use super::captures;
 use super::guard::{NO_COOKIE, host_of};
 use super::openapi::{Denied, Limit, NotNow, Usage};
@@ -137,9 +138,8 @@ pub(super) fn file(path: &str, request: &Request) -> Response {
     headers.insert(header::VARY, HeaderValue::from_static("accept-encoding"));
     // An encoding is a version of its own.
     let accepted = request.headers().get(header::ACCEPT_ENCODING);
-    let is_packed = accepted
-        .and_then(|value| value.to_str().ok())
-        .is_some_and(|value| value.split(',').any(|name| name.trim() == "gzip"));
+    let accepted = accepted.and_then(|value| value.to_str().ok());
+    let is_packed = accepted.is_some_and(|accepted| quality(accepted, &["gzip", "*"]) > 0.0);
     let (tag, bytes) = match is_packed {
         true => {
             headers.insert(header::CONTENT_ENCODING, HeaderValue::from_static("gzip"));

@@ -5,7 +5,7 @@
 use std::time::{Duration, Instant};
 
 use crate::failure::{Failure, Kind};
-use crate::reconstruct::report::ScanReport;
+use crate::reconstruct::report::{Contents, ScanReport};
 
 /// Time without packets after which the sweep is stopped. A lidar in rotation sends a packet every
 /// 1.3 ms.
@@ -70,31 +70,44 @@ impl SilenceWatch {
 /// The failure of a scan with gaps: lost packets, or a truncated log.
 #[must_use]
 pub fn missing(scan: &ScanReport) -> Option<Failure> {
-    let lost = scan.contents.lost_packets;
     let mut gaps = Vec::new();
     if let Some(truncated) = &scan.contents.truncated {
         gaps.push(format!("the log is incomplete ({truncated})"));
     }
     gaps.extend(scan.incomplete_sweeps.iter().cloned());
-    if lost > 0 {
-        let of = lost.saturating_add(scan.contents.packets.data);
-        let first = scan.contents.packet_gaps.first();
-        let place = first.map_or(String::new(), |gap| match gap.missing == lost {
-            true => format!(" at {:.3} s", gap.at_s),
-            false => format!(", the first at {:.3} s", gap.at_s),
-        });
-        gaps.push(format!("{lost} of {of} lidar packets are missing{place}"));
-    }
+    gaps.extend(missing_packets(&scan.contents));
     if scan.lidar_gap_s > MAX_LIDAR_GAP_S {
         gaps.push(format!(
             "no lidar packet arrived in the last {:.2} s of the sweep",
             scan.lidar_gap_s
         ));
     }
+    if scan.points == 0 {
+        gaps.push(match &scan.left_out_because {
+            Some(why) => format!("the cloud has no point: all returns were {why}"),
+            None => "the cloud has no point: the lidar had no return".to_owned(),
+        });
+    }
     (!gaps.is_empty()).then(|| {
         Failure::new(Kind::Incomplete, gaps.join(", and "))
             .help("see whether the lidar's cable and the network's switches are sound, and scan again if what is missing matters")
     })
+}
+
+/// How many lidar packets are missing, and where.
+#[must_use]
+pub fn missing_packets(contents: &Contents) -> Option<String> {
+    let lost = contents.lost_packets;
+    if lost == 0 {
+        return None;
+    }
+    let of = lost.saturating_add(contents.packets.data);
+    let first = contents.packet_gaps.first();
+    let place = first.map_or(String::new(), |gap| match gap.missing == lost {
+        true => format!(" at {:.3} s", gap.at_s),
+        false => format!(", the first at {:.3} s", gap.at_s),
+    });
+    Some(format!("{lost} of {of} lidar packets are missing{place}"))
 }
 
 #[cfg(test)]

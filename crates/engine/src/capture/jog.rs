@@ -16,7 +16,7 @@ use crate::failure::{Failure, Kind};
 /// A move to an angle; the body of `POST /tilt/goto`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-#[schema(example = json!({"to_deg": 30, "speed_deg_s": 10}))]
+#[schema(example = json!({"to_deg": -20, "speed_deg_s": 10}))]
 pub struct GotoRequest {
     /// Target, degrees.
     pub to_deg: f64,

@@ -141,7 +141,7 @@ pub fn load_mount(path: &Path) -> Result<MountSettings, Failure> {
     };
     let text = std::fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
     let file: MountFile =
-        toml::from_str(&text).map_err(|error| wrong(error.to_string().trim_end().to_owned()))?;
+        toml::from_str(&text).map_err(|error| wrong(super::toml_error(&text, &error)))?;
     // A height that is not given is unknown, not the default.
     let Some(table) = file.mount.filter(|mount| mount.d_m.is_some()) else {
         return Err(wrong("expected [mount] with d_m, found none".to_owned()));

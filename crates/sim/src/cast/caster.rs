@@ -28,10 +28,10 @@ const FAR_APART: f64 = 1e-3;
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum CastError {
     /// More objects than a tree holds.
-    #[error("sim: expected at most 2^27 objects, got {0}")]
+    #[error("expected at most 2^27 objects, got {0}")]
     TooMany(usize),
     /// An object whose size is not finite or is negative.
-    #[error("sim: object {object}: expected a finite size, got corners {low:?} and {high:?}")]
+    #[error("object {object}: expected a finite size, got corners {low:?} and {high:?}")]
     Size {
         /// Its number, from 0.
         object: usize,

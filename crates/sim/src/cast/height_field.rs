@@ -21,7 +21,7 @@ pub struct HeightField {
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum HeightFieldError {
     /// Fewer than two columns or rows of heights, or their number does not fill them.
-    #[error("sim: height field: expected {columns} x {rows} heights, 2 x 2 at least, got {got}")]
+    #[error("height field: expected {columns} x {rows} heights, 2 x 2 at least, got {got}")]
     Shape {
         /// Heights along x.
         columns: usize,
@@ -31,10 +31,10 @@ pub enum HeightFieldError {
         got: usize,
     },
     /// A distance between heights that is not finite and above zero.
-    #[error("sim: height field: expected spacings above 0 m, got {0:?}")]
+    #[error("height field: expected spacings above 0 m, got {0:?}")]
     Spacing([f64; 2]),
     /// A height that is not finite, or too many of them.
-    #[error("sim: height field")]
+    #[error("height field")]
     Mesh(#[from] MeshError),
 }
 

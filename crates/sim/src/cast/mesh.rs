@@ -41,10 +41,10 @@ struct Face {
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum MeshError {
     /// More triangles than a tree holds.
-    #[error("sim: mesh: expected at most 2^27 triangles, got {0}")]
+    #[error("mesh: expected at most 2^27 triangles, got {0}")]
     TooMany(usize),
     /// A vertex that is not finite, or too far away.
-    #[error("sim: vertex {vertex} of a mesh: expected coordinates within 1e15 m, got {got}")]
+    #[error("vertex {vertex} of a mesh: expected coordinates within 1e15 m, got {got}")]
     Vertex {
         /// Its number, from 0.
         vertex: usize,
@@ -52,7 +52,7 @@ pub enum MeshError {
         got: DVec3,
     },
     /// A triangle names a vertex that is not there.
-    #[error("sim: triangle {triangle} of a mesh: expected vertices below {vertices}, got {got}")]
+    #[error("triangle {triangle} of a mesh: expected vertices below {vertices}, got {got}")]
     Index {
         /// Its number, from 0.
         triangle: usize,

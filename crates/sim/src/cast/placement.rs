@@ -23,10 +23,10 @@ pub struct Placement {
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum PlacementError {
     /// Columns that are not orthonormal and right-handed.
-    #[error("sim: rotation of an object: expected orthonormal, right-handed columns, got {0}")]
+    #[error("rotation of an object: expected orthonormal, right-handed columns, got {0}")]
     Rotation(DMat3),
     /// Not finite, or too far away.
-    #[error("sim: translation of an object: expected coordinates within 1e15 m, got {0}")]
+    #[error("translation of an object: expected coordinates within 1e15 m, got {0}")]
     Translation(DVec3),
 }
 

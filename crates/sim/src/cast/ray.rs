@@ -23,10 +23,10 @@ pub struct Ray {
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum RayError {
     /// The origin is not finite, or so far away that nothing is known there.
-    #[error("sim: origin of a ray: expected coordinates within 1e15 m, got {0}")]
+    #[error("origin of a ray: expected coordinates within 1e15 m, got {0}")]
     Origin(DVec3),
     /// The direction is not finite or not of length 1.
-    #[error("sim: direction of a ray: expected length 1 within 1e-6, got {0}")]
+    #[error("direction of a ray: expected length 1 within 1e-6, got {0}")]
     Direction(DVec3),
 }
 

@@ -51,7 +51,7 @@ impl EncoderQuantisation {
         let gearing = Gearing::new(lines, motor, axis).map_err(|_| InvalidSetting {
             effect: Self::NAME,
             setting: "encoder_lines",
-            expected: "1 to 2^30 lines, and gear turns above 0".to_owned(),
+            expected: "1 to 2^30 - 1 lines, and gear turns above 0".to_owned(),
             got: f64::from(lines),
         })?;
         let degrees_per_qc =

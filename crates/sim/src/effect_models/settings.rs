@@ -9,7 +9,7 @@ use thiserror::Error;
 
 /// A setting with an invalid value.
 #[derive(Clone, Debug, Error, PartialEq)]
-#[error("sim: effects.{effect}.{setting}: expected {expected}, got {got}")]
+#[error("effects.{effect}.{setting}: expected {expected}, got {got}")]
 #[non_exhaustive]
 pub struct InvalidSetting {
     /// The effect.
@@ -118,7 +118,7 @@ mod tests {
         ] {
             let message = invalid.unwrap_err().to_string();
             assert!(
-                message.starts_with("sim: effects.backlash.play_deg: expected "),
+                message.starts_with("effects.backlash.play_deg: expected "),
                 "{message}"
             );
         }

@@ -38,7 +38,7 @@ impl fmt::Display for FilePosition {
 
 /// An invalid scene.
 #[derive(Clone, Debug, Error, PartialEq)]
-#[error("sim: scene, {at}: {what}")]
+#[error("{at}: {what}")]
 #[non_exhaustive]
 pub struct SceneryError {
     /// The position of the value or object, or of its table where several values are involved.

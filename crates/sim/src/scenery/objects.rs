@@ -310,8 +310,16 @@ impl BoxShape {
             (Some(size), None, None) => [size.map(|edge| -0.5 * edge), size.map(|edge| 0.5 * edge)],
             (None, Some(from), Some(to)) => [from, to],
             _ => {
+                let given = [
+                    ("size_m", self.size_m.is_some()),
+                    ("from_m", self.from_m.is_some()),
+                    ("to_m", self.to_m.is_some()),
+                ];
+                let given: Vec<_> = (given.iter().filter(|(_, is_given)| *is_given))
+                    .map(|(name, _)| *name)
+                    .collect();
                 let expected = "either size_m, or from_m and to_m";
-                return Err(invalid("box", expected, self));
+                return Err(invalid("box", expected, given));
             }
         };
         finite("box", corners.as_flattened())?;
@@ -319,11 +327,10 @@ impl BoxShape {
         if from.iter().zip(&to).any(|(from, to)| from == to) {
             return Err(invalid("box", "edges longer than 0", corners));
         }
-        if self
-            .size_m
-            .is_some_and(|size| size.iter().any(|edge| *edge <= 0.0))
+        if let Some(size) = self.size_m
+            && size.iter().any(|edge| *edge <= 0.0)
         {
-            return Err(invalid("box.size_m", "edges longer than 0", self.size_m));
+            return Err(invalid("box.size_m", "edges longer than 0", size));
         }
         Ok(corners)
     }

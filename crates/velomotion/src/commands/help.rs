@@ -123,9 +123,15 @@ macro_rules! pages {
 }
 
 /// The pages of the book for users, in its order.
-const PAGES: [(&str, &str); 26] = pages!(
+const PAGES: [(&str, &str); 31] = pages!(
     "quick-start",
+    "first-scan",
+    "which-speed",
+    "calibrate-simulated",
+    "open-a-cloud",
     "install",
+    "wiring",
+    "bring-up",
     "plan",
     "capture",
     "replay",
@@ -136,20 +142,19 @@ const PAGES: [(&str, &str); 26] = pages!(
     "daemon",
     "page",
     "ros2",
-    "wiring",
-    "bring-up",
-    "glossary",
     "formats",
     "json",
-    "links",
     "simulator",
     "scenes",
     "effects",
     "patterns",
     "accuracy",
-    "k",
     "tradeoff",
+    "links",
+    "k",
     "faults",
+    "troubleshooting",
+    "glossary",
 );
 
 /// The command line with examples at the end of every help text.
@@ -365,6 +370,51 @@ mod tests {
             let known = PAGES.iter().any(|(known, _)| *known == page.trim());
             assert!(known, "{name}: {page}");
         }
+    }
+
+    /// Commands of the program in a page's shell blocks, without prompts, pipes and comments.
+    fn commands_of(page: &str) -> Vec<String> {
+        let mut commands = Vec::new();
+        let mut shell = false;
+        for line in page.replace("\\\n", " ").lines() {
+            if let Some(language) = line.strip_prefix("```") {
+                shell = ["sh", "console"].contains(&language);
+                continue;
+            }
+            let line = line.strip_prefix("$ ").unwrap_or(line);
+            let line = line.split(" #").next().unwrap_or_default();
+            let parts = line.split(['|', ';', '&', '>']);
+            let own = parts.map(str::trim).filter_map(|part| {
+                let part = part.strip_prefix("sudo ").unwrap_or(part);
+                let words = part
+                    .strip_prefix("cargo run --release -- ")
+                    .or_else(|| part.strip_prefix("velomotion "))?;
+                Some(format!("velomotion {words}"))
+            });
+            if shell {
+                commands.extend(own);
+            }
+        }
+        commands
+    }
+
+    #[test]
+    fn every_command_of_the_book_is_understood() {
+        let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+        let book = std::fs::read_dir(format!("{root}/docs/src")).unwrap();
+        let pages = book.map(|entry| entry.unwrap().path());
+        let pages = pages.chain([format!("{root}/README.md").into()]);
+        let mut count = 0;
+        for page in pages.filter(|page| page.extension() == Some("md".as_ref())) {
+            let text = std::fs::read_to_string(&page).unwrap();
+            for command in commands_of(&text) {
+                let words = command.split_whitespace().map(OsString::from);
+                let refused = parse_from(words).err();
+                assert_eq!(refused, None, "{}: {command}", page.display());
+                count += 1;
+            }
+        }
+        assert!(count > 100, "{count} commands");
     }
 
     #[test]

@@ -9,6 +9,7 @@ use engine::config::{self, MountSettings};
 use engine::default_paths;
 use engine::failure::{Failure, Kind};
 use engine::output::{self, Target};
+use engine::reconstruct::contents::read_contents;
 use engine::reconstruct::decoder_options::decoder_options;
 use engine::reconstruct::frames::FramePlan;
 use engine::reconstruct::lidar_copy;
@@ -62,6 +63,10 @@ fn replay(
     }
     let tilt = tilt_source(&arguments.tilt)?;
     let mount = mount(arguments, common, &tilt, &source)?;
+    if let (TiltSource::Table(_), true) = (&tilt, arguments.output.uncertainty) {
+        let what = "--uncertainty with --tilt: nothing says how accurate a table's angles are";
+        return Err(Failure::new(Kind::Usage, what).help("omit --uncertainty"));
+    }
     if let Some((mount, _)) = &mount {
         source.set_mount(mount.clone());
     }
@@ -180,11 +185,15 @@ fn copy(
     }
     output::refuse_overwrite(source.path(), pcap)?;
     let report = lidar_copy::copy(source, pcap, arguments.output.force, interrupt)?;
-    let failure = report.truncated.as_ref().map(|truncated| {
-        let what = format!(
-            "{}: the recording ends early ({truncated})",
-            source.path().display()
-        );
+    let ends_early = (report.truncated.as_ref())
+        .map(|truncated| format!("the recording ends early ({truncated})"));
+    let options = decoder_options(&arguments.lidar.request(), source)?;
+    // Packets that cannot be decoded are copied, too.
+    let held = read_contents(source, options).ok();
+    let missing = held.and_then(|held| completeness::missing_packets(&held.contents));
+    let gaps: Vec<String> = ends_early.into_iter().chain(missing).collect();
+    let failure = (!gaps.is_empty()).then(|| {
+        let what = format!("{}: {}", source.path().display(), gaps.join(", and "));
         Failure::new(Kind::Incomplete, what).help(format!("what is there is in {}", pcap.display()))
     });
     if report.simulated {

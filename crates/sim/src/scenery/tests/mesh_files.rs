@@ -284,7 +284,7 @@ fn malformed_meshes_are_refused() {
     );
     assert_eq!(
         wrong("[[objects]]\nmesh = { file = \"a.obj\" }"),
-        "sim: scene, line 1, column 1: mesh a.obj"
+        "line 1, column 1: mesh a.obj"
     );
 }
 

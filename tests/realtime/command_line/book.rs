@@ -1,0 +1,97 @@
+//! The book's tutorials, run as they are printed.
+
+use super::*;
+
+/// A fenced block of a page: its language, its text, and the line of prose before it.
+struct Block {
+    language: String,
+    text: String,
+    before: String,
+}
+
+fn blocks_of(page: &str) -> Vec<Block> {
+    let path = format!("{}/../../docs/src/{page}.md", env!("CARGO_MANIFEST_DIR"));
+    let page = std::fs::read_to_string(path).unwrap();
+    let mut blocks = Vec::new();
+    let mut before = String::new();
+    let mut lines = page.lines();
+    while let Some(line) = lines.next() {
+        match line.strip_prefix("```") {
+            Some(language) => {
+                let text = lines.by_ref().take_while(|line| *line != "```");
+                blocks.push(Block {
+                    language: language.to_owned(),
+                    text: text.flat_map(|line| [line, "\n"]).collect(),
+                    before: std::mem::take(&mut before),
+                });
+            }
+            None if !line.is_empty() => line.clone_into(&mut before),
+            None => {}
+        }
+    }
+    blocks
+}
+
+/// Runs the commands of a page in the order of their printing, but those for a checkout (`cargo`)
+/// and for a browser (`velomotion view`).
+fn run_page(place: &Place, page: &str) {
+    let program = Path::new(env!("CARGO_BIN_EXE_velomotion"));
+    let path = std::env::var("PATH").unwrap();
+    let path = format!("{}:{path}", program.parent().unwrap().display());
+    let mut ran = 0;
+    for block in blocks_of(page) {
+        match block.language.as_str() {
+            "toml" => {
+                // "Save this as `NAME`:"
+                let name = block.before.split('`').nth(1).unwrap();
+                std::fs::write(place.path(name), block.text).unwrap();
+            }
+            "sh" | "console" => {
+                let is_console = block.language == "console";
+                let commands = block.text.lines().filter_map(|line| match is_console {
+                    true => line.strip_prefix("$ "),
+                    false => Some(line),
+                });
+                let elsewhere =
+                    |line: &&str| line.starts_with("cargo ") || line.starts_with("velomotion view");
+                let commands: Vec<&str> = commands.filter(|line| !elsewhere(line)).collect();
+                let output = Command::new("bash")
+                    .args(["-ec", &commands.join("\n")])
+                    .current_dir(place.0.path())
+                    .env("PATH", &path)
+                    .env("XDG_RUNTIME_DIR", place.0.path())
+                    .output()
+                    .unwrap();
+                let said = String::from_utf8_lossy(&output.stderr).into_owned();
+                assert!(output.status.success(), "{page}: {commands:#?}\n{said}");
+                ran += commands.len();
+            }
+            _ => {}
+        }
+    }
+    assert!(ran > 0, "{page} has no command");
+}
+
+#[test]
+fn the_first_scan_runs_as_printed() {
+    let place = Place::new();
+    // The checkout's first command, by the program under test.
+    let captured = place.run("capture --speed 56.25");
+    assert!(captured.status.success(), "{captured:?}");
+    run_page(&place, "quick-start");
+    assert!(place.path("hall.laz").exists());
+}
+
+#[test]
+fn the_choice_of_a_speed_runs_as_printed() {
+    run_page(&Place::new(), "which-speed");
+}
+
+#[test]
+#[ignore = "needs two minutes: 3 million shots"]
+fn the_calibration_of_a_simulated_scanner_runs_as_printed() {
+    let place = Place::new();
+    run_page(&place, "calibrate-simulated");
+    let mount = std::fs::read_to_string(place.path("mount.toml")).unwrap();
+    assert!(mount.contains("rotation_deg"), "{mount}");
+}
