@@ -166,12 +166,8 @@ objects! {
     HOMING_SWITCH_SPEED: u32 = 0x6099, 1, "Speed for Switch Search";
     /// rpm.
     HOMING_ZERO_SPEED: u32 = 0x6099, 2, "Speed for Zero Search";
-    /// Power of ten of positions in steps; 0 is 1 qc.
-    POSITION_NOTATION: i8 = 0x6089, 0, "Position Notation Index";
     /// Power of ten of velocities in rpm; 0 is 1 rpm.
     VELOCITY_NOTATION: i8 = 0x608B, 0, "Velocity Notation Index";
-    /// Power of ten of accelerations in rpm/s; 0 is 1 rpm/s.
-    ACCELERATION_NOTATION: i8 = 0x608D, 0, "Acceleration Notation Index";
     /// rpm/s.
     HOMING_ACCELERATION: u32 = 0x609A, 0, "Homing Acceleration";
     /// rpm/s.

@@ -76,13 +76,6 @@ async fn verify_drive(ops: &Ops) -> Result<(), DriveError> {
     // A fault stops the axis by a ramp.
     expect(ops, objects::FAULT_OPTION, 1..=2, None).await?;
     expect(ops, objects::VELOCITY_NOTATION, 0..=0, None).await?;
-    for notation in [objects::POSITION_NOTATION, objects::ACCELERATION_NOTATION] {
-        match expect(ops, notation, 0..=0, None).await {
-            // A drive without the object has no other notation.
-            Ok(()) | Err(DriveError::Refused { .. }) => {}
-            Err(error) => return Err(error),
-        }
-    }
     let fast_enough = config.max_speed.0.into()..=i64::MAX;
     let key = Some("[axis] max_speed_deg_s");
     expect(ops, objects::MAX_MOTOR_SPEED, fast_enough, key).await
