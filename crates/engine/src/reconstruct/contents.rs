@@ -360,8 +360,12 @@ fn warnings(stats: &Stats, pass: &PassSummary, steps: &[ClockStep]) -> Vec<Strin
     let counts_with_text = [
         (lost_packets(stats, steps), "lidar packets are missing"),
         (
-            stats.duplicates + pass.doubled,
+            stats.duplicates + pass.doubled_packets,
             "lidar packets arrived twice and were used once",
+        ),
+        (
+            pass.doubled_frames,
+            "records of the drive are in the file twice and were used once",
         ),
         (
             stats.reordered,
