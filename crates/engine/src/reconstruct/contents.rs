@@ -24,7 +24,7 @@ pub fn read_contents(source: &Source, options: Options) -> Result<InfoReport, Fa
     let mut start = None;
     let mut sensors = SensorSurveys::new(options.clone());
     let mut survey =
-        Survey::new(&config, options).map_err(|error| scan_failure(source.path(), &error))?;
+        Survey::new(&config, options).map_err(|error| scan_failure(source.path(), None, &error))?;
     let pass = source.read_all(|record| {
         start.get_or_insert(record.host);
         sensors.observe(record);
