@@ -41,6 +41,8 @@ pub struct Alignment {
     pub unseen_sweeps: Vec<(Degrees, Degrees)>,
     /// Indices of sweeps whose command is not complete in the log.
     pub inferred_sweeps: Vec<usize>,
+    /// Indices of sweeps that went on after the last position of the drive in the log.
+    pub unobserved_ends: Vec<usize>,
     /// Beginnings and ends of motions that may be sweeps, but the log lacks their target.
     pub ambiguous_motions: Vec<(Degrees, Degrees)>,
     /// Mount of the lidar on the axis.
@@ -88,6 +90,7 @@ impl Alignment {
             sweeps: Vec::new(),
             unseen_sweeps: Vec::new(),
             inferred_sweeps: Vec::new(),
+            unobserved_ends: Vec::new(),
             ambiguous_motions: Vec::new(),
             mount,
             calibration: None,

@@ -8,6 +8,7 @@
 use cloud::{Sink, SinkError};
 use drive::record::Record;
 use lidar::{Options, Stats};
+use units::Span;
 
 use crate::alignment::{Alignment, PlacementCounts};
 use crate::config::ScanConfig;
@@ -18,6 +19,9 @@ use crate::survey::Survey;
 use crate::sweeps::FoundSweeps;
 use crate::tilt_source::TiltSource;
 use crate::tolerance::Accuracy;
+
+/// A log that goes on for longer after the last position of a sweep lacks positions.
+const LEAST_REST: Span = Span::from_millis(100);
 
 /// First pass: solves for clock and trajectory of a log written with `config`.
 ///
@@ -66,9 +70,16 @@ impl Survey {
             seen: sweeps,
             unseen: unseen_sweeps,
             inferred: inferred_sweeps,
+            unfinished,
             ambiguous: ambiguous_motions,
             surplus: _,
         } = angles.sweeps(&shaft.moves, config.sweep.as_ref())?;
+        let last_packet = arrivals.iter().map(|arrival| arrival.host).max();
+        let goes_on = |index: &usize| {
+            let end = sweeps.get(*index).map(|sweep| sweep.end + LEAST_REST);
+            end < last_packet
+        };
+        let unobserved_ends = unfinished.into_iter().filter(goes_on).collect();
         let spans = angles.spans(&sweeps);
         let sample_gaps = angles.gaps(&sweeps);
         // `trajectory`: the commanded profile or a spline, by least squares (Levenberg-Marquardt).
@@ -81,6 +92,7 @@ impl Survey {
             sweeps,
             unseen_sweeps,
             inferred_sweeps,
+            unobserved_ends,
             ambiguous_motions,
             mount: angles.mount,
             calibration: angles.calibration,

@@ -125,7 +125,9 @@ impl Timeline {
                 when = before(when, by);
                 total = total.saturating_add(by);
                 host_steps.push((cut.at, by));
-                let boundary = cut.boundary.or_else(|| clock_steps.boundary(cut.at, by));
+                let boundary = cut
+                    .boundary
+                    .or_else(|| clock_steps.boundary(cut.at, by, found.silence(cut.at)));
                 line.set(boundary, by, cut.samples.clone());
             }
             steps.push(ClockStep {
@@ -214,7 +216,7 @@ fn attribute(
         // No delay puts the records of the drive back.
         Evidence::Regular
             if jump.by <= Span::from_nanos(-jumps::SMALLEST_OF_HOST_NS)
-                && clock_steps.shows(jump.at, jump.by) =>
+                && clock_steps.shows(jump.at, jump.by, Span::ZERO) =>
         {
             return Some(cut(SetClock::Host));
         }
@@ -236,7 +238,7 @@ fn attribute(
         }
         Evidence::Delays => {}
     }
-    if clock_steps.shows(jump.at, jump.by) {
+    if clock_steps.shows(jump.at, jump.by, found.silence(jump.at)) {
         return Some(cut(SetClock::Host));
     }
     if found.device_jumped(&found.level, jump.at) {

@@ -59,6 +59,8 @@ pub struct FoundSweeps {
     /// Indices, among those seen, of sweeps whose command is not complete in the log: they follow
     /// from the samples.
     pub inferred: Vec<usize>,
+    /// Indices, among those seen, of sweeps whose last sample shows an axis in motion.
+    pub unfinished: Vec<usize>,
     /// Beginnings and ends of motions that begin like a sweep of the plan, but neither the log has
     /// their target nor do they end like one.
     pub ambiguous: Vec<(Degrees, Degrees)>,
@@ -77,6 +79,8 @@ struct Motion {
     has_no_start: bool,
     /// No sample shows where it began.
     is_cut_off: bool,
+    /// No sample shows where it ended.
+    is_unfinished: bool,
     is_seen: bool,
 }
 
@@ -273,6 +277,9 @@ impl MoveWatch {
                     let number = found.seen.len();
                     let is_inferred = moved.has_no_target || moved.has_no_start;
                     found.inferred.extend(is_inferred.then_some(number));
+                    found
+                        .unfinished
+                        .extend(moved.is_unfinished.then_some(number));
                     found.seen.push(sweep);
                 }
                 (true, false) => found.unseen.push((sweep.from, sweep.to)),
@@ -384,6 +391,7 @@ fn motion(command: &Move, window: &[AngleSample], is_cut_off: bool, rest: f64) -
         has_no_target: target.is_none(),
         has_no_start: command.has_no_start,
         is_cut_off,
+        is_unfinished: moving_last + 2 >= window.len(),
         is_seen: has_other_steps || longest <= END_TOLERANCE_DEG.max(UNSEEN_SHARE * way.abs()),
     })
 }

@@ -282,6 +282,71 @@ for _s in (-0.4, 0.4, 0.005, -0.005):
             mangle=nothing_between(1.0, 3.0),
         ),
     )
+# The drive's records pause for the silence and the step together.
+for _asleep, _steps in ((0.2, (0.05, 0.3, -0.3)), (0.6, (0.05, 0.3, -0.05, -0.3, 7200.0))):
+    for _s in _steps:
+        condition(
+            "clock",
+            f"host suspended for {_asleep:g} s at rest and set by {_s:+g} s",
+            lambda seed, asleep=_asleep, s=_s: Setup(
+                seed=seed,
+                before_s=4.0,
+                host_steps=((2.0, s),),
+                mangle=nothing_between(2.0 - asleep / 2, 2.0 + asleep / 2),
+            ),
+        )
+        for _name, _link in (("USB", scan.usb_400), ("CAN", scan.can), ("RS232", scan.rs232)):
+            condition(
+                "clock",
+                f"host suspended for {_asleep:g} s in a sweep and set by {_s:+g} s, {_name}",
+                lambda seed, asleep=_asleep, s=_s, link=_link: Setup(
+                    seed=seed,
+                    link=link(),
+                    moves=[Move(-40.0, 10.0)],
+                    share=4,
+                    host_steps=((2.0, s),),
+                    mangle=nothing_between(2.0 - asleep / 2, 2.0 + asleep / 2),
+                ),
+                share=0.8,
+            )
+for _s in (0.3, -0.3, 7200.0):
+    condition(
+        "clock",
+        f"host suspended for 2 s in a sweep and set by {_s:+g} s",
+        lambda seed, s=_s: Setup(
+            seed=seed,
+            moves=[Move(-40.0, 10.0)],
+            share=4,
+            host_steps=((2.5, s),),
+            mangle=nothing_between(1.5, 3.5),
+        ),
+        share=0.4,
+    )
+for _s in (0.3, -0.0503, -100.0):
+    condition(
+        "clock",
+        f"lidar clock set by {_s:+g} s while the host is suspended for 0.2 s",
+        lambda seed, s=_s: Setup(
+            seed=seed,
+            moves=[Move(-40.0, 10.0)],
+            share=4,
+            lidar_steps=((2.0, s),),
+            mangle=nothing_between(1.9, 2.1),
+        ),
+        share=0.9,
+    )
+# A pulse per second that is at hand for a part of the time.
+for _ms, _every in ((0.1, 1.0), (-0.1, 1.0), (0.3, 1.0), (1.2, 1.0), (5.0, 1.0), (0.2, 0.25)):
+    condition(
+        "clock",
+        f"lidar clock steps {_ms:+g} ms five times, every {_every:g} s",
+        lambda seed, ms=_ms, every=_every: Setup(
+            seed=seed,
+            moves=[Move(-40.0, 10.0)],
+            share=4,
+            lidar_steps=tuple((0.3 + every * k, ms * 1e-3) for k in range(5)),
+        ),
+    )
 condition(
     "clock",
     "host clock slewed by 500 ppm",
@@ -301,6 +366,24 @@ condition(
     "host and lidar step in one scan",
     lambda seed: Setup(seed=seed, host_steps=((0.5, 0.02),), lidar_steps=((0.75, 1.2e-3),)),
 )
+
+
+# Acceleration that rises evenly, and a drive that renews 6064 once per millisecond.
+for _jerk, _accel in ((0.03, 1000.0), (0.06, 500.0), (0.1, 500.0)):
+    for _name, _link in (("RS232", scan.rs232), ("CAN", scan.can), ("USB 1000 Hz", scan.usb_1000)):
+        for _servo in ("none", "30 Hz .5", "15 Hz .5"):
+            condition(
+                "jerk",
+                f"jerk {_jerk * 1e3:g} ms, latch 1 ms, {_name}, servo {_servo}",
+                plain(
+                    56.25,
+                    accel=_accel,
+                    jerk_s=_jerk,
+                    servo=SERVOS.get(_servo, Servo()),
+                    link=_link(),
+                    latch_s=1e-3,
+                ),
+            )
 
 
 # What is missing in the log.
@@ -472,6 +555,22 @@ def doubled(share):
     return mangle
 
 
+def wild_position(when, counts):
+    """A poll over USB whose answer is off by so much, its checksum right."""
+
+    def mangle(records, setup, rng):
+        out = list(records)
+        i = _after(out, _polls(out, when, when + 1)[0], INBOUND)
+        data = out[i][3].replace(b"\x90\x90", b"\x90")
+        words = data[data.index(b"\x02") + 1 :][2:10]
+        position = int.from_bytes(words[4:], "little", signed=True) + counts
+        answer = drive.usb_frame(0, words[:4] + position.to_bytes(4, "little", signed=True))
+        out[i] = (*out[i][:3], answer, out[i][4])
+        return out
+
+    return mangle
+
+
 def missing(name, mangle, share=0.95, most=1.0, **more):
     def make(seed):
         return Setup(seed=seed, mangle=mangle, **more)
@@ -552,6 +651,7 @@ missing(
     other_answer_missing("9002100241600001"),
     link=scan.usb_1000(),
 )
+missing("one position wrong by 1,000 counts", wild_position(0.5, 1000))
 missing("3 packets missing", packets_missing(0.6, 3))
 missing("40 packets missing", packets_missing(0.6, 40), share=0.9)
 missing("2 % of the packets missing", share_of_packets(0.02))
@@ -613,6 +713,70 @@ condition(
     "files",
     "packets written in batches of 7 ms",
     lambda seed: Setup(seed=seed, mangle=written_late(7e-3)),
+)
+
+
+def block_twice(count, when=0.5):
+    """A recorder that repeats a write: so many records come again after them, with their stamps."""
+
+    def mangle(records, setup, rng):
+        k = next(i for i, r in enumerate(records) if r[0] > when)
+        # In this order, which is by stamps otherwise.
+        twice = records[: k + count] + records[k:]
+        return [(i * 1e-6, *r[1:]) for i, r in enumerate(twice)]
+
+    return mangle
+
+
+def part_again(begin, end, delay, of_drive):
+    """A part of one device comes again later: the drive's with its stamps, packets with others."""
+
+    def mangle(records, setup, rng):
+        part = [
+            r
+            for r in records
+            if begin < r[0] < end and (r[1] == 1 if of_drive else r[1] == 0 and len(r[3]) == 1248)
+        ]
+        later = 0 if of_drive else int(delay * 1e9)
+        again = [(r[0] + delay, r[1], r[2] + later, *r[3:]) for r in part]
+        return sorted(records + again, key=lambda r: r[0])
+
+    return mangle
+
+
+for _count in (20, 100, 400, 1500):
+    condition(
+        "files",
+        f"{_count} records in a row twice",
+        lambda seed, count=_count: Setup(seed=seed, mangle=block_twice(count)),
+    )
+for _name, _link in (("USB", scan.usb_400), ("RS232", scan.rs232), ("CAN", scan.can)):
+    condition(
+        "files",
+        f"the drive's records of 30 ms twice, {_name}",
+        lambda seed, link=_link: Setup(
+            seed=seed, link=link(), mangle=part_again(0.5, 0.53, 0.03, True)
+        ),
+    )
+for _ms in (10, 90, 400):
+    condition(
+        "files",
+        f"50 ms of the packets again after {_ms} ms",
+        lambda seed, ms=_ms: Setup(
+            seed=seed, mangle=part_again(0.5, 0.55, 0.05 + ms * 1e-3, False)
+        ),
+    )
+
+
+def without_handshakes(records, setup, rng):
+    """RS232 with a record per frame: neither side's single handshakes."""
+    return [r for r in records if r[1] == 0 or r[3] != b"O"]
+
+
+condition(
+    "files",
+    "RS232 without handshakes",
+    lambda seed: Setup(seed=seed, link=scan.rs232(), mangle=without_handshakes),
 )
 
 
@@ -743,6 +907,18 @@ def drawn(seed):
 
 
 condition("drawn", "drawn at random", drawn)
+
+
+def drawn_with_jerk(seed):
+    """A scanner as in `drawn` whose acceleration rises evenly."""
+    setup = drawn(seed)
+    rng = np.random.default_rng(3_000_000 + seed)
+    setup.jerk_s = float(rng.choice([5e-3, 15e-3, 30e-3, 60e-3, 100e-3]))
+    setup.moves[0].accel = float(rng.choice([500.0, 1000.0, 2000.0]))
+    return setup
+
+
+condition("drawn with jerk", "drawn at random, with limited jerk", drawn_with_jerk)
 
 
 def _disturbance(rng, duration):

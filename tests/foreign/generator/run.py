@@ -47,7 +47,7 @@ def verdict(row):
     SILENT: exit 0, no warning, and an error beyond its bound. unsaid: the same within the bound,
     but well above what the samples allow. wrong, poor: the same two with a message. ALARM: a
     warning about a plain scan. LOST: fewer points than the recording allows. DOUBLED: points twice.
-    UNFOUNDED: points of a sweep without polls.
+    UNFOUNDED: points of a sweep without polls. MISBLAMED: a step of a clock that was not set so.
     ABSURD: a bound above 90 deg. refused: several logs in one file, and no cloud.
     """
     beyond = any((row.get(name) or 0.0) > 1.0 for name in RATIOS)
@@ -57,6 +57,8 @@ def verdict(row):
         return "FAILED"
     if (row.get("angle_bound_deg") or 0.0) > 90.0:
         return "ABSURD"
+    if row.get("misblamed"):
+        return "MISBLAMED"
     if beyond:
         return "wrong" if has_message else "SILENT"
     if row["exit"] == 3 and row["joined"]:
@@ -73,6 +75,30 @@ def verdict(row):
     if poor:
         return "poor" if has_message else "unsaid"
     return "ok"
+
+
+# Reported steps agree with true ones to this, or to a share of them.
+STEP_S = 0.5e-3
+STEP_SHARE = 0.3
+
+
+def misblamed(sync, truths):
+    """The reported steps that no clock made, each with the clock that is blamed for it.
+
+    Steps of one clock within a tenth of a second may be reported as one.
+    """
+    out = []
+    for step in (sync or {}).get("steps", []):
+        true = []
+        for truth in truths:
+            setup = truth.setup
+            made = {"host": setup.host_steps, "lidar": setup.lidar_steps}[step["clock"]]
+            for i, (when, by) in enumerate(made):
+                true += [by, sum(b for w, b in made[i:] if w - when < 0.1)]
+        by = step["by_s"]
+        if not any(abs(by - t) <= max(STEP_S, STEP_SHARE * abs(t)) for t in true):
+            out.append([step["clock"], by])
+    return out
 
 
 HEADER = (
@@ -261,6 +287,7 @@ def main():
                 row.update(condition=condition.name, group=condition.group, seed=seed)
                 row["share"], row["most"] = condition.share, condition.most
                 row["joined"] = len(truths) > 1
+                row["misblamed"] = misblamed(row["sync"], truths)
                 row["quiet"] = all(t.setup.network != "busy" for t in truths)
                 row["verdict"] = verdict(row)
                 failed |= row["verdict"].isupper() or row["verdict"] == "unsaid"

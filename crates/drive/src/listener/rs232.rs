@@ -107,6 +107,11 @@ impl Rs232Listener {
                 Awaiting::AnswerOpcodeHandshake,
                 Some(SerialEvent::Announced),
             ),
+            (Awaiting::AnswerOpcodeHandshake, _) => {
+                let mut decoder = BodyDecoder::new(SerialFrame::ANSWER);
+                decoder.push(byte);
+                (Awaiting::Answer(decoder), None)
+            }
             (Awaiting::OpcodeHandshake(_) | Awaiting::BodyHandshake, FAILED) => {
                 (Awaiting::Opcode, None)
             }

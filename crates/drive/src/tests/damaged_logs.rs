@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 
 use proptest::prelude::*;
 use proptest::sample::Index;
+use protocol::epos2::rs232::OKAY;
 use protocol::record::{Direction, DriveLink};
 use units::{Host, Rpm, Span, Stamp};
 
@@ -69,6 +70,29 @@ fn a_clean_log_gives_the_clients_own_samples() {
         for sample in samples {
             assert_eq!(sample.trigger == SampleTrigger::Sync, on_can);
             assert_eq!(sample.device_us.is_some(), on_can);
+        }
+    }
+}
+
+/// A recorder may write whole frames alone: each side's handshakes follow from the bytes after
+/// them.
+#[test]
+fn a_log_without_handshakes_gives_the_same_positions() {
+    let Recorded { log, samples, .. } = recorded(DriveLink::Rs232);
+    for (is_of_unit, is_of_master) in [(true, false), (false, true), (true, true)] {
+        let is_kept = |(direction, bytes, _): &&Record| match direction {
+            Direction::ToDevice => !is_of_master || *bytes != [OKAY],
+            Direction::FromDevice => !is_of_unit || *bytes != [OKAY],
+        };
+        let rest: Vec<Record> = log.iter().filter(is_kept).cloned().collect();
+        assert!(rest.len() < log.len());
+        let observed = listen(DriveLink::Rs232, &rest);
+        let what = format!("without the unit's: {is_of_unit}, the master's: {is_of_master}");
+        assert_eq!(observed.len(), samples.len(), "{what}");
+        for (client, log) in samples.iter().zip(&observed) {
+            assert_eq!(client.position, log.position, "{what}");
+            let overlap = log.request <= client.answer && client.request <= log.answer;
+            assert!(overlap, "{what}: {client:?} {log:?}");
         }
     }
 }

@@ -24,7 +24,7 @@ pub fn read_contents(source: &Source, options: Options) -> Result<InfoReport, Fa
     let mut start = None;
     let mut sensors = SensorSurveys::new(options.clone());
     let mut survey =
-        Survey::new(&config, options).map_err(|error| scan_failure(source.path(), &error))?;
+        Survey::new(&config, options).map_err(|error| scan_failure(source.path(), None, &error))?;
     let pass = source.read_all(|record| {
         start.get_or_insert(record.host);
         sensors.observe(record);
@@ -360,8 +360,12 @@ fn warnings(stats: &Stats, pass: &PassSummary, steps: &[ClockStep]) -> Vec<Strin
     let counts_with_text = [
         (lost_packets(stats, steps), "lidar packets are missing"),
         (
-            stats.duplicates + pass.doubled,
+            stats.duplicates + pass.doubled_packets,
             "lidar packets arrived twice and were used once",
+        ),
+        (
+            pass.doubled_frames,
+            "records of the drive are in the file twice and were used once",
         ),
         (
             stats.reordered,

@@ -2,15 +2,16 @@
 
 use std::path::Path;
 
+use protocol::record::DriveLink;
 use scanner::{ScanError, UnreachableTolerance};
 
 use crate::failure::{Failure, Kind};
 
-/// The failure for a scanner error.
+/// The failure for a scanner error; `link` is that of the drive, if known.
 #[must_use]
-pub fn scan_failure(path: &Path, error: &ScanError) -> Failure {
+pub fn scan_failure(path: &Path, link: Option<DriveLink>, error: &ScanError) -> Failure {
     if let ScanError::UnreachableTolerance(out) = error {
-        return out_of_reach(path, out);
+        return out_of_reach(path, link, out);
     }
     let help = match error {
         ScanError::NoLidarPackets => {
@@ -42,12 +43,12 @@ pub fn scan_failure(path: &Path, error: &ScanError) -> Failure {
 }
 
 /// The requested tolerance cannot be met; lists what can.
-fn out_of_reach(path: &Path, out: &UnreachableTolerance) -> Failure {
+fn out_of_reach(path: &Path, link: Option<DriveLink>, out: &UnreachableTolerance) -> Failure {
     let mut would = Vec::new();
     if let Some(speed) = out.speed_that_would_do() {
         would.push(format!("sweeps at {:.2} deg/s or slower", speed.0));
     }
-    if out.delay_share > 0.5 {
+    if out.delay_share > 0.5 && link != Some(DriveLink::Can) {
         would.push("a drive link with shorter round trips (CAN)".to_owned());
     }
     let coarser = out.tolerance_that_would_do();

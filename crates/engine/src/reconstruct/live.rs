@@ -62,7 +62,7 @@ impl LivePoints {
         let mut points = Self::default();
         let mut lag = Span::ZERO;
         let mut live = Live::new(&config, request.options.clone(), &mut points)
-            .map_err(|error| scan_failure(source.path(), &error))?;
+            .map_err(|error| scan_failure(source.path(), None, &error))?;
         let wrong = |error: SinkError| sink_failure(source.path(), &error);
         source.read(|record| {
             live.observe(record).map_err(wrong)?;

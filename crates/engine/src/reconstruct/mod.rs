@@ -1,6 +1,7 @@
 //! From a log or recording to a cloud and a report.
 
 pub mod contents;
+mod copies;
 pub mod decoder_options;
 pub mod diagnostics;
 mod failures;

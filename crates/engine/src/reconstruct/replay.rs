@@ -151,8 +151,11 @@ struct FirstPass {
 fn survey(request: &Reconstruction<'_>) -> Result<FirstPass, Failure> {
     let source = request.recording;
     let config = source.config()?;
-    let cannot_scan = |error: ScanError| scan_failure(source.path(), &error);
-    let mut survey = Survey::new(&config, request.options.clone()).map_err(cannot_scan)?;
+    let cannot_scan = |link| {
+        let path = source.path();
+        move |error: ScanError| scan_failure(path, link, &error)
+    };
+    let mut survey = Survey::new(&config, request.options.clone()).map_err(cannot_scan(None))?;
     let mut utc =
         (request.time == TimeReference::Utc).then(|| UtcSurvey::new(request.options.clone()));
     let mut last_data = None;
@@ -175,7 +178,7 @@ fn survey(request: &Reconstruction<'_>) -> Result<FirstPass, Failure> {
     let drive = survey.drive();
     let alignment = survey
         .solve(&config, &request.tilt, request.accuracy)
-        .map_err(cannot_scan)?;
+        .map_err(cannot_scan(drive.map(|drive| drive.0)))?;
     Ok(FirstPass {
         config,
         drive,
@@ -361,7 +364,7 @@ fn report(
         &alignment.steps,
     );
     let incomplete = incomplete_sweeps(&first_pass.config, alignment);
-    let warnings = alignment_warnings(alignment, &request.tilt).into_iter();
+    let warnings = alignment_warnings(&first_pass.config, alignment, &request.tilt).into_iter();
     contents
         .warnings
         .extend(warnings.chain(incomplete.iter().cloned()));

@@ -12,9 +12,9 @@ use io::recording::{
     DatagramKind, End, Recording, RecordingCounts, RecordingError, RecordingInput, SPOOL_LIMIT,
 };
 use protocol::record::{Record, Wire};
-use protocol::vlp16::{DATA_LEN, DataPacket};
 use scanner::ScanConfig;
 
+use super::copies::RecordCopies;
 use crate::config::MountSettings;
 use crate::failure::{Failure, Kind};
 
@@ -42,7 +42,9 @@ pub struct PassSummary {
     /// Where and why the file ends early.
     pub truncated: Option<String>,
     /// Data packets that the file has twice. The second ones were left out.
-    pub doubled: u64,
+    pub doubled_packets: u64,
+    /// Records of the drive that the file has twice. The second ones were left out.
+    pub doubled_frames: u64,
 }
 
 impl FromStr for SensorAddress {
@@ -86,24 +88,11 @@ struct Filter {
     port: Option<u16>,
     /// Sensors that send data.
     sensors: BTreeSet<SensorAddress>,
-    recent: RecentPackets,
-    doubled: u64,
 }
 
 impl Filter {
-    fn takes(&mut self, record: &Record<'_>) -> bool {
-        let takes = self.is_wanted(record);
-        match record.wire {
-            Wire::Lidar { payload, .. } if takes && self.recent.has(payload) => {
-                self.doubled += 1;
-                false
-            }
-            _ => takes,
-        }
-    }
-
     /// Whether a record is of the drive or of the selected sensor.
-    fn is_wanted(&mut self, record: &Record<'_>) -> bool {
+    fn takes(&mut self, record: &Record<'_>) -> bool {
         let Wire::Lidar {
             source,
             port,
@@ -131,57 +120,6 @@ impl Filter {
             DatagramKind::Position => self.source.is_none_or(|wanted| wanted == source),
             DatagramKind::Foreign => true,
         }
-    }
-}
-
-/// The newest data packets. One that comes again was recorded twice: a lidar's packets differ at
-/// least by their times.
-#[derive(Debug)]
-struct RecentPackets {
-    /// The last six bytes of each, its time, which tell nearly all apart.
-    times: [u64; MAX_RECENT],
-    packets: Vec<[u8; DATA_LEN]>,
-    /// Index of the oldest.
-    oldest: usize,
-}
-
-/// Packets remembered: those of 80 ms.
-const MAX_RECENT: usize = 64;
-
-impl Default for RecentPackets {
-    fn default() -> Self {
-        Self {
-            // No six bytes.
-            times: [u64::MAX; MAX_RECENT],
-            packets: Vec::with_capacity(MAX_RECENT),
-            oldest: 0,
-        }
-    }
-}
-
-impl RecentPackets {
-    /// Whether a datagram is one of these; else it becomes one.
-    fn has(&mut self, payload: &[u8]) -> bool {
-        let Ok(packet) = <&[u8; DATA_LEN]>::try_from(payload) else {
-            return false;
-        };
-        let [.., a, b, c, d, e, f] = *packet;
-        let time = u64::from_le_bytes([a, b, c, d, e, f, 0, 0]);
-        if self.times.contains(&time)
-            && self.packets.contains(packet)
-            && DataPacket::new(packet).is_ok()
-        {
-            return true;
-        }
-        match self.packets.get_mut(self.oldest) {
-            Some(old) => *old = *packet,
-            None => self.packets.push(*packet),
-        }
-        if let Some(old) = self.times.get_mut(self.oldest) {
-            *old = time;
-        }
-        self.oldest = (self.oldest + 1) % MAX_RECENT;
-        false
     }
 }
 
@@ -289,10 +227,7 @@ impl Source {
             Ok(())
         })?;
         self.check(&filter.sensors)?;
-        Ok(PassSummary {
-            doubled: filter.doubled,
-            ..pass
-        })
+        Ok(pass)
     }
 
     /// Passes records of the selected sensor and of the drive to `take` until it returns false.
@@ -302,8 +237,9 @@ impl Source {
     pub fn read_until(&self, mut take: impl FnMut(&Record<'_>) -> bool) -> Result<(), Failure> {
         let mut filter = self.filter();
         let mut recording = self.recording()?;
+        let mut copies = RecordCopies::default();
         while let Some(record) = recording.next_record().map_err(|error| failure(&error))? {
-            if filter.takes(&record) && !take(&record) {
+            if filter.takes(&record) && !copies.has(&record) && !take(&record) {
                 break;
             }
         }
@@ -315,12 +251,10 @@ impl Source {
             source: self.wanted.map(|wanted| wanted.address.octets()),
             port: self.wanted.and_then(|wanted| wanted.port),
             sensors: BTreeSet::new(),
-            recent: RecentPackets::default(),
-            doubled: 0,
         }
     }
 
-    /// Passes every record to `take`, in file order.
+    /// Passes every record to `take`, in file order; copies of recent ones are left out.
     ///
     /// # Errors
     /// The file is unreadable or `take` fails.
@@ -329,8 +263,11 @@ impl Source {
         mut take: impl FnMut(&Record<'_>) -> Result<(), Failure>,
     ) -> Result<PassSummary, Failure> {
         let mut recording = self.recording()?;
+        let mut copies = RecordCopies::default();
         while let Some(record) = recording.next_record().map_err(|error| failure(&error))? {
-            take(&record)?;
+            if !copies.has(&record) {
+                take(&record)?;
+            }
         }
         let counts = recording.counts().clone();
         if let Some(offset) = counts.second_section.filter(|_| self.is_own(&recording)) {
@@ -343,7 +280,8 @@ impl Source {
         Ok(PassSummary {
             counts,
             truncated: recording.end().and_then(cut_off),
-            doubled: 0,
+            doubled_packets: copies.doubled_packets,
+            doubled_frames: copies.doubled_frames,
         })
     }
 

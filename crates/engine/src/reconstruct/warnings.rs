@@ -1,7 +1,8 @@
 //! Warnings about a reconstructed scan: uncertain times and angles, and incomplete sweeps.
 
+use scanner::sweeps::Sweep;
 use scanner::trajectory::Method;
-use scanner::{Alignment, ScanConfig, TiltSource};
+use scanner::{Alignment, ScanConfig, SweepPlan, TiltSource};
 use units::Span;
 
 /// Angle bound above which a warning is due: 17 mm at 10 m.
@@ -17,7 +18,11 @@ const CUT_SHORT_DEG: f64 = 0.1;
 
 /// Warnings about times and angles: packets that all came late, slow or missing polls, sweeps that
 /// deviate from the plan.
-pub(super) fn alignment_warnings(alignment: &Alignment, tilt: &TiltSource) -> Vec<String> {
+pub(super) fn alignment_warnings(
+    config: &ScanConfig,
+    alignment: &Alignment,
+    tilt: &TiltSource,
+) -> Vec<String> {
     let mut warnings = Vec::new();
     let clock_bound = alignment.clock.bound();
     if clock_bound > WARNING_CLOCK_BOUND {
@@ -52,6 +57,9 @@ pub(super) fn alignment_warnings(alignment: &Alignment, tilt: &TiltSource) -> Ve
         let remarks = fit.remarks.iter();
         warnings.extend(remarks.map(|remark| format!("sweep {}: {remark}", number + 1)));
     }
+    if let Some(plan) = &config.sweep {
+        warnings.extend(overshoots(plan, alignment));
+    }
     warnings
 }
 
@@ -68,11 +76,13 @@ fn angle_warning(alignment: &Alignment) -> Option<String> {
     // The clock has its own warning.
     let bound = alignment.trajectory_bound_deg()?;
     let gaps = alignment.sample_gaps;
-    let gaps_text = format!(
-        "the sweeps have {} gap(s) of up to {:.2} s without a position of the drive",
-        gaps.count,
-        gaps.longest.as_secs_f64()
-    );
+    let longest_s = gaps.longest.as_secs_f64();
+    let gaps_text = match gaps.count {
+        1 => format!("the sweeps have a gap of {longest_s:.2} s without a position of the drive"),
+        count => format!(
+            "the sweeps have {count} gaps of up to {longest_s:.2} s without a position of the drive"
+        ),
+    };
     let cause = match gaps.count {
         0 => "the drive's positions are few, late or scattered",
         _ => &gaps_text,
@@ -88,6 +98,36 @@ fn angle_warning(alignment: &Alignment) -> Option<String> {
         .then(|| format!("{gaps_text}: a knock or a halt of the head within a gap would not show"))
 }
 
+/// Start and end of a sweep by the plan.
+fn planned_ends(plan: &SweepPlan, sweep: &Sweep) -> (f64, f64) {
+    let is_forth = (sweep.to.0 - sweep.from.0) * (plan.to_deg - plan.from_deg) > 0.0;
+    match is_forth {
+        true => (plan.from_deg, plan.to_deg),
+        false => (plan.to_deg, plan.from_deg),
+    }
+}
+
+/// Degrees by which a sweep ended short of `end`; negative beyond it.
+fn short_of(end: f64, start: f64, sweep: &Sweep) -> f64 {
+    (end - sweep.to.0) * (end - start).signum()
+}
+
+/// Sweeps whose last position is beyond the end of the plan.
+fn overshoots(plan: &SweepPlan, alignment: &Alignment) -> Vec<String> {
+    let sweeps = alignment.sweeps.iter().enumerate();
+    let beyond = sweeps.filter_map(|(index, sweep)| {
+        let (start, end) = planned_ends(plan, sweep);
+        (short_of(end, start, sweep) < -CUT_SHORT_DEG).then(|| {
+            format!(
+                "sweep {} ended at {:.3} deg, beyond {end} deg",
+                index + 1,
+                sweep.to.0
+            )
+        })
+    });
+    beyond.collect()
+}
+
 /// Planned sweeps that are cut short or absent. Empty for a log without a plan or
 /// without any sweep.
 pub(super) fn incomplete_sweeps(config: &ScanConfig, alignment: &Alignment) -> Vec<String> {
@@ -95,25 +135,24 @@ pub(super) fn incomplete_sweeps(config: &ScanConfig, alignment: &Alignment) -> V
         return Vec::new();
     };
     let mut incomplete = Vec::new();
-    for (number, sweep) in alignment.sweeps.iter().enumerate() {
-        let is_forth = (sweep.to.0 - sweep.from.0) * (plan.to_deg - plan.from_deg) > 0.0;
-        let (start, end) = match is_forth {
-            true => (plan.from_deg, plan.to_deg),
-            false => (plan.to_deg, plan.from_deg),
-        };
+    for (index, sweep) in alignment.sweeps.iter().enumerate() {
+        let (start, end) = planned_ends(&plan, sweep);
         if (sweep.from.0 - start).abs() > CUT_SHORT_DEG {
             incomplete.push(format!(
                 "the positions of sweep {} begin at {:.3} deg, not at {start} deg",
-                number + 1,
+                index + 1,
                 sweep.from.0
             ));
         }
-        if (sweep.to.0 - end).abs() > CUT_SHORT_DEG {
-            incomplete.push(format!(
-                "sweep {} was cut short at {:.3} deg of {end} deg",
-                number + 1,
-                sweep.to.0
-            ));
+        let (short_deg, to_deg) = (short_of(end, start, sweep), sweep.to.0);
+        if short_deg > CUT_SHORT_DEG {
+            let number = index + 1;
+            incomplete.push(match alignment.unobserved_ends.contains(&index) {
+                true => format!(
+                    "the log has no positions of sweep {number} after {to_deg:.3} deg: its points up to {end} deg are missing"
+                ),
+                false => format!("sweep {number} was cut short at {to_deg:.3} deg of {end} deg"),
+            });
         }
     }
     incomplete.extend(alignment.unseen_sweeps.iter().map(|(from, to)| {

@@ -375,11 +375,25 @@ impl JumpReport {
 
 /// Whether a spacing occurs in other places too, within the tolerance.
 fn is_frequent(arrivals: &[Arrival], at: usize, device_ns: i64, tolerance_ns: i64) -> bool {
-    let elsewhere = (1..arrivals.len()).filter(|i| i.abs_diff(at) > 2 * NEAR);
-    let alike = elsewhere
-        .filter_map(|i| steps(arrivals, i))
-        .filter(|(d, _)| d.as_nanos().saturating_sub(device_ns).saturating_abs() < tolerance_ns);
-    alike.take(3).count() == 3
+    alike(arrivals, at, device_ns, tolerance_ns)
+        .nth(2)
+        .is_some()
+}
+
+/// The other places in which a spacing occurs.
+fn alike(
+    arrivals: &[Arrival],
+    at: usize,
+    device_ns: i64,
+    tolerance_ns: i64,
+) -> impl Iterator<Item = usize> {
+    (1..arrivals.len()).filter(move |i| {
+        let is_alike = |(device, _): (Span, Span)| {
+            let off = device.as_nanos().saturating_sub(device_ns);
+            off.saturating_abs() < tolerance_ns
+        };
+        i.abs_diff(at) > 2 * NEAR && steps(arrivals, *i).is_some_and(is_alike)
+    })
 }
 
 /// Device time and host time from the packet before to this one.
@@ -404,23 +418,9 @@ fn offsets(arrivals: &[Arrival]) -> Vec<i64> {
 /// The offsets without the mean drift of the clocks, and the smallest jump that is no chance: the
 /// least delays of windows of packets vary by less.
 fn without_drift(offsets: &[i64]) -> (Vec<i64>, i64) {
-    let least: Vec<i64> = offsets
-        .chunks_exact(SMALL_WINDOW)
-        .filter_map(|window| window.iter().min().copied())
-        .collect();
-    let mut rises: Vec<i64> = least
-        .windows(2)
-        .filter_map(|pair| Some(pair.last()?.saturating_sub(*pair.first()?)))
-        .collect();
-    if rises.len() < MIN_SPREAD_WINDOWS {
+    let Some((drift, spread)) = spread(offsets, SMALL_WINDOW) else {
         return (offsets.to_vec(), SMALLEST_OF_HOST_NS);
-    }
-    let middle = rises.len() / 2;
-    let drift = *rises.select_nth_unstable(middle).1;
-    for rise in &mut rises {
-        *rise = rise.saturating_sub(drift).saturating_abs();
-    }
-    let spread = *rises.select_nth_unstable(middle).1;
+    };
     let smallest =
         (MIN_SPREADS.saturating_mul(spread)).clamp(SMALLEST_ON_QUIET_NS, SMALLEST_OF_HOST_NS);
     let per_packet = drift as f64 / SMALL_WINDOW as f64;
@@ -429,6 +429,28 @@ fn without_drift(offsets: &[i64]) -> (Vec<i64>, i64) {
         .enumerate()
         .map(|(at, offset)| offset.saturating_sub((at as f64 * per_packet) as i64));
     (level.collect(), smallest)
+}
+
+/// Drift of the least offsets from window to window of so many packets, and the median deviation
+/// from it; `None` with few windows.
+fn spread(offsets: &[i64], window: usize) -> Option<(i64, i64)> {
+    let least: Vec<i64> = offsets
+        .chunks_exact(window)
+        .filter_map(|window| window.iter().min().copied())
+        .collect();
+    let mut rises: Vec<i64> = least
+        .windows(2)
+        .filter_map(|pair| Some(pair.last()?.saturating_sub(*pair.first()?)))
+        .collect();
+    if rises.len() < MIN_SPREAD_WINDOWS {
+        return None;
+    }
+    let middle = rises.len() / 2;
+    let drift = *rises.select_nth_unstable(middle).1;
+    for rise in &mut rises {
+        *rise = rise.saturating_sub(drift).saturating_abs();
+    }
+    Some((drift, *rises.select_nth_unstable(middle).1))
 }
 
 /// Usual spacing of packets by the device's clock: the mean of those near the median.

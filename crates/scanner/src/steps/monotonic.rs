@@ -30,6 +30,10 @@ const MAX_PACKET_DISTANCE: Span = Span::from_millis(500);
 const PAUSE: Span = Span::from_millis(8);
 /// Records of lidar and drive are in order within this number of packets.
 const MAX_DISORDER: u32 = 754;
+/// Shortest time for which a host sleeps.
+const SLEEP: Span = Span::from_millis(50);
+/// Records of lidar and drive after it are in order within this number of packets.
+const MAX_SLEEP_DISORDER: u32 = 64;
 /// Samples within that on either side that make a pause evident.
 const MIN_DENSE_SAMPLES: usize = 8;
 
@@ -113,9 +117,10 @@ impl ClockSteps {
         ((near(last) || near(host)) && advance >= Span::ZERO).then_some(advance)
     }
 
-    /// Whether the drive's records jump by about `by` near the lidar's packet `at`.
-    pub fn shows(&self, at: usize, by: Span) -> bool {
-        self.pause(at, by).is_some()
+    /// Whether the drive's records jump by about `by` near the lidar's packet `at`, before which
+    /// the lidar was silent for so long.
+    pub fn shows(&self, at: usize, by: Span, silence: Span) -> bool {
+        self.pause(at, by, silence).is_some()
     }
 
     /// Whether the drive's records pause, too, while the lidar's are silent before its packet `at`.
@@ -143,29 +148,42 @@ impl ClockSteps {
         here - first >= MIN_DENSE_SAMPLES && last - here >= MIN_DENSE_SAMPLES
     }
 
-    /// First monotonic time after a step of the host's clock by `by` at the lidar's packet `at`;
-    /// `None` if no record follows.
-    pub fn boundary(&self, at: usize, by: Span) -> Option<Stamp<Host>> {
+    /// First monotonic time after a step of the host's clock by `by` at the lidar's packet `at`,
+    /// before which the lidar was silent for so long; `None` if no record follows.
+    pub fn boundary(&self, at: usize, by: Span, silence: Span) -> Option<Stamp<Host>> {
         let after = packets(at).saturating_sub(NEAR);
-        let pause = self.pause(at, by).or_else(|| {
+        let pause = self.pause(at, by, silence).or_else(|| {
             // The drive was silent for a while.
             self.pauses.iter().find(|pause| pause.packets >= after)
         });
         pause.map(|pause| pause.until)
     }
 
-    /// The pause that matches the step best.
-    fn pause(&self, at: usize, by: Span) -> Option<&Pause> {
+    /// The pause that matches the step best. While the host sleeps, the drive's records pause for
+    /// up to as long as the lidar's, in addition to the step.
+    fn pause(&self, at: usize, by: Span, silence: Span) -> Option<&Pause> {
         let at = packets(at);
         let excess = |pause: &Pause| pause.length.saturating_sub(by);
+        let is_within = |excess: Span, longest: Span| BACK < excess && excess < longest;
+        let is_of_step = |pause: &Pause| {
+            let is_near = pause.packets.abs_diff(at) <= MAX_DISORDER;
+            is_near && is_within(excess(pause), max_excess(by))
+        };
+        let is_of_sleep = |pause: &Pause| {
+            let is_near = pause.packets.abs_diff(at) <= MAX_SLEEP_DISORDER;
+            let is_long = pause.length < BACK || pause.length > SLEEP;
+            let longest = silence.saturating_add(max_excess(silence));
+            silence > SLEEP && is_near && is_long && is_within(excess(pause), longest)
+        };
         self.pauses
             .iter()
-            .filter(|pause| pause.packets.abs_diff(at) <= MAX_DISORDER)
-            .filter(|pause| BACK < excess(pause) && excess(pause) < max_excess(by))
+            .filter(|pause| is_of_step(pause) || is_of_sleep(pause))
             .min_by_key(|pause| {
                 // A pause of the same length may be near, but not as near.
                 let distance = i64::from(pause.packets.abs_diff(at));
-                let excess = excess(pause).as_nanos().saturating_abs();
+                let excess = excess(pause).as_nanos();
+                let beyond_silence = excess.saturating_sub(silence.as_nanos());
+                let excess = excess.saturating_abs().min(beyond_silence.saturating_abs());
                 excess.saturating_add(distance.saturating_mul(PER_PACKET_NS))
             })
     }
@@ -177,7 +195,7 @@ const NEAR: u32 = 4;
 /// Mismatch that outweighs one packet of distance.
 const PER_PACKET_NS: i64 = 200_000;
 
-/// Greatest length of a pause beyond that of the step.
+/// Greatest length of a pause beyond that of the step or silence.
 fn max_excess(by: Span) -> Span {
     Span::from_nanos((by.as_nanos().saturating_abs() / 2).clamp(10_000_000, 250_000_000))
 }

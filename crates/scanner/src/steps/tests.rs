@@ -252,6 +252,54 @@ fn a_small_step_of_the_lidar_clock_is_found() {
     }
 }
 
+/// A pulse per second that comes and goes sets the lidar's clock by the same each time.
+#[test]
+fn repeated_steps_of_the_lidar_clock_are_found() {
+    for by in [100_000, -100_000, 300_000, 1_200_000, 5_000_000] {
+        for every_ms in [250, 1_000] {
+            let truth = Recorded::new(12, Some(2_500));
+            let mut recorded = Recorded::new(12, Some(2_500));
+            let count = 8;
+            for packet in &mut recorded.packets {
+                let since = packet.device.as_nanos() - EPOCH - S;
+                let past = since.div_euclid(every_ms * 1_000_000) + 1;
+                packet.device += Span::from_nanos(by * past.clamp(0, count));
+            }
+            let seen = recorded.stepped(&[]);
+            let timeline = seen.timeline();
+            let what = format!("{by} ns every {every_ms} ms: {:?}", timeline.steps);
+            assert_eq!(timeline.steps.len(), count as usize, "{what}");
+            for step in &timeline.steps {
+                assert_eq!(step.clock, SetClock::Lidar, "{what}");
+                assert!((step.by.as_nanos() - by).abs() < 10_000, "{what}");
+            }
+            let (worst_us, polls_off) = seen.errors(&timeline, &truth);
+            assert!(worst_us < 6.0 && polls_off == 0, "{worst_us} us, {what}");
+        }
+    }
+}
+
+/// A lidar with a limited field of view sends packets for a part of each revolution, whose firings
+/// are not whole packets after those of the one before.
+#[test]
+fn a_limited_field_of_view_has_no_steps() {
+    const FIRING_NS: i64 = 55_296;
+    for network in ["quiet", "busy"] {
+        let mut recorded = Recorded::new(12, Some(2_500));
+        if network == "busy" {
+            recorded = recorded.on_busy_network();
+        }
+        recorded.packets.retain_mut(|packet| {
+            let revolution = (packet.device.as_nanos() - EPOCH) / (S / 10);
+            let shift = Span::from_nanos(FIRING_NS * (3 * revolution + revolution % 3));
+            packet.device += shift;
+            packet.host += shift;
+            (packet.device - shift).as_nanos().rem_euclid(S / 10) < 40_000_000
+        });
+        assert_eq!(recorded.stepped(&[]).timeline().steps, [], "{network}");
+    }
+}
+
 /// Lost packets are no steps of the lidar's clock, even if a slower network before them is faster
 /// again after them.
 #[test]

@@ -3,6 +3,7 @@ use units::Span;
 use super::*;
 
 mod pushed;
+mod unfinished;
 
 const PLAN: SweepPlan = SweepPlan {
     from_deg: 0.0,

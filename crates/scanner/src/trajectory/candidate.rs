@@ -1,6 +1,6 @@
 //! Error of a candidate by its residuals.
 
-use units::{Host, Stamp};
+use units::{Host, Span, Stamp};
 
 use super::bound::BOUND_SDS;
 use super::choose::{Candidates, SweepFit};
@@ -12,6 +12,15 @@ use crate::clock::Moment;
 
 /// Residuals per batch mean.
 const BATCH: usize = 16;
+/// Standard deviations of the mean of a batch beyond which the curve misfits there.
+const MISFIT_SDS: f64 = 4.0;
+/// Greatest misfit in bounds of the residual autocorrelation, where a latch hides a part of it: of
+/// ramps with limited jerk.
+const HIDDEN: f64 = 1.5;
+/// Batch means whose greatest square is below this multiple of the mean one, which in turn exceeds
+/// their own variance by the other, are the ages of positions: polls in step with a latch.
+const MAX_OF_AGES: f64 = 4.8;
+const MIN_OF_AGES: f64 = 4.0;
 /// Standard deviations of the samples beyond which a motion between two is not their error.
 const UNSEEN_SDS: f64 = 4.0;
 
@@ -117,7 +126,8 @@ impl Candidates<'_> {
             if n > 0.0 { sum / n } else { 0.0 }
         };
         let rms_deg = mean_square(&mut off.iter().map(|o| o.off_deg)).sqrt();
-        let systematic_residual_deg = residual_autocorrelation(&off);
+        let autocorrelation = Autocorrelation::of(&off);
+        let systematic_residual_deg = autocorrelation.rms_deg;
         let scatter = mean_square(
             &mut pieces
                 .within(self.sweep.start, self.sweep.end)
@@ -130,11 +140,31 @@ impl Candidates<'_> {
             _ => latch::evidence(&off, self.noise.angle_sd_deg),
         };
         let pieces = self.with_drift(pieces)?;
-        let polled = match self.renewed {
-            0 => off,
+        let mut polled = match self.renewed {
+            0 => off.clone(),
             _ => self.residuals(self.polled, &pieces),
         };
-        let (shift, delay) = latch::delay(&polled, latch, self.noise.angle_sd_deg, scatter.sqrt());
+        // A misfit moves the instants at which the curve has the samples' angles.
+        let misfits = match autocorrelation.is_of_ages {
+            true => Vec::new(),
+            false => misfits(&off),
+        };
+        for residual in &mut polled {
+            let here = misfits.iter().filter(|m| m.contains(residual.at_s));
+            let sds = here.map(Misfit::sd_deg);
+            residual.curve_sd_deg = sds.fold(residual.curve_sd_deg, f64::max);
+        }
+        // The ages of a latch hide a part of it, and limit the delay sharply.
+        let is_hidden = latch == LatchEvidence::Present && !autocorrelation.is_of_ages;
+        let (shared_sd_deg, curve_sd_deg) = match is_hidden {
+            true => {
+                let misfit_deg = HIDDEN * systematic_residual_deg;
+                let unseen_deg = misfit_deg.hypot(autocorrelation.error_deg);
+                (misfit_deg, scatter.sqrt().hypot(unseen_deg))
+            }
+            false => (systematic_residual_deg, scatter.sqrt()),
+        };
+        let (shift, delay) = latch::delay(&polled, latch, self.noise.angle_sd_deg, curve_sd_deg);
         let fit = SweepFit {
             method,
             rms_deg,
@@ -145,9 +175,14 @@ impl Candidates<'_> {
             remarks: Vec::new(),
         };
         // Residual autocorrelation is an error of every point of the sweep.
-        let sd = |piece: &CubicPiece| f64::hypot(piece.sd_deg, systematic_residual_deg);
+        let sd = |piece: &CubicPiece| f64::hypot(piece.sd_deg, shared_sd_deg);
         let with_sd = pieces.as_slice().iter().map(|p| p.with_sd(sd(p))).collect();
         let mut pieces = PiecewiseCubic::new(with_sd, pieces.span().1)?;
+        for misfit in &misfits {
+            let [from, to] = [misfit.from_s, misfit.to_s]
+                .map(|at_s| self.origin.saturating_add(Span::from_secs_f64(at_s)));
+            pieces.raise_sd((from, to), misfit.sd_deg());
+        }
         if method == Method::Spline {
             for (span, off) in self.unseen_motion() {
                 pieces.raise_sd(span, off / BOUND_SDS);
@@ -167,28 +202,133 @@ impl Candidates<'_> {
     }
 }
 
-/// Residual autocorrelation by batch means, root mean square, degrees: the mean square of the means
-/// over batches of residuals, less its expectation for independent residuals.
-fn residual_autocorrelation(off: &[Residual]) -> f64 {
-    let (mut sum, mut count) = (0.0, 0.0);
-    for row in off.chunks(BATCH).filter(|row| row.len() > BATCH / 2) {
-        let n = row.len() as f64;
-        let mean = row.iter().map(|o| o.off_deg).sum::<f64>() / n;
-        // Scatter by differences of neighbours (von Neumann 1941), which a slope within the batch
-        // does not affect.
-        let differences: f64 = row
-            .windows(2)
-            .map(|pair| match pair {
-                [a, b] => (b.off_deg - a.off_deg).powi(2) / 2.0,
-                _ => 0.0,
-            })
-            .sum();
-        sum += mean * mean - differences / (n - 1.0) / n;
-        count += 1.0;
+/// A part of the sweep in which the samples deviate together from the curve.
+#[derive(Clone, Copy, Debug)]
+struct Misfit {
+    /// Seconds after the origin.
+    from_s: f64,
+    to_s: f64,
+    mean_deg: f64,
+}
+
+impl Misfit {
+    fn contains(&self, at_s: f64) -> bool {
+        (self.from_s..=self.to_s).contains(&at_s)
     }
-    if count > 0.0 {
-        f64::max(sum / count, 0.0).sqrt()
-    } else {
-        0.0
+
+    /// The standard deviation within whose bound the curve's greatest error is, if the misfit is
+    /// half a sine.
+    fn sd_deg(&self) -> f64 {
+        self.mean_deg.abs() * std::f64::consts::FRAC_PI_2 / BOUND_SDS
+    }
+}
+
+/// The batches, which overlap by half, whose mean exceeds its own error.
+fn misfits(off: &[Residual]) -> Vec<Misfit> {
+    let starts = (0..off.len()).step_by(BATCH / 2);
+    let found = starts.filter_map(|start| {
+        let row = off.get(start..start + BATCH)?;
+        let (mean_deg, variance) = mean(row);
+        (mean_deg.abs() > MISFIT_SDS * variance.sqrt()).then_some(Misfit {
+            from_s: row.first()?.at_s,
+            to_s: row.last()?.at_s,
+            mean_deg,
+        })
+    });
+    found.collect()
+}
+
+/// Mean of neighbouring residuals and its variance: their scatter by differences of neighbours (von
+/// Neumann 1941), which a slope does not affect.
+fn mean(row: &[Residual]) -> (f64, f64) {
+    let n = row.len() as f64;
+    let mean = row.iter().map(|o| o.off_deg).sum::<f64>() / n;
+    let differences: f64 = row
+        .windows(2)
+        .map(|pair| match pair {
+            [a, b] => (b.off_deg - a.off_deg).powi(2) / 2.0,
+            _ => 0.0,
+        })
+        .sum();
+    (mean, differences / (n - 1.0) / n)
+}
+
+/// Residual autocorrelation by batch means.
+struct Autocorrelation {
+    /// Root mean square, degrees: the mean square of the means over batches of residuals, less its
+    /// expectation for independent residuals.
+    rms_deg: f64,
+    /// Error of that, degrees, if it is zero.
+    error_deg: f64,
+    is_of_ages: bool,
+}
+
+impl Autocorrelation {
+    fn of(off: &[Residual]) -> Self {
+        let batches = off.chunks(BATCH).filter(|row| row.len() > BATCH / 2);
+        let (mut count, mut sum, mut most, mut expected, mut error) = (0.0, 0.0, 0.0, 0.0, 0.0);
+        for (mean, variance) in batches.map(mean) {
+            count += 1.0;
+            sum += mean * mean;
+            most = f64::max(most, mean * mean);
+            expected += variance;
+            error += 2.0 * variance * variance;
+        }
+        let count = f64::max(count, 1.0);
+        Self {
+            rms_deg: f64::max((sum - expected) / count, 0.0).sqrt(),
+            error_deg: (error.sqrt() / count).sqrt(),
+            is_of_ages: sum > MIN_OF_AGES * expected && most < MAX_OF_AGES * sum / count,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Residuals every 2.5 ms for a second, of positions in steps of 0.0015 deg.
+    fn residuals(misfit: impl Fn(f64) -> f64) -> Vec<Residual> {
+        let residual = |i: i32| {
+            let drawn = (f64::from(i) * 0.618_033_988_749_895).fract() - 0.5;
+            let at_s = f64::from(i) * 2.5e-3;
+            Residual {
+                at_s,
+                off_deg: 0.0015 * drawn + misfit(at_s),
+                rate_deg_s: 50.0,
+                bound_s: 0.2e-3,
+                curve_sd_deg: 0.0,
+            }
+        };
+        (0..400).map(residual).collect()
+    }
+
+    /// Polls at 1 kHz beside a latch of 1 ms: their ages rise slowly and fall by a cycle.
+    #[test]
+    fn ages_that_change_slowly_are_no_misfit() {
+        let ages = |at_s: f64| 0.05 * ((at_s * 4.7).fract() - 0.5);
+        assert!(Autocorrelation::of(&residuals(ages)).is_of_ages);
+        assert!(!Autocorrelation::of(&residuals(|_| 0.0)).is_of_ages);
+    }
+
+    /// As where the acceleration rises evenly, but the fitted motion has a corner: the residual
+    /// autocorrelation, a mean over the sweep, does not show how great it is.
+    #[test]
+    fn a_misfit_of_a_ramp_is_bounded_there() {
+        assert!(misfits(&residuals(|_| 0.0)).is_empty());
+        let bump = |at_s: f64| match (0.3..0.35).contains(&at_s) {
+            true => 0.004 * (std::f64::consts::PI * (at_s - 0.3) / 0.05).sin(),
+            false => 0.0,
+        };
+        let off = residuals(bump);
+        let autocorrelation = Autocorrelation::of(&off);
+        assert!(BOUND_SDS * autocorrelation.rms_deg < 0.003);
+        assert!(!autocorrelation.is_of_ages);
+        let found = misfits(&off);
+        let here = found.iter().filter(|misfit| misfit.contains(0.325));
+        let bound_deg = BOUND_SDS * here.map(Misfit::sd_deg).fold(0.0, f64::max);
+        assert!((0.004..0.007).contains(&bound_deg), "{bound_deg} deg");
+        let elsewhere = |misfit: &&Misfit| misfit.to_s < 0.3 || misfit.from_s > 0.35;
+        assert_eq!(found.iter().filter(elsewhere).count(), 0, "{found:?}");
     }
 }

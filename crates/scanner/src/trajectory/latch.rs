@@ -305,6 +305,29 @@ mod tests {
         }
     }
 
+    /// A curve that deviates from the samples in a part of the sweep, by as much as its error says:
+    /// those samples exclude no delay that the others allow.
+    #[test]
+    fn the_limits_contain_each_possible_delay_though_the_curve_misfits() {
+        for sign in [-1.0, 1.0] {
+            let mut samples = residuals(2.513e-3, 0.1e-3, Some(0.3e-3));
+            for (i, sample) in samples.iter_mut().enumerate() {
+                sample.off_deg += if i % 240 < 40 { sign * 0.01 } else { 0.0 };
+            }
+            // All were taken as early, or as late, as their bounds allow.
+            let contains = |curve_sd_deg: f64| {
+                let (shift, (low, high)) =
+                    delay(&samples, LatchEvidence::Present, 0.0, curve_sd_deg);
+                let delays = [-0.6e-3, -0.2e-3].map(|delay| delay - shift.as_secs_f64());
+                let is_inside = |delay: f64| {
+                    low.as_secs_f64() - 20e-6 <= delay && delay <= high.as_secs_f64() + 20e-6
+                };
+                delays.into_iter().all(is_inside)
+            };
+            assert!(contains(0.01 / BOUND_SDS) && !contains(0.0), "{sign}");
+        }
+    }
+
     /// Samples whose instants exclude each other give wider limits than each of them does.
     #[test]
     fn conflicting_evidence_widens_the_limits() {

@@ -7,7 +7,10 @@
 
 use units::Span;
 
-use super::{Evidence, Jump, MIN_IRREGULAR_NS, QUANTUM_NS, is_frequent, offsets, steps};
+use super::{
+    Evidence, Jump, MIN_IRREGULAR_NS, MIN_SPREADS, QUANTUM_NS, alike, is_frequent, offsets, spread,
+    steps,
+};
 use crate::clock::Arrival;
 
 /// Packets on either side whose stamps have to be on the grid, and the share of them.
@@ -22,12 +25,21 @@ const MAX_PACKETS: i64 = 64;
 /// more where a few packets were held up together.
 const WINDOWS: [usize; 5] = [4, 8, 16, 32, 64];
 
+/// Packets on either side whose least delays show whether those of a frequent spacing change.
+const LASTING_WINDOW: usize = 64;
+/// Other places of such a spacing that are compared. On a busy network one may change by chance.
+const MAX_ALIKE: usize = 16;
+
 /// The shifts of the grid, in order.
 pub(super) fn jumps(arrivals: &[Arrival], spacing_ns: i64) -> Vec<Jump> {
     let offsets = offsets(arrivals);
+    // The least change of the least delays that is no chance; none is if there are few packets.
+    let least_change = spread(&offsets, LASTING_WINDOW).map_or(i64::MAX, |(_, spread)| {
+        SMALLEST_NS.max(MIN_SPREADS.saturating_mul(spread))
+    });
     let inside = SIDE..arrivals.len().saturating_sub(SIDE);
     let found = inside.filter_map(|at| {
-        let by = shift(arrivals, &offsets, at, spacing_ns.max(1))?;
+        let by = shift(arrivals, &offsets, at, spacing_ns.max(1), least_change)?;
         Some(Jump {
             at,
             by: Span::from_nanos(-by),
@@ -65,7 +77,16 @@ pub(in crate::steps) fn shifted(
 }
 
 /// By how much the lidar's clock was set forward before packet `at`; `None` if it was not.
-fn shift(arrivals: &[Arrival], offsets: &[i64], at: usize, spacing: i64) -> Option<i64> {
+///
+/// A spacing that is frequent is that of a limited field of view, unless the delays change with it:
+/// a pulse per second may set the clock by as much each time.
+fn shift(
+    arrivals: &[Arrival],
+    offsets: &[i64],
+    at: usize,
+    spacing: i64,
+    least_change: i64,
+) -> Option<i64> {
     let device = steps(arrivals, at)?.0.as_nanos();
     let tolerance = MIN_IRREGULAR_NS.saturating_add(device.saturating_abs() / spacing * 10);
     if off_grid(device, spacing).abs() < tolerance {
@@ -86,10 +107,20 @@ fn shift(arrivals: &[Arrival], offsets: &[i64], at: usize, spacing: i64) -> Opti
     let [_, _, median, _, _] = packets;
     let passed = if packets.contains(&1) { 1 } else { median };
     let by = device.saturating_sub(passed.saturating_mul(spacing));
-    let is_step = (1..=MAX_PACKETS).contains(&passed)
-        && by.abs() >= SMALLEST_NS
-        && !is_frequent(arrivals, at, device, MIN_IRREGULAR_NS / 2);
-    is_step.then_some(by)
+    let is_step = (1..=MAX_PACKETS).contains(&passed) && by.abs() >= SMALLEST_NS;
+    let is_like_step = |rise: i64| (rise + by).abs() <= by.abs() / 3;
+    let changes = || {
+        let others = alike(arrivals, at, device, MIN_IRREGULAR_NS / 2).take(MAX_ALIKE);
+        let mut others: Vec<i64> = others
+            .map(|i| rise_at(offsets, i, LASTING_WINDOW))
+            .collect();
+        others.sort_unstable();
+        let rise = rise_at(offsets, at, LASTING_WINDOW);
+        let median = others.get(others.len() / 2).copied().unwrap_or(rise);
+        rise.abs() >= least_change && is_like_step(rise) && is_like_step(median)
+    };
+    let is_rare = || !is_frequent(arrivals, at, device, MIN_IRREGULAR_NS / 2);
+    (is_step && (is_rare() || changes())).then_some(by)
 }
 
 /// Distance from the nearest multiple of the spacing.

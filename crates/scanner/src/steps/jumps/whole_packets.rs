@@ -7,7 +7,8 @@
 use units::Span;
 
 use super::{
-    Evidence, Jump, JumpReport, MIN_IRREGULAR_NS, MIN_LEVEL_PACKETS, SILENCE, SMALL_WINDOW, steps,
+    Evidence, Jump, JumpReport, MIN_IRREGULAR_NS, MIN_LEVEL_PACKETS, QUANTUM_NS, SILENCE,
+    SMALL_WINDOW, steps,
 };
 use crate::clock::Arrival;
 
@@ -26,6 +27,19 @@ impl JumpReport {
         let off = (by - count * spacing).abs();
         let is_whole = off <= PHANTOM_NS + (by >> 14);
         u64::try_from(count).ok().filter(|_| is_whole).unwrap_or(0)
+    }
+
+    /// For how long no packet came before packet `at`, by the lidar's clock; zero if that is no
+    /// whole number of packets, as after a step of that clock.
+    pub fn silence(&self, at: usize) -> Span {
+        let spacing = self.spacing_ns.max(1);
+        let device = steps(&self.level, at).map_or(Span::ZERO, |(device, _)| device);
+        let count = (device.as_nanos() + spacing / 2) / spacing;
+        let off = (device.as_nanos() - count * spacing).saturating_abs();
+        match count > 1 && off <= QUANTUM_NS + count * 10 {
+            true => device,
+            false => Span::ZERO,
+        }
     }
 
     pub(super) fn jumps_of_whole_packets(

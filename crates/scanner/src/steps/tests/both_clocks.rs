@@ -5,7 +5,7 @@ use super::*;
 
 impl Recorded {
     /// The same behind a network whose delay has three stages of 0.27 ms each.
-    fn on_busy_network(mut self) -> Self {
+    pub(super) fn on_busy_network(mut self) -> Self {
         let mut noise = Noise(29);
         let mut last = 0;
         for packet in &mut self.packets {
@@ -17,7 +17,7 @@ impl Recorded {
         self
     }
 
-    fn with_lidar_step(mut self, when: i64, by: i64) -> Self {
+    pub(super) fn with_lidar_step(mut self, when: i64, by: i64) -> Self {
         for packet in &mut self.packets {
             if packet.device.as_nanos() >= EPOCH + when {
                 packet.device += Span::from_nanos(by);

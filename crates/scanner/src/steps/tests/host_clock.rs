@@ -164,3 +164,57 @@ fn a_small_step_of_the_host_clock_while_it_sleeps_is_found() {
         );
     }
 }
+
+/// A host that sleeps and is set by more when it wakes: the drive's records pause for the step and
+/// the silence together, which is longer than the step alone.
+#[test]
+fn a_step_of_the_host_clock_is_found_however_long_the_host_sleeps() {
+    for asleep_ms in [200, 600, 950, 2_000, 20_000] {
+        for by_ms in [20, 50, 300, 7_200_000, -50, -300, -3_000] {
+            let mut recorded = Recorded::new(50, Some(2_500));
+            let asleep = EPOCH + 9 * S..EPOCH + 9 * S + asleep_ms * 1_000_000;
+            let is_awake = |host: i64| !asleep.contains(&host);
+            recorded.packets.retain(|p| is_awake(p.host.as_nanos()));
+            recorded.polls.retain(|poll| is_awake(poll.0));
+            let seen = recorded.stepped(&[(9 * S + 100_000_000, by_ms * 1_000_000)]);
+            let timeline = seen.timeline();
+            let step = only(&timeline);
+            let what = format!("asleep for {asleep_ms} ms, set by {by_ms} ms");
+            assert_eq!(step.clock, SetClock::Host, "{what}");
+            let off = (step.by.as_nanos() - by_ms * 1_000_000).abs();
+            assert!(off < 10_000, "{what}: {step:?}");
+            assert_eq!(step.phantom_packets, 0, "{what}");
+            let (worst_us, polls_off) = seen.errors(&timeline, &recorded);
+            assert!(
+                worst_us < 5.0 && polls_off == 0,
+                "{what}: {worst_us} us, {polls_off}"
+            );
+        }
+    }
+}
+
+/// The lidar's clock is set while the host sleeps: its stamps leave their grid.
+#[test]
+fn a_step_of_the_lidar_clock_while_the_host_sleeps_is_its_own() {
+    for asleep_ms in [200, 600, 2_000] {
+        for by in [50_300_000, 300_300_000, -50_300_000, -300_300_000] {
+            let asleep = 9 * S..9 * S + asleep_ms * 1_000_000;
+            let is_awake = |host: i64| !asleep.contains(&(host - EPOCH));
+            let mut truth = Recorded::new(30, Some(2_500));
+            truth.packets.retain(|p| is_awake(p.host.as_nanos()));
+            truth.polls.retain(|poll| is_awake(poll.0));
+            let mut recorded = Recorded::new(30, Some(2_500)).with_lidar_step(9 * S, by);
+            recorded.packets.retain(|p| is_awake(p.host.as_nanos()));
+            recorded.polls.retain(|poll| is_awake(poll.0));
+            let seen = recorded.stepped(&[]);
+            let timeline = seen.timeline();
+            let what = format!("asleep for {asleep_ms} ms, lidar set by {by} ns");
+            assert_eq!(only(&timeline).clock, SetClock::Lidar, "{what}");
+            let (worst_us, polls_off) = seen.errors(&timeline, &truth);
+            assert!(
+                worst_us < 5.0 && polls_off == 0,
+                "{what}: {worst_us} us, {polls_off}"
+            );
+        }
+    }
+}
