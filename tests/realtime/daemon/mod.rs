@@ -5,6 +5,7 @@ mod api;
 mod commands;
 mod connections;
 mod devices;
+mod edits;
 mod events;
 mod limits;
 mod panics;

@@ -25,7 +25,7 @@ use axum::extract::{Request, State};
 use axum::http::{StatusCode, header};
 use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
-use axum::routing::{MethodRouter, delete, get, post};
+use axum::routing::{MethodRouter, get, post};
 use engine::failure::{Failure, Kind};
 use engine::service::DeviceService;
 use engine::service::status::{AxisTask, DeviceHealth, ServiceStatus};
@@ -90,8 +90,9 @@ fn daemon_routes() -> Routes<Arc<Api>> {
         ("/api/v1/scans", get(scans::list)),
         (
             "/api/v1/scans/{id}",
-            get(scans::one).merge(delete(scans::delete)),
+            get(scans::one).patch(scans::edit).delete(scans::delete),
         ),
+        ("/api/v1/scans/{id}/restore", post(scans::restore)),
         ("/api/v1/scans/{id}/cloud", get(download::cloud)),
         ("/api/v1/scans/{id}/log", get(download::log)),
         ("/api/v1/scans/{id}/thumbnail", get(download::thumbnail)),
