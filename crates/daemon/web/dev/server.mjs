@@ -27,6 +27,9 @@ let scans = [
   scan(1, { state: "failed", why: { message: "the disk is nearly full: 12 MB free, 1000 MB are left free", help: "delete scans", kind: "incomplete" }, waits_for_room: true,
     summary: "The disk is nearly full: 12 MB free, 1000 MB are left free. Delete scans, or give another folder or a smaller reserve_bytes under [daemon] of the configuration. The log is kept: its cloud is made as soon as the disk has room.", points: null }),
 ];
+// Many more, for the list.
+for (let n = 4; n < Number(process.env.SCANS ?? 0); n += 1) scans.push(scan(-n, { id: `old-${n}`, name: `old-${n}`, notes: n % 5 === 0 ? `note ${n}` : null }));
+const deleted = new Map();
 const sync = { clock_method: "hull", clock_residual_us: 18.4, clock_bound_us: 36.2, clock_drift_ppm: 12.02, angle_method: "profile", angle_rms_deg: 0.00071, angle_bound_deg: 0.0021 };
 
 const status = () => ({
@@ -114,7 +117,10 @@ function answer(request, response) {
   }
   if (pathname.startsWith("/api/") && mode === "token") return reply(401, { error: { message: "a token is needed", help: "sign in", kind: "denied" } });
   if (pathname === "/api/v1/status") return reply(200, status());
-  if (pathname === "/api/v1/scans") return reply(200, scans);
+  if (pathname === "/api/v1/scans") {
+    const from = scans.findIndex(({ id }) => id === searchParams.get("before")) + 1;
+    return reply(200, { scans: scans.slice(from, from + Number(searchParams.get("limit") ?? scans.length)) });
+  }
   if (pathname === "/api/v1/plan") {
     const speed = Number(searchParams.get("speed_deg_s"));
     if (!(speed <= 98)) return reply(400, { error: { message: `speed ${speed} deg/s: expected 0.025 to 98`, help: "choose a slower one", kind: "usage" } });
@@ -122,11 +128,28 @@ function answer(request, response) {
   }
   const one = /^\/api\/v1\/scans\/([^/]+)(?:\/(\w+))?$/.exec(pathname);
   if (one !== null) {
+    if (one[2] === "restore" && deleted.has(one[1])) {
+      const back = deleted.get(one[1]);
+      deleted.delete(back.id);
+      scans = [...scans, back].sort((a, b) => b.started_s - a.started_s);
+      tell({ type: "scan", scan: back, deleted: false });
+      return reply(200, back);
+    }
     const found = scans.find((each) => each.id === one[1]);
     if (found === undefined) return reply(404, { error: { message: "no such scan", help: "GET /api/v1/scans lists them", kind: "not-found" } });
     if (mode === "stuck" && one[2] !== undefined) return reply(429, { error: { message: "too many downloads at once", help: "try again when others have ended", kind: "limit" } });
     if (one[2] === "cloud" && ply !== null) return response.writeHead(200, { "content-type": "application/octet-stream" }).end(ply);
-    if (request.method === "DELETE") scans = scans.filter((each) => each !== found);
+    if (request.method === "DELETE") {
+      scans = scans.filter((each) => each !== found);
+      deleted.set(found.id, found);
+      return response.writeHead(204).end();
+    }
+    if (request.method === "PATCH") {
+      let body = "";
+      request.on("data", (part) => (body += part));
+      request.on("end", () => reply(200, Object.assign(found, JSON.parse(body))));
+      return;
+    }
     return reply(200, { ...found, report: { lost_packets: 0, sync, truth: { rms_m: 0.00071, worst_m: 0.0018 } }, messages: [] });
   }
   if (mode === "stuck" && pathname === "/api/v1/tilt/stop") return;

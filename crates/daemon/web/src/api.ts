@@ -98,6 +98,7 @@ export type ScanState = "recording" | "making" | "whole" | "partial" | "failed";
 export interface Scan {
   id: string;
   name?: string | null;
+  notes?: string | null;
   state: ScanState;
   why?: Problem | null;
   /** Whether the cloud is made when the disk has room. */
@@ -217,12 +218,17 @@ function problem(json: unknown, text: string, status: number): Problem {
 
 export const api = {
   status: () => sendRequest<Status>("GET", "status"),
-  scans: async () => {
-    const answer = await sendRequest<Scan[] | { scans: Scan[] }>("GET", "scans");
-    return Array.isArray(answer) ? answer : answer.scans;
+  /** At most `limit` scans older than one, the newest first. */
+  scans: async (limit: number, before: string | null) => {
+    const query = new URLSearchParams({ limit: String(limit), ...(before === null ? {} : { before }) });
+    return (await sendRequest<{ scans: Scan[] }>("GET", `scans?${query}`)).scans;
   },
   scan: (id: string) => sendRequest<Scan>("GET", `scans/${encodeURIComponent(id)}`),
-  remove: (id: string) => sendRequest<unknown>("DELETE", `scans/${encodeURIComponent(id)}`),
+  /** Empty texts are removed. */
+  edit: (id: string, texts: { name: string; notes: string }) => sendRequest<Scan>("PATCH", `scans/${encodeURIComponent(id)}`, texts),
+  /** The scan can be restored for 10 s. */
+  remove: (id: string) => sendRequest<unknown>("DELETE", `scans/${encodeURIComponent(id)}?undo=true`),
+  restore: (id: string) => sendRequest<Scan>("POST", `scans/${encodeURIComponent(id)}/restore`),
   plan: (request: CaptureRequest) => sendRequest<Plan>("GET", `plan?${query(request)}`),
   capture: (request: CaptureRequest) => sendRequest<Scan>("POST", "captures", request),
   /** Stops any motion; of a capture the swept part is kept. */
