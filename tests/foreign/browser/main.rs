@@ -5,6 +5,7 @@
 //! pictures, as for docs/src/page.
 
 mod browser;
+mod quality;
 mod refusals;
 mod scans;
 mod view;

@@ -15,4 +15,5 @@ mod scans;
 mod service;
 mod silent_drive;
 mod stalled_disk;
+mod statistics;
 mod tls;

@@ -13,6 +13,7 @@ mod partial;
 pub mod refusal;
 pub mod scans;
 pub mod server;
+pub mod statistics;
 pub mod tilt;
 pub mod tls;
 pub mod view;
@@ -93,6 +94,7 @@ fn daemon_routes() -> Routes<Arc<Api>> {
             get(scans::one).patch(scans::edit).delete(scans::delete),
         ),
         ("/api/v1/scans/{id}/restore", post(scans::restore)),
+        ("/api/v1/scans/{id}/statistics", get(statistics::measure)),
         ("/api/v1/scans/{id}/cloud", get(download::cloud)),
         ("/api/v1/scans/{id}/log", get(download::log)),
         ("/api/v1/scans/{id}/thumbnail", get(download::thumbnail)),

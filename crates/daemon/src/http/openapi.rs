@@ -19,7 +19,7 @@ use utoipa::openapi::security::{
 use utoipa::openapi::{ContentBuilder, OpenApi, Ref, RefOr, Schema};
 use utoipa::{IntoResponses, Modify, OpenApi as _, ToResponse};
 
-use super::{captures, download, events, metrics, page, scans, tilt};
+use super::{captures, download, events, metrics, page, scans, statistics, tilt};
 
 /// Refusals, each with the meaning of its status.
 macro_rules! refusals {
@@ -126,6 +126,7 @@ pub fn formats() -> Schema {
         scans::edit,
         scans::delete,
         scans::restore,
+        statistics::measure,
         download::cloud,
         download::log,
         download::thumbnail,

@@ -30,6 +30,12 @@ let scans = [
 // Many more, for the list.
 for (let n = 4; n < Number(process.env.SCANS ?? 0); n += 1) scans.push(scan(-n, { id: `old-${n}`, name: `old-${n}`, notes: n % 5 === 0 ? `note ${n}` : null }));
 const deleted = new Map();
+const budget = (at_m) => ({ at_m, error_mm: { range: 9, range_step: 0.6, azimuth: 0.04 * at_m, tilt: 0.05 * at_m, clock: 0.002 * at_m, delay: 0.2 * at_m, mount: null, column_sd: 9, total: 18 + 0.4 * at_m } });
+const statistics = {
+  points: 243_311, of: "view", density: { bins: 3_120, mean: 77.98, sd: 41.2, empty: 3 }, gap_deg: { p50: 0.21, p95: 0.61, p99: 0.93, worst: 2.4 },
+  ranges: Array.from({ length: 30 }, (_, i) => ({ from_m: i / 2, to_m: (i + 1) / 2, points: i < 3 ? 0 : Math.round(20_000 * Math.exp(-(((i - 11) / 6) ** 2))) })),
+  sd_mm: { p50: 9.1, p95: 10.4, p99: 12.8 }, budget: [2, 5, 10, 20, 50, 100].map(budget),
+};
 const sync = { clock_method: "hull", clock_residual_us: 18.4, clock_bound_us: 36.2, clock_drift_ppm: 12.02, angle_method: "profile", angle_rms_deg: 0.00071, angle_bound_deg: 0.0021 };
 
 const status = () => ({
@@ -138,6 +144,7 @@ function answer(request, response) {
     const found = scans.find((each) => each.id === one[1]);
     if (found === undefined) return reply(404, { error: { message: "no such scan", help: "GET /api/v1/scans lists them", kind: "not-found" } });
     if (mode === "stuck" && one[2] !== undefined) return reply(429, { error: { message: "too many downloads at once", help: "try again when others have ended", kind: "limit" } });
+    if (one[2] === "statistics") return setTimeout(() => reply(200, statistics), 1_000);
     if (one[2] === "cloud" && ply !== null) return response.writeHead(200, { "content-type": "application/octet-stream" }).end(ply);
     if (request.method === "DELETE") {
       scans = scans.filter((each) => each !== found);

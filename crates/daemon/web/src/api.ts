@@ -133,6 +133,32 @@ export interface Report {
   truth?: { rms_m: number; worst_m: number } | null;
 }
 
+/** What the daemon measures of a scan. */
+export interface ScanStatistics {
+  points: number;
+  /** Whether density and gaps are of the directions in view; else of all. */
+  of: "view" | "all";
+  /** Points per bin. */
+  density: { bins: number; mean: number; sd: number; empty: number };
+  gap_deg: { p50: number; p95: number; p99: number; worst: number };
+  ranges: { from_m: number; to_m: number; points: number }[];
+  /** Standard deviations that the points state. */
+  sd_mm?: { p50: number; p95: number; p99: number } | null;
+  budget: { at_m: number; error_mm: ErrorBudget }[];
+}
+
+/** Errors of a point at a distance, millimetres; the total is of 95 % of points. */
+export interface ErrorBudget {
+  range: number;
+  range_step: number;
+  azimuth: number;
+  tilt: number;
+  clock: number;
+  delay: number;
+  mount: number | null;
+  total: number;
+}
+
 /** Plan of a capture. */
 export interface Plan {
   motor_rpm: number;
@@ -224,6 +250,7 @@ export const api = {
     return (await sendRequest<{ scans: Scan[] }>("GET", `scans?${query}`)).scans;
   },
   scan: (id: string) => sendRequest<Scan>("GET", `scans/${encodeURIComponent(id)}`),
+  statistics: (id: string) => sendRequest<ScanStatistics>("GET", `scans/${encodeURIComponent(id)}/statistics`),
   /** Empty texts are removed. */
   edit: (id: string, texts: { name: string; notes: string }) => sendRequest<Scan>("PATCH", `scans/${encodeURIComponent(id)}`, texts),
   /** The scan can be restored for 10 s. */

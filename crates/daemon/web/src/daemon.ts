@@ -11,6 +11,7 @@ import * as control from "./panels/control.ts";
 import * as devices from "./panels/devices.ts";
 import { alarm, announce, note } from "./panels/messages.ts";
 import { setFormats } from "./panels/scan_parts.ts";
+import * as quality from "./panels/quality.ts";
 import * as scans from "./panels/scans.ts";
 import * as signin from "./panels/signin.ts";
 import * as sweep from "./panels/sweep.ts";
@@ -55,6 +56,7 @@ const listener: Listener = {
     control.setStatus(status);
     devices.setStatus(status);
     sweep.setStatus(status);
+    quality.setStatus(status);
     const { scan } = status.activity;
     if (typeof scan === "string" && status.activity.doing === "capturing") {
       const known = scans.get(scan);
@@ -71,6 +73,7 @@ const listener: Listener = {
   scan(scan, deleted) {
     if (deleted) {
       scans.remove(scan.id);
+      quality.forget(scan.id);
       viewer?.forget(scan.id);
       return;
     }
@@ -102,7 +105,26 @@ async function finished(scan: Scan): Promise<void> {
     if (scan.state === "failed") viewer.ended(scan.id, name, scan.simulated);
     else viewer.open(source(scan));
   }
+  if (viewer?.shown === scan.id) void measured(scan.id);
   await last();
+}
+
+/** Shows the report of the scan in view. */
+async function measured(name: string | null): Promise<void> {
+  quality.setScan(null);
+  if (name === null) return;
+  try {
+    const scan = await api.scan(name);
+    if (viewer?.shown === name) quality.setScan(scan);
+  } catch {
+    // It was deleted, or the connection is lost, which is shown.
+  }
+}
+
+/** Marks the scan in view. */
+export function setCurrent(name: string | null): void {
+  scans.setCurrent(name);
+  void measured(name);
 }
 
 /** Shows clock and angle of the newest scan with a cloud. */
@@ -175,6 +197,7 @@ export function start(view: Viewer | null): void {
   }, axis.setReady);
   axis.wire();
   sweep.wire();
+  quality.wire();
   scans.wire((scan) => {
     viewer?.open(source(scan));
     id("canvas").scrollIntoView({ block: "nearest" });
