@@ -288,7 +288,7 @@ mod tests {
 
     use super::*;
 
-    /// Points evenly around the origin, at ranges from 2 to 10 m and with standard deviations from 2
+    /// Points evenly around the origin, at ranges from 2 to 10 m, with standard deviations from 2
     /// to 10 mm.
     fn collected(n: usize) -> (StatisticsCollector, Vec<DVec3>) {
         let turn = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
