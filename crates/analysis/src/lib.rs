@@ -18,6 +18,7 @@
 //! # Ok::<(), analysis::k::KError>(())
 //! ```
 
+pub mod cloud_statistics;
 pub mod density;
 pub mod device;
 mod draw;

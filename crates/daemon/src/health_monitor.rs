@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use engine::failure::{Failure, Kind};
 use engine::service::events::MessageLevel;
@@ -28,6 +28,9 @@ pub(crate) fn run(state: &Arc<DaemonState>, end: &Receiver<()>) {
         state.service.refresh_lidar();
         check_disk(state);
         state.scans.settle();
+        if let Err(failure) = state.scans.remove_deleted(Instant::now()) {
+            state.events().failure(MessageLevel::Warning, failure);
+        }
         state.refresh_disk();
         check_suspension(state, &mut suspended);
         if watchdog.is_some() && state.service.time_since_heartbeat() < HEARTBEAT_LIMIT {

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 pub use engine::service::events::{QUEUE, SUBSCRIBERS};
 pub use engine::service::live_preview::{FRAME_POINTS, WAITING_RECORDS};
-pub use engine::service::scan_record::NAME_BYTES;
+pub use engine::service::scan_record::{NAME_BYTES, NAME_CHARS, NOTES_CHARS};
 
 /// Largest body of a request, bytes.
 pub const BODY_BYTES: usize = 16 << 10;
@@ -32,6 +32,8 @@ pub const SIGNED_IN: usize = 64;
 pub const WRONG_TOKENS: usize = 10;
 /// Time over which wrong tokens are counted.
 pub const WRONG_TOKENS_WITHIN: Duration = Duration::from_secs(60);
+/// Time for which a scan that was deleted with undo can be restored.
+pub const UNDO: Duration = Duration::from_secs(10);
 /// Messages kept of a scan.
 pub const MESSAGES: usize = 100;
 

@@ -1,5 +1,6 @@
 //! The scans folder: one folder per scan. All state is on disk.
 
+mod deletion;
 mod found;
 mod summary;
 
@@ -13,11 +14,12 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use io::files::{NewFile, Overwrite};
 
 use crate::limits::MESSAGES;
+use deletion::DeletedScan;
 use engine::capture_request::CaptureRequest;
 use engine::failure::{Failure, Kind};
 use engine::output::file_failure;
 use engine::service::scan_record::{
-    ScanDetails, ScanHead, ScanRecord, ScanState, ScanView, check_name,
+    ScanDetails, ScanEdit, ScanHead, ScanRecord, ScanState, ScanView, check_name,
 };
 use found::found;
 
@@ -40,6 +42,8 @@ pub struct Scans {
     unwritten: Mutex<BTreeSet<String>>,
     /// Sizes of finished scans in bytes; the status needs them every second.
     sizes: Mutex<BTreeMap<String, u64>>,
+    /// Deleted scans that can be restored.
+    deleted: Mutex<BTreeMap<String, DeletedScan>>,
 }
 
 fn cannot(path: &Path, what: &str, error: &std::io::Error) -> Failure {
@@ -101,6 +105,7 @@ impl Scans {
             writing: Mutex::default(),
             unwritten: Mutex::default(),
             sizes: Mutex::default(),
+            deleted: Mutex::default(),
         })
     }
 
@@ -183,7 +188,11 @@ impl Scans {
                 _ => format!("{base}-{number}"),
             };
             let place = self.place(&id);
-            match fs::create_dir(&place) {
+            let made = match self.can_restore(&id) {
+                false => fs::create_dir(&place),
+                true => Err(std::io::ErrorKind::AlreadyExists.into()),
+            };
+            match made {
                 Ok(()) => return Ok((id, place)),
                 Err(error)
                     if error.kind() == std::io::ErrorKind::AlreadyExists && number < 1_000 =>
@@ -216,6 +225,30 @@ impl Scans {
             return Err(failure);
         }
         Ok(self.view(id))
+    }
+
+    /// Sets name and notes of a scan. Returns `None` for an unknown scan.
+    ///
+    /// # Errors
+    /// Returns [`Kind::Incomplete`] for a scan whose record is not overwritten, and the failure of
+    /// writing. Nothing is changed then.
+    pub fn edit(&self, id: &str, edit: &ScanEdit) -> Result<Option<ScanView>, Failure> {
+        let Some(before) = self.record(id) else {
+            return Ok(None);
+        };
+        if before.unreadable {
+            let message =
+                format!("the record of the scan {id} cannot be read, and is left as it is");
+            return Err(Failure::new(Kind::Incomplete, message)
+                .help("the reason of the scan's state says what is wrong with it"));
+        }
+        let changed = self.change(id, |record| edit.apply(record));
+        if changed.is_err()
+            && let Some(record) = self.scans().get_mut(id)
+        {
+            (record.head.name, record.head.notes) = (before.head.name, before.head.notes);
+        }
+        changed
     }
 
     /// Writes the present record of a scan.
@@ -282,14 +315,15 @@ impl Scans {
     /// At most `limit` scans older than `before`, the newest first.
     #[must_use]
     pub fn part(&self, before: Option<&str>, limit: usize) -> Vec<ScanView> {
-        let mut records: Vec<ScanRecord> = self.scans().values().cloned().collect();
+        let scans = self.scans();
+        let mut records: Vec<&ScanRecord> = scans.values().collect();
         records.sort_by(|a, b| order(b, a));
         let newer = before.and_then(|id| records.iter().position(|record| record.id == id));
         let older = records.iter().skip(newer.map_or(0, |at| at + 1));
-        older
-            .take(limit)
-            .map(|record| self.view_of(record))
-            .collect()
+        let part: Vec<ScanRecord> = older.take(limit).copied().cloned().collect();
+        // The disk is not waited for under the lock.
+        drop(scans);
+        part.iter().map(|record| self.view_of(record)).collect()
     }
 
     /// Scans being recorded or made.
@@ -335,29 +369,6 @@ impl Scans {
         }
     }
 
-    /// Deletes a scan and returns it.
-    ///
-    /// # Errors
-    /// Returns [`Kind::Usage`] while the scan is being made, and the failure of the disk.
-    pub fn delete(&self, id: &str) -> Result<Option<ScanView>, Failure> {
-        let Some(view) = self.view(id) else {
-            return Ok(None);
-        };
-        if !view.state.is_final() {
-            return Err(
-                Failure::new(Kind::Usage, format!("the scan {id} is being made"))
-                    .help("wait for it, or stop it first"),
-            );
-        }
-        // Renamed first, to a name that no start takes for a scan: a half-deleted scan is none.
-        let (place, gone) = (self.place(id), self.folder.join(format!(".{id}.deleted")));
-        fs::rename(&place, &gone).map_err(|error| cannot(&place, "delete", &error))?;
-        self.scans().remove(id);
-        locked(&self.sizes).remove(id);
-        fs::remove_dir_all(&gone).map_err(|error| cannot(&gone, "delete", &error))?;
-        Ok(Some(view))
-    }
-
     /// Number of scans and their bytes.
     #[must_use]
     pub fn size(&self) -> (u64, u64) {
@@ -382,26 +393,6 @@ impl Scans {
             known.retain(|id, _| scans.iter().any(|(own, _)| own == id));
         }
         (scans.len() as u64, bytes)
-    }
-
-    /// Deletes the oldest scans until at most `scans` remain with at most `bytes`, and returns
-    /// them. It keeps the newest, and those with an unreadable record.
-    pub fn retain(&self, scans: u64, bytes: u64) -> Vec<ScanView> {
-        let (mut count, mut size) = self.size();
-        let list = self.list();
-        let mut gone = Vec::new();
-        for view in list.iter().skip(1).rev() {
-            if count <= scans && size <= bytes {
-                break;
-            }
-            let kept = self.record(&view.id).is_none_or(|record| record.unreadable);
-            if view.state.is_final() && !kept && matches!(self.delete(&view.id), Ok(Some(_))) {
-                count -= 1;
-                size = size.saturating_sub(view.bytes);
-                gone.push(view.clone());
-            }
-        }
-        gone
     }
 }
 

@@ -5,7 +5,9 @@
 //! pictures, as for docs/src/page.
 
 mod browser;
+mod quality;
 mod refusals;
+mod scans;
 mod view;
 
 use std::net::SocketAddr;
@@ -333,48 +335,6 @@ fn the_page_asks_for_a_token_once() {
             page.run("window.answer()").await;
             page.click("#sign-out").await;
             page.until_has("button", "Sign in").await;
-        });
-    }
-    daemon.stop(|| true).unwrap();
-}
-
-#[test]
-#[ignore = "needs chromium and chromedriver"]
-fn a_scan_is_deleted_only_after_confirmation() {
-    let driver = Driver::start();
-    let folder = tempfile::tempdir().unwrap();
-    let daemon = simulator(folder.path());
-    let url = url(&daemon);
-    for screen in [DESKTOP, PHONE] {
-        driver.test(screen, async |page| {
-            ready(&page, &url).await;
-            start(&page, "short", "5", "-5").await;
-            page.until_has(".scan .badge[data-state]", "complete").await;
-            page.click(".scan [data-role=delete]").await;
-            page.until_has("#delete-what", "short").await;
-            page.audit("a question").await;
-            page.click("#delete [value=keep]").await;
-            page.until_gone("#delete").await;
-            page.until_has(".scan", "short").await;
-            page.run(TOO_MANY).await;
-            page.click(".scan [data-role=delete]").await;
-            page.click("#delete .danger").await;
-            page.until_has(".scan .wrong", "Delete: too many downloads at once")
-                .await;
-            until_in_sight(&page, ".scan .wrong").await;
-            page.run("window.answer()").await;
-            page.click(".scan [data-role=delete]").await;
-            page.click("#delete .danger").await;
-            page.until_gone(".scan").await;
-            page.until_has("#view-empty", "No scan in view").await;
-            let left = page.api("scans").await;
-            assert!(
-                left.as_array()
-                    .or(left["scans"].as_array())
-                    .unwrap()
-                    .is_empty(),
-                "{left}"
-            );
         });
     }
     daemon.stop(|| true).unwrap();

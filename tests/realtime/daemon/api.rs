@@ -82,7 +82,7 @@ fn invalid_requests_are_refused_and_nothing_moves() {
         ("GET", "/api/v1/captures"),
         ("POST", "/api/v1/status"),
         ("DELETE", "/api/v1/scans"),
-        ("PATCH", "/api/v1/scans/none"),
+        ("PUT", "/api/v1/scans/none"),
         ("POST", "/"),
     ] {
         let answer = request(rig.address, method, path, "", "");

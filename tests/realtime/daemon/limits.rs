@@ -84,7 +84,19 @@ fn the_documentation_states_the_limits() {
             "messages stored per scan",
             format!("{}, the first ones", limits::MESSAGES),
         ),
-        ("name of a scan", format!("{} bytes", limits::NAME_BYTES)),
+        ("name of a capture", format!("{} bytes", limits::NAME_BYTES)),
+        (
+            "name of a scan",
+            format!("{} characters", limits::NAME_CHARS),
+        ),
+        (
+            "notes on a scan",
+            format!("{} characters", thousands(limits::NOTES_CHARS)),
+        ),
+        (
+            "time for which a deleted scan can be restored",
+            seconds(limits::UNDO),
+        ),
     ] {
         let row = format!("| {what} | {limit} |");
         assert!(page.contains(&row), "no {row}");

@@ -72,9 +72,7 @@ pub async fn cloud(
     let record = api.state.scans.record(&id);
     let record = record.ok_or_else(|| Refusal::no_scan(&id))?;
     if !record.state.is_final() {
-        return Err(Failure::new(Kind::Incomplete, "the scan is being made")
-            .help("wait until its state is whole, partial or failed")
-            .into());
+        return Err(being_made());
     }
     let permit = downloading(&api)?;
     let plain = !wanted.uncertainty && !wanted.echo;
@@ -97,7 +95,7 @@ pub async fn cloud(
     }
     let log = api.state.log(&id);
     let client = ClientGuard::default();
-    let interrupt = Arc::clone(&client.0);
+    let interrupt = client.interrupt();
     let made = tokio::task::spawn_blocking(move || {
         let _making = making;
         let log_bytes = || std::fs::metadata(&log).map_or(0, |there| there.len());
@@ -117,9 +115,23 @@ pub async fn cloud(
     Ok(send(file, &id, format.extension(), permit, None))
 }
 
-/// Interrupts the making of a cloud when its client disconnects.
+/// The refusal of what needs a finished scan.
+pub(super) fn being_made() -> Refusal {
+    Failure::new(Kind::Incomplete, "the scan is being made")
+        .help("wait until its state is whole, partial or failed")
+        .into()
+}
+
+/// Interrupts the reading of a log when its client disconnects.
 #[derive(Default)]
-struct ClientGuard(Arc<AtomicBool>);
+pub(super) struct ClientGuard(Arc<AtomicBool>);
+
+impl ClientGuard {
+    /// True once the client has disconnected.
+    pub fn interrupt(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.0)
+    }
+}
 
 impl Drop for ClientGuard {
     fn drop(&mut self) {

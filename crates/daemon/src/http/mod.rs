@@ -14,6 +14,7 @@ mod partial;
 pub mod refusal;
 pub mod scans;
 pub mod server;
+pub mod statistics;
 pub mod tilt;
 pub mod tls;
 pub mod view;
@@ -26,7 +27,7 @@ use axum::extract::{Request, State};
 use axum::http::{StatusCode, header};
 use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
-use axum::routing::{MethodRouter, delete, get, post};
+use axum::routing::{MethodRouter, get, post};
 use engine::failure::{Failure, Kind};
 use engine::service::DeviceService;
 use engine::service::status::{AxisTask, DeviceHealth, ServiceStatus};
@@ -91,8 +92,10 @@ fn daemon_routes() -> Routes<Arc<Api>> {
         ("/api/v1/scans", get(scans::list)),
         (
             "/api/v1/scans/{id}",
-            get(scans::one).merge(delete(scans::delete)),
+            get(scans::one).patch(scans::edit).delete(scans::delete),
         ),
+        ("/api/v1/scans/{id}/restore", post(scans::restore)),
+        ("/api/v1/scans/{id}/statistics", get(statistics::measure)),
         ("/api/v1/scans/{id}/cloud", get(download::cloud)),
         ("/api/v1/scans/{id}/log", get(download::log)),
         ("/api/v1/scans/{id}/thumbnail", get(download::thumbnail)),

@@ -19,7 +19,7 @@ use utoipa::openapi::security::{
 use utoipa::openapi::{ContentBuilder, OpenApi, Ref, RefOr, Schema};
 use utoipa::{IntoResponses, Modify, OpenApi as _, ToResponse};
 
-use super::{captures, download, events, metrics, page, scans, tilt};
+use super::{captures, download, events, metrics, page, scans, statistics, tilt};
 
 /// Refusals, each with the meaning of its status.
 macro_rules! refusals {
@@ -123,7 +123,10 @@ pub fn formats() -> Schema {
         tilt::clear,
         scans::list,
         scans::one,
+        scans::edit,
         scans::delete,
+        scans::restore,
+        statistics::measure,
         download::cloud,
         download::log,
         download::thumbnail,
@@ -153,9 +156,13 @@ impl Modify for SharedParts {
             let guarded = GUARDED.iter().filter(|_| !page::is_open(path));
             let responses: Vec<_> = EVERY.iter().chain(guarded).collect();
             let PathItem {
-                get, post, delete, ..
+                get,
+                post,
+                patch,
+                delete,
+                ..
             } = item;
-            for operation in [get, post, delete].into_iter().flatten() {
+            for operation in [get, post, patch, delete].into_iter().flatten() {
                 for (status, name) in &responses {
                     let answer = RefOr::Ref(Ref::from_response_name(*name));
                     let known = &mut operation.responses.responses;
@@ -176,7 +183,7 @@ impl Modify for SharedParts {
 
 /// Objects that clients send: the daemon refuses unknown keys. Those of its answers may get new
 /// ones.
-const REQUESTS: [&str; 3] = ["CaptureRequest", "GotoRequest", "Login"];
+const REQUESTS: [&str; 4] = ["CaptureRequest", "GotoRequest", "Login", "ScanEdit"];
 
 static JSON: LazyLock<String> = LazyLock::new(|| {
     let mut api = serde_json::to_value(Description::openapi()).unwrap_or_default();

@@ -1,4 +1,5 @@
 use super::*;
+use crate::limits::UNDO;
 
 fn request(name: Option<&str>) -> CaptureRequest {
     CaptureRequest {
@@ -87,6 +88,8 @@ fn unreadable_scans_are_listed_and_left_unchanged() {
     again
         .change(&unknown, |record| record.points = Some(7))
         .unwrap();
+    let refused = again.edit(&unknown, &ScanEdit::default()).unwrap_err();
+    assert_eq!(refused.kind, Kind::Incomplete);
     assert_eq!(fs::read(again.place(&unknown).join(RECORD)).unwrap(), bytes);
     let gone = again.retain(0, 0);
     assert!(gone.iter().all(|scan| scan.id != unknown), "{gone:?}");
@@ -154,4 +157,105 @@ fn scan_names_cannot_escape_the_folder() {
     }
     assert_eq!(scans.view("../x"), None);
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn a_deleted_scan_is_restored_whole_or_removed_when_its_time_is_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let scans = Scans::open(folder.path()).unwrap();
+    let (first, second) = (finished(&scans, Some("a")), finished(&scans, None));
+    let (before, now) = (scans.list(), std::time::Instant::now());
+    let names = || {
+        let entries = fs::read_dir(folder.path()).unwrap();
+        let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name()).collect();
+        names.sort();
+        names
+    };
+    let whole = names();
+    let size = scans.size();
+    assert_eq!(
+        scans.delete_with_undo(&first, now).unwrap().as_ref(),
+        Some(&before[1])
+    );
+    assert_eq!(scans.list(), before[..1]);
+    assert!(scans.size() < size);
+    assert_eq!(scans.delete(&first).unwrap(), None);
+    // Not a moment before its time.
+    scans
+        .remove_deleted(now + UNDO - std::time::Duration::from_nanos(1))
+        .unwrap();
+    assert_eq!(scans.restore(&first).unwrap().as_ref(), Some(&before[1]));
+    assert_eq!((scans.list(), scans.size()), (before.clone(), size));
+    assert_eq!(names(), whole);
+    assert_eq!(scans.restore(&first).unwrap(), None);
+    scans.remove_deleted(now + UNDO).unwrap();
+    assert_eq!(names(), whole, "a restored scan is not removed");
+
+    scans.delete_with_undo(&first, now).unwrap();
+    scans.remove_deleted(now + UNDO).unwrap();
+    assert_eq!(scans.restore(&first).unwrap(), None);
+    assert_eq!(names(), [second.as_str()]);
+    // A restart in the meantime removes it.
+    scans.delete_with_undo(&second, now).unwrap();
+    assert_eq!(names().len(), 1);
+    assert!(Scans::open(folder.path()).unwrap().list().is_empty());
+    assert!(names().is_empty());
+}
+
+#[test]
+fn a_new_scan_never_takes_the_folder_of_a_deleted_one_that_can_be_restored() {
+    let folder = tempfile::tempdir().unwrap();
+    let scans = Scans::open(folder.path()).unwrap();
+    let now = std::time::SystemTime::UNIX_EPOCH;
+    let (id, place) = scans.new_place(Some("a"), now, true).unwrap();
+    store(&place, &ScanRecord::default()).unwrap();
+    let record = ScanRecord {
+        head: ScanHead {
+            id: id.clone(),
+            state: ScanState::Whole,
+            ..ScanHead::default()
+        },
+        ..ScanRecord::default()
+    };
+    scans.scans().insert(id.clone(), record);
+    scans
+        .delete_with_undo(&id, std::time::Instant::now())
+        .unwrap();
+    let (other, _) = scans.new_place(Some("a"), now, true).unwrap();
+    assert_ne!(other, id);
+    assert!(scans.restore(&id).unwrap().is_some());
+}
+
+#[test]
+fn names_and_notes_are_written_or_nothing_is_changed() {
+    let folder = tempfile::tempdir().unwrap();
+    let scans = Scans::open(folder.path()).unwrap();
+    let id = finished(&scans, Some("a"));
+    let edit = |name: &str, notes: Option<&str>| ScanEdit {
+        name: Some(name.to_owned()),
+        notes: notes.map(str::to_owned),
+    };
+    let texts = |scan: ScanView| (scan.head.name, scan.head.notes);
+    let some = |text: &str| Some(text.to_owned());
+    let edited = scans
+        .edit(&id, &edit(" Hall, n\u{f6}rdlich ", Some("a\nb")))
+        .unwrap();
+    assert_eq!(
+        texts(edited.unwrap()),
+        (some("Hall, n\u{f6}rdlich"), some("a\nb"))
+    );
+    // Absent keys change nothing.
+    scans.edit(&id, &edit("Hall", None)).unwrap();
+    let again = Scans::open(folder.path()).unwrap();
+    assert_eq!(
+        texts(again.view(&id).unwrap()),
+        (some("Hall"), some("a\nb"))
+    );
+    again.edit(&id, &edit("", Some(" "))).unwrap();
+    assert_eq!(texts(again.view(&id).unwrap()), (None, None));
+    assert_eq!(again.edit("none", &edit("x", None)).unwrap(), None);
+    // A record that cannot be written: its folder is gone.
+    fs::rename(again.place(&id), folder.path().join(".elsewhere")).unwrap();
+    again.edit(&id, &edit("x", Some("y"))).unwrap_err();
+    assert_eq!(texts(again.view(&id).unwrap()), (None, None));
 }

@@ -27,6 +27,15 @@ let scans = [
   scan(1, { state: "failed", why: { message: "the disk is nearly full: 12 MB free, 1000 MB are left free", help: "delete scans", kind: "incomplete" }, waits_for_room: true,
     summary: "The disk is nearly full: 12 MB free, 1000 MB are left free. Delete scans, or give another folder or a smaller reserve_bytes under [daemon] of the configuration. The log is kept: its cloud is made as soon as the disk has room.", points: null }),
 ];
+// Many more, for the list.
+for (let n = 4; n < Number(process.env.SCANS ?? 0); n += 1) scans.push(scan(-n, { id: `old-${n}`, name: `old-${n}`, notes: n % 5 === 0 ? `note ${n}` : null }));
+const deleted = new Map();
+const budget = (at_m) => ({ at_m, error_mm: { range: 9, range_step: 0.6, azimuth: 0.04 * at_m, tilt: 0.05 * at_m, clock: 0.002 * at_m, delay: 0.2 * at_m, mount: null, column_sd: 9, total: 18 + 0.4 * at_m } });
+const statistics = {
+  points: 243_311, of: "view", density: { bins: 3_120, mean: 77.98, sd: 41.2, empty: 3 }, gap_deg: { p50: 0.21, p95: 0.61, p99: 0.93, worst: 2.4 },
+  ranges: Array.from({ length: 30 }, (_, i) => ({ from_m: i / 2, to_m: (i + 1) / 2, points: i < 3 ? 0 : Math.round(20_000 * Math.exp(-(((i - 11) / 6) ** 2))) })),
+  sd_mm: { p50: 9.1, p95: 10.4, p99: 12.8 }, budget: [2, 5, 10, 20, 50, 100].map(budget),
+};
 const sync = { clock_method: "hull", clock_residual_us: 18.4, clock_bound_us: 36.2, clock_drift_ppm: 12.02, angle_method: "profile", angle_rms_deg: 0.00071, angle_bound_deg: 0.0021 };
 
 const status = () => ({
@@ -114,7 +123,10 @@ function answer(request, response) {
   }
   if (pathname.startsWith("/api/") && mode === "token") return reply(401, { error: { message: "a token is needed", help: "sign in", kind: "denied" } });
   if (pathname === "/api/v1/status") return reply(200, status());
-  if (pathname === "/api/v1/scans") return reply(200, scans);
+  if (pathname === "/api/v1/scans") {
+    const from = scans.findIndex(({ id }) => id === searchParams.get("before")) + 1;
+    return reply(200, { scans: scans.slice(from, from + Number(searchParams.get("limit") ?? scans.length)) });
+  }
   if (pathname === "/api/v1/plan") {
     const speed = Number(searchParams.get("speed_deg_s"));
     if (!(speed <= 98)) return reply(400, { error: { message: `speed ${speed} deg/s: expected 0.025 to 98`, help: "choose a slower one", kind: "usage" } });
@@ -122,11 +134,29 @@ function answer(request, response) {
   }
   const one = /^\/api\/v1\/scans\/([^/]+)(?:\/(\w+))?$/.exec(pathname);
   if (one !== null) {
+    if (one[2] === "restore" && deleted.has(one[1])) {
+      const back = deleted.get(one[1]);
+      deleted.delete(back.id);
+      scans = [...scans, back].sort((a, b) => b.started_s - a.started_s);
+      tell({ type: "scan", scan: back, deleted: false });
+      return reply(200, back);
+    }
     const found = scans.find((each) => each.id === one[1]);
     if (found === undefined) return reply(404, { error: { message: "no such scan", help: "GET /api/v1/scans lists them", kind: "not-found" } });
     if (mode === "stuck" && one[2] !== undefined) return reply(429, { error: { message: "too many downloads at once", help: "try again when others have ended", kind: "limit" } });
+    if (one[2] === "statistics") return setTimeout(() => reply(200, statistics), 1_000);
     if (one[2] === "cloud" && ply !== null) return response.writeHead(200, { "content-type": "application/octet-stream" }).end(ply);
-    if (request.method === "DELETE") scans = scans.filter((each) => each !== found);
+    if (request.method === "DELETE") {
+      scans = scans.filter((each) => each !== found);
+      deleted.set(found.id, found);
+      return response.writeHead(204).end();
+    }
+    if (request.method === "PATCH") {
+      let body = "";
+      request.on("data", (part) => (body += part));
+      request.on("end", () => reply(200, Object.assign(found, JSON.parse(body))));
+      return;
+    }
     return reply(200, { ...found, report: { lost_packets: 0, sync, truth: { rms_m: 0.00071, worst_m: 0.0018 } }, messages: [] });
   }
   if (mode === "stuck" && pathname === "/api/v1/tilt/stop") return;

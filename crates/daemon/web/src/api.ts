@@ -98,6 +98,7 @@ export type ScanState = "recording" | "making" | "whole" | "partial" | "failed";
 export interface Scan {
   id: string;
   name?: string | null;
+  notes?: string | null;
   state: ScanState;
   why?: Problem | null;
   /** Whether the cloud is made when the disk has room. */
@@ -130,6 +131,32 @@ export interface Report {
     angle_bound_deg?: number | null;
   };
   truth?: { rms_m: number; worst_m: number } | null;
+}
+
+/** What the daemon measures of a scan. */
+export interface ScanStatistics {
+  points: number;
+  /** Whether density and gaps are of the directions in view; else of all. */
+  of: "view" | "all";
+  /** Points per bin. */
+  density: { bins: number; mean: number; sd: number; empty: number };
+  gap_deg: { p50: number; p95: number; p99: number; worst: number };
+  ranges: { from_m: number; to_m: number; points: number }[];
+  /** Standard deviations that the points state. */
+  sd_mm?: { p50: number; p95: number; p99: number } | null;
+  budget: { at_m: number; error_mm: ErrorBudget }[];
+}
+
+/** Errors of a point at a distance, millimetres; the total is of 95 % of points. */
+export interface ErrorBudget {
+  range: number;
+  range_step: number;
+  azimuth: number;
+  tilt: number;
+  clock: number;
+  delay: number;
+  mount: number | null;
+  total: number;
 }
 
 /** Plan of a capture. */
@@ -217,12 +244,18 @@ function problem(json: unknown, text: string, status: number): Problem {
 
 export const api = {
   status: () => sendRequest<Status>("GET", "status"),
-  scans: async () => {
-    const answer = await sendRequest<Scan[] | { scans: Scan[] }>("GET", "scans");
-    return Array.isArray(answer) ? answer : answer.scans;
+  /** At most `limit` scans older than one, the newest first. */
+  scans: async (limit: number, before: string | null) => {
+    const query = new URLSearchParams({ limit: String(limit), ...(before === null ? {} : { before }) });
+    return (await sendRequest<{ scans: Scan[] }>("GET", `scans?${query}`)).scans;
   },
   scan: (id: string) => sendRequest<Scan>("GET", `scans/${encodeURIComponent(id)}`),
-  remove: (id: string) => sendRequest<unknown>("DELETE", `scans/${encodeURIComponent(id)}`),
+  statistics: (id: string) => sendRequest<ScanStatistics>("GET", `scans/${encodeURIComponent(id)}/statistics`),
+  /** Empty texts are removed. */
+  edit: (id: string, texts: { name: string; notes: string }) => sendRequest<Scan>("PATCH", `scans/${encodeURIComponent(id)}`, texts),
+  /** The scan can be restored for 10 s. */
+  remove: (id: string) => sendRequest<unknown>("DELETE", `scans/${encodeURIComponent(id)}?undo=true`),
+  restore: (id: string) => sendRequest<Scan>("POST", `scans/${encodeURIComponent(id)}/restore`),
   plan: (request: CaptureRequest) => sendRequest<Plan>("GET", `plan?${query(request)}`),
   capture: (request: CaptureRequest) => sendRequest<Scan>("POST", "captures", request),
   /** Stops any motion; of a capture the swept part is kept. */

@@ -4,11 +4,14 @@ import { type Scan, type Status, RequestError, api, cloudUrl, sendRequest } from
 import { id, show, text } from "./dom.ts";
 import { Events, type Listener } from "./events.ts";
 import { count } from "./format.ts";
+import { title } from "./found.ts";
 import { REFUSAL_MS, outage } from "./outage.ts";
 import * as axis from "./panels/axis.ts";
 import * as control from "./panels/control.ts";
 import * as devices from "./panels/devices.ts";
 import { alarm, announce, note } from "./panels/messages.ts";
+import { setFormats } from "./panels/scan_parts.ts";
+import * as quality from "./panels/quality.ts";
 import * as scans from "./panels/scans.ts";
 import * as signin from "./panels/signin.ts";
 import * as sweep from "./panels/sweep.ts";
@@ -23,7 +26,7 @@ let connected = false;
 /** The cloud of a scan. */
 function source(scan: Scan): CloudSource {
   const { id, simulated } = scan;
-  return { id, title: scan.name || id, simulated, url: (uncertainty) => cloudUrl(id, "ply", uncertainty), certain: true, scanner: true, plays: false };
+  return { id, title: title(scan), simulated, url: (uncertainty) => cloudUrl(id, "ply", uncertainty), certain: true, scanner: true, plays: false };
 }
 
 const listener: Listener = {
@@ -53,6 +56,7 @@ const listener: Listener = {
     control.setStatus(status);
     devices.setStatus(status);
     sweep.setStatus(status);
+    quality.setStatus(status);
     const { scan } = status.activity;
     if (typeof scan === "string" && status.activity.doing === "capturing") {
       const known = scans.get(scan);
@@ -69,13 +73,17 @@ const listener: Listener = {
   scan(scan, deleted) {
     if (deleted) {
       scans.remove(scan.id);
+      quality.forget(scan.id);
       viewer?.forget(scan.id);
       return;
     }
     const before = scans.get(scan.id)?.state;
     scans.set(scan);
-    if (scan.state === "recording" && before !== "recording") viewer?.begin(scan.id, scan.name || scan.id, scan.simulated);
-    if (before !== scan.state) void finished(scan);
+    viewer?.rename(scan.id, title(scan));
+    if (scan.state === "recording" && before !== "recording") viewer?.begin(scan.id, title(scan), scan.simulated);
+    // One that was not known is restored, not new, unless it is in view.
+    if (before === undefined && viewer?.shown !== scan.id) void last();
+    else if (before !== scan.state) void finished(scan);
   },
   message(message) {
     note(message.level, message.text, message.help);
@@ -90,14 +98,33 @@ const events = new Events(listener);
 /** Reports the end of a scan, and opens its cloud if the scan is in view. */
 async function finished(scan: Scan): Promise<void> {
   if (scan.state === "recording" || scan.state === "making") return;
-  const title = scan.name || scan.id;
-  if (scan.state === "whole") announce(`Scan ${title} is complete: ${count(scan.points ?? 0)} points`);
-  else note(scan.state === "failed" ? "error" : "warning", `Scan ${title} ${scan.state === "failed" ? "has no cloud" : "is partial"}.`, scan.summary);
+  const name = title(scan);
+  if (scan.state === "whole") announce(`Scan ${name} is complete: ${count(scan.points ?? 0)} points`);
+  else note(scan.state === "failed" ? "error" : "warning", `Scan ${name} ${scan.state === "failed" ? "has no cloud" : "is partial"}.`, scan.summary);
   if (viewer?.shown === scan.id) {
-    if (scan.state === "failed") viewer.ended(scan.id, title, scan.simulated);
+    if (scan.state === "failed") viewer.ended(scan.id, name, scan.simulated);
     else viewer.open(source(scan));
   }
+  if (viewer?.shown === scan.id) void measured(scan.id);
   await last();
+}
+
+/** Shows the report of the scan in view. */
+async function measured(name: string | null): Promise<void> {
+  quality.setScan(null);
+  if (name === null) return;
+  try {
+    const scan = await api.scan(name);
+    if (viewer?.shown === name) quality.setScan(scan);
+  } catch {
+    // It was deleted, or the connection is lost, which is shown.
+  }
+}
+
+/** Marks the scan in view. */
+export function setCurrent(name: string | null): void {
+  scans.setCurrent(name);
+  void measured(name);
 }
 
 /** Shows clock and angle of the newest scan with a cloud. */
@@ -115,13 +142,13 @@ async function last(): Promise<void> {
 
 async function list(): Promise<void> {
   try {
-    await scans.load(api.scans);
-    const newest = scans.all().find((scan) => scan.state === "whole" || scan.state === "partial");
-    const linked = viewer?.linked_scan == null ? undefined : scans.get(viewer.linked_scan);
-    if (viewer !== null && viewer.shown === null) {
+    await scans.load((complete) => {
+      if (viewer === null || viewer.shown !== null) return;
+      const newest = scans.all().find((scan) => scan.state === "whole" || scan.state === "partial");
+      const linked = viewer.linked_scan === null ? undefined : scans.get(viewer.linked_scan);
       if (linked !== undefined) viewer.open(source(linked));
-      else if (newest !== undefined && (newest.points ?? 0) <= SMALL_POINTS) viewer.open(source(newest));
-    }
+      else if ((viewer.linked_scan === null || complete) && newest !== undefined && (newest.points ?? 0) <= SMALL_POINTS) viewer.open(source(newest));
+    });
     await last();
   } catch (error) {
     control.refused("List of scans", error, id("scans-error"));
@@ -153,7 +180,7 @@ async function formats(): Promise<void> {
     const description = await sendRequest<{ paths?: Record<string, { get?: { parameters?: { name: string; schema?: { enum?: string[] } }[] } }> }>("GET", "openapi.json");
     const path = Object.entries(description.paths ?? {}).find(([name]) => name.endsWith("/cloud"))?.[1];
     const known = path?.get?.parameters?.find((parameter) => parameter.name === "format")?.schema?.enum;
-    if (known !== undefined && known.length > 0) scans.setFormats(known);
+    if (known !== undefined && known.length > 0) setFormats(known);
   } catch {
     // The default list remains.
   }
@@ -170,6 +197,7 @@ export function start(view: Viewer | null): void {
   }, axis.setReady);
   axis.wire();
   sweep.wire();
+  quality.wire();
   scans.wire((scan) => {
     viewer?.open(source(scan));
     id("canvas").scrollIntoView({ block: "nearest" });

@@ -31,6 +31,7 @@ export function start(view: Viewer | null): void {
   viewer = view;
   text(id("scans-title"), "Files");
   show(id("no-scans"), false);
+  show(id("scan-lists"), true);
   const events = new EventSource("events");
   events.onmessage = ({ data }: MessageEvent<string>) => {
     show(id("lost"), false);

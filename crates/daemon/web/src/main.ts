@@ -3,13 +3,12 @@
 import * as daemon from "./daemon.ts";
 import { id, show, text } from "./dom.ts";
 import * as files from "./files.ts";
-import * as scans from "./panels/scans.ts";
 import { Viewer } from "./viewer.ts";
 
 const of_files = document.body.dataset["page"] === "files";
 let viewer: Viewer | null = null;
 try {
-  viewer = new Viewer((shown) => (of_files ? files.setCurrent(shown) : scans.setCurrent(shown)));
+  viewer = new Viewer((shown) => (of_files ? files.setCurrent(shown) : daemon.setCurrent(shown)));
 } catch (error) {
   text(id("view-failed"), `No 3D view: this browser has no WebGL2.${of_files ? "" : " Everything else works."}`);
   show(id("view-failed"), true);

@@ -154,6 +154,13 @@ export class Viewer {
     this.changed(source.id);
   }
 
+  /** Shows the new name of the scan in view. */
+  rename(scan: string, title: string): void {
+    if (this.opened?.id !== scan) return;
+    this.opened.title = title;
+    text(id("view-title"), title);
+  }
+
   /** Removes a deleted scan from the view. */
   forget(scan: string): void {
     if (this.shown !== scan) return;

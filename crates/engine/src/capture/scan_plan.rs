@@ -5,7 +5,8 @@
 mod report;
 
 use analysis::plan::{
-    ErrorModel, LinkTiming, PlanLimits, PlanRow, PlannedScan, ScanPredictor, ScanSetting, TiltSweep,
+    ErrorBudget, ErrorModel, LinkTiming, PlanLimits, PlanRow, PlannedScan, ScanPredictor,
+    ScanSetting, TiltSweep,
 };
 use drive::AxisConfig;
 use protocol::vlp16::Model;
@@ -141,6 +142,21 @@ impl ScanPlanner {
         model: Option<&'static Model>,
         rpm: Option<u32>,
     ) -> Result<Self, Failure> {
+        Self::of_capture_at(config, capture, model, rpm, USUAL_M)
+    }
+
+    /// The same at another distance, metres.
+    ///
+    /// # Errors
+    /// [`Kind::BadInput`] for an invalid configuration, [`Kind::Usage`] for a distance outside the
+    /// lidar's range.
+    pub fn of_capture_at(
+        config: &Config,
+        capture: &CapturePlan,
+        model: Option<&'static Model>,
+        rpm: Option<u32>,
+        at_m: f64,
+    ) -> Result<Self, Failure> {
         let (usual_lidar, usual_rpm) = match profile::simulated(&capture.device) {
             true => (SIMULATED, RigLidar::default().rpm),
             false => (config.lidar.model.sheet(), config.lidar.rpm),
@@ -151,7 +167,7 @@ impl ScanPlanner {
         let request = PlanRequest {
             from_deg: first.map(|step| step.plan.from.0),
             to_deg: first.map(|step| step.plan.to.0),
-            ..PlanRequest::new(USUAL_M, lidar, rpm)
+            ..PlanRequest::new(at_m, lidar, rpm)
         };
         Self::new(config, (&capture.name, &capture.device), request)
     }
@@ -161,6 +177,14 @@ impl ScanPlanner {
     pub fn row(&self, steps: &[Step]) -> PlanRow {
         let rpm = self.request.rpm.first().copied().unwrap_or_default();
         self.predictor.brief_row(&self.scan(steps, rpm))
+    }
+
+    /// Errors of a point after the moves of a capture.
+    #[must_use]
+    pub fn budget(&self, steps: &[Step]) -> ErrorBudget {
+        let rpm = self.request.rpm.first().copied().unwrap_or_default();
+        let ScanPredictor { errors, lidar, .. } = &self.predictor;
+        errors.budget(lidar, &self.scan(steps, rpm).sweeps)
     }
 
     /// What a capture gives.

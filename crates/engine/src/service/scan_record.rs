@@ -11,8 +11,12 @@ use crate::capture_request::CaptureRequest;
 use crate::failure::{Failure, Kind};
 use crate::reconstruct::report::Reception;
 
-/// Longest name of a scan, bytes.
+/// Longest name of a scan in its capture request, bytes.
 pub const NAME_BYTES: usize = 60;
+/// Longest name that a scan can get later, characters.
+pub const NAME_CHARS: usize = 60;
+/// Longest notes on a scan, characters.
+pub const NOTES_CHARS: usize = 2_000;
 
 /// State of a scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -47,6 +51,9 @@ pub struct ScanHead {
     /// Name given by the user.
     #[serde(default)]
     pub name: Option<String>,
+    /// Notes of the user.
+    #[serde(default)]
+    pub notes: Option<String>,
     /// State.
     pub state: ScanState,
     /// Why it is incomplete.
@@ -84,6 +91,64 @@ impl ScanHead {
 fn if_understood<'de, D: Deserializer<'de>>(from: D) -> Result<Option<CaptureRequest>, D::Error> {
     let value = Option::<serde_json::Value>::deserialize(from)?;
     Ok(value.and_then(|value| serde_json::from_value(value).ok()))
+}
+
+/// Body of `PATCH /scans/ID`. Absent keys change nothing, an empty text removes.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize, ToSchema)]
+#[serde(default, deny_unknown_fields)]
+#[schema(example = json!({"name": "Hall, north end", "notes": "Door open.\nTripod on the gallery."}))]
+pub struct ScanEdit {
+    /// The name, one line.
+    #[schema(max_length = 60)]
+    pub name: Option<String>,
+    /// The notes, plain text.
+    #[schema(max_length = 2_000)]
+    pub notes: Option<String>,
+}
+
+impl ScanEdit {
+    /// Refuses texts that are too long or have control characters.
+    ///
+    /// # Errors
+    /// [`Kind::Usage`].
+    pub fn check(&self) -> Result<(), Failure> {
+        check_text("name", self.name.as_deref(), NAME_CHARS, "")?;
+        check_text("notes", self.notes.as_deref(), NOTES_CHARS, "\n\t")
+    }
+
+    /// Changes the texts of a scan.
+    pub fn apply(&self, head: &mut ScanHead) {
+        let changes = [(&self.name, &mut head.name), (&self.notes, &mut head.notes)];
+        for (new, text) in changes {
+            if let Some(new) = new {
+                *text = Some(new.trim().to_owned()).filter(|new| !new.is_empty());
+            }
+        }
+    }
+}
+
+/// Refuses a text with more than `most` characters, or control characters other than `allowed`.
+fn check_text(key: &str, text: Option<&str>, most: usize, allowed: &str) -> Result<(), Failure> {
+    let text = text.unwrap_or_default();
+    let length = text.chars().count();
+    if length > most {
+        return Err(Failure::new(
+            Kind::Usage,
+            format!("{key}: expected at most {most} characters, got {length}"),
+        )
+        .help("shorten it"));
+    }
+    match text
+        .chars()
+        .find(|c| c.is_control() && !allowed.contains(*c))
+    {
+        None => Ok(()),
+        Some(control) => Err(Failure::new(
+            Kind::Usage,
+            format!("{key}: expected plain text, got the control character {control:?}"),
+        )
+        .help("remove it; only notes may have line breaks (\\n) and tabs")),
+    }
 }
 
 /// The file `scan.json` in a scan's folder.

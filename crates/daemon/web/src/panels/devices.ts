@@ -4,33 +4,15 @@ import { type Fault, type Problem, type Scan, type Status, api } from "../api.ts
 import { attribute, h, id, show, text } from "../dom.ts";
 import type { Motion } from "../events.ts";
 import { bytes, count, digits, fixed, sentence } from "../format.ts";
+import { title } from "../found.ts";
 import { command } from "./control.ts";
+import { type Fact, type Tone, facts, residuals } from "./facts.ts";
 import { alarm } from "./messages.ts";
-
-type Tone = "good" | "warn" | "bad" | "off";
-type Fact = [name: string, value: string, tone?: Tone];
 
 function chip(name: string, words: string, tone: Tone): void {
   const element = id(name);
   attribute(element, "data-tone", tone);
   text(element, words);
-}
-
-/** Updates a list of values; unchanged rows are not touched. */
-function facts(list: HTMLElement, rows: Fact[]): void {
-  while (list.children.length > rows.length) list.lastElementChild?.remove();
-  rows.forEach(([name, value, tone], i) => {
-    let row = list.children[i];
-    if (row === undefined) {
-      row = h("div", {}, h("dt"), h("dd"));
-      list.append(row);
-    }
-    const [dt, dd] = [row.children[0], row.children[1]];
-    if (dt === undefined || dd === undefined) return;
-    text(dt, name);
-    text(dd, value);
-    attribute(dd, "data-tone", tone ?? "off");
-  });
 }
 
 const TONES: Record<string, Tone> = { connected: "good", absent: "warn", fault: "bad" };
@@ -152,19 +134,6 @@ function spark(rate: number): void {
 
 /** Shows clock and angle of a scan with their error bounds. */
 export function setLast(scan: Scan | null): void {
-  const sync = scan?.report?.sync;
-  if (!scan || !sync) return facts(id("last-facts"), [["Scan", scan ? (scan.name || scan.id) : "none yet"]]);
-  const rows: Fact[] = [["Scan", scan.name || scan.id]];
-  const add = (name: string, value: number | null | undefined, unit: string, scale = 1) => {
-    if (typeof value === "number") rows.push([name, `${digits(value * scale)} ${unit}`]);
-  };
-  add("Clock residual", sync.clock_residual_us, "\u00b5s");
-  add("Clock error at most", sync.clock_bound_us, "\u00b5s");
-  add("Angle residual", sync.angle_rms_deg, "\u00b0 RMS");
-  add("Angle error at most", sync.angle_bound_deg, "\u00b0");
-  if (sync.angle_method) rows.push(["Angle method", sync.angle_method]);
-  const lost = (scan.report?.lost_packets ?? 0) + (scan.report?.lost_records ?? 0);
-  rows.push(["Lost", lost === 0 ? "nothing" : `${count(lost)} packets`, lost === 0 ? "off" : "warn"]);
-  add("Error against truth, RMS", scan.report?.truth?.rms_m, "mm", 1e3);
-  facts(id("last-facts"), rows);
+  if (!scan?.report?.sync) return facts(id("last-facts"), [["Scan", scan ? title(scan) : "none yet"]]);
+  facts(id("last-facts"), [["Scan", title(scan)], ...residuals(scan)]);
 }

@@ -1,48 +1,130 @@
-// The list of scans: pictures, opening, downloads, deleting.
+// The scans: as cards and in a table, found, sorted, selected, edited and deleted.
 
-import { type Scan, api, cloudUrl, fileUrl, logUrl, thumbnailUrl } from "../api.ts";
-import { h, id, show, text } from "../dom.ts";
-import { bytes, compact, moment } from "../format.ts";
-import { command, refused } from "./control.ts";
+import { type Scan, RequestError, api } from "../api.ts";
+import { attribute, h, id, show, text } from "../dom.ts";
+import { bytes, count } from "../format.ts";
+import { type Order, type SortKey, found, title } from "../found.ts";
+import { Rows } from "../rows.ts";
+import { refused } from "./control.ts";
 import { announce } from "./messages.ts";
+import * as parts from "./scan_parts.ts";
+import { offer } from "./undo.ts";
 
-/** Marks the choice of a format with the columns sd and echo. */
-const MORE = "+";
-/** Cloud formats: extension and displayed name. */
-const FORMATS: [string, string][] = [
-  ["ply", "PLY"], ["laz", "LAZ"], ["las", "LAS"], ["pcd", "PCD"], ["e57", "E57"], ["csv", "CSV"], ["mcap", "MCAP (ROS 2)"],
-];
-const STATES: Record<string, string> = { recording: "recording", making: "making the cloud", whole: "complete", partial: "partial", failed: "no cloud" };
+/** Scans that are requested at once. */
+const PART = 100;
+const narrow = matchMedia("(max-width: 899px)");
+const search = id<HTMLInputElement>("search");
+const sorting = id<HTMLSelectElement>("order");
+const choose_all = id<HTMLInputElement>("choose-all");
 
-const list = id<HTMLUListElement>("scans");
 const scans = new Map<string, Scan>();
 const updated = new Set<string>();
-/** `wrong` shows errors of the scan; redrawing its card keeps them. */
-const cards = new Map<string, { card: HTMLLIElement; wrong: HTMLElement; drawn: string }>();
-let formats = FORMATS;
+/** Errors of a scan, which outlive its card. */
+const errors = new Map<string, HTMLElement>();
+/** The selected ones, of those that are shown. */
+const chosen = new Set<string>();
+let shown: Scan[] = [];
+let order: Order = { by: "time", down: true };
 let current: string | null = null;
+let last_chosen: string | null = null;
+let editing: { id: string; place: Place } | null = null;
+let loads = 0;
 let opened: (scan: Scan) => void = () => {};
+
+type Place = "card" | "row";
+
+/** One record that cannot be displayed does not hide the others. */
+function content(scan: Scan, place: Place): Node[] {
+  try {
+    const actions = { open: opened, edit: () => edit(scan, place), choose, remove: (one: Scan) => void remove_all([one]), refused: show_error };
+    if (editing?.id === scan.id && editing.place === place) return [parts.editor(scan, (changed) => edited(scan, changed), actions)];
+    const marked = chosen.has(scan.id);
+    return place === "card" ? parts.card(scan, marked, error_of(scan), actions) : parts.cells(scan, marked, actions);
+  } catch (error) {
+    console.error(error);
+    return [h("h3", {}, String(scan.id)), h("p", {}, "This record cannot be displayed.")];
+  }
+}
+
+/** A list of all scans in one of both forms. */
+function rows(list: string, place: Place, of: { scroller: string; across: () => boolean; usual_px: number; gap_px: number }): Rows<Scan> {
+  return new Rows<Scan>(id(list), {
+    ...of,
+    tag: place === "card" ? "li" : "div",
+    scroller: id(of.scroller),
+    key: (scan) => scan.id,
+    state: (scan) => {
+      // Fields keep what is typed.
+      if (editing?.id === scan.id && editing.place === place) return "edited";
+      const { report: _report, ...rest } = scan;
+      return JSON.stringify([rest, scan.id === current, chosen.has(scan.id)]);
+    },
+    draw: (scan, row) => {
+      row.className = place === "card" ? "scan" : "scan-row";
+      row.dataset["id"] = scan.id;
+      if (place === "row") row.setAttribute("role", "row");
+      if (scan.id === current) row.setAttribute("aria-current", "true");
+      else row.removeAttribute("aria-current");
+      row.replaceChildren(...content(scan, place));
+    },
+  });
+}
+
+const strip = rows("scans", "card", { scroller: "strip", across: () => !narrow.matches, usual_px: 330, gap_px: 12 });
+const table = rows("scan-rows", "row", { scroller: "scan-rows-scroller", across: () => false, usual_px: 40, gap_px: 0 });
 
 export function wire(open: (scan: Scan) => void): void {
   opened = open;
+  search.addEventListener("input", draw);
+  sorting.addEventListener("change", () => {
+    const [by, down] = sorting.value.split(" ");
+    sort({ by: by as SortKey, down: down === "down" });
+  });
+  for (const head of document.querySelectorAll<HTMLElement>("#scan-table [data-sort]")) {
+    const by = head.dataset["sort"] as SortKey;
+    head.addEventListener("click", () => sort({ by, down: order.by === by ? !order.down : by !== "name" }));
+  }
+  choose_all.addEventListener("change", () => {
+    chosen.clear();
+    if (choose_all.checked) for (const scan of shown) if (!parts.isBusy(scan)) chosen.add(scan.id);
+    draw();
+  });
+  id("delete-chosen").addEventListener("click", () => void remove_all(shown.filter((scan) => chosen.has(scan.id))));
+  narrow.addEventListener("change", draw);
 }
 
-/** Offers the formats that the daemon supports. */
-export function setFormats(known: string[]): void {
-  const names = new Map(FORMATS);
-  formats = known.map((format) => [format, names.get(format) ?? format.toUpperCase()]);
-}
-
-export const all = () => [...scans.values()].sort((a, b) => b.started_s - a.started_s);
+export const all = () => found(scans.values(), "", { by: "time", down: true });
 export const get = (name: string) => scans.get(name);
 
-/** Loads the list. Events received while it was loading are newer than the list. */
-export async function load(list: () => Promise<Scan[]>): Promise<void> {
+/** Loads the list in parts, and reports each. Events received meanwhile are newer than the list. */
+export async function load(loaded: (complete: boolean) => void): Promise<void> {
+  const mine = ++loads;
   updated.clear();
-  const now = await list();
-  for (const key of [...scans.keys()]) if (!updated.has(key)) scans.delete(key);
-  for (const scan of now) if (!updated.has(scan.id)) scans.set(scan.id, scan);
-  draw();
+  const listed: string[] = [];
+  for (let complete = false; !complete; ) {
+    const before = listed.findLast((name) => scans.has(name)) ?? null;
+    let part: Scan[];
+    try {
+      part = await api.scans(PART, before);
+    } catch (error) {
+      if (before === null || !(error instanceof RequestError) || error.status !== 404) throw error;
+      // It was deleted meanwhile: the one before it is asked for.
+      scans.delete(before);
+      continue;
+    }
+    if (mine !== loads) return;
+    for (const scan of part) {
+      listed.push(scan.id);
+      if (!updated.has(scan.id)) scans.set(scan.id, scan);
+    }
+    complete = part.length < PART;
+    if (complete) {
+      const known = new Set(listed);
+      for (const key of [...scans.keys()]) if (!known.has(key) && !updated.has(key)) scans.delete(key);
+    }
+    draw();
+    loaded(complete);
+  }
 }
 
 export function set(scan: Scan): void {
@@ -54,146 +136,122 @@ export function set(scan: Scan): void {
 export function remove(name: string): void {
   updated.add(name);
   scans.delete(name);
+  errors.delete(name);
   draw();
 }
 
 /** Marks the scan that is in view. */
 export function setCurrent(name: string | null): void {
   current = name;
-  for (const [key, { card }] of cards) {
-    if (key === name) card.setAttribute("aria-current", "true");
-    else card.removeAttribute("aria-current");
-  }
+  strip.update();
+  table.update();
+}
+
+function sort(now: Order): void {
+  order = now;
+  draw();
 }
 
 function draw(): void {
-  const now = all();
-  for (const [key, { card }] of cards) {
-    if (!scans.has(key)) {
-      card.remove();
-      cards.delete(key);
-    }
+  shown = found(scans.values(), search.value, order);
+  const found_ids = new Set(shown.map((scan) => scan.id));
+  for (const name of chosen) if (!found_ids.has(name)) chosen.delete(name);
+  // Hidden lists draw no rows.
+  for (const name of ["scan-find", "scan-lists"]) show(id(name), scans.size > 0);
+  strip.set(shown);
+  table.set(shown);
+  attribute(id("scan-table"), "aria-rowcount", String(shown.length + 1));
+  sorting.value = `${order.by} ${order.down ? "down" : "up"}`;
+  for (const head of document.querySelectorAll<HTMLElement>("#scan-table [data-sort]")) {
+    const sorted = head.dataset["sort"] !== order.by ? "none" : order.down ? "descending" : "ascending";
+    attribute(head.parentElement ?? head, "aria-sort", sorted);
   }
-  now.forEach((scan, place) => {
-    const { report: _report, ...shown } = scan;
-    const drawn = JSON.stringify(shown);
-    let entry = cards.get(scan.id);
-    if (entry === undefined) {
-      entry = { card: h("li", { class: "scan", "data-id": scan.id }), wrong: h("p", { class: "wrong", hidden: true }), drawn: "" };
-      cards.set(scan.id, entry);
-    }
-    if (entry.drawn !== drawn) {
-      const focused = entry.card.contains(document.activeElement) ? (document.activeElement as HTMLElement).dataset["role"] : undefined;
-      entry.card.replaceChildren(...content_or_id(scan), entry.wrong);
-      entry.drawn = drawn;
-      if (focused !== undefined) entry.card.querySelector<HTMLElement>(`[data-role="${focused}"]`)?.focus();
-    }
-    if (list.children[place] !== entry.card) list.insertBefore(entry.card, list.children[place] ?? null);
-  });
-  setCurrent(current);
-  show(id("no-scans"), now.length === 0);
-  const sum = now.reduce((total, scan) => total + (scan.bytes ?? 0), 0);
-  text(id("scans-sum"), now.length === 0 ? "" : `${now.length === 1 ? "1 scan" : `${now.length} scans`} \u00b7 ${bytes(sum)}`);
+  const sum = shown.reduce((total, scan) => total + (scan.bytes ?? 0), 0);
+  const number = (n: number) => (n === 1 ? "1 scan" : `${count(n)} scans`);
+  text(id("scans-sum"), scans.size === 0 ? "" : search.value === "" ? `${number(scans.size)} \u00b7 ${bytes(sum)}` : `${count(shown.length)} of ${number(scans.size)} \u00b7 ${bytes(sum)}`);
+  text(id("no-scans"), scans.size === 0 ? "None yet." : "No scan has these words.");
+  show(id("no-scans"), shown.length === 0);
+  const can = shown.filter((scan) => !parts.isBusy(scan)).length;
+  choose_all.disabled = can === 0;
+  choose_all.checked = can > 0 && chosen.size === can;
+  choose_all.indeterminate = chosen.size > 0 && chosen.size < can;
+  text(id("chosen"), chosen.size === 0 ? "Select all" : `${count(chosen.size)} selected`);
+  text(id("delete-chosen"), `Delete ${count(chosen.size)}`);
+  show(id("delete-chosen"), chosen.size > 0);
 }
 
-/** One record that cannot be displayed does not hide the others. */
-function content_or_id(scan: Scan): Node[] {
-  try {
-    return content(scan);
-  } catch (error) {
-    console.error(error);
-    return [h("h3", {}, String(scan.id)), h("p", { class: "why" }, "This record cannot be displayed.")];
+/** Selects a scan, or with the shift key all from the last one to it. */
+function choose(scan: Scan, on: boolean, range: boolean): void {
+  const place = (name: string | null) => shown.findIndex((one) => one.id === name);
+  const [from, to] = [place(range ? last_chosen : scan.id), place(scan.id)].sort((a, b) => a - b);
+  for (const one of shown.slice(Math.max(0, from ?? 0), (to ?? 0) + 1)) {
+    if (on && !parts.isBusy(one)) chosen.add(one.id);
+    else chosen.delete(one.id);
   }
+  last_chosen = scan.id;
+  draw();
 }
 
-function content(scan: Scan): Node[] {
-  const title = scan.name || scan.id;
-  const has_cloud = scan.state === "whole" || scan.state === "partial";
-  const busy = scan.state === "recording" || scan.state === "making";
-  const picture = scan.thumbnail
-    ? h("img", { class: "thumb", src: thumbnailUrl(scan.id), alt: `Picture of ${title}`, loading: "lazy", width: 108, height: 72 })
-    : h("span", { class: "thumb" });
-  const numbers = [
-    scan.points ? `${compact(scan.points)} points` : null,
-    scan.bytes && !busy ? bytes(scan.bytes) : null,
-  ].filter((part) => part !== null).join(" \u00b7 ");
-  const speed = scan.asked?.speed_deg_s;
-  const row = h("div", { class: "row" },
-    has_cloud ? h("button", { type: "button", "data-role": "open", "aria-label": `Open ${title} in the view`, click: () => opened(scan) }, "Open") : null,
-    busy ? null : downloads(scan, title, has_cloud),
-    busy ? null : h("button", { type: "button", "data-role": "delete", "aria-label": `Delete ${title}`, click: () => void confirm_delete(scan) }, "Delete"),
-  );
-  return [
-    picture,
-    h("div", {},
-      h("h3", { title }, title),
-      h("p", {}, moment(scan.started_s), typeof speed === "number" ? ` \u00b7 ${speed} \u00b0/s` : null),
-      h("p", {}, numbers),
-      h("p", { class: "badges" }, h("span", { class: "badge", "data-state": scan.state }, scan.waits_for_room ? "no cloud yet" : (STATES[scan.state] ?? scan.state)), " ",
-        scan.simulated ? h("span", { class: "badge", "data-state": "simulated" }, "SIMULATED") : null),
-    ),
-    ...(scan.summary ? [h("p", { class: "why", tabindex: 0 }, scan.summary)] : []),
-    row,
-  ];
+const root = (place: Place) => id(place === "card" ? "scans" : "scan-rows");
+
+function edit(scan: Scan, place: Place): void {
+  editing = { id: scan.id, place };
+  draw();
+  root(place).querySelector<HTMLElement>(".edit [data-role=name]")?.focus();
 }
 
-/** A list of formats; choosing one downloads it. */
-function downloads(scan: Scan, title: string, has_cloud: boolean): HTMLElement {
-  const choose = h("select", { "data-role": "download", "aria-label": `Download ${title} as` }, h("option", { value: "" }, "Download"),
-    ...(has_cloud ? formats.map(([format, words]) => h("option", { value: format }, words)) : []),
-    h("option", { value: "log" }, "log (pcapng)"),
-    has_cloud ? h("optgroup", { label: "With uncertainty and echo" }, ...formats.map(([format, words]) => h("option", { value: `${format}${MORE}` }, words))) : null);
-  choose.addEventListener("change", () => {
-    const format = choose.value;
-    choose.value = "";
-    if (format === "") return;
-    void download(scan, title, format);
-  });
-  return choose;
-}
-
-/** Downloads a file; a refusal is shown at its scan. */
-async function download(scan: Scan, title: string, choice: string): Promise<void> {
-  const more = choice.endsWith(MORE);
-  const format = choice.replace(MORE, "");
-  const at = error_of(scan);
-  show(at, false);
-  announce(`Downloading ${title} as ${format}`);
-  try {
-    const [url, exists] = format === "log" ? [logUrl(scan.id), true] : [cloudUrl(scan.id, format, more, more), format === "ply" && !more];
-    const href = await fileUrl(url, exists);
-    h("a", { href, download: `${scan.id}.${format === "log" ? "pcapng" : format}` }).click();
-    // The browser has begun to read it by then.
-    if (!exists) setTimeout(() => URL.revokeObjectURL(href), 60_000);
-  } catch (error) {
-    refused(`Download as ${format}`, error, at);
-  }
+function edited(scan: Scan, changed: Scan | null): void {
+  const place = editing?.place ?? "card";
+  editing = null;
+  if (changed === null) draw();
+  else set(changed);
+  root(place).querySelector<HTMLElement>(`[data-id="${CSS.escape(scan.id)}"] [data-role=edit]`)?.focus();
 }
 
 /** Where errors of a scan are shown. */
 function error_of(scan: Scan): HTMLElement {
-  return cards.get(scan.id)?.wrong ?? id("scans-error");
+  let wrong = errors.get(scan.id);
+  if (wrong === undefined) {
+    wrong = h("p", { class: "wrong", hidden: true });
+    errors.set(scan.id, wrong);
+  }
+  return wrong;
 }
 
-async function confirm_delete(scan: Scan): Promise<void> {
-  const dialog = id<HTMLDialogElement>("delete");
-  text(id("delete-what"), scan.name ? `${scan.name} (${scan.id})` : scan.id);
-  dialog.returnValue = "";
-  const before = document.activeElement;
-  // Not modal: the stop button must remain usable.
-  dialog.show();
-  const escape = (event: KeyboardEvent) => {
-    if (event.key === "Escape") dialog.close("keep");
-  };
-  dialog.addEventListener("keydown", escape);
-  await new Promise((resolve) => dialog.addEventListener("close", resolve, { once: true }));
-  dialog.removeEventListener("keydown", escape);
-  if (before instanceof HTMLElement) before.focus();
-  if (dialog.returnValue !== "delete") return;
-  await command("Delete", async () => {
-    await api.remove(scan.id);
-    remove(scan.id);
-    announce("Deleted");
-    id("scans-title").scrollIntoView({ block: "nearest" });
-  }, error_of(scan));
+/** Shows an error, which makes its card higher, in sight. */
+function show_error(what: string, error: unknown, at: HTMLElement): void {
+  refused(what, error, at);
+  strip.update();
+  table.update();
+  at.scrollIntoView({ block: "nearest" });
+}
+
+/** Deletes scans, and offers to undo it. The first refusal ends it. */
+async function remove_all(list: Scan[]): Promise<void> {
+  const only = list.length === 1 ? list[0] : undefined;
+  const at = only === undefined ? id("scans-error") : error_of(only);
+  show(at, false);
+  const focused = document.activeElement;
+  const gone: Scan[] = [];
+  for (const scan of list) {
+    const in_view = current === scan.id;
+    const begun_ms = performance.now();
+    try {
+      await api.remove(scan.id);
+    } catch (error) {
+      show_error(only === undefined ? `Delete ${title(scan)}` : "Delete", error, at);
+      break;
+    }
+    gone.push(scan);
+    offer(scan, begun_ms, () => {
+      if (in_view) opened(scan);
+    });
+    updated.add(scan.id);
+    scans.delete(scan.id);
+  }
+  draw();
+  if (gone.length === 0) return;
+  announce(`${gone.length === 1 ? title(gone[0] as Scan) : `${gone.length} scans`} deleted; can be undone for 10 s`);
+  // The button that was pressed is gone or hidden.
+  if (!(focused instanceof HTMLElement) || !focused.isConnected || !focused.checkVisibility()) id("undo-now").focus();
 }

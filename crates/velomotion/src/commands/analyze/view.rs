@@ -6,12 +6,11 @@
 
 use cloud::TiltTrack;
 use glam::DVec3;
-use protocol::vlp16::Laser;
-use protocol::vlp16::models::ALL;
 use serde::Serialize;
 use sim::patterns::{FieldOfView, Pattern, SPHERE_M};
 use utoipa::ToSchema;
 
+use engine::reconstruct::log_view::LogView;
 use engine::reconstruct::report::ScanReport;
 
 /// A field of view and its parameters.
@@ -55,32 +54,15 @@ impl ViewReport {
     /// View of a log; `None` for an unknown model or several lidars.
     #[must_use]
     pub fn of_log(scan: &ScanReport, track: &TiltTrack, places: &[DVec3]) -> Option<Self> {
-        if scan.contents.sensors.len() > 1 {
-            return None;
-        }
-        let name = scan.contents.model.as_deref()?;
-        let model = ALL.into_iter().find(|model| model.name == name)?;
-        let by = |a: &&Laser, b: &&Laser| a.elevation_deg.total_cmp(&b.elevation_deg);
-        let (low, high) = (
-            model.lasers.iter().min_by(by)?,
-            model.lasers.iter().max_by(by)?,
-        );
-        let tilts = scan
-            .sweeps
-            .iter()
-            .flat_map(|sweep| [sweep.from_deg, sweep.to_deg]);
-        let tilt_deg = ends(tilts).unwrap_or([0.0; 2]);
-        let d_m = track.mount.map_or(0.0, |mount| mount.position_m()[2]);
         let mut distances: Vec<f64> = places.iter().map(|place| place.length()).collect();
         let distance_m = middle(&mut distances)?;
-        let elevations_deg = [low.elevation_deg, high.elevation_deg];
-        let heights_m = [low, high].map(|laser| d_m + laser.vertical_offset_m);
+        let seen = LogView::new(scan, track, distance_m)?;
         Some(Self {
-            view: FieldOfView::new(elevations_deg, tilt_deg, heights_m, distance_m),
-            elevations_deg,
+            view: seen.view,
+            elevations_deg: seen.elevations_deg,
             azimuths_deg: None,
-            tilt_deg,
-            d_m,
+            tilt_deg: seen.tilt_deg,
+            d_m: seen.d_m,
             distance_m,
         })
     }
@@ -129,14 +111,6 @@ impl DistantOrigin {
             say(self.middle_m)
         ))
     }
-}
-
-/// Minimum and maximum.
-fn ends(numbers: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
-    let [low, high] = numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
-        [low.min(x), high.max(x)]
-    });
-    (low <= high).then_some([low, high])
 }
 
 /// Minimum and maximum without a hundredth at each end; reorders `numbers`.

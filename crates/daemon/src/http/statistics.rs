@@ -1,0 +1,139 @@
+//! Statistics of a scan, measured on request and never during a capture.
+
+use std::os::fd::AsRawFd;
+use std::path::Path as FilePath;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
+
+use analysis::cloud_statistics::CloudStatistics;
+use analysis::plan::ErrorBudget;
+use axum::extract::{Path, State};
+use axum::http::StatusCode;
+use axum::response::Response;
+use engine::capture::scan_plan::ScanPlanner;
+use engine::failure::Failure;
+use engine::reconstruct::source::Source;
+use engine::reconstruct::statistics::statistics;
+use engine::service::LeaseError;
+use engine::service::scan_record::ScanRecord;
+use engine::service::status::AxisTask;
+use protocol::vlp16::models;
+use serde::Serialize;
+use utoipa::ToSchema;
+
+use super::Api;
+use super::download::ClientGuard;
+use super::openapi::{Limit, NotFound, NotNow};
+use super::refusal::Refusal;
+use crate::scans::LOG;
+use crate::state::DaemonState;
+
+/// Distances of the error budgets, metres.
+const DISTANCES_M: [f64; 6] = [2.0, 5.0, 10.0, 20.0, 50.0, 100.0];
+/// Between two looks whether a capture has begun.
+const POLL: Duration = Duration::from_millis(50);
+
+/// Statistics of a scan.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct ScanStatistics {
+    /// Of its cloud.
+    #[serde(flatten)]
+    cloud: CloudStatistics,
+    /// Errors to expect, as a plan of its request states them; empty where the request is not known
+    /// or the axis does not permit it any more.
+    budget: Vec<BudgetAt>,
+}
+
+/// Error of a point at a distance.
+#[derive(Clone, Copy, Debug, Serialize, ToSchema)]
+pub struct BudgetAt {
+    /// The distance, metres.
+    at_m: f64,
+    /// Its terms.
+    error_mm: ErrorBudget,
+}
+
+/// Density, gaps, ranges and errors of a scan.
+///
+/// They are measured now, from its log: seconds for millions of points. During a capture this is
+/// refused, and a capture that begins ends it.
+#[utoipa::path(get, path = "/api/v1/scans/{id}/statistics", tag = "scans", params(("id" = String, Path, description = "Id of a scan")), responses(
+    (status = 200, body = ScanStatistics), (status = 404, response = NotFound), (status = 409, response = NotNow), (status = 429, response = Limit),
+))]
+pub async fn measure(
+    State(api): State<Arc<Api>>,
+    Path(id): Path<String>,
+) -> Result<Response, Refusal> {
+    let record = api.state.scans.record(&id);
+    let record = record.ok_or_else(|| Refusal::no_scan(&id))?;
+    if !record.state.is_final() {
+        return Err(super::download::being_made());
+    }
+    refuse_during_capture(&api.state)?;
+    let making = Arc::clone(&api.making).try_acquire_owned();
+    let making = making.map_err(|_| Refusal::too_many("clouds being made"))?;
+    let client = ClientGuard::default();
+    let (state, interrupt) = (Arc::clone(&api.state), client.interrupt());
+    let mut measured = tokio::task::spawn_blocking(move || {
+        let _making = making;
+        of_log(&state, &record, &interrupt)
+    });
+    let measured = loop {
+        tokio::select! {
+            measured = &mut measured => break measured,
+            () = tokio::time::sleep(POLL) => refuse_during_capture(&api.state)?,
+        }
+    };
+    let statistics = measured.map_err(|_| crate::cloud_builder::defect())??;
+    Ok(super::json(StatusCode::OK, &statistics))
+}
+
+/// A capture needs the machine.
+fn refuse_during_capture(state: &DaemonState) -> Result<(), Refusal> {
+    match state.service.activity().doing {
+        AxisTask::Capturing => Err(LeaseError::Busy(AxisTask::Capturing).into()),
+        _ => Ok(()),
+    }
+}
+
+fn of_log(
+    state: &DaemonState,
+    record: &ScanRecord,
+    interrupt: &AtomicBool,
+) -> Result<ScanStatistics, Refusal> {
+    let log = io::files::open_regular(&state.log(&record.id)).map_err(|_| Refusal::no_file(LOG))?;
+    // The name may belong to another file by now; this one leads to the open file (proc(5)).
+    let path = format!("/proc/self/fd/{}", log.as_raw_fd());
+    let named = |failure: Failure| Failure {
+        message: failure.message.replace(&path, LOG),
+        ..failure
+    };
+    let source = Source::open(FilePath::new(&path), None).map_err(named)?;
+    let cloud = statistics(&source, record.accuracy(), interrupt).map_err(named)?;
+    Ok(ScanStatistics {
+        cloud,
+        budget: budget(state, record).unwrap_or_default(),
+    })
+}
+
+/// Errors by distance that the scan's request lets expect.
+fn budget(state: &DaemonState, record: &ScanRecord) -> Option<Vec<BudgetAt>> {
+    let asked = record.request.as_ref()?;
+    let service = &state.service;
+    let plan = service.plan(asked, "cloud".into(), "log".into()).ok()?;
+    let report = record.report.as_ref()?;
+    let name = report.get("model").and_then(|name| name.as_str());
+    let model = models::ALL
+        .into_iter()
+        .find(|known| Some(known.name) == name);
+    let rpm = report.get("rpm").and_then(|rpm| rpm.as_f64());
+    let rpm = rpm.map(|rpm| rpm.round() as u32);
+    let at = |at_m: f64| {
+        // Beyond the lidar's range there is none.
+        let planner = ScanPlanner::of_capture_at(service.config(), &plan, model, rpm, at_m).ok()?;
+        let error_mm = planner.budget(&plan.steps);
+        Some(BudgetAt { at_m, error_mm })
+    };
+    Some(DISTANCES_M.into_iter().filter_map(at).collect())
+}

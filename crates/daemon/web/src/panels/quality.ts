@@ -1,0 +1,115 @@
+// How far the scan in view can be trusted: losses and residuals, and on request density, gaps, ranges and errors.
+
+import { type Scan, type ScanStatistics, type Status, api } from "../api.ts";
+import { attribute, h, id, show, text } from "../dom.ts";
+import { count, digits } from "../format.ts";
+import { title } from "../found.ts";
+import { refused } from "./control.ts";
+import { type Fact, facts, residuals } from "./facts.ts";
+import { announce } from "./messages.ts";
+import { hasCloud } from "./scan_parts.ts";
+
+const button = id<HTMLButtonElement>("measure");
+const distance = id<HTMLSelectElement>("budget-at");
+/** What the daemon measured, by scan. */
+const known = new Map<string, ScanStatistics>();
+let scan: Scan | null = null;
+/** Id of the scan that is being measured. */
+let measuring: string | null = null;
+let capturing = false;
+
+export function wire(): void {
+  button.addEventListener("click", () => void measure());
+  distance.addEventListener("change", draw);
+}
+
+/** Shows a scan with its report; null for none, or one that is not finished. */
+export function setScan(now: Scan | null): void {
+  scan = now !== null && hasCloud(now) ? now : null;
+  show(id("quality-error"), false);
+  draw();
+}
+
+/** Forgets a deleted scan. */
+export function forget(name: string): void {
+  known.delete(name);
+}
+
+export function setStatus({ activity }: Status): void {
+  const now = activity.doing === "capturing";
+  if (now === capturing) return;
+  capturing = now;
+  draw();
+}
+
+async function measure(): Promise<void> {
+  const wanted = scan;
+  if (wanted === null || measuring !== null) return;
+  measuring = wanted.id;
+  show(id("quality-error"), false);
+  draw();
+  try {
+    known.set(wanted.id, await api.statistics(wanted.id));
+    announce(`Density, gaps and errors of ${title(wanted)} are measured`);
+  } catch (error) {
+    refused("Measure", error, id("quality-error"));
+  } finally {
+    measuring = null;
+    draw();
+  }
+}
+
+function draw(): void {
+  show(id("quality"), scan !== null);
+  if (scan === null) return;
+  facts(id("quality-facts"), residuals(scan));
+  const found = known.get(scan.id);
+  show(button, found === undefined);
+  button.disabled = capturing || measuring !== null;
+  text(id("measure-why"), capturing ? "Not while a scan runs: it needs this machine." : "");
+  show(id("measuring"), measuring !== null);
+  show(id("measured"), found !== undefined);
+  if (found !== undefined) draw_measured(found);
+}
+
+function draw_measured(found: ScanStatistics): void {
+  const { density, gap_deg: gap, sd_mm: sd } = found;
+  const where = found.of === "view" ? "in view" : "on the sphere";
+  const rows: Fact[] = [
+    [`Bins ${where}`, `${count(density.bins)} of 5,120`],
+    ["Points per bin", `${digits(density.mean)} \u00b1 ${digits(density.sd)}`],
+    ["Without a point", density.empty === 0 ? "none" : `${count(density.empty)} bins`, density.empty === 0 ? "off" : "warn"],
+    ["Gap, half of directions", `${digits(gap.p50)}\u00b0`],
+    ["Gap, 99 %", `${digits(gap.p99)}\u00b0`],
+    ["Largest gap", `${digits(gap.worst)}\u00b0`],
+  ];
+  rows.push(...(sd == null ? [["Stated sd", "none"] as Fact] : [["Stated sd, half of points", `${digits(sd.p50, 2)} mm`] as Fact, ["Stated sd, 99 %", `${digits(sd.p99, 2)} mm`] as Fact]));
+  facts(id("measured-facts"), rows);
+  draw_ranges(found);
+  const at = found.budget.map(({ at_m }) => String(at_m));
+  if ([...distance.options].map(({ value }) => value).join() !== at.join()) {
+    const before = distance.value;
+    distance.replaceChildren(...at.map((m) => h("option", { value: m }, `${m} m`)));
+    distance.value = at.includes(before) ? before : (at.find((m) => Number(m) === 20) ?? at[0] ?? "");
+  }
+  const budget = found.budget.find(({ at_m }) => String(at_m) === distance.value)?.error_mm;
+  show(id("budget"), budget !== undefined);
+  if (budget === undefined) return;
+  const mm = (value: number) => `${digits(value, 2)} mm`;
+  facts(id("budget-facts"), [
+    ["Range", mm(Math.hypot(budget.range, budget.range_step))], ["Azimuth", mm(budget.azimuth)], ["Tilt", mm(budget.tilt)], ["Clock", mm(budget.clock)], ["Delay", mm(budget.delay)],
+    ["Mount", budget.mount === null ? "not included" : mm(budget.mount), budget.mount === null ? "warn" : "off"], ["95 % of points within", mm(budget.total)],
+  ]);
+}
+
+/** Bars of the points by range, and their middle in words. */
+function draw_ranges({ ranges, points }: ScanStatistics): void {
+  const most = Math.max(1, ...ranges.map((one) => one.points));
+  const width = 120 / Math.max(1, ranges.length);
+  const bars = ranges.map((one, i) => `M${(i * width).toFixed(2)} 40v${(-38 * one.points / most).toFixed(2)}h${(0.9 * width).toFixed(2)}V40z`);
+  attribute(id("ranges").firstElementChild as Element, "d", bars.join(""));
+  const [first, last] = [ranges.find((one) => one.points > 0), ranges.at(-1)];
+  let below = 0;
+  const middle = ranges.find((one) => (below += one.points) >= points / 2);
+  text(id("ranges-words"), first === undefined || last === undefined || middle === undefined ? "" : `${digits(first.from_m)} to ${digits(last.to_m)} m, half of the points within ${digits(middle.to_m)} m`);
+}

@@ -1,0 +1,175 @@
+// What is shown of a scan: its card, its row in the table, the fields that edit it, and its texts whole.
+
+import { type Scan, api, cloudUrl, fileUrl, logUrl, thumbnailUrl } from "../api.ts";
+import { h, id, show, text } from "../dom.ts";
+import { bytes, compact, duration, moment } from "../format.ts";
+import { title } from "../found.ts";
+import { announce } from "./messages.ts";
+
+/** Marks the choice of a format with the columns sd and echo. */
+const MORE = "+";
+/** Cloud formats: extension and displayed name. */
+const FORMATS: [string, string][] = [
+  ["ply", "PLY"], ["laz", "LAZ"], ["las", "LAS"], ["pcd", "PCD"], ["e57", "E57"], ["csv", "CSV"], ["mcap", "MCAP (ROS 2)"],
+];
+const STATES: Record<string, string> = { recording: "recording", making: "making the cloud", whole: "complete", partial: "partial", failed: "no cloud" };
+let formats = FORMATS;
+
+/** Offers the formats that the daemon supports. */
+export function setFormats(known: string[]): void {
+  const names = new Map(FORMATS);
+  formats = known.map((format) => [format, names.get(format) ?? format.toUpperCase()]);
+}
+
+/** What the buttons of a scan do. */
+export interface Actions {
+  open: (scan: Scan) => void;
+  edit: (scan: Scan) => void;
+  choose: (scan: Scan, on: boolean, range: boolean) => void;
+  remove: (scan: Scan) => void;
+  /** Shows an error at its scan. */
+  refused: (what: string, error: unknown, at: HTMLElement) => void;
+}
+
+export const hasCloud = ({ state }: Scan) => state === "whole" || state === "partial";
+export const isBusy = ({ state }: Scan) => state === "recording" || state === "making";
+
+function button(role: string, words: string, label: string, click: () => void): HTMLElement {
+  return h("button", { type: "button", "data-role": role, "aria-label": label, click }, words);
+}
+
+function chooser(scan: Scan, chosen: boolean, { choose }: Actions): HTMLElement {
+  const click = (event: Event) => choose(scan, (event.target as HTMLInputElement).checked, (event as MouseEvent).shiftKey);
+  return h("label", { class: "choose" }, h("input", { type: "checkbox", "data-role": "choose", "aria-label": `Select ${title(scan)}`, checked: chosen, disabled: isBusy(scan), click }));
+}
+
+function badge(scan: Scan): HTMLElement {
+  return h("span", { class: "badge", "data-state": scan.state }, scan.waits_for_room ? "no cloud yet" : (STATES[scan.state] ?? scan.state));
+}
+
+/** A text of a scan; a card may cut it, and a click shows it whole. */
+function cut(scan: Scan, kind: "why" | "notes", words: string): HTMLElement {
+  return h("button", { type: "button", class: kind, "data-role": kind, title: "Show all of it", click: () => about(scan) }, words);
+}
+
+export function card(scan: Scan, chosen: boolean, wrong: HTMLElement, actions: Actions): Node[] {
+  const name = title(scan);
+  const picture = scan.thumbnail
+    ? h("img", { class: "thumb", src: thumbnailUrl(scan.id), alt: `Picture of ${name}`, loading: "lazy", width: 108, height: 72 })
+    : h("span", { class: "thumb" });
+  const speed = scan.asked?.speed_deg_s;
+  const numbers = [
+    scan.points ? `${compact(scan.points)} points` : null,
+    scan.bytes && !isBusy(scan) ? bytes(scan.bytes) : null,
+  ].filter((part) => part !== null).join(" \u00b7 ");
+  const length = typeof scan.duration_s === "number" ? h("span", { class: "duration" }, `${numbers === "" ? "" : " \u00b7 "}${duration(scan.duration_s)}`) : null;
+  return [
+    h("div", { class: "pictured" }, picture, chooser(scan, chosen, actions)),
+    h("div", {},
+      h("h3", { title: name }, name),
+      h("p", {}, moment(scan.started_s), typeof speed === "number" ? ` \u00b7 ${speed} \u00b0/s` : null),
+      h("p", {}, numbers, length),
+      h("p", { class: "badges" }, badge(scan), " ", scan.simulated ? h("span", { class: "badge", "data-state": "simulated" }, "SIMULATED") : null)),
+    h("div", { class: "texts" }, scan.summary ? cut(scan, "why", scan.summary) : null, scan.notes ? cut(scan, "notes", scan.notes) : null),
+    h("div", { class: "row" },
+      hasCloud(scan) ? button("open", "Open", `Open ${name} in the view`, () => actions.open(scan)) : null,
+      isBusy(scan) ? null : downloads(scan, name, wrong, actions),
+      button("edit", "Edit", `Edit name and notes of ${name}`, () => actions.edit(scan)),
+      isBusy(scan) ? null : button("delete", "Delete", `Delete ${name}`, () => actions.remove(scan))),
+    wrong,
+  ];
+}
+
+/** The cells of a scan in the table; index.html has their heads. */
+export function cells(scan: Scan, chosen: boolean, actions: Actions): Node[] {
+  const name = title(scan);
+  const cell = (kind: string, ...content: (Node | string | null)[]) => h("div", { role: "cell", class: kind }, ...content);
+  const texts = scan.summary || scan.notes;
+  return [
+    cell("choosing", chooser(scan, chosen, actions)),
+    h("div", { role: "rowheader", class: "name", title: name }, name),
+    cell("number", moment(scan.started_s)),
+    cell("number", typeof scan.duration_s === "number" ? duration(scan.duration_s) : ""),
+    cell("number", scan.points ? compact(scan.points) : ""),
+    cell("state", badge(scan)),
+    cell("about", texts ? cut(scan, scan.summary ? "why" : "notes", texts) : null),
+    cell("acting", hasCloud(scan) ? button("open", "Open", `Open ${name} in the view`, () => actions.open(scan)) : null,
+      button("edit", "Edit", `Edit name and notes of ${name}`, () => actions.edit(scan))),
+  ];
+}
+
+/** Fields for name and notes, in the place of a card or row. `done` gets the changed scan; null if nothing was changed. */
+export function editor(scan: Scan, done: (changed: Scan | null) => void, { refused }: Actions): HTMLElement {
+  const name = h("input", { type: "text", maxlength: 60, "data-role": "name", value: scan.name ?? "", placeholder: scan.id, "aria-label": `Name of ${title(scan)}` });
+  const notes = h("textarea", { maxlength: 2_000, rows: 3, "data-role": "notes", placeholder: "Notes", "aria-label": `Notes on ${title(scan)}` }, scan.notes ?? "");
+  const wrong = h("p", { class: "wrong", hidden: true });
+  const save = async (event: Event) => {
+    event.preventDefault();
+    show(wrong, false);
+    try {
+      const changed = await api.edit(scan.id, { name: name.value, notes: notes.value });
+      announce(`Saved ${title(changed)}`);
+      done(changed);
+    } catch (error) {
+      refused("Save", error, wrong);
+    }
+  };
+  const form = h("form", { class: "edit", submit: (event) => void save(event) }, name, notes, wrong,
+    h("div", { class: "row" }, h("button", { type: "submit", class: "start" }, "Save"), h("button", { type: "button", click: () => done(null) }, "Cancel")));
+  form.addEventListener("keydown", (event) => {
+    // While the axis moves this key stops it, and nothing else.
+    if (event.key === "Escape" && !event.defaultPrevented) done(null);
+    if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) form.requestSubmit();
+  });
+  return form;
+}
+
+/** Shows the texts of a scan whole. Not modal: the stop button must remain usable. */
+function about(scan: Scan): void {
+  const dialog = id<HTMLDialogElement>("about");
+  text(id("about-title"), title(scan));
+  text(id("about-why"), scan.summary ?? "");
+  show(id("about-why"), Boolean(scan.summary));
+  text(id("about-notes"), scan.notes ?? "");
+  show(id("about-notes"), Boolean(scan.notes));
+  const before = document.activeElement;
+  if (!dialog.open) dialog.show();
+  dialog.onkeydown = (event) => {
+    if (event.key === "Escape" && !event.defaultPrevented) dialog.close();
+  };
+  dialog.onclose = () => {
+    if (before instanceof HTMLElement) before.focus();
+  };
+}
+
+/** A list of formats; choosing one downloads it. */
+function downloads(scan: Scan, name: string, wrong: HTMLElement, actions: Actions): HTMLElement {
+  const cloud = hasCloud(scan);
+  const choose = h("select", { "data-role": "download", "aria-label": `Download ${name} as` }, h("option", { value: "" }, "Download"),
+    ...(cloud ? formats.map(([format, words]) => h("option", { value: format }, words)) : []),
+    h("option", { value: "log" }, "log (pcapng)"),
+    cloud ? h("optgroup", { label: "With uncertainty and echo" }, ...formats.map(([format, words]) => h("option", { value: `${format}${MORE}` }, words))) : null);
+  choose.addEventListener("change", () => {
+    const format = choose.value;
+    choose.value = "";
+    if (format !== "") void download(scan, name, format, wrong, actions);
+  });
+  return choose;
+}
+
+/** Downloads a file; a refusal is shown at its scan. */
+async function download(scan: Scan, name: string, choice: string, wrong: HTMLElement, { refused }: Actions): Promise<void> {
+  const more = choice.endsWith(MORE);
+  const format = choice.replace(MORE, "");
+  show(wrong, false);
+  announce(`Downloading ${name} as ${format}`);
+  try {
+    const [url, exists] = format === "log" ? [logUrl(scan.id), true] : [cloudUrl(scan.id, format, more, more), format === "ply" && !more];
+    const href = await fileUrl(url, exists);
+    h("a", { href, download: `${scan.id}.${format === "log" ? "pcapng" : format}` }).click();
+    // The browser has begun to read it by then.
+    if (!exists) setTimeout(() => URL.revokeObjectURL(href), 60_000);
+  } catch (error) {
+    refused(`Download as ${format}`, error, wrong);
+  }
+}
