@@ -52,7 +52,7 @@ impl LocalService {
             true => None,
             false => Some(sockets::folder().join(sockets::name(&name, &device)?)),
         };
-        let of = (name.clone(), device.clone());
+        let port_owner = (name.clone(), device.clone());
         let (service, thread) = DeviceService::start(ServiceOptions {
             config,
             name,
@@ -65,7 +65,7 @@ impl LocalService {
         })?;
         let server = socket.and_then(|socket| {
             serve(&service, &socket)
-                .inspect(|_| sockets::share_with_port(&socket, &of.0, &of.1))
+                .inspect(|_| sockets::share_with_port(&socket, &port_owner.0, &port_owner.1))
                 .inspect_err(|failure| {
                     tracing::debug!("other commands cannot stop the axis: {failure}");
                 })

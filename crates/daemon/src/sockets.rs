@@ -106,9 +106,12 @@ fn trusted(kind: DeviceKind, names: Vec<String>) -> Vec<PathBuf> {
         .collect();
     if kind != DeviceKind::Sim {
         let table = std::fs::read_to_string(LISTENING).unwrap_or_default();
-        let listening = listening(&table, &names).filter(|socket| !sockets.contains(socket));
-        let listening: Vec<PathBuf> = listening.collect();
-        sockets.extend(listening);
+        // Accepted connections have the path, too.
+        for socket in listening(&table, &names) {
+            if !sockets.contains(&socket) {
+                sockets.push(socket);
+            }
+        }
     }
     sockets.retain(|socket| is_trusted(socket));
     sockets
@@ -125,16 +128,21 @@ fn listening(table: &str, names: &[String]) -> impl Iterator<Item = PathBuf> {
         .map(Path::to_owned)
 }
 
-/// Gives a socket the group of the drive's port: who may open the port may stop its axis, also that
-/// of a command run by sudo. Root alone can, and needs to.
+/// Gives a socket the group of the drive's port, whose members may open the port: they may stop the
+/// axis that a command of root moves. Root alone can do so; in a folder of another user its socket
+/// could be exchanged for another file.
 pub(crate) fn share_with_port(socket: &Path, profile: &str, device: &Device) {
-    let port = port_path(profile, device).ok();
-    let group = port.and_then(|port| Some(std::fs::metadata(port).ok()?.gid()));
-    if group.is_some() && owner(SELF) == Some(0) {
-        let shared = std::os::unix::fs::chown(socket, None, group);
-        if let Err(error) = shared {
-            tracing::debug!("the socket {} stays with root: {error}", socket.display());
-        }
+    let is_of_root = owner(SELF) == Some(0) && socket.parent().and_then(owner) == Some(0);
+    let port = match device.is_looked_for() {
+        true => ports::port_path(profile, device, Search::Once, &discover),
+        false => port_path(profile, device),
+    };
+    // A CAN interface has a name and no path.
+    let port = port.ok().filter(|port| is_of_root && port.is_absolute());
+    if let Some(group) = port.and_then(|port| Some(std::fs::metadata(port).ok()?.gid()))
+        && let Err(error) = std::os::unix::fs::lchown(socket, None, Some(group))
+    {
+        tracing::debug!("the socket {} stays with root: {error}", socket.display());
     }
 }
 

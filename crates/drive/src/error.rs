@@ -284,14 +284,14 @@ pub enum DriveError {
         /// The range between the limits, the home offset and the margin.
         bound: Degrees,
     },
-    /// Homing began, and neither the demand nor the position moves.
-    #[error("homing by method {method} does not move the axis: at {:.2} deg since {:.1} s", at.0, waited.as_secs_f64())]
+    /// Homing is on, and neither the demand nor the position moves.
+    #[error("homing by method {method} has not moved the axis for {:.1} s, {:.2} deg from where it began", waited.as_secs_f64(), moved.0)]
     HomingRest {
         /// Homing method.
         method: i8,
-        /// Position, from an arbitrary zero.
-        at: Degrees,
-        /// Time since the start of homing.
+        /// Distance from the start.
+        moved: Degrees,
+        /// Time without motion.
         waited: Span,
     },
     /// Homing ended at another position than the configured one.

@@ -91,7 +91,6 @@ impl Config {
     }
 }
 
-/// Refuses a number outside `low..=high`, NaN included.
 /// An error of TOML in one line, with its place.
 fn toml_error(text: &str, error: &toml::de::Error) -> String {
     let message = error.message().trim().replace('\n', ", ");
@@ -107,6 +106,7 @@ fn toml_error(text: &str, error: &toml::de::Error) -> String {
     format!("line {line}, column {column}: {message}: {quoted}")
 }
 
+/// Refuses a number outside `low..=high`, NaN included.
 fn between(name: &str, value: f64, low: f64, high: f64) -> Result<(), String> {
     match (low..=high).contains(&value) {
         true => Ok(()),

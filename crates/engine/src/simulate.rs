@@ -7,10 +7,10 @@ mod log;
 mod sizes;
 mod stopwatch;
 
+pub use sizes::{EffectChoice, EffectSize, Sampler, unmet};
 pub use stopwatch::nanoseconds;
 
-pub use sizes::{EffectChoice, EffectSize, Sampler, unmet};
-pub use std::fs::File;
+use std::fs::File;
 use std::num::NonZeroUsize;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;

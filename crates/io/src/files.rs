@@ -29,9 +29,10 @@ pub fn open_regular(path: &Path) -> io::Result<File> {
         true => Path::new("."),
         false => folder,
     };
+    // Its files may be readable where the folder itself is not.
     let folder = OpenOptions::new()
         .read(true)
-        .custom_flags((OFlag::O_NOFOLLOW | OFlag::O_DIRECTORY).bits())
+        .custom_flags((OFlag::O_PATH | OFlag::O_NOFOLLOW | OFlag::O_DIRECTORY).bits())
         .open(folder)?;
     let flags = OFlag::O_NOFOLLOW | OFlag::O_NONBLOCK | OFlag::O_CLOEXEC;
     let file = File::from(nix::fcntl::openat(folder, name, flags, Mode::empty())?);

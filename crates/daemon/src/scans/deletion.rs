@@ -78,21 +78,21 @@ impl Scans {
     /// # Errors
     /// Returns the failure of the disk; the next start removes what remains.
     pub fn remove_deleted(&self, now: Instant) -> Result<(), Failure> {
-        let mut over = Vec::new();
+        let mut expired = Vec::new();
         locked(&self.deleted).retain(|id, scan| {
             let kept = now < scan.kept_until;
             if !kept {
-                over.push(id.clone());
+                expired.push(id.clone());
             }
             kept
         });
-        let removed: Vec<_> = over.iter().map(|id| self.remove_files(id)).collect();
+        let removed: Vec<_> = expired.iter().map(|id| self.remove_files(id)).collect();
         removed.into_iter().collect()
     }
 
     /// Takes a scan out of the list and renames its folder: a half-deleted scan is none.
     fn take_out(&self, id: &str) -> Result<Option<(ScanView, ScanRecord)>, Failure> {
-        let (Some(view), Some(record)) = (self.view(id), self.record(id)) else {
+        let Some(view) = self.view(id) else {
             return Ok(None);
         };
         if !view.state.is_final() {
@@ -103,9 +103,9 @@ impl Scans {
         }
         let (place, gone) = (self.place(id), self.deleted_place(id));
         fs::rename(&place, &gone).map_err(|error| cannot(&place, "delete", &error))?;
-        self.scans().remove(id);
+        let record = self.scans().remove(id);
         locked(&self.sizes).remove(id);
-        Ok(Some((view, record)))
+        Ok(record.map(|record| (view, record)))
     }
 
     fn remove_files(&self, id: &str) -> Result<(), Failure> {

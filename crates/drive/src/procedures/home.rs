@@ -87,9 +87,7 @@ async fn wait_until_attained(ops: &mut Ops) -> Result<(), DriveError> {
     const DONE: u16 = status::TARGET_REACHED | status::HOMING_ATTAINED;
     let homing = ops.config.homing;
     let began = ops.now();
-    let time_limit = time_limit(&ops.config);
-    let limit = began.saturating_add(time_limit);
-    let must_move_by = began.saturating_add(rest_limit(&ops.config));
+    let limit = began.saturating_add(homing.time_limit);
     let mut travel = HomingTravel::default();
     let mut switches = SwitchWatch::of_homing(&ops.config);
     let mut switch_check = PeriodicCheck::new(ops, SWITCH_CHECKS);
@@ -129,17 +127,18 @@ async fn wait_until_attained(ops: &mut Ops) -> Result<(), DriveError> {
                 });
             }
             Err(DriveError::Refused { .. }) => {
-                let (position, reply) = ops.read_timed(objects::POSITION_ACTUAL).await?;
-                (travel.position).add(&ops.config, position, reply.request, reply.answer);
+                if let Ok((position, reply)) = ops.read_timed(objects::POSITION_ACTUAL).await {
+                    (travel.position).add(&ops.config, position, reply.request, reply.answer);
+                }
             }
             Err(_) => {}
         }
         travel.check(&ops.config)?;
-        if requested > must_move_by && travel.is_at_rest(&ops.config) {
+        if let Some(waited) = travel.rest(&ops.config, requested) {
             return Err(DriveError::HomingRest {
                 method: homing.method,
-                at: Degrees(travel.position.angle(&ops.config)),
-                waited: ops.now().saturating_since(began),
+                moved: Degrees(travel.position.angle(&ops.config)),
+                waited,
             });
         }
         if switch_check.is_due(ops.now()) {
@@ -148,27 +147,15 @@ async fn wait_until_attained(ops: &mut Ops) -> Result<(), DriveError> {
         if requested > limit {
             return Err(DriveError::HomingTime {
                 method: homing.method,
-                limit: time_limit,
+                limit: homing.time_limit,
                 got,
             });
         }
     }
 }
 
-/// Time in which homing is done: the whole way at the speed of the search, the margin again at the
-/// speed of leaving the switch, and the ramps.
-fn time_limit(config: &AxisConfig) -> Span {
-    let rate = |speed| config.gearing.rate(speed).0;
-    let homing = &config.homing;
-    let seconds = travel_bound(config) / rate(homing.switch_speed)
-        + config.guard.homing_margin.0 / rate(homing.zero_speed);
-    Span::from_secs_f64(seconds)
-        .saturating_add(rest_limit(config))
-        .min(homing.time_limit)
-}
-
-/// Time after the start of homing in which the axis, or its demand, must have begun to move: a
-/// second, the brake, and twice the spread of an axis at rest at the slower speed.
+/// Longest time for which neither the axis nor its demand moves in homing: a second, the brake, and
+/// twice the spread of an axis at rest at the slower speed.
 fn rest_limit(config: &AxisConfig) -> Span {
     let slower = config.gearing.rate(config.homing.zero_speed).0;
     let brake = config.brake.map_or(Span::ZERO, |brake| brake.rise);
@@ -194,7 +181,18 @@ struct HomingTravel {
     apart: Span,
     /// The previous position was too far from the demand.
     is_suspicious: bool,
+    rest: Option<RestInHoming>,
 }
+
+/// Where demand and position have been, and since when.
+struct RestInHoming {
+    since: Stamp<Host>,
+    ways: [f64; 2],
+    readings: u32,
+}
+
+/// Readings that show an axis at rest in homing: of 0.1 s without delays of the host.
+const LEAST_READINGS: u32 = 5;
 
 /// A distance from the start, qc.
 #[derive(Default)]
@@ -251,10 +249,29 @@ impl HomingTravel {
         }
     }
 
-    /// Whether neither the demand nor the position has moved.
-    fn is_at_rest(&self, config: &AxisConfig) -> bool {
-        let ways = [&self.demand, &self.position];
-        (ways.iter()).all(|way| way.angle(config).abs() <= config.standstill_spread.0)
+    /// How long neither the demand nor the position has moved, if that is too long: the switch may be
+    /// dead, and both values frozen.
+    fn rest(&mut self, config: &AxisConfig, now: Stamp<Host>) -> Option<Span> {
+        let ways = [self.demand.angle(config), self.position.angle(config)];
+        let spread = config.standstill_spread.0;
+        let moved = |rest: &RestInHoming| {
+            let apart = ways.iter().zip(&rest.ways).map(|(a, b)| (a - b).abs());
+            apart.fold(0.0, f64::max) > spread
+        };
+        match &mut self.rest {
+            Some(rest) if !moved(rest) => rest.readings += 1,
+            _ => {
+                self.rest = Some(RestInHoming {
+                    since: now,
+                    ways,
+                    readings: 0,
+                });
+            }
+        }
+        let rest = self.rest.as_ref()?;
+        let waited = now.saturating_since(rest.since);
+        // A delayed host has not seen what the axis did meanwhile.
+        (waited > rest_limit(config) && rest.readings >= LEAST_READINGS).then_some(waited)
     }
 
     /// Compares the distance from the start with the range of the axis, and the way of the position

@@ -266,9 +266,9 @@ async fn wait_for_standstill(ops: &mut Ops) -> Result<Quadcounts, DriveError> {
     let mut repeat_at = began.saturating_add(POWER_OFF_PERIOD);
     loop {
         // The drive may have lost the first one. A lost link fails the next sample.
-        if ops.is_coasting && ops.now() >= repeat_at {
+        if ops.is_coasting && ops.now() >= repeat_at && !window.is_steady() {
             let _ = ops
-                .write_last_attempt(objects::CONTROLWORD, control::DISABLE_VOLTAGE)
+                .write_idempotent(objects::CONTROLWORD, control::DISABLE_VOLTAGE)
                 .await;
             repeat_at = ops.now().saturating_add(POWER_OFF_PERIOD);
         }

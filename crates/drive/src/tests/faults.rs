@@ -168,6 +168,30 @@ fn homing_whose_demand_and_position_freeze_is_stopped() {
         panic!("{ended:?}")
     };
     assert!(waited < Span::from_millis(1_500), "{waited:?}");
+    // They may freeze later, too.
+    let ended = home_with(without_switches(), |n, request| {
+        match n > 100 && (is_read(request, 0x6062) || is_read(request, 0x6064)) {
+            true => Fate::Value(7),
+            false => Fate::Sent,
+        }
+    });
+    assert!(
+        matches!(ended, Err(DriveError::HomingRest { .. })),
+        "{ended:?}"
+    );
+}
+
+/// It goes to the switch and returns to where it began.
+#[test]
+fn an_axis_at_its_home_position_can_be_homed_again() {
+    let mut rig = Rig::homed();
+    for _ in 0..8 {
+        let ended = rig.run(DriveCommand::Home);
+        assert!(
+            matches!(ended, Ok(CommandOutcome::Homed { .. })),
+            "{ended:?}"
+        );
+    }
 }
 
 #[test]

@@ -217,15 +217,10 @@ impl Source {
     /// The file is unreadable, the selected sensor is absent or ambiguous, or `take` fails.
     pub fn read(
         &self,
-        mut take: impl FnMut(&Record<'_>) -> Result<(), Failure>,
+        take: impl FnMut(&Record<'_>) -> Result<(), Failure>,
     ) -> Result<PassSummary, Failure> {
         let mut filter = self.filter();
-        let pass = self.read_all(|record| {
-            if filter.takes(record) {
-                take(record)?;
-            }
-            Ok(())
-        })?;
+        let pass = self.read_where(|record| filter.takes(record), take)?;
         self.check(&filter.sensors)?;
         Ok(pass)
     }
@@ -260,12 +255,21 @@ impl Source {
     /// The file is unreadable or `take` fails.
     pub fn read_all(
         &self,
+        take: impl FnMut(&Record<'_>) -> Result<(), Failure>,
+    ) -> Result<PassSummary, Failure> {
+        self.read_where(|_| true, take)
+    }
+
+    fn read_where(
+        &self,
+        mut is_wanted: impl FnMut(&Record<'_>) -> bool,
         mut take: impl FnMut(&Record<'_>) -> Result<(), Failure>,
     ) -> Result<PassSummary, Failure> {
         let mut recording = self.recording()?;
         let mut copies = RecordCopies::default();
         while let Some(record) = recording.next_record().map_err(|error| failure(&error))? {
-            if !copies.has(&record) {
+            // Copies of other sensors are not counted.
+            if is_wanted(&record) && !copies.has(&record) {
                 take(&record)?;
             }
         }

@@ -149,9 +149,16 @@ impl Candidates<'_> {
             true => Vec::new(),
             false => misfits(&off),
         };
+        // Both are in order of time.
+        let mut ahead = misfits.as_slice();
         for residual in &mut polled {
-            let here = misfits.iter().filter(|m| m.contains(residual.at_s));
-            let sds = here.map(Misfit::sd_deg);
+            while let [first, rest @ ..] = ahead
+                && first.to_s < residual.at_s
+            {
+                ahead = rest;
+            }
+            let begun = ahead.iter().take_while(|m| m.from_s <= residual.at_s);
+            let sds = begun.map(Misfit::sd_deg);
             residual.curve_sd_deg = sds.fold(residual.curve_sd_deg, f64::max);
         }
         // The ages of a latch hide a part of it, and limit the delay sharply.
@@ -212,10 +219,6 @@ struct Misfit {
 }
 
 impl Misfit {
-    fn contains(&self, at_s: f64) -> bool {
-        (self.from_s..=self.to_s).contains(&at_s)
-    }
-
     /// The standard deviation within whose bound the curve's greatest error is, if the misfit is
     /// half a sine.
     fn sd_deg(&self) -> f64 {
@@ -223,9 +226,11 @@ impl Misfit {
     }
 }
 
-/// The batches, which overlap by half, whose mean exceeds its own error.
+/// The batches, which overlap by half, whose mean exceeds its own error. The last one ends with the
+/// residuals.
 fn misfits(off: &[Residual]) -> Vec<Misfit> {
-    let starts = (0..off.len()).step_by(BATCH / 2);
+    let last = off.len().saturating_sub(BATCH);
+    let starts = (0..last).step_by(BATCH / 2).chain([last]);
     let found = starts.filter_map(|start| {
         let row = off.get(start..start + BATCH)?;
         let (mean_deg, variance) = mean(row);
@@ -325,7 +330,9 @@ mod tests {
         assert!(BOUND_SDS * autocorrelation.rms_deg < 0.003);
         assert!(!autocorrelation.is_of_ages);
         let found = misfits(&off);
-        let here = found.iter().filter(|misfit| misfit.contains(0.325));
+        let here = found
+            .iter()
+            .filter(|misfit| (misfit.from_s..=misfit.to_s).contains(&0.325));
         let bound_deg = BOUND_SDS * here.map(Misfit::sd_deg).fold(0.0, f64::max);
         assert!((0.004..0.007).contains(&bound_deg), "{bound_deg} deg");
         let elsewhere = |misfit: &&Misfit| misfit.to_s < 0.3 || misfit.from_s > 0.35;
