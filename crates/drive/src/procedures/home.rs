@@ -249,8 +249,8 @@ impl HomingTravel {
         }
     }
 
-    /// How long neither the demand nor the position has moved, if that is too long: the switch may be
-    /// dead, and both values frozen.
+    /// How long neither the demand nor the position has moved, if that is too long: the switch may
+    /// be dead, and both values frozen.
     fn rest(&mut self, config: &AxisConfig, now: Stamp<Host>) -> Option<Span> {
         let ways = [self.demand.angle(config), self.position.angle(config)];
         let spread = config.standstill_spread.0;

@@ -58,8 +58,8 @@ impl RecordCopies {
     }
 }
 
-/// Records remembered of the lidars and of the drive: those of eleven seconds of one lidar, of two or
-/// more of a drive.
+/// Records remembered of the lidars and of the drive: those of eleven seconds of one lidar, of two
+/// or more of a drive.
 const MAX_RECENT: usize = 8192;
 
 /// Hashes of the newest records.
