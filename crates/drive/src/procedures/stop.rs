@@ -75,9 +75,15 @@ pub(super) async fn stop_after_failure(ops: &mut Ops, cause: DriveError) -> Driv
 pub(super) async fn halt(ops: &mut Ops) -> Result<StopReport, DriveError> {
     ops.is_moving = true;
     ops.loaded_silence_limit = Span::ZERO;
-    let quick_stop = ops
+    let mut quick_stop = ops
         .write_urgent(objects::CONTROLWORD, control::QUICK_STOP)
         .await;
+    // A drive does not refuse it: on a loaded host the reply was that of an earlier request.
+    if matches!(quick_stop, Err(DriveError::Refused { .. })) {
+        quick_stop = ops
+            .write_urgent(objects::CONTROLWORD, control::QUICK_STOP)
+            .await;
+    }
     let stopped = match quick_stop {
         Ok(()) => disable_at_standstill(ops).await,
         Err(error) => Err(error),
