@@ -186,7 +186,7 @@ fn angles_of_another_device_can_be_attached() {
     std::fs::write(place.path("empty.toml"), "[mount]\n").unwrap();
     place.fails(&format!("{line} --mount empty.toml"), 3, &["d_m"]);
     std::fs::write(place.path("other.toml"), "[mount]\nd_m = 0.25\n").unwrap();
-    // Nobody knows how accurate the angles are.
+    // The accuracy of these angles is not known.
     let uncertain = format!("{line} --mount other.toml --uncertainty");
     place.fails(&uncertain, 2, &["--uncertainty with --tilt"]);
     let output = place.run(&format!("{line} --mount other.toml"));

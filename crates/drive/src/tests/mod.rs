@@ -6,6 +6,7 @@ mod damaged_logs;
 mod faults;
 mod firmware;
 mod hold;
+mod homing;
 mod link;
 mod links;
 mod listener;
