@@ -4,8 +4,8 @@
 //! come in the order of the requests, and some are lost. The reply to a read has four words, two of
 //! them the error code; that to a write has these two. An SDO response names its object (segments
 //! do not), but not which of two reads of one object it belongs to. A reply that fits more than one
-//! outstanding request is matched to none; the newest of them stays outstanding, as the reply may
-//! be to an older one.
+//! outstanding request is matched to none and retires the oldest of them: the replies to the
+//! others, and to probes between them, may still arrive.
 //!
 //! After a loss the client sends a probe request, a read of an object that does not exist. Its
 //! error arrives after everything still under way and so resynchronises both sides. Two probes with
@@ -92,19 +92,17 @@ impl RequestMatcher {
         let mut fitting = (0..).zip(&self.outstanding).filter(|(_, request)| {
             probe_error(request).is_none() && reply.fits(request.address, request.access)
         });
-        let first = fitting.next().map(|(index, request)| (index, *request));
-        let newest = fitting.last().map(|(index, _)| index);
-        match (first, newest) {
-            (Some((index, request)), None) => {
-                self.retire(index);
-                self.outstanding.pop_front();
-                ReplyMatch::Request(request)
-            }
-            (_, newest) => {
-                self.retire(newest.unwrap_or(0));
-                ReplyMatch::Unmatched
-            }
+        let Some((index, request)) = fitting.next().map(|(index, request)| (index, *request))
+        else {
+            return ReplyMatch::Unmatched;
+        };
+        if fitting.next().is_some() {
+            self.retire(index + 1);
+            return ReplyMatch::Unmatched;
         }
+        self.retire(index);
+        self.outstanding.pop_front();
+        ReplyMatch::Request(request)
     }
 
     /// The two newest requests that a reply fits, the newer one second, if it fits several.
@@ -269,6 +267,32 @@ mod tests {
         let mut matcher = matcher(&[read(1), read(2)]);
         assert_eq!(matcher.handle_reply(&READ_OK), ReplyMatch::Unmatched);
         assert!(!matcher.is_synchronised());
+    }
+
+    /// A quick stop sent after a late write and its probe was taken as refused with the probe's
+    /// error: the reply to the late write had retired the probe.
+    #[test]
+    fn an_ambiguous_reply_leaves_the_probe_between_two_writes_outstanding() {
+        let [late, quick_stop] = [request(1, WRITE), request(3, WRITE)];
+        let mut matcher = matcher(&[late, probe(2, 1), quick_stop]);
+        assert_eq!(matcher.handle_reply(&WRITE_OK), ReplyMatch::Unmatched);
+        let answered = matcher.handle_reply(&NO_SUB);
+        assert_eq!(answered, ReplyMatch::Probe(PROBES[1].0));
+        let answered = matcher.handle_reply(&WRITE_OK);
+        assert_eq!(answered, ReplyMatch::Request(quick_stop));
+    }
+
+    /// The second of three replies was taken for that of the third write.
+    #[test]
+    fn late_replies_to_two_writes_do_not_answer_the_third() {
+        let sent = [1, 2, 3].map(|id| request(id, WRITE));
+        let mut matcher = matcher(&sent);
+        assert_eq!(matcher.handle_reply(&WRITE_OK), ReplyMatch::Unmatched);
+        assert_eq!(matcher.handle_reply(&WRITE_OK), ReplyMatch::Unmatched);
+        assert_eq!(
+            matcher.handle_reply(&WRITE_OK),
+            ReplyMatch::Request(sent[2])
+        );
     }
 
     #[test]

@@ -78,7 +78,7 @@ pub(super) async fn halt(ops: &mut Ops) -> Result<StopReport, DriveError> {
     let mut quick_stop = ops
         .write_urgent(objects::CONTROLWORD, control::QUICK_STOP)
         .await;
-    // A drive does not refuse it: on a loaded host the reply was that of an earlier request.
+    // No state of the drive refuses it: the reply was damaged or that of another request.
     if matches!(quick_stop, Err(DriveError::Refused { .. })) {
         quick_stop = ops
             .write_urgent(objects::CONTROLWORD, control::QUICK_STOP)
