@@ -108,6 +108,9 @@ pub enum DriveError {
         /// The node id.
         node: u8,
     },
+    /// The drive would not notice the host's death, and on a bus nothing else would stop the axis.
+    #[error("no move: the drive refuses to monitor this program's heartbeat (object 1016:01)")]
+    HostNotMonitored,
     /// The unit refused the request in the handshake (RS232: `F` instead of `O`).
     #[error("{operation} on the drive link: expected the handshake O, got F {attempts} time(s)")]
     Handshake {
@@ -453,6 +456,10 @@ impl DriveError {
             Self::NodeAbsent { .. } => {
                 "check that [axis] node of the configuration is the drive's node id (its DIP switch, \
                  object 2000), and its supply and cable"
+            }
+            Self::HostNotMonitored => {
+                "connect the drive by USB or RS232, where a guardian process stops the axis if this \
+                 program dies"
             }
             Self::Handshake { .. } => {
                 "check the baud rate, and the cable and its shield; no other program may use the port"

@@ -81,9 +81,6 @@ pub enum CommandProgress {
     },
     /// The statusword (6041) was read.
     Statusword(u16),
-    /// The drive refuses to monitor the host's heartbeat (1016): nothing stops a moving axis if the
-    /// host dies.
-    Unmonitored,
     /// A quick stop did not bring the axis to rest; switching its power off did.
     PowerCut,
     /// An axis at rest moved by this after its power was switched off: its head fell, or the brake

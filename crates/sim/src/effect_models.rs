@@ -1,10 +1,15 @@
 //! The effects, one file each, and the configuration that a scene file's `[effects]` maps to.
 //!
 //! Effects act in the order of [`EffectsConfig`], not of the file: light before noise,
-//! the servo before the gear. A new effect needs a file and a line in the list below.
+//! the servo before the gear. A new effect needs a file, a line in `effects_config!` and one in
+//! `settings_of`.
 
 /// Implements what the effects have in common: the name, the reason for inactivity, and the
 /// settings that add the effect to its list.
+///
+/// `$list` is a field of [`ConfiguredEffects`], and `$pointer` what that list holds: `Arc` where
+/// threads share the effect, else `Box`. `needs` is what the effect asks of the simulator, `usual`
+/// its settings for a scene that calls for it, where the defaults are others.
 macro_rules! effect {
     ($effect:ident, $settings:ident, $($list:ident).+: $pointer:ident, $name:literal,
      idle: $idle:literal, $(needs: $needs:expr,)? $(usual: $usual:expr,)? new: $new:expr) => {

@@ -15,12 +15,15 @@ use engine::devices::profile;
 use engine::devices::simulated;
 use engine::devices::simulated_drive::{SoftwarePort, run_observed};
 use firmware_sim::epos2::{BrakeState, Node};
+use io::can::SocketCan;
 use io::port::Pty;
 use protocol::epos2::cia402::DeviceState;
 use sim::Attachment;
 use tempfile::TempDir;
 use units::{Host, Span, Stamp};
 
+/// The CAN interface, of tests/foreign/vcan/in-vm.
+const BUS: &str = "vcan0";
 /// Every awaited condition comes sooner, or never.
 const LIMIT: Duration = Duration::from_secs(60);
 /// A longer time without a control cycle is a stall of the machine.
@@ -73,14 +76,20 @@ impl Bench {
     /// Starts the devices, and writes the configuration of the axis described by `axis` (TOML).
     pub fn start(transport: &str, axis: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let pty = Pty::open().unwrap();
+        let (port, name) = match transport {
+            "can" => (SoftwarePort::Can(SocketCan::open(BUS).unwrap()), BUS.into()),
+            _ => {
+                let pty = Pty::open().unwrap();
+                let path = pty.path().display().to_string();
+                (SoftwarePort::Serial(pty), path)
+            }
+        };
         let lidar = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
         let free = |_| UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
         let ports = [0, 1].map(free).map(|s| s.local_addr().unwrap().port());
         let text = format!(
-            "[device]\ndefault = 'soft'\n[device.soft]\nkind = '{transport}'\nport = '{}'\nlidar = '127.0.0.1'\n\
+            "[device]\ndefault = 'soft'\n[device.soft]\nkind = '{transport}'\nport = '{name}'\nlidar = '127.0.0.1'\n\
              data_port = {}\nposition_port = {}\n[daemon]\nscans = '{}'\nreserve_bytes = 1000\n[axis]\n{axis}",
-            pty.path().display(),
             ports[0],
             ports[1],
             folder.path().join("scans").display(),
@@ -91,6 +100,7 @@ impl Bench {
         let attachment = match transport {
             "usb" => Attachment::Usb,
             "rs232" => Attachment::Rs232,
+            "can" => Attachment::Can,
             _ => Attachment::Slcan,
         };
         let (record, stop) = (
@@ -99,7 +109,6 @@ impl Bench {
         );
         let (shared, stopping) = (Arc::clone(&record), Arc::clone(&stop));
         let drive = std::thread::spawn(move || {
-            let port = SoftwarePort::Serial(pty);
             let mut observe = |at, node: &Node| observe(&mut shared.lock().unwrap(), at, node);
             run_observed(node, attachment, port, &stopping, &mut observe).unwrap();
         });

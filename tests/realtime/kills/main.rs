@@ -18,8 +18,8 @@ use bench::Bench;
 use cases::{Case, Moment, Motion, SIGNALS, Signal};
 use table::Table;
 
-/// Transports and the seed that each adds.
-const TRANSPORTS: [&str; 3] = ["usb", "rs232", "slcan"];
+/// Transports; the last, a CAN interface of the kernel, only where it is chosen.
+const TRANSPORTS: [&str; 4] = ["usb", "rs232", "slcan", "can"];
 /// An axis with a brake.
 pub const BRAKE: &str = "brake_output = 1";
 /// An axis that the drive holds.
@@ -54,11 +54,9 @@ impl Results {
 fn main() {
     let arguments = arguments();
     let results = Results::default();
-    let chosen = |name: &&str| {
-        arguments
-            .transport
-            .as_deref()
-            .is_none_or(|only| only == *name)
+    let chosen = |name: &&str| match &arguments.transport {
+        Some(only) => only == name,
+        None => *name != "can",
     };
     std::thread::scope(|scope| {
         let all = TRANSPORTS.into_iter().filter(|_| !arguments.guardian_only);

@@ -17,12 +17,13 @@ pub trait Encoder {
         None
     }
 
-    /// Columns that it uses, where a batch has them, for other fields of the format.
+    /// Columns beyond those of the file from which it fills fields of its own, such as the return numbers of LAS.
     fn also(&self) -> Fields {
         Fields::NONE
     }
 
-    /// Writes the header of a file with these columns.
+    /// Writes the header of a file with these columns. The lines of the metadata stand in the file
+    /// as plain text: `velomotion view` finds the mark SIMULATED and the frame there.
     ///
     /// # Errors
     /// [`EncodeError`] if the output or the library fails.

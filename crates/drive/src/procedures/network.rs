@@ -14,7 +14,7 @@ use protocol::epos2::objects::{self, Address, TypedObject};
 use crate::can_services::{self, STREAM};
 use crate::config::whole_ms;
 use crate::error::DriveError;
-use crate::event::{AngleSource, CommandProgress};
+use crate::event::AngleSource;
 use crate::ops::Ops;
 
 use super::power::wait_for;
@@ -44,9 +44,6 @@ pub(super) async fn configure(ops: &Ops) -> Result<(AngleSource, bool), DriveErr
         ops.write_verified(objects::CONSUMER_HEARTBEAT, NO_CONSUMER)
             .await,
     )?;
-    if !monitors_host {
-        ops.report(CommandProgress::Unmonitored);
-    }
     let obeys_option = is_known(
         ops.write_verified(objects::ABORT_CONNECTION_OPTION, abort_option(ops))
             .await,
@@ -163,7 +160,8 @@ async fn verify_mapping(ops: &Ops, node: NodeId) -> Result<(), DriveError> {
     Ok(())
 }
 
-/// Starts the monitoring: the node stops on its own if the host's heartbeat is missing.
+/// Starts the monitoring: the node stops on its own if the host's heartbeat is missing. A node that
+/// cannot is not moved: no other process stops the axis on a bus.
 pub(super) async fn arm(ops: &Ops) -> Result<(), DriveError> {
     let can = ops.config.can;
     let monitors_host = ops.on_can(|can, now| {
@@ -172,6 +170,9 @@ pub(super) async fn arm(ops: &Ops) -> Result<(), DriveError> {
         }
         can.monitors_host
     });
+    if monitors_host == Some(false) {
+        return Err(DriveError::HostNotMonitored);
+    }
     let (Some(true), Some(node)) = (monitors_host, NodeId::new(can.host_node)) else {
         return Ok(());
     };

@@ -116,7 +116,7 @@ fn connect(bring_up: &mut BringUp<'_>, _: &mut dyn Operator) -> Result<(), Sessi
             notices,
             "no (1016 is refused)",
             false,
-            "nothing stops the axis if the program dies: use USB or RS232, or a firmware with 1016",
+            "nothing would stop the axis if the program died, so it is not moved: use USB or RS232",
         ),
         (false, AngleSource::Polls) => {
             bring_up.note(notices, "no: a guardian process stops the axis");

@@ -52,15 +52,6 @@ impl<'a> MotionReporter<'a> {
                 self.moved(*at, gearing.angle(*demand), packets);
             }
             DriveEvent::Progress(CommandProgress::Statusword(word)) => self.statusword(*word),
-            DriveEvent::Progress(CommandProgress::Unmonitored) => {
-                let help = "use USB or RS232, where a guardian process stops the axis, or a firmware \
-                            with heartbeat monitoring";
-                self.service.events().message(
-                    MessageLevel::Warning,
-                    "the drive does not monitor this program (1016 is refused): if it dies in a move, nothing stops the axis",
-                    Some(help.to_owned()),
-                );
-            }
             DriveEvent::Progress(CommandProgress::PowerCut) => {
                 let help =
                     "check the drive's settings and what moves the axis before it moves again";

@@ -1,7 +1,7 @@
 //! Surface: independent normal noise of each range.
 //!
 //! The manuals give +-3 cm typical for the VLP-16 (63-9243, specifications) and +-2 cm for the
-//! HDL-32E without a definition. It counts as three standard deviations (`scene_file::demands`), as
+//! HDL-32E without a definition. It counts as three standard deviations (`USUAL_SD_M`), as
 //! recordings of real sensors have it. Noise that depends on range or strength, and constant errors
 //! of a laser, are not included.
 

@@ -24,7 +24,7 @@ pub struct InvalidSetting {
 
 /// Settings of an effect, the table `[effects.NAME]`.
 pub trait EffectSettings: DeserializeOwned {
-    /// The usual settings; `None` for an effect without.
+    /// The usual settings: the default of every key; `None` if a key has none.
     fn usual() -> Option<Self> {
         let nothing = core::iter::empty::<(&str, f64)>();
         Self::deserialize(MapDeserializer::<_, value::Error>::new(nothing)).ok()
