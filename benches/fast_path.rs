@@ -118,7 +118,7 @@ fn decode(recording: &Recording) -> u64 {
     let mut blocks = 0;
     for record in recording.records() {
         if let Wire::Lidar { payload, .. } = record.wire {
-            decoder.firing_blocks(record.host, payload, &mut |block| {
+            decoder.decode_blocks(record.host, payload, &mut |block| {
                 black_box(block);
                 blocks += 1;
             });

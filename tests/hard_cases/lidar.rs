@@ -3,7 +3,9 @@
 mod hours;
 mod order;
 
-use ::lidar::{Decoder, Duplicates, Echo, Firing, Options, Stats, Timekeeper, UtcClock, UtcState};
+use ::lidar::{
+    Decoder, Duplicates, Firing, Options, ReturnKind, Stats, Timekeeper, UtcClock, UtcState,
+};
 use firmware_sim::vlp16::{
     DataPacketBuilder, HOUR_US, LASERS, PacketModel, Pps, ReturnMode, SEQUENCE_PERIOD_NS,
     position_packet,
@@ -278,13 +280,13 @@ fn dual_returns_may_be_missing_on_either_side() {
             ..Options::default()
         });
         let mut expected = vec![
-            (0, 10.0, 10, Echo::Last),
-            (0, 8.0, 90, Echo::StrongestOrSecond),
-            (1, 10.002, 11, Echo::Last),
-            (2, 8.004, 92, Echo::StrongestOrSecond),
+            (0, 10.0, 10, ReturnKind::Last),
+            (0, 8.0, 90, ReturnKind::StrongestOrSecond),
+            (1, 10.002, 11, ReturnKind::Last),
+            (2, 8.004, 92, ReturnKind::StrongestOrSecond),
         ];
         expected.extend(
-            [(3, 10.006, 93, Echo::LastAndStrongest); 2]
+            [(3, 10.006, 93, ReturnKind::LastAndStrongest); 2]
                 .into_iter()
                 .take(laser_3),
         );

@@ -188,14 +188,14 @@ pub enum DriveError {
         /// The key of the configuration to change instead, if there is one.
         key: Option<&'static str>,
     },
-    /// The device is not an EPOS2 servo drive.
+    /// The device is not a servo drive of maxon (CiA 402).
     #[error("object {address} ({what}): expected {expected:#X}, got {got:#X}")]
     WrongDevice {
         /// The object.
         address: Address,
         /// Its name.
         what: &'static str,
-        /// The value of an EPOS2.
+        /// The value of a maxon servo drive.
         expected: u32,
         /// The value of this device.
         got: u32,

@@ -94,7 +94,7 @@ impl AzimuthSteps {
         let mut steps = Self {
             azimuths: [0; BLOCKS],
             inner: [0; BLOCKS],
-            blocks: Model::firing_blocks(dual),
+            blocks: Model::distinct_blocks(dual),
             period_ns: i64::from(model.block_period_ns()),
             least_cdeg: 0,
             usual_cdeg: None,

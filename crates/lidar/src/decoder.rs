@@ -13,7 +13,7 @@ use crate::continuity::{BlindSector, missing};
 use crate::fast::UnpackedPacket;
 use crate::fast::{AzimuthSines, PaceCache};
 use crate::fast::{BlockReturns, FiringBlock, ReturnLayer};
-use crate::firing::{Echo, Firing};
+use crate::firing::{Firing, ReturnKind};
 use crate::geometry::{Geometry, fits};
 use crate::options::Options;
 use crate::stats::Stats;
@@ -108,16 +108,16 @@ impl Decoder {
         payload: &[u8],
         emit: &mut impl FnMut(&Firing<'_>),
     ) {
-        self.firing_blocks(host, payload, &mut |block| one_by_one(block, emit));
+        self.decode_blocks(host, payload, &mut |block| one_by_one(block, emit));
     }
 
     /// Emits the pending packet. Further packets of the same sensor may follow.
     pub fn finish(&mut self, emit: &mut impl FnMut(&Firing<'_>)) {
-        self.finish_firing_blocks(&mut |block| one_by_one(block, emit));
+        self.finish_blocks(&mut |block| one_by_one(block, emit));
     }
 
     /// As [`Decoder::packet`], but emits the firings of a block together.
-    pub fn firing_blocks(
+    pub fn decode_blocks(
         &mut self,
         host: Stamp<Host>,
         payload: &[u8],
@@ -141,7 +141,7 @@ impl Decoder {
     }
 
     /// As [`Decoder::finish`], but emits the firings of a block together.
-    pub fn finish_firing_blocks(&mut self, emit: &mut impl FnMut(&FiringBlock<'_>)) {
+    pub fn finish_blocks(&mut self, emit: &mut impl FnMut(&FiringBlock<'_>)) {
         if let Some(pending) = self.pending.take() {
             self.emitted = Some(pending.start);
             if let Ok(packet) = DataPacket::new(&self.buffer) {
@@ -394,10 +394,10 @@ fn one_by_one(block: &FiringBlock<'_>, emit: &mut impl FnMut(&Firing<'_>)) {
 }
 
 /// Kind of the returns in a packet without pairs.
-const fn single_echo(mode: ReturnMode) -> Echo {
+const fn single_echo(mode: ReturnMode) -> ReturnKind {
     match mode {
-        ReturnMode::Strongest => Echo::Strongest,
-        ReturnMode::Last => Echo::Last,
-        ReturnMode::Dual | ReturnMode::Unknown(_) => Echo::Unknown,
+        ReturnMode::Strongest => ReturnKind::Strongest,
+        ReturnMode::Last => ReturnKind::Last,
+        ReturnMode::Dual | ReturnMode::Unknown(_) => ReturnKind::Unknown,
     }
 }

@@ -19,7 +19,7 @@ pub enum Duplicates {
 
 /// Kind of a return within its pulse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Echo {
+pub enum ReturnKind {
     /// The strongest return.
     Strongest,
     /// The last return; in dual mode, one that is not the strongest or has no partner.
@@ -33,7 +33,7 @@ pub enum Echo {
     Unknown,
 }
 
-impl Echo {
+impl ReturnKind {
     /// Code in a cloud's column `echo`.
     #[must_use]
     pub const fn code(self) -> u8 {
@@ -57,7 +57,7 @@ pub struct LaserReturn {
     /// Calibrated reflectivity.
     pub reflectivity: u8,
     /// Kind of the return.
-    pub echo: Echo,
+    pub echo: ReturnKind,
 }
 
 /// A return as a point in the sensor's frame.
@@ -79,7 +79,7 @@ pub struct SensorPoint {
     /// Calibrated reflectivity: 0 to 100 diffuse, 101 to 255 retro-reflective.
     pub reflectivity: u8,
     /// Kind of the return.
-    pub echo: Echo,
+    pub echo: ReturnKind,
 }
 
 /// Variance in square radians of an azimuth interpolated at `part` of a block's period.
@@ -98,7 +98,7 @@ pub fn azimuth_variance_rad2(part: f64) -> f64 {
 pub(crate) enum FiringChannels<'a> {
     One {
         raw: &'a [[u8; 3]],
-        echo: Echo,
+        echo: ReturnKind,
     },
     Two {
         last: &'a [[u8; 3]],
@@ -230,12 +230,12 @@ impl Iterator for LaserReturns<'_> {
                     let odd = ChannelReturn::from_bytes(*strongest.get(i)?);
                     if even.distance_raw == odd.distance_raw {
                         if duplicates == Duplicates::All {
-                            self.partner = to_return(odd, Echo::LastAndStrongest);
+                            self.partner = to_return(odd, ReturnKind::LastAndStrongest);
                         }
-                        to_return(even, Echo::LastAndStrongest)
+                        to_return(even, ReturnKind::LastAndStrongest)
                     } else {
-                        let first = to_return(even, Echo::Last);
-                        let second = to_return(odd, Echo::StrongestOrSecond);
+                        let first = to_return(even, ReturnKind::Last);
+                        let second = to_return(odd, ReturnKind::StrongestOrSecond);
                         if first.is_some() {
                             self.partner = second;
                         }
@@ -263,7 +263,7 @@ mod tests {
         channels.iter().map(bytes).collect()
     }
 
-    fn pair(duplicates: Duplicates) -> Vec<(u8, u16, Echo)> {
+    fn pair(duplicates: Duplicates) -> Vec<(u8, u16, ReturnKind)> {
         let last = raw(&[(500, 1), (0, 0), (700, 3), (0, 0), (900, 5)]);
         let strongest = raw(&[(500, 1), (600, 2), (300, 9), (0, 0), (0, 0)]);
         let returns = LaserReturns {
@@ -280,7 +280,7 @@ mod tests {
 
     #[test]
     fn dual_returns_are_labelled_and_equal_pairs_unique() {
-        use Echo::{Last, LastAndStrongest, StrongestOrSecond};
+        use ReturnKind::{Last, LastAndStrongest, StrongestOrSecond};
         let unique = [
             (0, 500, LastAndStrongest),
             (1, 600, StrongestOrSecond),
@@ -303,7 +303,7 @@ mod tests {
             rays: &geometry.rays,
             channels: FiringChannels::One {
                 raw,
-                echo: Echo::Strongest,
+                echo: ReturnKind::Strongest,
             },
             part: 0.0,
         }

@@ -52,7 +52,7 @@ mod utc;
 pub use corrections::{Corrections, LaserCorrection};
 pub use decoder::Decoder;
 pub use fast::{FiringBlock, Heading, ReturnLayer};
-pub use firing::{Duplicates, Echo, Firing, LaserReturn, SensorPoint, azimuth_variance_rad2};
+pub use firing::{Duplicates, Firing, LaserReturn, ReturnKind, SensorPoint, azimuth_variance_rad2};
 pub use frames::{FrameCutter, LidarFrameError, RevolutionFrame};
 pub use identify::is_dual;
 pub use options::Options;

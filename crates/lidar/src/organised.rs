@@ -9,7 +9,7 @@ use std::ptr;
 use protocol::vlp16::Model;
 use units::{Lidar, Span, Stamp};
 
-use crate::firing::{Echo, Firing, SensorPoint};
+use crate::firing::{Firing, ReturnKind, SensorPoint};
 use crate::frames::LidarFrameError;
 
 /// One firing of a grid.
@@ -66,9 +66,9 @@ impl OrganisedFrame {
         }
         for point in firing.points() {
             let (in_first, in_second) = match point.echo {
-                Echo::Strongest | Echo::Last | Echo::Unknown => (true, false),
-                Echo::StrongestOrSecond => (false, true),
-                Echo::LastAndStrongest => (true, true),
+                ReturnKind::Strongest | ReturnKind::Last | ReturnKind::Unknown => (true, false),
+                ReturnKind::StrongestOrSecond => (false, true),
+                ReturnKind::LastAndStrongest => (true, true),
             };
             let at = first + usize::from(point.ring);
             if in_first && let Some(cell) = first_layer.get_mut(at) {

@@ -5,7 +5,7 @@
 #![expect(clippy::unwrap_used, reason = "a test")]
 
 use lidar::{
-    Decoder, Duplicates, Echo, Firing, FrameCutter, Options, OrganisedFrame, RevolutionFrame,
+    Decoder, Duplicates, Firing, FrameCutter, Options, OrganisedFrame, ReturnKind, RevolutionFrame,
 };
 use proptest::prelude::*;
 use units::Stamp;
@@ -368,12 +368,15 @@ fn dual_returns_are_two_layers() {
         assert_eq!((at(0, 2), at(1, 2)), (None, None));
         assert_eq!(
             (at(0, 3), at(1, 3)),
-            (None, Some((5_003, Echo::StrongestOrSecond)))
+            (None, Some((5_003, ReturnKind::StrongestOrSecond)))
         );
-        assert_eq!((at(0, 4), at(1, 4)), (Some((5_004, Echo::Last)), None));
-        assert_eq!(at(0, 5), Some((5_005, Echo::Last)));
-        assert_eq!(at(1, 5), Some((4_000, Echo::StrongestOrSecond)));
-        let both = Some((5_006, Echo::LastAndStrongest));
+        assert_eq!(
+            (at(0, 4), at(1, 4)),
+            (Some((5_004, ReturnKind::Last)), None)
+        );
+        assert_eq!(at(0, 5), Some((5_005, ReturnKind::Last)));
+        assert_eq!(at(1, 5), Some((4_000, ReturnKind::StrongestOrSecond)));
+        let both = Some((5_006, ReturnKind::LastAndStrongest));
         assert_eq!((at(0, 6), at(1, 6)), (both, both));
         assert_eq!(frame.row(1, 0).count(), 240);
     }

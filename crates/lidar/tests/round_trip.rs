@@ -4,7 +4,7 @@
 //! The packets come from `firmware-sim`, which implements the manual without code of this crate.
 
 use firmware_sim::vlp16::{DataPacketBuilder, LASERS, PacketModel, ReturnMode};
-use lidar::{Decoder, Duplicates, Echo, Firing, Options};
+use lidar::{Decoder, Duplicates, Firing, Options, ReturnKind};
 use proptest::prelude::*;
 use units::{Host, Lidar, Stamp};
 
@@ -89,10 +89,10 @@ impl Taken {
         for seen in firing.returns() {
             let laser = usize::from(seen.laser);
             let second = match seen.echo {
-                Echo::StrongestOrSecond => true,
+                ReturnKind::StrongestOrSecond => true,
                 // With all returns requested both of a pair are given, the last first.
-                Echo::LastAndStrongest => last[laser].0 != 0,
-                Echo::Strongest | Echo::Last | Echo::Unknown => false,
+                ReturnKind::LastAndStrongest => last[laser].0 != 0,
+                ReturnKind::Strongest | ReturnKind::Last | ReturnKind::Unknown => false,
             };
             let place = if second { &mut strongest } else { &mut last };
             place[laser] = (seen.distance_raw, seen.reflectivity);

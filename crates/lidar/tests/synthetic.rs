@@ -3,7 +3,7 @@
 //! The packets are encoded here by manual 9.3.2, without the code under test.
 #![expect(clippy::unwrap_used, reason = "a test")]
 
-use lidar::{Decoder, Duplicates, Echo, Firing, Options, Stats, Timekeeper};
+use lidar::{Decoder, Duplicates, Firing, Options, ReturnKind, Stats, Timekeeper};
 use proptest::prelude::*;
 use units::{Host, Span, Stamp};
 
@@ -381,7 +381,7 @@ fn golden_packet_to_points() {
     let point = points[19];
     assert_eq!((point.laser, point.ring, point.reflectivity), (3, 9, 19));
     assert_eq!(point.time.as_nanos(), sensor.begin_ns + 62_208);
-    assert_eq!(point.echo, Echo::Strongest);
+    assert_eq!(point.echo, ReturnKind::Strongest);
     let azimuth = (90.0f64 + 0.40 * 62_208.0 / 110_592.0).to_radians();
     let elevation = 3f64.to_radians();
     let expected = [
@@ -413,18 +413,18 @@ fn dual_returns_of_a_pulse_have_one_time() {
     assert_eq!(firings.len(), 36);
     let raw = |i: usize| (firings[0][i].range_m * 500.0).round() as u32;
     // Laser 0 has two distances, laser 1 a single return.
-    assert_eq!((raw(0), firings[0][0].echo), (5_000, Echo::Last));
+    assert_eq!((raw(0), firings[0][0].echo), (5_000, ReturnKind::Last));
     assert_eq!(
         (raw(1), firings[0][1].echo),
-        (4_000, Echo::StrongestOrSecond)
+        (4_000, ReturnKind::StrongestOrSecond)
     );
     assert_eq!(
         (raw(2), firings[0][2].echo),
-        (5_001, Echo::StrongestOrSecond)
+        (5_001, ReturnKind::StrongestOrSecond)
     );
     assert_eq!(firings[0][0].time, firings[0][1].time);
     // Channel 16 is laser 0 of the second firing: one distance reported twice.
-    assert_eq!(firings[1][0].echo, Echo::LastAndStrongest);
+    assert_eq!(firings[1][0].echo, ReturnKind::LastAndStrongest);
     // Of 32 channels one differs, one has a single return, thirty repeat.
     assert_eq!(decoder.stats().returns, 3 * 6 * 63);
     assert_eq!(decoder.stats().unique_returns, 3 * 6 * 33);

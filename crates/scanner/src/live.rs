@@ -50,7 +50,7 @@ pub struct Live<'a> {
     range_sd_m: f64,
     waiting: VecDeque<WaitingPacket>,
     /// First firing of the packet that the decoder holds back.
-    pending: Option<Firing>,
+    pending: Option<LiveFiring>,
     decoder: Decoder,
     batch: Points,
     counts: PlacementCounts,
@@ -63,13 +63,13 @@ pub struct Live<'a> {
 struct WaitingPacket {
     received: Stamp<Host>,
     /// First firing; `None` if it is not a data packet.
-    fired: Option<Firing>,
+    fired: Option<LiveFiring>,
     payload: Vec<u8>,
 }
 
 /// Time of a firing.
 #[derive(Clone, Copy)]
-struct Firing {
+struct LiveFiring {
     /// By the lidar's clock, and by that clock before all steps.
     stamp: Stamp<Lidar>,
     device: Stamp<Lidar>,
@@ -185,7 +185,7 @@ impl<'a> Live<'a> {
             let mut placer = FiringBlockPlacer::new(alignment);
             let (batch, counts) = (&mut self.batch, &mut self.counts);
             self.decoder
-                .finish_firing_blocks(&mut |block| placer.place(block, batch, counts));
+                .finish_blocks(&mut |block| placer.place(block, batch, counts));
             self.sink.points(&self.batch)?;
         }
         while let Some(packet) = self.waiting.pop_front() {
@@ -193,7 +193,7 @@ impl<'a> Live<'a> {
         }
         let counts = &mut self.counts;
         self.decoder
-            .finish_firing_blocks(&mut |block| counts.outside += returns(block));
+            .finish_blocks(&mut |block| counts.outside += returns(block));
         Ok((self.counts, self.decoder.stats().clone()))
     }
 
@@ -227,7 +227,7 @@ impl<'a> Live<'a> {
                 }
                 Shown::Doubt => {}
             }
-            Firing {
+            LiveFiring {
                 stamp: recorded.device,
                 device: arrival.device,
             }
@@ -278,7 +278,7 @@ impl<'a> Live<'a> {
             return Ok(());
         }
         let clock = &self.clock;
-        let host = |firing: Firing| Some(clock.moment(firing.device)?.host);
+        let host = |firing: LiveFiring| Some(clock.moment(firing.device)?.host);
         let is_ready = |packet: &WaitingPacket| {
             let fired = packet.fired.and_then(host);
             fired.is_none_or(|host| host <= newest.host)
@@ -301,7 +301,7 @@ impl<'a> Live<'a> {
     fn omit(&mut self, packet: &WaitingPacket) {
         let counts = &mut self.counts;
         self.decoder
-            .firing_blocks(packet.received, &packet.payload, &mut |block| {
+            .decode_blocks(packet.received, &packet.payload, &mut |block| {
                 counts.outside += returns(block);
             });
     }
@@ -330,7 +330,7 @@ impl<'a> Live<'a> {
             .drop_before(moment.host.saturating_add(-TRAJECTORY_MEMORY));
         let mut placer = FiringBlockPlacer::new(alignment);
         self.decoder
-            .firing_blocks(packet.received, &packet.payload, &mut |block| {
+            .decode_blocks(packet.received, &packet.payload, &mut |block| {
                 placer.place(block, batch, counts);
             });
     }

@@ -44,7 +44,7 @@ impl<'a> Placer<'a> {
         };
         let host = self.receive_order.distinct(record.host);
         let (blocks, batch, counts) = (&mut self.blocks, &mut self.batch, &mut self.counts);
-        self.decoder.firing_blocks(host, payload, &mut |block| {
+        self.decoder.decode_blocks(host, payload, &mut |block| {
             blocks.place(block, batch, counts);
         });
         if self.batch.len() >= BATCH_POINTS {
@@ -60,7 +60,7 @@ impl<'a> Placer<'a> {
     pub fn finish(mut self) -> Result<(PlacementCounts, Stats), SinkError> {
         let (blocks, batch, counts) = (&mut self.blocks, &mut self.batch, &mut self.counts);
         self.decoder
-            .finish_firing_blocks(&mut |block| blocks.place(block, batch, counts));
+            .finish_blocks(&mut |block| blocks.place(block, batch, counts));
         self.flush()?;
         Ok((self.counts, self.decoder.stats().clone()))
     }

@@ -1,6 +1,7 @@
 //! First pass over the records: arrival times of lidar packets, shaft samples and acknowledged
 //! writes of the drive.
 
+use drive::cia402::mode;
 use drive::objects::{self, Address};
 use drive::record::{DriveLink, Record, Wire};
 use drive::{DriveListener, Observation, ShaftSample};
@@ -143,9 +144,6 @@ impl Survey {
     }
 }
 
-/// Mode of operation (6060): homing.
-const HOMING: i8 = 6;
-
 /// Reads times and angles from records, for the first pass and for the live cloud.
 pub(crate) struct RecordReader {
     timekeeper: Timekeeper,
@@ -202,13 +200,13 @@ impl RecordReader {
                     Observation::Wrote { address, value, .. }
                         if *address == objects::MODE.address =>
                     {
-                        *is_homing = objects::MODE.decode(*value) == HOMING;
+                        *is_homing = objects::MODE.decode(*value) == mode::HOMING;
                     }
                     // The log may lack the write.
                     Observation::Read { address, value, .. }
                         if *address == objects::MODE_DISPLAY.address =>
                     {
-                        *is_homing = objects::MODE_DISPLAY.decode(*value) == HOMING;
+                        *is_homing = objects::MODE_DISPLAY.decode(*value) == mode::HOMING;
                     }
                     _ => {}
                 }

@@ -14,6 +14,7 @@
 mod streaming;
 mod uncommanded;
 
+use drive::cia402::{control, mode};
 use drive::objects::{self, Address};
 use units::{DegPerS, DegPerS2, Degrees, Gearing, Host, Quadcounts, Rpm, RpmPerS, Stamp};
 
@@ -103,7 +104,7 @@ pub struct MoveWatch {
     speed: Rpm,
     ramps: [RpmPerS; 2],
     controlword: u16,
-    mode: u32,
+    mode: i8,
     moves: Vec<Move>,
     /// What a move would do that starts at these times: target and motion.
     settings: Vec<Setting>,
@@ -118,9 +119,6 @@ struct Setting {
     motion: Commanded,
 }
 
-const PROFILE_POSITION: u32 = 1;
-const NEW_SETPOINT: u16 = 0x0010;
-const RELATIVE: u16 = 0x0040;
 /// Greatest distance of a sweep's start and target from the ends of the plan.
 const END_TOLERANCE_DEG: f64 = 0.1;
 /// A jump exceeds this, and the way at three times the commanded speed or at the greatest speed.
@@ -143,7 +141,7 @@ impl MoveWatch {
             speed: Rpm(0),
             ramps: [RpmPerS(0); 2],
             controlword: 0,
-            mode: PROFILE_POSITION,
+            mode: mode::PROFILE_POSITION,
             moves: Vec::new(),
             settings: Vec::new(),
         }
@@ -189,7 +187,7 @@ impl MoveWatch {
         } else if address == objects::PROFILE_DECELERATION.address {
             self.ramps[1] = RpmPerS(value);
         } else if address == objects::MODE_DISPLAY.address {
-            self.mode = value & 0xFF;
+            self.mode = objects::MODE_DISPLAY.decode(value);
         } else {
             return;
         }
@@ -219,7 +217,7 @@ impl MoveWatch {
     }
 
     fn control(&mut self, word: u16, host: Stamp<Host>) {
-        let rising = word & !self.controlword & NEW_SETPOINT != 0;
+        let rising = word & !self.controlword & control::NEW_SETPOINT != 0;
         self.controlword = word;
         let Setting {
             is_position_mode,
@@ -227,7 +225,7 @@ impl MoveWatch {
             motion,
             ..
         } = self.setting(host);
-        if rising && is_position_mode && word & RELATIVE == 0 {
+        if rising && is_position_mode && word & control::RELATIVE == 0 {
             self.moves.push(Move {
                 commanded: host,
                 target,
@@ -248,7 +246,7 @@ impl MoveWatch {
     }
 
     const fn is_position_mode(&self) -> bool {
-        self.mode == PROFILE_POSITION
+        self.mode == mode::PROFILE_POSITION
     }
 
     /// The sweeps among the moves, from samples in order of time. Without a plan every commanded

@@ -18,14 +18,15 @@
 //! effects that a scene file configures.
 //!
 //! The first five are shared by threads that take firings in any order. Their results depend only
-//! on their arguments and their [`Source`](crate::random::Source), so one seed gives the same bytes
-//! on any number of threads. The last three run in order of time in one thread and may keep state.
+//! on their arguments and their [`RandomSource`](crate::random::RandomSource), so one seed gives
+//! the same bytes on any number of threads. The last three run in order of time in one thread and
+//! may keep state.
 
 mod listed;
 
 use units::{Degrees, Gearing};
 
-use crate::firing::{Echoes, Firing, Surroundings};
+use crate::firing::{Echoes, SimulatedFiring, Surroundings};
 use crate::sensor::LaserBeam;
 
 pub use listed::{ConfiguredEffects, EffectUsage, MeteredEffect, Stopwatch, UsageCounts};
@@ -104,9 +105,9 @@ pub trait ViewEffect: Effect {
         true
     }
 
-    /// Clears lasers of [`Firing::alive`] whose beams are blocked. Returns how many.
+    /// Clears lasers of [`SimulatedFiring::alive`] whose beams are blocked. Returns how many.
     #[inline(always)]
-    fn hide(&self, firing: &mut Firing) -> u32 {
+    fn hide(&self, firing: &mut SimulatedFiring) -> u32 {
         let _ = firing;
         0
     }
@@ -127,7 +128,7 @@ impl Effect for FiringSample {
 }
 
 impl ViewEffect for FiringSample {
-    fn hide(&self, firing: &mut Firing) -> u32 {
+    fn hide(&self, firing: &mut SimulatedFiring) -> u32 {
         if firing.number.is_multiple_of(self.every.max(1)) {
             return 0;
         }
@@ -142,7 +143,12 @@ pub trait BeamEffect: Effect {
     /// Replaces the returns of each beam's axis by those of the whole pulse. `surroundings` casts
     /// further rays. Returns on how many lasers the effect acted.
     #[inline(always)]
-    fn receive(&self, firing: &Firing, surroundings: &Surroundings, echoes: &mut Echoes) -> u32 {
+    fn receive(
+        &self,
+        firing: &SimulatedFiring,
+        surroundings: &Surroundings,
+        echoes: &mut Echoes,
+    ) -> u32 {
         let _ = (firing, surroundings, echoes);
         0
     }
@@ -152,7 +158,7 @@ pub trait BeamEffect: Effect {
 pub trait SurfaceEffect: Effect {
     /// Changes ranges and strengths or removes returns. Returns on how many lasers it acted.
     #[inline(always)]
-    fn reflect(&self, firing: &Firing, echoes: &mut Echoes) -> u32 {
+    fn reflect(&self, firing: &SimulatedFiring, echoes: &mut Echoes) -> u32 {
         let _ = (firing, echoes);
         0
     }

@@ -1,9 +1,9 @@
 //! One firing of all lasers: where each ray starts and goes, and what comes back.
 //!
 //! [`LidarSensor::ray`](crate::sensor::LidarSensor::ray) is the plain definition of a ray.
-//! `Firing::aim` computes all rays of a firing from one head rotation, one tilt and, per laser,
-//! the small tilt since the first laser. A test holds the two against each other. [`Surroundings`]
-//! casts the rays.
+//! `SimulatedFiring::aim` computes all rays of a firing from one head rotation, one tilt and, per
+//! laser, the small tilt since the first laser. A test holds the two against each other.
+//! [`Surroundings`] casts the rays.
 
 mod batch;
 mod body;
@@ -21,7 +21,7 @@ pub use surroundings::{SurfaceHit, Surroundings};
 
 /// A firing.
 #[derive(Clone, Debug)]
-pub struct Firing {
+pub struct SimulatedFiring {
     /// Its number, from 0: the key of its random draws.
     pub number: u64,
     /// Host time of its first laser, seconds since the start.
@@ -43,7 +43,7 @@ pub struct Firing {
 /// Below this many radians the series of sine and cosine are exact to the last bit.
 const SMALL: f64 = 1e-3;
 
-impl Firing {
+impl SimulatedFiring {
     pub(crate) const fn new(lasers: usize) -> Self {
         Self {
             number: 0,

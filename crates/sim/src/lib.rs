@@ -49,4 +49,4 @@ pub use firmware_sim::vlp16::{DATA_PORT, POSITION_PORT};
 pub use gear_ripple::GearRipple;
 pub use packet_maker::{HeadRotation, TruePoint};
 pub use rig::{Attachment, Datagram, DriveOutput, DriveServer, Rig, RigConfig, RigLidar, Truth};
-pub use scene::{Hit, Scene};
+pub use scene::{Scene, SceneHit};

@@ -15,7 +15,7 @@ use units::{Host, Span, Stamp};
 #[cfg(feature = "effects")]
 use crate::effects::{BeamEffect, ObjectsEffect, SurfaceEffect, ViewEffect};
 use crate::effects::{ClockEffect, FiringEffects, Needs};
-use crate::firing::{Echo, Echoes, Firing, Surroundings};
+use crate::firing::{Echo, Echoes, SimulatedFiring, Surroundings};
 use crate::lidar_clock::LidarClock;
 use crate::motion::AxisState;
 use crate::sensor::{LidarMount, LidarSensor, MAX_LASERS, RayTable, ReturnMode};
@@ -64,7 +64,7 @@ pub(crate) trait Platform {
 
 /// The lidar of a run: everything that is the same for all packets.
 #[derive(Clone, Debug)]
-pub(crate) struct Lidar {
+pub(crate) struct SimulatedLidar {
     pub sensor: LidarSensor,
     pub returns: ReturnMode,
     pub rotation: HeadRotation,
@@ -78,7 +78,7 @@ pub(crate) struct Lidar {
 
 /// A data packet as it leaves the lidar.
 #[derive(Debug)]
-pub(crate) struct DataPacket {
+pub(crate) struct SimulatedPacket {
     pub payload: [u8; DATA_LEN],
     /// When it leaves, host nanoseconds since the start.
     pub leaves_ns: i64,
@@ -89,7 +89,7 @@ pub(crate) struct DataPacket {
     pub counts: ShotCounts,
 }
 
-impl DataPacket {
+impl SimulatedPacket {
     /// The position packet after this one, if one is due after `data_packets` packets in all.
     pub fn position_packet(&self, data_packets: u64) -> Option<[u8; POSITION_LEN]> {
         let due = data_packets.is_multiple_of(DATA_PER_POSITION);
@@ -113,7 +113,7 @@ pub(crate) struct PacketMaker<F> {
     needs: Needs,
     surroundings: Surroundings,
     /// The firings of a packet and the returns of each.
-    firings: Vec<Firing>,
+    firings: Vec<SimulatedFiring>,
     echoes: Vec<Echoes>,
     packet: DataPacketBuilder,
 }
@@ -121,7 +121,7 @@ pub(crate) struct PacketMaker<F> {
 /// Distance in the sensor's units (0 for no return) and calibrated reflectivity.
 type RawReturn = (u16, u8);
 
-impl Lidar {
+impl SimulatedLidar {
     pub fn new(
         sensor: LidarSensor,
         returns: ReturnMode,
@@ -148,15 +148,15 @@ impl Lidar {
     }
 
     /// A firing before any is aimed.
-    pub const fn firing(&self) -> Firing {
-        Firing::new(self.rays.count)
+    pub const fn firing(&self) -> SimulatedFiring {
+        SimulatedFiring::new(self.rays.count)
     }
 
     /// Sets time, azimuth, tilt and rays of a firing. No laser fires where the tilt is not known.
     #[inline]
     pub fn aim<C: ClockEffect>(
         &self,
-        firing: &mut Firing,
+        firing: &mut SimulatedFiring,
         number: u64,
         clock: &C,
         platform: &impl Platform,
@@ -176,7 +176,7 @@ impl Lidar {
 }
 
 impl<F: FiringEffects> PacketMaker<F> {
-    pub fn new(lidar: &Lidar, effects: F, surroundings: Surroundings) -> Self {
+    pub fn new(lidar: &SimulatedLidar, effects: F, surroundings: Surroundings) -> Self {
         let needs = effects.needs();
         let two = lidar.returns != ReturnMode::Strongest;
         let model = lidar.sensor.model;
@@ -203,11 +203,11 @@ impl<F: FiringEffects> PacketMaker<F> {
     /// Makes the packet of these blocks, and its true points where they are wanted.
     pub fn packet(
         &mut self,
-        lidar: &Lidar,
+        lidar: &SimulatedLidar,
         platform: &impl Platform,
         blocks: impl Iterator<Item = u64>,
         mut points: Option<&mut Vec<TruePoint>>,
-    ) -> DataPacket {
+    ) -> SimulatedPacket {
         let effects = self.effects.parts();
         let mut counts = ShotCounts::default();
         let points_before = points.as_ref().map_or(0, |points| points.len());
@@ -238,11 +238,11 @@ impl<F: FiringEffects> PacketMaker<F> {
             };
             report.write(echoes, &mut self.packet, &mut counts, points.as_deref_mut());
         }
-        let device_ns = |firing: &Firing| lidar.device_ns(firing.number);
+        let device_ns = |firing: &SimulatedFiring| lidar.device_ns(firing.number);
         let first_ns = self.firings.first().map_or(0, device_ns);
         let last_ns = self.firings.last().map_or(0, device_ns);
         let end_ns = last_ns.saturating_add(lidar.sensor.model.firing_period_ns());
-        DataPacket {
+        SimulatedPacket {
             payload: self.packet.finish(lidar.clock.stamp_us(first_ns)),
             leaves_ns: effects.clock.host_ns(end_ns),
             stamp_us: lidar.clock.stamp_us(end_ns),
@@ -254,9 +254,9 @@ impl<F: FiringEffects> PacketMaker<F> {
 
 /// A firing that is complete.
 struct FiringReport<'a, C> {
-    lidar: &'a Lidar,
+    lidar: &'a SimulatedLidar,
     clock: &'a C,
-    firing: &'a Firing,
+    firing: &'a SimulatedFiring,
 }
 
 impl<C: ClockEffect> FiringReport<'_, C> {

@@ -3,7 +3,7 @@
 //!
 //! All lasers fire together from one point at fixed steps of azimuth, while the axis tilts at a
 //! constant speed. Each revolution of the head is a frame that begins at the same azimuth, so frame
-//! k is frame 0 rotated about the tilt axis by k steps ([`FrameRotation`]). The rays are those of
+//! k is frame 0 rotated about the tilt axis by k steps ([`PatternRotation`]). The rays are those of
 //! [`crate::simulate`]; a test compares them. Where the sensor is off the axis, rays meet a hollow
 //! sphere of [`SPHERE_M`].
 
@@ -50,7 +50,7 @@ pub struct Pattern {
 
 /// The rotation from each frame of a pattern to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FrameRotation {
+pub struct PatternRotation {
     /// The axis, right-handed.
     pub axis: DVec3,
     /// The angle, radians.
@@ -189,11 +189,11 @@ impl Pattern {
 
     /// The rotation from frame to frame; `None` where the last is cut off, and with ramps.
     #[must_use]
-    pub fn frame_rotation(&self) -> Option<FrameRotation> {
+    pub fn frame_rotation(&self) -> Option<PatternRotation> {
         let last = f64::from(self.frames.saturating_sub(1));
         let all = self.firings.saturating_sub(1);
         let whole = !self.cut() || self.ramped.is_none() && self.tilt_deg(last, all).is_some();
-        whole.then(|| FrameRotation {
+        whole.then(|| PatternRotation {
             axis: AXIS,
             step_rad: self.step_deg.to_radians(),
             frames: self.frames,

@@ -13,7 +13,7 @@ const SECOND: u64 = 0xD605_BBB5_8C8A_BC03;
 
 /// The source of one effect's draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Source {
+pub struct RandomSource {
     key: u64,
 }
 
@@ -23,7 +23,7 @@ pub struct Draws {
     state: u64,
 }
 
-impl Source {
+impl RandomSource {
     /// The source of effect `name` in a run with `seed`.
     #[must_use]
     pub fn new(seed: u64, name: &str) -> Self {
@@ -110,13 +110,13 @@ mod tests {
 
     #[test]
     fn a_key_gives_the_same_draws_in_any_order() {
-        let source = Source::new(7, "range noise");
+        let source = RandomSource::new(7, "range noise");
         let once = source.at(12, 3).bits();
         let _ = source.at(12, 4).bits();
         assert_eq!(source.at(12, 3).bits(), once);
         for other in [
-            Source::new(8, "range noise").at(12, 3),
-            Source::new(7, "range nois").at(12, 3),
+            RandomSource::new(8, "range noise").at(12, 3),
+            RandomSource::new(7, "range nois").at(12, 3),
             source.at(13, 3),
             source.at(12, 2),
         ] {
@@ -136,7 +136,7 @@ mod tests {
     /// Means, variances and correlations of 2^18 draws, each with its own standard error.
     #[test]
     fn neighbouring_keys_are_uncorrelated() {
-        let source = Source::new(1, "x");
+        let source = RandomSource::new(1, "x");
         let n = 1 << 18;
         let draws: Vec<f64> = (0..n)
             .map(|i| source.at(i / 16, (i % 16) as u32).unit() - 0.5)
@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn normal_draws_are_normal() {
-        let source = Source::new(2, "x");
+        let source = RandomSource::new(2, "x");
         let n = 1 << 17;
         let (mut sum, mut squares, mut within, mut joint) = (0.0, 0.0, 0, 0.0);
         for index in 0..n {
@@ -176,7 +176,7 @@ mod tests {
 
     #[test]
     fn units_stay_below_one() {
-        let mut draws = Source::new(3, "x").at(0, 0);
+        let mut draws = RandomSource::new(3, "x").at(0, 0);
         assert!((0..10_000).all(|_| (0.0..1.0).contains(&draws.unit())));
     }
 }

@@ -21,7 +21,7 @@ use crate::effects::{ClockEffect, FiringEffectSet};
 use crate::firing::Surroundings;
 use crate::gear_ripple::GearRipple;
 use crate::lidar_clock::LidarClock;
-use crate::packet_maker::{HeadRotation, Lidar, PacketMaker};
+use crate::packet_maker::{HeadRotation, PacketMaker, SimulatedLidar};
 use crate::scene::Scene;
 use crate::scenes;
 use crate::sensor::{LidarMount, LidarSensor, ReturnMode};
@@ -35,7 +35,7 @@ pub use truth::Truth;
 pub struct RigConfig {
     /// The scene of the lidar's beams.
     pub scene: Arc<Scene>,
-    /// Height of the lidar's origin above the tilt axis (d of Eq. 4-6).
+    /// Mounting of the lidar on the platform.
     pub mount: LidarMount,
     /// The drive.
     pub drive: NodeConfig,
@@ -134,7 +134,7 @@ type RigEffects = FiringEffectSet<(), (), (), (), LidarClock>;
 /// devices' bytes. Datagrams and answers are kept until they are taken.
 #[derive(Debug)]
 pub struct Rig {
-    lidar: Lidar,
+    lidar: SimulatedLidar,
     surroundings: Surroundings,
     maker: PacketMaker<RigEffects>,
     /// Data packets so far.
@@ -153,7 +153,7 @@ impl Rig {
     pub fn new(config: RigConfig) -> Self {
         let RigConfig { start, lidar, .. } = config;
         let clock = LidarClock::new(start, lidar.clock_at_start_us, lidar.drift_ppm);
-        let lidar = Lidar::new(
+        let lidar = SimulatedLidar::new(
             LidarSensor::vlp16(),
             ReturnMode::Strongest,
             HeadRotation {

@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use crate::cast::{CastError, Caster, Hit as CastHit, Object, Ray, Reach};
+use crate::cast::{CastError, Caster, Hit, Object, Ray, Reach};
 use crate::scenery::{Material, MaterialAssignment, PlacedScenery};
 
 /// Objects and materials.
@@ -17,7 +17,7 @@ pub struct Scene {
 
 /// Where a ray meets the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hit {
+pub struct SceneHit {
     /// Distance along the ray, metres.
     pub range_m: f64,
     /// Calibrated reflectivity of the surface: 0..=100 diffuse, above that retroreflecting (manual
@@ -72,18 +72,13 @@ impl Scene {
 
     /// The material at a hit of the caster.
     #[inline]
-    pub(crate) fn material(&self, hit: &CastHit) -> Option<&Material> {
+    pub(crate) fn material(&self, hit: &Hit) -> Option<&Material> {
         self.placed.material(hit.object.index(), hit.primitive)
     }
 
     /// The nearest surface ahead of `origin_m` in `direction` no farther than `up_to_m`, of any
     /// material. `None` for an invalid ray.
-    pub(crate) fn nearest(
-        &self,
-        origin_m: DVec3,
-        direction: DVec3,
-        up_to_m: f64,
-    ) -> Option<CastHit> {
+    pub(crate) fn nearest(&self, origin_m: DVec3, direction: DVec3, up_to_m: f64) -> Option<Hit> {
         let ray = Ray::new(origin_m, direction).ok()?;
         self.caster.nearest(&ray, Reach::up_to(up_to_m))
     }
@@ -94,10 +89,16 @@ impl Scene {
     /// A surface nearer than `min_m` or an absorbing one blocks the ray without a return. A ray
     /// that starts on a surface does not meet it there. `None` for numbers that are not finite.
     #[must_use]
-    pub fn cast(&self, origin_m: DVec3, direction: DVec3, min_m: f64, max_m: f64) -> Option<Hit> {
+    pub fn cast(
+        &self,
+        origin_m: DVec3,
+        direction: DVec3,
+        min_m: f64,
+        max_m: f64,
+    ) -> Option<SceneHit> {
         let hit = self.nearest(origin_m, direction, max_m)?;
         let material = self.material(&hit)?;
-        let seen = Hit {
+        let seen = SceneHit {
             range_m: hit.range_m,
             reflectivity: material.reflectivity,
         };

@@ -25,7 +25,7 @@ use crate::effects::{
 };
 use crate::lidar_clock::LidarClock;
 use crate::motion::AxisMotion;
-use crate::packet_maker::{HeadRotation, Lidar, TruePoint};
+use crate::packet_maker::{HeadRotation, SimulatedLidar, TruePoint};
 use crate::scene::Scene;
 use crate::sensor::{LidarMount, LidarSensor, ReturnMode};
 use course::AxisCourse;
@@ -234,10 +234,10 @@ impl Simulation {
         Ok(())
     }
 
-    fn lidar(&self, surface: &impl SurfaceEffect) -> Lidar {
+    fn lidar(&self, surface: &impl SurfaceEffect) -> SimulatedLidar {
         let mut sensor = self.sensor.clone();
         surface.misalign(&mut sensor.beams);
-        Lidar::new(
+        SimulatedLidar::new(
             sensor,
             self.returns,
             self.rotation,

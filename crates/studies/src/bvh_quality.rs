@@ -13,7 +13,7 @@ use sim::cast::{Caster, Hit, Mesh, Object, Quality, Ray, Reach, Surface};
 use sim::scenery::{Scenery, no_files, shipped};
 
 use crate::ball::BallMesh;
-use crate::shots::Shots;
+use crate::shots::SampledFirings;
 
 /// The study.
 pub(crate) const BVH_QUALITY: Study = Study {
@@ -65,7 +65,7 @@ const fn of(bins: usize, sharing: usize) -> Quality {
 }
 
 fn measure(bench: &mut Bench<'_>) -> Result<StudyRows, StudyError> {
-    let shots = Shots::of("quarry", bench.pick(48, 14_000))?;
+    let shots = SampledFirings::of("quarry", bench.pick(48, 14_000))?;
     let rays = rays(&shots)?;
     let scenes = [
         BvhScene::new("cave", cave(bench.pick(CAVE_AT_A_LOOK, CAVE))?)?,
@@ -197,7 +197,7 @@ fn cast(caster: &Caster, rays: &[Ray], hits: &mut [Option<Hit>]) {
 }
 
 /// The rays of all lasers, firing after firing.
-fn rays(shots: &Shots) -> Result<Vec<Ray>, StudyError> {
+fn rays(shots: &SampledFirings) -> Result<Vec<Ray>, StudyError> {
     let mut rays = Vec::with_capacity(shots.count());
     for (firing, _) in &shots.firings {
         let both = firing.origins_m.iter().zip(&firing.directions);
@@ -286,7 +286,7 @@ mod tests {
 
     #[test]
     fn differing_hits_are_counted() {
-        let shots = Shots::of("quarry", 8).unwrap();
+        let shots = SampledFirings::of("quarry", 8).unwrap();
         let rays = rays(&shots).unwrap();
         let moved = cave(BOULDER).unwrap();
         let scene = BvhScene::new("cave", moved).unwrap();

@@ -3,7 +3,7 @@
 use std::hint::black_box;
 
 use crate::placing::{
-    BLOCK, Exact, FIRING, PACKET, PlacedPoints, RETURN, SensorGeometry, Shot, place, worst_m,
+    BLOCK, Exact, FIRING, PACKET, PlacedPoints, PlainFiring, RETURN, SensorGeometry, place, worst_m,
 };
 use analysis::tradeoff::{
     Bench, Row, Study, StudyError, StudyFindings, StudyRows, TimedChoice, Trade,
@@ -30,7 +30,7 @@ pub(crate) const GRANULARITY: Study = Study {
 
 const RANGE_M: f64 = 100.0;
 
-type Kernel = fn(&[Shot], &SensorGeometry, (&Exact, &Exact), &mut PlacedPoints<f64>);
+type Kernel = fn(&[PlainFiring], &SensorGeometry, (&Exact, &Exact), &mut PlacedPoints<f64>);
 
 /// Name, label, group and loop.
 type GranularityChoice = (&'static str, &'static str, &'static str, Kernel);
@@ -65,7 +65,10 @@ const WAYS: [GranularityChoice; 7] = [
 fn measure(bench: &mut Bench<'_>) -> Result<StudyRows, StudyError> {
     let packets = Workload::new(cruise_deg, cruise_s(bench), all_at(RANGE_M));
     let alignment = packets.alignment()?;
-    let (shots, truth) = (packets.shots(&alignment), definition(&packets, &alignment));
+    let (shots, truth) = (
+        packets.firings_with_angles(&alignment),
+        definition(&packets, &alignment),
+    );
     let (head, points) = (head(), truth.len());
     let scale = 1e9 / points as f64;
     let mut choices = Vec::new();

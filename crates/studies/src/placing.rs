@@ -25,7 +25,7 @@ pub const RETURN: u8 = 3;
 
 /// A firing: its angles when its first laser fires, their rates, and its returns.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shot {
+pub struct PlainFiring {
     /// Azimuth, degrees.
     pub azimuth_deg: f64,
     /// Rate of the azimuth, degrees per nanosecond.
@@ -61,7 +61,7 @@ pub struct SensorGeometry {
 }
 
 /// f32 or f64.
-pub trait Real:
+pub trait Float:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + 'static
 {
     /// Conversion from f64 with rounding.
@@ -76,7 +76,7 @@ pub trait Real:
 
 macro_rules! number {
     ($float:ty) => {
-        impl Real for $float {
+        impl Float for $float {
             #[inline(always)]
             fn of(x: f64) -> Self {
                 x as $float
@@ -100,7 +100,7 @@ number!(f32);
 number!(f64);
 
 /// Sine and cosine of an angle that changes.
-pub trait Sine<T: Real> {
+pub trait Sine<T: Float> {
     /// Of an angle in degrees: the standard library's.
     #[inline(always)]
     fn at(&self, degrees: T) -> (T, T) {
@@ -119,13 +119,13 @@ pub trait Sine<T: Real> {
 #[derive(Clone, Copy, Debug)]
 pub struct Exact;
 
-impl<T: Real> Sine<T> for Exact {}
+impl<T: Float> Sine<T> for Exact {}
 
 /// A table with an entry per hundredth of a degree.
 #[derive(Clone, Debug)]
 pub struct SineTable<T>(Vec<(T, T)>);
 
-impl<T: Real> SineTable<T> {
+impl<T: Float> SineTable<T> {
     /// The table, [`TABLE_STEPS`] long.
     #[must_use]
     pub fn new() -> Self {
@@ -137,7 +137,7 @@ impl<T: Real> SineTable<T> {
     }
 }
 
-impl<T: Real> Sine<T> for SineTable<T> {
+impl<T: Float> Sine<T> for SineTable<T> {
     #[inline(always)]
     fn at(&self, degrees: T) -> (T, T) {
         // Angles here are above -360 degrees.
@@ -152,7 +152,7 @@ impl<T: Real> Sine<T> for SineTable<T> {
 #[derive(Clone, Copy, Debug)]
 pub struct Addition;
 
-impl<T: Real> Sine<T> for Addition {
+impl<T: Float> Sine<T> for Addition {
     #[inline(always)]
     fn ahead(&self, (sin, cos): (T, T), degrees: T, ahead_deg: T) -> (T, T) {
         let _ = degrees;
@@ -176,7 +176,7 @@ pub struct PlacedPoints<T> {
     pub z_m: Vec<T>,
 }
 
-impl<T: Real> PlacedPoints<T> {
+impl<T: Float> PlacedPoints<T> {
     /// Columns for so many points.
     #[must_use]
     pub fn new(len: usize) -> Self {
@@ -207,7 +207,7 @@ impl<T: Real> PlacedPoints<T> {
 /// The largest distance of any point of columns x, y, z from `truth`, metres. Infinite if lengths
 /// differ or a distance is not a number.
 #[must_use]
-pub fn worst_m<T: Real>(places_m: [&[T]; 3], truth_m: [&[f64]; 3]) -> f64 {
+pub fn worst_m<T: Float>(places_m: [&[T]; 3], truth_m: [&[f64]; 3]) -> f64 {
     let [x, y, z] = places_m;
     let [tx, ty, tz] = truth_m;
     let lengths = [y.len(), z.len(), tx.len(), ty.len(), tz.len()];
@@ -230,8 +230,8 @@ pub fn worst_m<T: Real>(places_m: [&[T]; 3], truth_m: [&[f64]; 3]) -> f64 {
 /// Places every return with azimuth and tilt once per `AZIMUTH` and `TILT` ([`PACKET`], [`BLOCK`],
 /// [`FIRING`] or [`RETURN`]), each with its own sine. Returns beyond the length of `out` are
 /// dropped.
-pub fn place<T: Real, A: Sine<T>, G: Sine<T>, const AZIMUTH: u8, const TILT: u8>(
-    shots: &[Shot],
+pub fn place<T: Float, A: Sine<T>, G: Sine<T>, const AZIMUTH: u8, const TILT: u8>(
+    shots: &[PlainFiring],
     head: &SensorGeometry,
     (azimuth_sine, tilt_sine): (&A, &G),
     out: &mut PlacedPoints<T>,
@@ -299,7 +299,7 @@ mod tests {
 
     use super::*;
 
-    fn returns(shots: &[Shot]) -> usize {
+    fn returns(shots: &[PlainFiring]) -> usize {
         let counts = shots.iter().flat_map(|shot| shot.counts);
         counts.filter(|count| *count != 0).count()
     }
@@ -322,8 +322,8 @@ mod tests {
         }
     }
 
-    fn shots(count: usize) -> Vec<Shot> {
-        let shot = |i: usize| Shot {
+    fn shots(count: usize) -> Vec<PlainFiring> {
+        let shot = |i: usize| PlainFiring {
             azimuth_deg: (i as f64 * FIRING_NS * AZIMUTH_DEG_NS) % 360.0,
             azimuth_deg_ns: AZIMUTH_DEG_NS,
             tilt_deg: i as f64 * FIRING_NS * TILT_DEG_NS,
@@ -334,7 +334,7 @@ mod tests {
     }
 
     /// Every return by rotations composed as matrices.
-    fn slow(shots: &[Shot]) -> PlacedPoints<f64> {
+    fn slow(shots: &[PlainFiring]) -> PlacedPoints<f64> {
         let head = head();
         let mut places = PlacedPoints::new(0);
         for shot in shots {
@@ -357,7 +357,7 @@ mod tests {
         places
     }
 
-    fn worst_mm<T: Real, S: Sine<T>, const AZIMUTH: u8, const TILT: u8>(sine: &S) -> f64 {
+    fn worst_mm<T: Float, S: Sine<T>, const AZIMUTH: u8, const TILT: u8>(sine: &S) -> f64 {
         let shots = shots(15_000);
         let mut out = PlacedPoints::new(returns(&shots));
         place::<T, S, S, AZIMUTH, TILT>(&shots, &head(), (sine, sine), &mut out);

@@ -1,4 +1,4 @@
-//! Shots of a VLP-16 in scenes of the simulator: origins and directions of rays, and the
+//! SampledFirings of a VLP-16 in scenes of the simulator: origins and directions of rays, and the
 //! surroundings.
 //!
 //! An effect without influence collects them from the simulation.
@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use analysis::tradeoff::StudyError;
 use protocol::vlp16::models::VLP_16;
 use sim::effects::{BeamEffect, Effect, Effects, FiringEffectSet};
-use sim::firing::{Echoes, Firing, Surroundings};
+use sim::firing::{Echoes, SimulatedFiring, Surroundings};
 use sim::scene_file::SceneFile;
 use sim::scenery::shipped;
 use sim::sensor::ReturnMode;
@@ -20,16 +20,16 @@ use sim::simulate::{SimulationEvent, SimulationSink};
 const TOGETHER: u64 = 8;
 
 /// The view of a sensor in a scene.
-pub(crate) struct Shots {
+pub(crate) struct SampledFirings {
     /// Seed of the scene.
     pub seed: u64,
     /// The surroundings.
     pub surroundings: Surroundings,
     /// Firings, and the echoes of the centres of their beams.
-    pub firings: Vec<(Firing, Echoes)>,
+    pub firings: Vec<(SimulatedFiring, Echoes)>,
 }
 
-impl Shots {
+impl SampledFirings {
     /// About `firings` of the sweep in a scene of the simulator, in groups that are spread evenly
     /// over it.
     pub fn of(name: &str, firings: usize) -> Result<Self, StudyError> {
@@ -84,7 +84,7 @@ impl Shots {
 #[derive(Debug, Default)]
 struct CollectedFirings {
     surroundings: Option<Surroundings>,
-    firings: Vec<(Firing, Echoes)>,
+    firings: Vec<(SimulatedFiring, Echoes)>,
 }
 
 /// An effect that collects one group of firings out of `every`.
@@ -101,7 +101,12 @@ impl Effect for FiringCollector {
 }
 
 impl BeamEffect for FiringCollector {
-    fn receive(&self, firing: &Firing, surroundings: &Surroundings, echoes: &mut Echoes) -> u32 {
+    fn receive(
+        &self,
+        firing: &SimulatedFiring,
+        surroundings: &Surroundings,
+        echoes: &mut Echoes,
+    ) -> u32 {
         if (firing.number / TOGETHER).is_multiple_of(self.every) {
             let mut taken = self.taken.lock().unwrap_or_else(PoisonError::into_inner);
             let taken = &mut *taken;
@@ -129,7 +134,7 @@ mod tests {
 
     #[test]
     fn shots_are_spread_over_the_sweep_and_hit_their_targets() {
-        let shots = Shots::of("hall", 100).unwrap();
+        let shots = SampledFirings::of("hall", 100).unwrap();
         let numbers: Vec<u64> = shots.firings.iter().map(|(f, _)| f.number).collect();
         assert!((90..130).contains(&numbers.len()), "{}", numbers.len());
         assert_eq!(numbers[..9], [0, 1, 2, 3, 4, 5, 6, 7, numbers[8]]);
@@ -144,6 +149,6 @@ mod tests {
                 assert!(!echoes.other[laser].is_present());
             }
         }
-        assert!(Shots::of("nowhere", 1).is_err());
+        assert!(SampledFirings::of("nowhere", 1).is_err());
     }
 }

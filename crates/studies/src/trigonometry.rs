@@ -3,8 +3,8 @@
 use std::hint::black_box;
 
 use crate::placing::{
-    Addition, Exact, LASERS, PlacedPoints, RETURN, Real, SensorGeometry, Shot, Sine, SineTable,
-    place,
+    Addition, Exact, Float, LASERS, PlacedPoints, PlainFiring, RETURN, SensorGeometry, Sine,
+    SineTable, place,
 };
 use analysis::tradeoff::{
     Bench, Row, Study, StudyError, StudyFindings, StudyRows, TimedChoice, Trade,
@@ -30,14 +30,14 @@ const RANGE_M: f64 = 100.0;
 
 /// The workload of all methods.
 struct TrigonometrySetup {
-    shots: Vec<Shot>,
+    shots: Vec<PlainFiring>,
     head: SensorGeometry,
     truth: PlacedPoints<f64>,
 }
 
 fn measure(bench: &mut Bench<'_>) -> Result<StudyRows, StudyError> {
     let packets = Workload::new(cruise_deg, cruise_s(bench), all_at(RANGE_M));
-    let shots = packets.shots(&packets.alignment()?);
+    let shots = packets.firings_with_angles(&packets.alignment()?);
     let (head, points) = (head(), shots.len() * LASERS);
     let mut truth = PlacedPoints::new(points);
     place::<f64, _, _, RETURN, RETURN>(&shots, &head, (&Exact, &Exact), &mut truth);
@@ -62,7 +62,7 @@ fn about(points: usize) -> Vec<String> {
     ]
 }
 
-fn ways<'a, T: Real>(
+fn ways<'a, T: Float>(
     group: &'static str,
     setting: &'a TrigonometrySetup,
     table: &'a SineTable<T>,
@@ -75,7 +75,7 @@ fn ways<'a, T: Real>(
     ]
 }
 
-fn way<'a, T: Real, A: Sine<T>, G: Sine<T>>(
+fn way<'a, T: Float, A: Sine<T>, G: Sine<T>>(
     (group, label): (&'static str, &'static str),
     setting: &'a TrigonometrySetup,
     sines: (&'a A, &'a G),

@@ -3,7 +3,7 @@
 //! 10 revolutions per second, one return per firing and laser, distances by the study. Packets
 //! arrive as soon as they are full; [`crate::clocks`] studies delays.
 
-use crate::placing::{LASERS, LaserGeometry, SensorGeometry, Shot};
+use crate::placing::{LASERS, LaserGeometry, PlainFiring, SensorGeometry};
 use analysis::tradeoff::{Bench, StudyError};
 use drive::record::{Record, Wire};
 use firmware_sim::vlp16::{DATA_PORT, DataPacketBuilder, PacketModel, ReturnMode};
@@ -105,7 +105,7 @@ impl Workload {
     }
 
     /// The firings with their angles from decoder and alignment.
-    pub fn shots(&self, alignment: &Alignment) -> Vec<Shot> {
+    pub fn firings_with_angles(&self, alignment: &Alignment) -> Vec<PlainFiring> {
         let length = Span::from_nanos(i64::from(VLP_16.firing_period_ns));
         let mut shots = Vec::new();
         let mut each = |firing: &lidar::Firing<'_>| {
@@ -119,7 +119,7 @@ impl Workload {
                     *count = seen.distance_raw;
                 }
             }
-            shots.push(Shot {
+            shots.push(PlainFiring {
                 azimuth_deg: firing.azimuth_deg,
                 azimuth_deg_ns: firing.azimuth_rate_deg_s * 1e-9,
                 tilt_deg: from.0,
@@ -185,7 +185,7 @@ mod tests {
     fn the_tilt_is_recovered_from_the_packets() {
         let workload = Workload::new(cruise_deg, 0.3, all_at(100.0));
         let alignment = workload.alignment().unwrap();
-        let shots = workload.shots(&alignment);
+        let shots = workload.firings_with_angles(&alignment);
         // 0.3 s in packets of 24 x 55.296 us, the last one full.
         assert_eq!(shots.len(), 227 * 24);
         for (i, shot) in shots.iter().enumerate() {

@@ -54,7 +54,7 @@ impl Model {
 
     /// Blocks of a packet with different firings: 12, or 6 with dual returns.
     #[must_use]
-    pub const fn firing_blocks(dual: bool) -> usize {
+    pub const fn distinct_blocks(dual: bool) -> usize {
         if dual { BLOCKS / 2 } else { BLOCKS }
     }
 
@@ -62,7 +62,7 @@ impl Model {
     /// packet.
     #[must_use]
     pub const fn packet_period_ns(&self, dual: bool) -> u32 {
-        self.block_period_ns() * Self::firing_blocks(dual) as u32
+        self.block_period_ns() * Self::distinct_blocks(dual) as u32
     }
 }
 

@@ -77,18 +77,21 @@ impl Bench {
     pub fn start(transport: &str, axis: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let (port, name) = match transport {
-            "can" => (SoftwarePort::Can(SocketCan::open(BUS).unwrap()), BUS.into()),
+            "can" => {
+                let bus = SocketCan::open(BUS).unwrap();
+                (SoftwarePort::Can(bus), format!("interface = '{BUS}'"))
+            }
             _ => {
                 let pty = Pty::open().unwrap();
-                let path = pty.path().display().to_string();
-                (SoftwarePort::Serial(pty), path)
+                let port = format!("port = '{}'", pty.path().display());
+                (SoftwarePort::Serial(pty), port)
             }
         };
         let lidar = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
         let free = |_| UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
         let ports = [0, 1].map(free).map(|s| s.local_addr().unwrap().port());
         let text = format!(
-            "[device]\ndefault = 'soft'\n[device.soft]\nkind = '{transport}'\nport = '{name}'\nlidar = '127.0.0.1'\n\
+            "[device]\ndefault = 'soft'\n[device.soft]\nkind = '{transport}'\n{name}\nlidar = '127.0.0.1'\n\
              data_port = {}\nposition_port = {}\n[daemon]\nscans = '{}'\nreserve_bytes = 1000\n[axis]\n{axis}",
             ports[0],
             ports[1],

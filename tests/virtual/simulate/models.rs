@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use scanner::TiltSource;
 use sim::effects::{BeamEffect, Effect, MeteredEffect};
-use sim::firing::{Echo, Echoes, Firing, Surroundings};
+use sim::firing::{Echo, Echoes, SimulatedFiring, Surroundings};
 use sim::scene_file::EffectLine;
 
 use super::{Simulated, replayed};
@@ -29,7 +29,7 @@ impl Effect for Pane {
 }
 
 impl BeamEffect for Pane {
-    fn receive(&self, firing: &Firing, _: &Surroundings, echoes: &mut Echoes) -> u32 {
+    fn receive(&self, firing: &SimulatedFiring, _: &Surroundings, echoes: &mut Echoes) -> u32 {
         let both = echoes.strongest.iter().zip(&mut echoes.other);
         for (strongest, other) in both.take(firing.lasers) {
             if strongest.is_present() {

@@ -122,7 +122,7 @@ impl Work {
         let mut decoder = Decoder::new(Options::default());
         for record in self.packets.records() {
             if let Wire::Lidar { payload, .. } = record.wire {
-                decoder.firing_blocks(record.host, payload, &mut |block| {
+                decoder.decode_blocks(record.host, payload, &mut |block| {
                     black_box(block);
                 });
             }

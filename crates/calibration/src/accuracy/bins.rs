@@ -47,11 +47,11 @@ type Sums = [f64; 8];
 
 pub(super) struct Groups<'a> {
     truth: &'a [Vec<PointError>],
-    kinds: Vec<(Kind, Vec<f64>, Vec<Sums>)>,
+    kinds: Vec<(BinKind, Vec<f64>, Vec<Sums>)>,
 }
 
 #[derive(Clone, Copy)]
-enum Kind {
+enum BinKind {
     Range,
     Incidence,
     Tilt,
@@ -61,7 +61,7 @@ enum Kind {
     Time,
 }
 
-impl Kind {
+impl BinKind {
     const fn name(self) -> &'static str {
         match self {
             Self::Range => "range_m",
@@ -103,18 +103,21 @@ impl<'a> Groups<'a> {
         let speeds = vec![0.0, 2.0, 7.5, 15.0, 30.0, 45.0, 70.0, 150.0, 1e4];
         let kinds = [
             (
-                Kind::Range,
+                BinKind::Range,
                 vec![0.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0, 50.0, 300.0],
             ),
-            (Kind::Incidence, steps(0.0, 15.0, 6)),
-            (Kind::Tilt, steps(-180.0, 10.0, 36)),
-            (Kind::Speed, speeds),
-            (Kind::Laser, steps(0.0, 1.0, request.lasers.len())),
+            (BinKind::Incidence, steps(0.0, 15.0, 6)),
+            (BinKind::Tilt, steps(-180.0, 10.0, 36)),
+            (BinKind::Speed, speeds),
+            (BinKind::Laser, steps(0.0, 1.0, request.lasers.len())),
             (
-                Kind::Reflectivity,
+                BinKind::Reflectivity,
                 vec![0.0, 10.0, 25.0, 50.0, 101.0, 256.0],
             ),
-            (Kind::Time, steps(-end_s, 2.0 * end_s / TIMES as f64, TIMES)),
+            (
+                BinKind::Time,
+                steps(-end_s, 2.0 * end_s / TIMES as f64, TIMES),
+            ),
         ];
         Self {
             truth: request.truth,
@@ -170,10 +173,10 @@ impl<'a> Groups<'a> {
     }
 
     pub fn result(self) -> Vec<BinGroup> {
-        let group = |(kind, edges, sums): (Kind, Vec<f64>, Vec<Sums>)| {
+        let group = |(kind, edges, sums): (BinKind, Vec<f64>, Vec<Sums>)| {
             let bins = edges.windows(2).zip(sums).filter(|(_, sums)| sums[0] > 0.0);
             // From the beginning of the log on.
-            let zero = if matches!(kind, Kind::Time) {
+            let zero = if matches!(kind, BinKind::Time) {
                 edges[0]
             } else {
                 0.0

@@ -6,7 +6,7 @@
 
 use std::io::{self, Write};
 
-use super::file_sink::{EncodeError, Encoder, FileSink};
+use super::file_sink::{EncodeError, FileSink, FormatEncoder};
 use crate::{Column, Fields, Metadata, Point, Points, Summary};
 
 /// Writes CSV. Each batch is one write: the output needs no buffer.
@@ -64,7 +64,7 @@ const fn heading(column: Column) -> &'static str {
     }
 }
 
-impl<W: Write> Encoder for CsvEncoder<W> {
+impl<W: Write> FormatEncoder for CsvEncoder<W> {
     fn format(&self) -> &'static str {
         "csv"
     }

@@ -23,8 +23,8 @@ use units::{Host, Stamp};
 
 use self::attributes::PointAttributes;
 use self::worker::{FileEnding, WorkerCommand};
-use super::fallible::{FallibleOutput, WriteFault};
-use super::file_sink::{EncodeError, Encoder, FileSink};
+use super::fallible::{ErrorHidingOutput, WriteFault};
+use super::file_sink::{EncodeError, FileSink, FormatEncoder};
 use super::gps_time;
 use crate::{Fields, Metadata, Points, Summary};
 
@@ -43,7 +43,7 @@ pub(super) type E57Writer<W> = FileSink<E57Encoder<W>>;
 pub(super) struct E57Encoder<W: Read + Write + Seek + Send + 'static> {
     fields: Fields,
     fault: WriteFault,
-    output: Option<FallibleOutput<W>>,
+    output: Option<ErrorHidingOutput<W>>,
     worker: Option<EncoderThread>,
     description: Vec<String>,
     /// The whole second of the first point.
@@ -59,7 +59,7 @@ struct EncoderThread {
 impl<W: Read + Write + Seek + Send + 'static> E57Writer<W> {
     /// A writer into `output`, which is empty, with the columns `fields`.
     pub(super) fn new(output: W, fields: Fields) -> Self {
-        let (output, fault) = FallibleOutput::new(output);
+        let (output, fault) = ErrorHidingOutput::new(output);
         let encoder = E57Encoder {
             fields,
             fault,
@@ -115,7 +115,7 @@ impl<W: Read + Write + Seek + Send + 'static> E57Encoder<W> {
     }
 }
 
-impl<W: Read + Write + Seek + Send + 'static> Encoder for E57Encoder<W> {
+impl<W: Read + Write + Seek + Send + 'static> FormatEncoder for E57Encoder<W> {
     fn format(&self) -> &'static str {
         FORMAT
     }

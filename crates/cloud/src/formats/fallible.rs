@@ -2,7 +2,7 @@
 //!
 //! The `las` crate completes its file when its writer is dropped and panics if that fails, so a
 //! full disk would abort the program. Others wrap the system's error, or lose it on a thread.
-//! [`FallibleOutput`] keeps the first error and from then on only pretends to write.
+//! [`ErrorHidingOutput`] keeps the first error and from then on only pretends to write.
 
 use std::error::Error;
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::file_sink::EncodeError;
 
-/// The first error of a [`FallibleOutput`].
+/// The first error of a [`ErrorHidingOutput`].
 #[derive(Clone, Default)]
 pub(in crate::formats) struct WriteFault(Arc<Mutex<Option<io::Error>>>);
 
@@ -43,14 +43,14 @@ impl WriteFault {
 }
 
 /// Passes everything on until the first error.
-pub(in crate::formats) struct FallibleOutput<W> {
+pub(in crate::formats) struct ErrorHidingOutput<W> {
     inner: W,
     fault: WriteFault,
     /// Position of pretended writes; `None` before the first error.
     pretended: Option<u64>,
 }
 
-impl<W: Write + Seek> FallibleOutput<W> {
+impl<W: Write + Seek> ErrorHidingOutput<W> {
     pub(in crate::formats) fn new(inner: W) -> (Self, WriteFault) {
         let fault = WriteFault::default();
         let output = Self {
@@ -73,7 +73,7 @@ impl<W: Write + Seek> FallibleOutput<W> {
     }
 }
 
-impl<W: Write + Seek> Write for FallibleOutput<W> {
+impl<W: Write + Seek> Write for ErrorHidingOutput<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         if self.pretended.is_none() {
             match self.inner.write(bytes) {
@@ -99,7 +99,7 @@ impl<W: Write + Seek> Write for FallibleOutput<W> {
 }
 
 /// For formats that read back. After the first error there is nothing to read.
-impl<W: Read + Write + Seek> Read for FallibleOutput<W> {
+impl<W: Read + Write + Seek> Read for ErrorHidingOutput<W> {
     fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
         if self.pretended.is_some() {
             return Ok(0);
@@ -114,7 +114,7 @@ impl<W: Read + Write + Seek> Read for FallibleOutput<W> {
     }
 }
 
-impl<W: Write + Seek> Seek for FallibleOutput<W> {
+impl<W: Write + Seek> Seek for ErrorHidingOutput<W> {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         let here = match self.pretended {
             Some(here) => here,
@@ -139,7 +139,7 @@ mod tests {
 
     #[test]
     fn writes_after_the_first_error_are_skipped() {
-        let (mut output, fault) = FallibleOutput::new(SmallDisk::new(5));
+        let (mut output, fault) = ErrorHidingOutput::new(SmallDisk::new(5));
         output.write_all(b"1234").unwrap();
         assert!(fault.get().is_none());
         output.write_all(b"56789").unwrap();

@@ -8,7 +8,7 @@ use super::stage::Stage;
 use crate::{Fields, Metadata, Points, Sink, SinkError, Summary};
 
 /// Encodes a file. [`FileSink`] calls it in the order begin, points (any number), finish.
-pub trait Encoder {
+pub trait FormatEncoder {
     /// Name of the format in errors.
     fn format(&self) -> &'static str;
 
@@ -17,8 +17,9 @@ pub trait Encoder {
         None
     }
 
-    /// Columns beyond those of the file from which it fills fields of its own, such as the return numbers of LAS.
-    fn also(&self) -> Fields {
+    /// Columns beyond those of the file from which it fills fields of its own, such as the return
+    /// numbers of LAS.
+    fn extra_columns(&self) -> Fields {
         Fields::NONE
     }
 
@@ -79,7 +80,7 @@ impl EncodeError {
     }
 }
 
-/// Writes a file by an [`Encoder`].
+/// Writes a file by a [`FormatEncoder`].
 #[derive(Debug)]
 pub struct FileSink<E> {
     pub(super) encoder: E,
@@ -88,7 +89,7 @@ pub struct FileSink<E> {
     summary: Summary,
 }
 
-impl<E: Encoder> FileSink<E> {
+impl<E: FormatEncoder> FileSink<E> {
     /// A file with the columns `fields`.
     pub(super) fn of(encoder: E, fields: Fields) -> Self {
         Self {
@@ -106,7 +107,7 @@ impl<E: Encoder> FileSink<E> {
 
 /// After a failed batch, [`Sink::finish`] still completes a file of the batches before it, if the
 /// format can.
-impl<E: Encoder> Sink for FileSink<E> {
+impl<E: FormatEncoder> Sink for FileSink<E> {
     fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
         let format = self.encoder.format();
         self.stage.points(format)?;
@@ -123,7 +124,7 @@ impl<E: Encoder> Sink for FileSink<E> {
     }
 
     fn fields(&self) -> Fields {
-        self.fields | self.encoder.also()
+        self.fields | self.encoder.extra_columns()
     }
 
     fn begin(&mut self, metadata: &Metadata) -> Result<(), SinkError> {

@@ -15,8 +15,8 @@ use std::io::{Seek, Write};
 use las::{Builder, GpsTimeType, PointData, PointDataBuilder, Transform, Vector, Vlr};
 
 use self::extra_bytes::ExtraColumn;
-use super::fallible::{FallibleOutput, WriteFault};
-use super::file_sink::{EncodeError, Encoder, FileSink};
+use super::fallible::{ErrorHidingOutput, WriteFault};
+use super::file_sink::{EncodeError, FileSink, FormatEncoder};
 use super::gps_time;
 use super::seconds::seconds;
 use crate::rows::{fill, fill_values};
@@ -58,8 +58,8 @@ pub(super) struct LasEncoder<W: Write + Seek + Send + Sync + 'static> {
     dual_return: bool,
     fault: WriteFault,
     /// Before begin, or after finish.
-    output: Option<FallibleOutput<W>>,
-    open: Option<(las::Writer<FallibleOutput<W>>, PointData)>,
+    output: Option<ErrorHidingOutput<W>>,
+    open: Option<(las::Writer<ErrorHidingOutput<W>>, PointData)>,
 }
 
 impl<W: Write + Seek + Send + Sync + 'static> LasWriter<W> {
@@ -74,7 +74,7 @@ impl<W: Write + Seek + Send + Sync + 'static> LasWriter<W> {
     }
 
     fn new(format: &'static str, output: W, fields: Fields) -> Self {
-        let (output, fault) = FallibleOutput::new(output);
+        let (output, fault) = ErrorHidingOutput::new(output);
         let encoder = LasEncoder {
             format,
             extras: extra_bytes::layout(fields),
@@ -92,7 +92,7 @@ impl<W: Write + Seek + Send + Sync + 'static> LasWriter<W> {
     fn into_inner(self) -> Option<W> {
         let open = self.encoder.open.map(|(writer, _)| writer.into_inner());
         let output = self.encoder.output.or_else(|| open?.ok());
-        output.map(FallibleOutput::into_inner)
+        output.map(ErrorHidingOutput::into_inner)
     }
 }
 
@@ -200,7 +200,7 @@ fn text_record(metadata: &Metadata, prefix: &str) -> Vlr {
     }
 }
 
-impl<W: Write + Seek + Send + Sync + 'static> Encoder for LasEncoder<W> {
+impl<W: Write + Seek + Send + Sync + 'static> FormatEncoder for LasEncoder<W> {
     fn format(&self) -> &'static str {
         self.format
     }
@@ -209,7 +209,7 @@ impl<W: Write + Seek + Send + Sync + 'static> Encoder for LasEncoder<W> {
         Some(LIMIT_M)
     }
 
-    fn also(&self) -> Fields {
+    fn extra_columns(&self) -> Fields {
         Fields::ECHO
     }
 

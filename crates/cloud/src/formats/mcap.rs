@@ -22,7 +22,7 @@ use mcap::{Compression, WriteOptions};
 use units::{Degrees, Host, Span, Stamp};
 
 use self::channels::McapChannels;
-use super::fallible::{FallibleOutput, WriteFault};
+use super::fallible::{ErrorHidingOutput, WriteFault};
 use super::file_sink::EncodeError;
 use super::stage::Stage;
 use crate::messages::cdr::Cdr;
@@ -67,13 +67,13 @@ struct McapLog<W: Write + Seek> {
 }
 
 enum McapState<W: Write + Seek> {
-    Idle(FallibleOutput<W>),
+    Idle(ErrorHidingOutput<W>),
     Open {
-        writer: Box<mcap::Writer<FallibleOutput<W>>>,
+        writer: Box<mcap::Writer<ErrorHidingOutput<W>>>,
         channels: McapChannels,
     },
     Done {
-        output: FallibleOutput<W>,
+        output: ErrorHidingOutput<W>,
         channels: McapChannels,
     },
     Lost,
@@ -83,7 +83,7 @@ impl<W: Write + Seek> McapWriter<W> {
     /// A writer into `output` with the columns of [`Fields::FILE`] without the tilt, one cloud per
     /// sweep.
     pub fn new(output: W, fields: Fields) -> Self {
-        let (output, fault) = FallibleOutput::new(output);
+        let (output, fault) = ErrorHidingOutput::new(output);
         Self {
             stage: Stage::default(),
             clouds: Cutting::new(FORMAT, fields, Frames::default()),

@@ -5,7 +5,7 @@
 
 use std::io::{self, Seek, SeekFrom, Write};
 
-use super::file_sink::{EncodeError, Encoder, FileSink};
+use super::file_sink::{EncodeError, FileSink, FormatEncoder};
 use super::layout::RowLayout;
 use crate::rows::NumberType;
 use crate::{Fields, Metadata, Points, Summary};
@@ -61,7 +61,7 @@ impl<W> PcdEncoder<W> {
     }
 }
 
-impl<W: Write + Seek> Encoder for PcdEncoder<W> {
+impl<W: Write + Seek> FormatEncoder for PcdEncoder<W> {
     fn format(&self) -> &'static str {
         "pcd"
     }

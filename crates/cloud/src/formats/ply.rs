@@ -12,7 +12,7 @@
 
 use std::io::{self, Read, Seek, SeekFrom, Write};
 
-use super::file_sink::{EncodeError, Encoder, FileSink};
+use super::file_sink::{EncodeError, FileSink, FormatEncoder};
 use super::layout::RowLayout;
 use crate::rows::NumberType;
 use crate::{Fields, Metadata, Points, Summary};
@@ -91,7 +91,7 @@ impl<W: Write + Seek> PlyWriter<W> {
     }
 }
 
-impl<W: Write + Seek> Encoder for PlyEncoder<W> {
+impl<W: Write + Seek> FormatEncoder for PlyEncoder<W> {
     fn format(&self) -> &'static str {
         "ply"
     }
@@ -134,7 +134,7 @@ impl<W: Write, S: Read + Write + Seek> PlyPipe<W, S> {
     }
 }
 
-impl<W: Write, S: Read + Write + Seek> Encoder for PipeEncoder<W, S> {
+impl<W: Write, S: Read + Write + Seek> FormatEncoder for PipeEncoder<W, S> {
     fn format(&self) -> &'static str {
         "ply"
     }

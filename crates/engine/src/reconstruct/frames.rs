@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use cloud::formats::Format;
 use cloud::{Fields, Metadata, Point, Points};
 use lidar::{
-    Decoder, Duplicates, Echo, Firing, FrameCutter, Options, OrganisedFrame, RevolutionFrame,
+    Decoder, Duplicates, Firing, FrameCutter, Options, OrganisedFrame, ReturnKind, RevolutionFrame,
     Stats, UtcClock,
 };
 use protocol::record::{Record, Wire};
@@ -295,7 +295,9 @@ impl FrameBuilder<'_> {
             for ring in 0..grid.rings() {
                 for column in 0..grid.columns().len() {
                     let seen = grid.cell(layer, ring, column).filter(|seen| {
-                        !(self.merge_equal && layer > 0 && seen.echo == Echo::LastAndStrongest)
+                        !(self.merge_equal
+                            && layer > 0
+                            && seen.echo == ReturnKind::LastAndStrongest)
                     });
                     let placed =
                         seen.and_then(|seen| alignment.place_received(seen, self.received));

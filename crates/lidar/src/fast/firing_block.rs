@@ -10,7 +10,7 @@ use units::{Host, Lidar, Real, Span, Stamp};
 
 use super::azimuth::{PaceOffsets, SinCos};
 use super::unpack::{RawChannels, UnpackedBlock};
-use crate::firing::{Duplicates, Echo, Firing, FiringChannels};
+use crate::firing::{Duplicates, Firing, FiringChannels, ReturnKind};
 use crate::geometry::Geometry;
 
 /// One return per channel: the only ones of a block, or the first or second ones of a pair.
@@ -51,7 +51,7 @@ pub struct Heading<V> {
 pub(crate) enum BlockReturns<'a> {
     One {
         only: ReturnLayer<'a>,
-        echo: Echo,
+        echo: ReturnKind,
     },
     Two {
         last: ReturnLayer<'a>,
@@ -94,7 +94,7 @@ impl<'a> ReturnLayer<'a> {
 
 impl<'a> BlockReturns<'a> {
     #[inline(always)]
-    pub(crate) const fn one(only: ReturnLayer<'a>, echo: Echo) -> Self {
+    pub(crate) const fn one(only: ReturnLayer<'a>, echo: ReturnKind) -> Self {
         Self::One { only, echo }
     }
 
@@ -155,8 +155,8 @@ impl<'a> FiringBlock<'a> {
         }
     }
 
-    /// Kind of each channel's return ([`Echo::code`]), one row per layer; meaningless without a
-    /// return.
+    /// Kind of each channel's return ([`ReturnKind::code`]), one row per layer; meaningless without
+    /// a return.
     #[inline(never)]
     #[must_use]
     pub fn echo_codes(&self) -> [[u8; CHANNELS]; 2] {
@@ -164,13 +164,16 @@ impl<'a> FiringBlock<'a> {
             BlockReturns::One { echo, .. } => [[echo.code(); CHANNELS]; 2],
             BlockReturns::Two { strongest, .. } => {
                 let changed = strongest.unpacked.changed;
-                let codes = |differing: Echo| {
+                let codes = |differing: ReturnKind| {
                     core::array::from_fn(|channel| match changed >> channel & 1 {
-                        0 => Echo::LastAndStrongest.code(),
+                        0 => ReturnKind::LastAndStrongest.code(),
                         _ => differing.code(),
                     })
                 };
-                [codes(Echo::Last), codes(Echo::StrongestOrSecond)]
+                [
+                    codes(ReturnKind::Last),
+                    codes(ReturnKind::StrongestOrSecond),
+                ]
             }
         }
     }

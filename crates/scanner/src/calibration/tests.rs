@@ -1,5 +1,5 @@
 use super::*;
-use lidar::Echo;
+use lidar::ReturnKind;
 use units::{Lidar, Stamp};
 
 const GEARING: Gearing = match Gearing::new(500, 120, 1) {
@@ -16,7 +16,7 @@ fn point(position_m: [f64; 3]) -> SensorPoint {
         laser: 2,
         ring: 0,
         reflectivity: 0,
-        echo: Echo::Strongest,
+        echo: ReturnKind::Strongest,
     }
 }
 

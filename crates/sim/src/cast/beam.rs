@@ -7,7 +7,7 @@
 
 use fearless_simd::{Simd, f32x8, mask32x8, prelude::*};
 
-use super::bvh::Node;
+use super::bvh::BvhNode;
 
 /// Rounding of the test is below 2^-21 of the coordinates; doubled for both ends of an interval,
 /// and doubled as a margin.
@@ -119,7 +119,7 @@ impl<const THICK: bool> Beam<THICK> {
     pub(super) fn enter<S: Simd>(
         &self,
         simd: S,
-        node: &Node,
+        node: &BvhNode,
         up_to: f32,
     ) -> (f32x8<S>, mask32x8<S>) {
         let mut enter = f32x8::splat(simd, 0.0);

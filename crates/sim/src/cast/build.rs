@@ -3,7 +3,7 @@
 //!
 //! One input and one [`Quality`] give the same tree on any machine.
 
-use super::bvh::{Bounds, Bvh, LEVELS, MOST_SHARING, Node, leaf};
+use super::bvh::{BoundingBox, Bvh, BvhNode, LEVELS, MOST_SHARING, leaf};
 
 /// More places along an axis than this are not tried.
 const MOST_BINS: usize = 64;
@@ -41,7 +41,7 @@ impl Quality {
 
 /// An item while the tree is built.
 struct BuildItem {
-    bounds: Bounds,
+    bounds: BoundingBox,
     id: u32,
 }
 
@@ -49,12 +49,12 @@ struct BuildItem {
 struct BuildRange {
     begin: usize,
     end: usize,
-    bounds: Bounds,
+    bounds: BoundingBox,
 }
 
 impl BuildRange {
     fn over(items: &[BuildItem], begin: usize, end: usize) -> Self {
-        let mut bounds = Bounds::EMPTY;
+        let mut bounds = BoundingBox::EMPTY;
         for item in items.get(begin..end).unwrap_or_default() {
             bounds.join(&item.bounds);
         }
@@ -74,7 +74,7 @@ struct Job {
     level: usize,
 }
 
-pub(super) fn build(boxes: &[Bounds], quality: Quality) -> (Bvh, Vec<u32>) {
+pub(super) fn build(boxes: &[BoundingBox], quality: Quality) -> (Bvh, Vec<u32>) {
     let quality = quality.clean();
     let mut bins = Bins::new(quality.bins);
     let mut items: Vec<BuildItem> = boxes
@@ -87,7 +87,7 @@ pub(super) fn build(boxes: &[Bounds], quality: Quality) -> (Bvh, Vec<u32>) {
         .collect();
     let whole = BuildRange::over(&items, 0, items.len());
     let mut nodes = Vec::with_capacity(items.len() / 4 + 1);
-    nodes.push(Node::EMPTY);
+    nodes.push(BvhNode::EMPTY);
     let mut jobs = vec![Job {
         node: 0,
         begin: 0,
@@ -96,7 +96,7 @@ pub(super) fn build(boxes: &[Bounds], quality: Quality) -> (Bvh, Vec<u32>) {
     }];
     while let Some(job) = jobs.pop() {
         let parts = parts(&mut items, &job, &mut bins);
-        let mut made = Node::EMPTY;
+        let mut made = BvhNode::EMPTY;
         for (lane, part) in parts.iter().enumerate() {
             for axis in 0..3 {
                 made.slabs[2 * axis][lane] = below(part.bounds.low[axis]);
@@ -111,7 +111,7 @@ pub(super) fn build(boxes: &[Bounds], quality: Quality) -> (Bvh, Vec<u32>) {
                     end: part.end,
                     level: job.level + 1,
                 });
-                nodes.push(Node::EMPTY);
+                nodes.push(BvhNode::EMPTY);
                 nodes.len() as u32 - 1
             };
         }
@@ -166,10 +166,10 @@ fn cut(items: &mut [BuildItem], part: &BuildRange, bins: Option<&mut Bins>) -> u
     let Some(slice) = items.get_mut(part.begin..part.end) else {
         return middle;
     };
-    let mut centres = Bounds::EMPTY;
+    let mut centres = BoundingBox::EMPTY;
     for item in slice.iter() {
         let centre = [0, 1, 2].map(|axis| item.bounds.middle2(axis));
-        centres.join(&Bounds {
+        centres.join(&BoundingBox {
             low: centre,
             high: centre,
         });
@@ -212,7 +212,7 @@ struct Binning {
 }
 
 impl Binning {
-    fn new(centres: &Bounds, axis: usize, bins: usize) -> Self {
+    fn new(centres: &BoundingBox, axis: usize, bins: usize) -> Self {
         let (low, high) = (centres.low[axis], centres.high[axis]);
         Self {
             axis,
@@ -229,14 +229,14 @@ impl Binning {
 
 /// Contents of each bin and of all bins from it on; the memory is reused for every cut.
 struct Bins {
-    of: Vec<(Bounds, usize)>,
+    of: Vec<(BoundingBox, usize)>,
     behind: Vec<(f64, usize)>,
 }
 
 impl Bins {
     fn new(count: usize) -> Self {
         Self {
-            of: vec![(Bounds::EMPTY, 0); count],
+            of: vec![(BoundingBox::EMPTY, 0); count],
             behind: vec![(0.0, 0); count],
         }
     }
@@ -252,14 +252,14 @@ impl Bins {
 
     /// Axis and first bin behind the cut with the least expected cost; `None` if no cut separates
     /// anything.
-    fn cheapest(&mut self, items: &[BuildItem], centres: &Bounds) -> Option<(usize, usize)> {
+    fn cheapest(&mut self, items: &[BuildItem], centres: &BoundingBox) -> Option<(usize, usize)> {
         let mut best = (f64::INFINITY, None);
         for axis in 0..3 {
             if centres.high[axis] <= centres.low[axis] {
                 continue;
             }
             self.fill(items, &Binning::new(centres, axis, self.count()));
-            let (mut bounds, mut count) = (Bounds::EMPTY, 0);
+            let (mut bounds, mut count) = (BoundingBox::EMPTY, 0);
             let cuts = self.of.iter().zip(self.behind.iter().enumerate().skip(1));
             for ((of, of_count), (bin, &(area_behind, count_behind))) in cuts {
                 bounds.join(of);
@@ -277,14 +277,14 @@ impl Bins {
     }
 
     fn fill(&mut self, items: &[BuildItem], binning: &Binning) {
-        self.of.fill((Bounds::EMPTY, 0));
+        self.of.fill((BoundingBox::EMPTY, 0));
         for item in items {
             if let Some((bounds, count)) = self.of.get_mut(binning.bin(item)) {
                 bounds.join(&item.bounds);
                 *count += 1;
             }
         }
-        let (mut bounds, mut count) = (Bounds::EMPTY, 0);
+        let (mut bounds, mut count) = (BoundingBox::EMPTY, 0);
         for ((of, of_count), behind) in self.of.iter().zip(&mut self.behind).rev() {
             bounds.join(of);
             count += of_count;

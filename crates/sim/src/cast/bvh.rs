@@ -36,12 +36,12 @@ const STACK: usize = 128;
 
 /// A box, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Bounds {
+pub(super) struct BoundingBox {
     pub low: [f64; 3],
     pub high: [f64; 3],
 }
 
-impl Bounds {
+impl BoundingBox {
     pub(super) const EMPTY: Self = Self {
         low: [f64::INFINITY; 3],
         high: [f64::NEG_INFINITY; 3],
@@ -90,14 +90,14 @@ impl Bounds {
 /// Eight boxes and what is in them.
 #[derive(Clone, Debug)]
 #[repr(C, align(32))]
-pub(super) struct Node {
+pub(super) struct BvhNode {
     /// Low x, high x, low y, high y, low z, high z; an unused child has an empty box.
     pub slabs: [[f32; 8]; 6],
     /// A node, or items with [`LEAF`] ([`leaf`]).
     pub child: [u32; 8],
 }
 
-impl Node {
+impl BvhNode {
     pub(super) const EMPTY: Self = Self {
         slabs: [
             [f32::MAX; 8],
@@ -115,7 +115,7 @@ impl Node {
 #[derive(Clone, Debug)]
 pub(super) struct Bvh {
     /// The first is the root.
-    pub(super) nodes: Vec<Node>,
+    pub(super) nodes: Vec<BvhNode>,
     /// The greatest coordinate of any box.
     pub(super) reach_m: f64,
 }
@@ -145,7 +145,7 @@ impl Stack {
 impl Bvh {
     /// A tree over items with these boxes, and the order of its leaves: leaf `i` is item
     /// `order[i]`.
-    pub(super) fn over(boxes: &[Bounds], quality: Quality) -> (Self, Vec<u32>) {
+    pub(super) fn over(boxes: &[BoundingBox], quality: Quality) -> (Self, Vec<u32>) {
         build::build(boxes, quality)
     }
 

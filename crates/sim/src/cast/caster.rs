@@ -10,7 +10,7 @@ use glam::DVec3;
 
 use super::beam::{Beam, up_to};
 use super::build::Quality;
-use super::bvh::{Bounds, Bvh, MOST_ITEMS, Stack};
+use super::bvh::{BoundingBox, Bvh, MOST_ITEMS, Stack};
 use super::mesh::short_middle;
 use super::packet::{Best, Nearest, ObjectTest, RayLanes, loaded, spread};
 use super::ray::{Hit, Ray, Reach};
@@ -101,7 +101,7 @@ impl Caster {
             return Err(CastError::TooMany(caster.objects.len()));
         }
         let (mut finite, mut boxes) = (Vec::new(), Vec::new());
-        let mut whole = Bounds::EMPTY;
+        let mut whole = BoundingBox::EMPTY;
         for ((number, object), id) in caster.objects.iter().enumerate().zip(0_u32..) {
             match object.bounds() {
                 Ok(None) => caster.each.push(id),
@@ -110,7 +110,7 @@ impl Caster {
                     finite.push(id);
                     boxes.push(bounds);
                 }
-                Err(Bounds { low, high }) => {
+                Err(BoundingBox { low, high }) => {
                     return Err(CastError::Size {
                         object: number,
                         low,
@@ -121,7 +121,7 @@ impl Caster {
         }
         caster.middle_m = short_middle(&whole);
         let middle = caster.middle_m;
-        for Bounds { low, high } in &mut boxes {
+        for BoundingBox { low, high } in &mut boxes {
             *low = (DVec3::from_array(*low) - middle).to_array();
             *high = (DVec3::from_array(*high) - middle).to_array();
         }
@@ -163,7 +163,7 @@ impl Caster {
 
     /// The middle and radius of a ball around all objects, metres; none if one is endless.
     pub(crate) fn bounding_sphere(&self) -> Option<(DVec3, f64)> {
-        let mut whole = Bounds::EMPTY;
+        let mut whole = BoundingBox::EMPTY;
         for object in &self.objects {
             whole.join(&object.bounds().ok()??);
         }

@@ -9,7 +9,7 @@ use thiserror::Error;
 
 use super::beam::{Beam, up_to};
 use super::build::Quality;
-use super::bvh::{Bounds, Bvh, MOST_ITEMS, Stack};
+use super::bvh::{BoundingBox, Bvh, MOST_ITEMS, Stack};
 use super::packet::{Best, Nearest, ObjectTest, RayLanes, loaded, spread};
 use super::ray::FARTHEST_M;
 use super::triangle::{Corners, ShearedRay, ShearedRays};
@@ -27,7 +27,7 @@ pub struct Mesh {
     /// Where each triangle of the list is among the faces.
     places: Vec<u32>,
     bvh: Bvh,
-    bounds: Bounds,
+    bounds: BoundingBox,
 }
 
 /// A triangle: its vertices and its number in the list.
@@ -79,7 +79,7 @@ impl Mesh {
                 return Err(MeshError::Vertex { vertex, got });
             }
         }
-        let whole = Bounds::of(vertices_m.iter().map(DVec3::to_array));
+        let whole = BoundingBox::of(vertices_m.iter().map(DVec3::to_array));
         let origin_m = short_middle(&whole);
         let vertices: Vec<[f64; 3]> = vertices_m
             .iter()
@@ -110,7 +110,7 @@ impl Mesh {
             faces: kept,
             places: vec![u32::MAX; triangles.len()],
             bvh: Bvh::over(&[], Quality::default()).0,
-            bounds: Bounds::EMPTY,
+            bounds: BoundingBox::EMPTY,
         };
         mesh.arrange(Quality::default());
         Ok(mesh)
@@ -131,11 +131,11 @@ impl Mesh {
     /// order of its leaves.
     fn arrange(&mut self, quality: Quality) {
         let mut boxes = Vec::with_capacity(self.faces.len());
-        self.bounds = Bounds::EMPTY;
+        self.bounds = BoundingBox::EMPTY;
         for face in &self.faces {
             let corners = face.corners.iter();
             let points = corners.filter_map(|&at| self.vertices.get(at as usize).copied());
-            let of = Bounds::of(points);
+            let of = BoundingBox::of(points);
             self.bounds.join(&of);
             boxes.push(of);
         }
@@ -171,7 +171,7 @@ impl Mesh {
     }
 
     /// From [`Mesh::origin_m`].
-    pub(super) fn bounds(&self) -> Bounds {
+    pub(super) fn bounds(&self) -> BoundingBox {
         self.bounds
     }
 
@@ -323,7 +323,7 @@ impl Mesh {
 const ALL: u64 = 0xff;
 
 /// The middle of a box in coordinates of 24 bits; zero for an empty one.
-pub(super) fn short_middle(bounds: &Bounds) -> DVec3 {
+pub(super) fn short_middle(bounds: &BoundingBox) -> DVec3 {
     if bounds.low[0] > bounds.high[0] {
         return DVec3::ZERO;
     }

@@ -8,7 +8,7 @@
 
 use glam::DVec3;
 
-use super::bvh::Bounds;
+use super::bvh::BoundingBox;
 
 /// Intersections of a line with a surface in order: distance along the ray and primitive; NaN for
 /// none.
@@ -53,9 +53,9 @@ impl Sphere {
         [(nearest - half, 0), (nearest + half, 0)]
     }
 
-    pub(super) fn bounds(&self) -> Bounds {
+    pub(super) fn bounds(&self) -> BoundingBox {
         let radius_m = self.radius_m.abs();
-        Bounds {
+        BoundingBox {
             low: [-radius_m; 3],
             high: [radius_m; 3],
         }
@@ -142,8 +142,8 @@ impl Cuboid {
         }
     }
 
-    pub(super) fn bounds(&self) -> Bounds {
-        Bounds {
+    pub(super) fn bounds(&self) -> BoundingBox {
+        BoundingBox {
             low: self.low_m.to_array(),
             high: self.high_m.to_array(),
         }
@@ -228,9 +228,9 @@ impl Cylinder {
         Some((nearest - half, nearest + half))
     }
 
-    pub(super) fn bounds(&self) -> Bounds {
+    pub(super) fn bounds(&self) -> BoundingBox {
         let radius_m = self.radius_m.abs();
-        Bounds {
+        BoundingBox {
             low: [-radius_m, -radius_m, self.bottom_m],
             high: [radius_m, radius_m, self.top_m],
         }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use fearless_simd::Simd;
 use glam::DVec3;
 
-use super::bvh::{Bounds, Stack};
+use super::bvh::{BoundingBox, Stack};
 use super::mesh::Mesh;
 use super::packet::{Best, Nearest, ObjectTest, RayLanes, loaded};
 use super::placement::Placement;
@@ -86,9 +86,9 @@ impl Object {
         self
     }
 
-    /// Bounds in the object's frame, relative to [`Object::origin_m`]; `None` for infinite
+    /// BoundingBox in the object's frame, relative to [`Object::origin_m`]; `None` for infinite
     /// surfaces.
-    fn own_bounds(&self) -> Option<Bounds> {
+    fn own_bounds(&self) -> Option<BoundingBox> {
         match &self.surface {
             Surface::Plane => None,
             Surface::Sphere(sphere) => Some(sphere.bounds()),
@@ -100,12 +100,12 @@ impl Object {
 
     /// Box in the world, with room for what the motion rounds off; `None` of what is endless. An
     /// object without extent in its own frame (NaN, ends the wrong way round) gives `Err`.
-    pub(super) fn bounds(&self) -> Result<Option<Bounds>, Bounds> {
+    pub(super) fn bounds(&self) -> Result<Option<BoundingBox>, BoundingBox> {
         let Some(own) = self.own_bounds() else {
             return Ok(None);
         };
         if matches!(&self.surface, Surface::Mesh(mesh) if mesh.triangles() == 0) {
-            return Ok(Some(Bounds::EMPTY));
+            return Ok(Some(BoundingBox::EMPTY));
         }
         let sound = (0..3).all(|axis| own.low[axis] <= own.high[axis]);
         if !sound || own.reach() > super::ray::FARTHEST_M {
@@ -123,7 +123,7 @@ impl Object {
             let corner = DVec3::new(x, y, z) + origin_m;
             self.placement.world_point(corner).to_array()
         });
-        let mut bounds = Bounds::of(corners);
+        let mut bounds = BoundingBox::of(corners);
         // 2^-40 of the coordinates that went in: thousands of roundings.
         let room = (bounds.reach() + own.reach() + origin_m.abs().max_element()) * 1e-12;
         for axis in 0..3 {

@@ -10,7 +10,7 @@ use serde::Deserialize;
 
 use super::settings::{InvalidSetting, SettingCheck};
 use crate::effects::ViewEffect;
-use crate::firing::Firing;
+use crate::firing::SimulatedFiring;
 
 /// `[effects.base_drift]`.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq)]
@@ -45,7 +45,7 @@ effect! {
 }
 
 impl ViewEffect for BaseDrift {
-    fn hide(&self, firing: &mut Firing) -> u32 {
+    fn hide(&self, firing: &mut SimulatedFiring) -> u32 {
         if *self == Self::default() {
             return 0;
         }
@@ -75,7 +75,7 @@ mod tests {
             velocity_m_s: [0.0, 0.0, 0.01],
             turn_deg_s: [0.0, 0.0, 9.0],
         };
-        let mut firing = Firing::new(16);
+        let mut firing = SimulatedFiring::new(16);
         firing.alive = 0b11;
         firing.time_s = 10.0;
         assert_eq!(drift.checked().unwrap().hide(&mut firing), 2);

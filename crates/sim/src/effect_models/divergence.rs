@@ -17,7 +17,7 @@ mod plain;
 mod pulses;
 
 use crate::effects::BeamEffect;
-use crate::firing::{Echo, Echoes, Firing, Surroundings};
+use crate::firing::{Echo, Echoes, SimulatedFiring, Surroundings};
 use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
@@ -27,7 +27,7 @@ use super::returns::reported;
 use super::settings::{InvalidSetting, SettingCheck};
 use footprint::{Footprint, scan_axis};
 use plain::Plain;
-use pulses::{MOST_SAMPLES, Pulse, Sample};
+use pulses::{MOST_SAMPLES, Pulse, PulseSample};
 
 /// `[effects.divergence]`.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
@@ -116,7 +116,7 @@ impl Divergence {
     /// edges.
     pub fn receive_everywhere(
         &self,
-        firing: &Firing,
+        firing: &SimulatedFiring,
         surroundings: &Surroundings,
         echoes: &mut Echoes,
     ) -> u32 {
@@ -127,7 +127,7 @@ impl Divergence {
     #[inline(always)]
     fn act(
         &self,
-        firing: &Firing,
+        firing: &SimulatedFiring,
         surroundings: &Surroundings,
         echoes: &mut Echoes,
         can_straddle: impl Fn(&Footprint, &Echo) -> bool,
@@ -160,7 +160,7 @@ impl Divergence {
         let along = |place: usize, of: usize| (2 * place + 1) as f64 / of as f64 - 1.0;
         let place = |ray: usize| (along(ray % columns, columns), along(ray / columns, rows));
         let rays = (columns * rows).min(MOST_SAMPLES);
-        let mut samples = [Sample::NOTHING; MOST_SAMPLES];
+        let mut samples = [PulseSample::NOTHING; MOST_SAMPLES];
         let mut count = 0;
         for first in (0..rays).step_by(TOGETHER) {
             let fan = first..rays.min(first + TOGETHER);
@@ -175,7 +175,7 @@ impl Divergence {
             for ((met, direction), ray) in mets.iter().zip(directions).zip(fan) {
                 if let (Some(met), Some(sample)) = (met, samples.get_mut(count)) {
                     let (x, y) = place(ray);
-                    *sample = Sample::new(met, *direction, x * x + y * y);
+                    *sample = PulseSample::new(met, *direction, x * x + y * y);
                     count += 1;
                 }
             }
@@ -198,7 +198,12 @@ effect! {
 }
 
 impl BeamEffect for Divergence {
-    fn receive(&self, firing: &Firing, surroundings: &Surroundings, echoes: &mut Echoes) -> u32 {
+    fn receive(
+        &self,
+        firing: &SimulatedFiring,
+        surroundings: &Surroundings,
+        echoes: &mut Echoes,
+    ) -> u32 {
         self.act(firing, surroundings, echoes, |patch, middle| {
             !self.is_plain(patch, middle.range_m, surroundings)
                 && !patch.is_flat(middle, self.settings.flat_m, surroundings)

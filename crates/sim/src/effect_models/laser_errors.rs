@@ -10,8 +10,8 @@ use serde::Deserialize;
 
 use super::settings::{InvalidSetting, SettingCheck};
 use crate::effects::SurfaceEffect;
-use crate::firing::{Echoes, Firing};
-use crate::random::Source;
+use crate::firing::{Echoes, SimulatedFiring};
+use crate::random::RandomSource;
 use crate::sensor::{LaserBeam, MAX_LASERS};
 
 /// `[effects.laser_errors]`. Errors are drawn per laser; lists by laser in firing order add to
@@ -49,7 +49,7 @@ impl LaserErrors {
     /// [`InvalidSetting`] for numbers out of range.
     pub fn new(settings: &LaserErrorsSettings, seed: u64) -> Result<Self, InvalidSetting> {
         let check = SettingCheck(Self::NAME);
-        let random = Source::new(seed, Self::NAME);
+        let random = RandomSource::new(seed, Self::NAME);
         let kind = |channel, names: [&'static str; 2], sd: f64, list: &[f64], most: f64| {
             check.within(names[0], sd, 0.0..=most)?;
             let mut errors = [0.0; MAX_LASERS];
@@ -95,7 +95,7 @@ effect! {
 }
 
 impl SurfaceEffect for LaserErrors {
-    fn reflect(&self, _: &Firing, echoes: &mut Echoes) -> u32 {
+    fn reflect(&self, _: &SimulatedFiring, echoes: &mut Echoes) -> u32 {
         let mut acted = 0;
         for echoes in echoes.all_mut() {
             for (echo, error_m) in echoes.iter_mut().zip(&self.range_m) {
@@ -164,7 +164,7 @@ mod tests {
         for echo in echoes.all_mut().flatten() {
             echo.range_m = 10.0;
         }
-        assert_eq!(errors.reflect(&Firing::new(16), &mut echoes), 16);
+        assert_eq!(errors.reflect(&SimulatedFiring::new(16), &mut echoes), 16);
         let ranges: Vec<f64> = echoes.all_mut().flatten().map(|e| e.range_m).collect();
         assert_eq!(ranges[..3], [10.0, 10.02, 10.0]);
         let invalid = LaserErrorsSettings {

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use serde::Deserialize;
 
 use super::settings::{InvalidSetting, SettingCheck};
-use crate::random::Source;
+use crate::random::RandomSource;
 
 /// `[effects.lidar_clock]`.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
@@ -41,7 +41,7 @@ pub struct DriftingClock {
     slower: f64,
     wander_ns: f64,
     period_ns: f64,
-    random: Source,
+    random: RandomSource,
 }
 
 impl DriftingClock {
@@ -60,7 +60,7 @@ impl DriftingClock {
             slower: 1.0 / (1.0 + ppm * 1e-6) - 1.0,
             wander_ns: 1e3 * check.within("wander_us", settings.wander_us, 0.0..=most_us)?,
             period_ns: period_s * 1e9,
-            random: Source::new(seed, Self::NAME),
+            random: RandomSource::new(seed, Self::NAME),
         })
     }
 

@@ -7,7 +7,7 @@ use crate::effects::{LinkEffect, LinkMessage, MessageKind};
 use serde::Deserialize;
 
 use super::settings::{InvalidSetting, SettingCheck};
-use crate::random::Source;
+use crate::random::RandomSource;
 
 /// `[effects.link_jitter]`, microseconds.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
@@ -47,7 +47,7 @@ struct Delay {
 pub struct LinkJitter {
     lidar: Delay,
     drive: Delay,
-    random: Source,
+    random: RandomSource,
     /// Last arrival: lidar, request, answer.
     last_ns: [i64; 3],
 }
@@ -72,7 +72,7 @@ impl LinkJitter {
                 least_ns: ns("drive_delay_us", settings.drive_delay_us)?,
                 tail_ns: ns("drive_jitter_us", settings.drive_jitter_us)?,
             },
-            random: Source::new(seed, Self::NAME),
+            random: RandomSource::new(seed, Self::NAME),
             last_ns: [i64::MIN; 3],
         })
     }

@@ -4,7 +4,7 @@ use crate::effects::{LinkEffect, LinkMessage};
 use serde::Deserialize;
 
 use super::settings::{InvalidSetting, SettingCheck};
-use crate::random::Source;
+use crate::random::RandomSource;
 
 /// `[effects.loss]`.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq)]
@@ -21,7 +21,7 @@ pub struct LossSettings {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Loss {
     settings: LossSettings,
-    random: Source,
+    random: RandomSource,
 }
 
 impl Loss {
@@ -35,7 +35,7 @@ impl Loss {
         check.within("drive_share", settings.drive_share, 0.0..=1.0)?;
         Ok(Self {
             settings: *settings,
-            random: Source::new(seed, Self::NAME),
+            random: RandomSource::new(seed, Self::NAME),
         })
     }
 }

@@ -6,7 +6,7 @@
 //! light of the frame is not included.
 
 use crate::effects::ViewEffect;
-use crate::firing::Firing;
+use crate::firing::SimulatedFiring;
 use std::sync::Arc;
 
 use serde::Deserialize;
@@ -102,7 +102,7 @@ effect! {
 }
 
 impl ViewEffect for OwnShadow {
-    fn hide(&self, firing: &mut Firing) -> u32 {
+    fn hide(&self, firing: &mut SimulatedFiring) -> u32 {
         let before = firing.alive;
         let (azimuth, tilt) = (firing.azimuth_deg, firing.tilt.angle_deg);
         if self
@@ -179,7 +179,7 @@ mod tests {
         // 30 to 60 degrees.
         assert_eq!(shadow.hide(&mut firing(90.0, 0.0)), 0);
         let mut steep = firing(270.0, -45.0);
-        let lower = |firing: &Firing| {
+        let lower = |firing: &SimulatedFiring| {
             let down = |laser: &usize| firing.directions[*laser].z < (-40.0_f64).to_radians().sin();
             firing.alive().filter(down).count()
         };

@@ -6,13 +6,13 @@
 //! of a laser, are not included.
 
 use crate::effects::SurfaceEffect;
-use crate::firing::{Echoes, Firing};
+use crate::firing::{Echoes, SimulatedFiring};
 use std::sync::Arc;
 
 use serde::Deserialize;
 
 use super::settings::SettingCheck;
-use crate::random::Source;
+use crate::random::RandomSource;
 
 /// `[effects.range_noise]`.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
@@ -27,7 +27,7 @@ pub struct RangeNoiseSettings {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RangeNoise {
     sd_m: f64,
-    random: Source,
+    random: RandomSource,
 }
 
 impl RangeNoise {
@@ -38,7 +38,7 @@ impl RangeNoise {
         let is_valid = sd_m.is_finite() && sd_m > 0.0;
         Self {
             sd_m: if is_valid { sd_m } else { 0.0 },
-            random: Source::new(seed, Self::NAME),
+            random: RandomSource::new(seed, Self::NAME),
         }
     }
 }
@@ -57,7 +57,7 @@ effect! {
 }
 
 impl SurfaceEffect for RangeNoise {
-    fn reflect(&self, firing: &Firing, echoes: &mut Echoes) -> u32 {
+    fn reflect(&self, firing: &SimulatedFiring, echoes: &mut Echoes) -> u32 {
         let mut acted = 0;
         let returns = echoes.all_mut();
         for (set, echoes) in returns.enumerate() {
@@ -92,7 +92,7 @@ mod tests {
     /// Errors of one range in all lasers of many firings.
     fn changes(sd_m: f64, two: bool) -> Vec<f64> {
         let noise = RangeNoise::new(sd_m, 5);
-        let mut firing = Firing::new(32);
+        let mut firing = SimulatedFiring::new(32);
         let mut all = Vec::new();
         for number in 0..1_000 {
             firing.number = number;

@@ -9,7 +9,7 @@
 //! Speckle is not included.
 
 use crate::effects::{Needs, SurfaceEffect};
-use crate::firing::{Echo, Echoes, Firing};
+use crate::firing::{Echo, Echoes, SimulatedFiring};
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -17,7 +17,7 @@ use serde::Deserialize;
 
 use super::light;
 use super::settings::{InvalidSetting, SettingCheck};
-use crate::random::Source;
+use crate::random::RandomSource;
 
 /// `[effects.reflectance]`.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
@@ -72,7 +72,7 @@ pub struct Reflectance {
     threshold: f64,
     snr: f64,
     incidence: bool,
-    random: Source,
+    random: RandomSource,
 }
 
 impl Reflectance {
@@ -88,7 +88,7 @@ impl Reflectance {
             threshold: light::of_reflectivity(percent) / (half_m * half_m),
             snr: check.within("threshold_snr", settings.threshold_snr, 1.0..=100.0)?,
             incidence: settings.incidence,
-            random: Source::new(seed, Self::NAME),
+            random: RandomSource::new(seed, Self::NAME),
         })
     }
 
@@ -140,7 +140,7 @@ effect! {
 }
 
 impl SurfaceEffect for Reflectance {
-    fn reflect(&self, firing: &Firing, echoes: &mut Echoes) -> u32 {
+    fn reflect(&self, firing: &SimulatedFiring, echoes: &mut Echoes) -> u32 {
         let mut acted = 0;
         for (echoes, set) in echoes.all_mut().zip(0_u32..) {
             let lasers = echoes.iter_mut().zip(&firing.directions).zip(0_u32..);

@@ -2,14 +2,14 @@
 
 use super::settings::{InvalidSetting, SettingCheck};
 use crate::effects::LinkMessage;
-use crate::random::Source;
+use crate::random::RandomSource;
 
 /// A share of the packets, and a delay.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PacketSelection {
     share: f64,
     delay_ns: i64,
-    random: Source,
+    random: RandomSource,
 }
 
 impl PacketSelection {
@@ -25,7 +25,7 @@ impl PacketSelection {
         Ok(Self {
             share: check.within("share", share, 0.0..=1.0)?,
             delay_ns: (later_us * 1e3).round() as i64,
-            random: Source::new(seed, effect),
+            random: RandomSource::new(seed, effect),
         })
     }
 

@@ -1,7 +1,7 @@
 //! Helpers for tests of effects.
 
 use crate::effects::{AxisAngles, LinkEffect, LinkMessage, MessageKind};
-use crate::firing::{Echo, Echoes, Firing, Surroundings};
+use crate::firing::{Echo, Echoes, SimulatedFiring, Surroundings};
 use crate::sensor::{LidarMount, LidarSensor, RayTable};
 use std::sync::Arc;
 
@@ -11,10 +11,10 @@ use crate::motion::AxisState;
 use crate::scene::Scene;
 
 /// A firing of a VLP-16 on the tilt axis, aimed.
-pub fn firing(azimuth_deg: f64, tilt_deg: f64) -> Firing {
+pub fn firing(azimuth_deg: f64, tilt_deg: f64) -> SimulatedFiring {
     let sensor = LidarSensor::vlp16();
     let rays = RayTable::new(&sensor, 3_600.0);
-    let mut firing = Firing::new(rays.count);
+    let mut firing = SimulatedFiring::new(rays.count);
     firing.azimuth_deg = azimuth_deg;
     firing.tilt = AxisState {
         angle_deg: tilt_deg,
@@ -31,7 +31,7 @@ pub fn around(scene: Scene) -> Surroundings {
 }
 
 /// Returns along the axes of the beams, both sets.
-pub fn cast(firing: &Firing, surroundings: &Surroundings) -> Echoes {
+pub fn cast(firing: &SimulatedFiring, surroundings: &Surroundings) -> Echoes {
     let mut echoes = Echoes::new(firing.lasers, true);
     let (firings, all) = (
         core::slice::from_ref(firing),

@@ -23,7 +23,7 @@
 //! 95 % of its light. Multiple scattering, gusts and drops on the window are not included.
 
 use crate::effects::BeamEffect;
-use crate::firing::{Echo, Echoes, Firing, Surroundings};
+use crate::firing::{Echo, Echoes, SimulatedFiring, Surroundings};
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -33,7 +33,7 @@ use super::light;
 use super::reflectance::ReflectanceSettings;
 use super::returns::{Return, reported};
 use super::settings::{InvalidSetting, SettingCheck};
-use crate::random::Source;
+use crate::random::RandomSource;
 
 /// `[effects.weather]`; absent settings have no effect.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
@@ -73,7 +73,7 @@ pub struct Weather {
     drops: f64,
     overlap_m: [f64; 2],
     reflectance: Option<ReflectanceSettings>,
-    random: Source,
+    random: RandomSource,
 }
 
 /// Share of light left at the visibility.
@@ -118,7 +118,7 @@ impl Weather {
             drops,
             overlap_m: [from_m, to_m],
             reflectance: settings.reflectance,
-            random: Source::new(seed, Self::NAME),
+            random: RandomSource::new(seed, Self::NAME),
         })
     }
 
@@ -205,7 +205,12 @@ effect! {
 }
 
 impl BeamEffect for Weather {
-    fn receive(&self, firing: &Firing, surroundings: &Surroundings, echoes: &mut Echoes) -> u32 {
+    fn receive(
+        &self,
+        firing: &SimulatedFiring,
+        surroundings: &Surroundings,
+        echoes: &mut Echoes,
+    ) -> u32 {
         if self.extinction_per_m == 0.0 {
             return 0;
         }

@@ -12,7 +12,7 @@ use super::{
     AxisAngles, BeamEffect, ClockEffect, Effect, Effects, EncoderEffect, FiringEffectSet,
     LinkEffect, LinkMessage, MechanismEffect, Needs, ObjectsEffect, SurfaceEffect, ViewEffect,
 };
-use crate::firing::{Echoes, Firing, Surroundings};
+use crate::firing::{Echoes, SimulatedFiring, Surroundings};
 use crate::sensor::LaserBeam;
 
 /// A clock in nanoseconds from any origin that measures the cost of effects.
@@ -235,7 +235,7 @@ impl<T: ViewEffect + ?Sized> ViewEffect for SharedEffects<T> {
         })
     }
 
-    fn hide(&self, firing: &mut Firing) -> u32 {
+    fn hide(&self, firing: &mut SimulatedFiring) -> u32 {
         // Effects of azimuths were applied when the run's firings were scheduled.
         self.iter()
             .filter(|listed| !listed.effect.needs().azimuths)
@@ -245,7 +245,12 @@ impl<T: ViewEffect + ?Sized> ViewEffect for SharedEffects<T> {
 }
 
 impl<T: BeamEffect + ?Sized> BeamEffect for SharedEffects<T> {
-    fn receive(&self, firing: &Firing, surroundings: &Surroundings, echoes: &mut Echoes) -> u32 {
+    fn receive(
+        &self,
+        firing: &SimulatedFiring,
+        surroundings: &Surroundings,
+        echoes: &mut Echoes,
+    ) -> u32 {
         self.iter()
             .map(|MeteredEffect { effect, meter }| {
                 meter.call(|| effect.receive(firing, surroundings, echoes), count)
@@ -255,7 +260,7 @@ impl<T: BeamEffect + ?Sized> BeamEffect for SharedEffects<T> {
 }
 
 impl<T: SurfaceEffect + ?Sized> SurfaceEffect for SharedEffects<T> {
-    fn reflect(&self, firing: &Firing, echoes: &mut Echoes) -> u32 {
+    fn reflect(&self, firing: &SimulatedFiring, echoes: &mut Echoes) -> u32 {
         self.iter()
             .map(|MeteredEffect { effect, meter }| {
                 meter.call(|| effect.reflect(firing, echoes), count)

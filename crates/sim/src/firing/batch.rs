@@ -4,14 +4,14 @@
 use glam::DVec3;
 
 use super::surroundings::FirstSurface;
-use super::{Echo, Echoes, Firing, Surroundings};
+use super::{Echo, Echoes, SimulatedFiring, Surroundings};
 use crate::cast::{LANES, Nearest, Packets, RayLanes, Reach};
 use crate::sensor::MAX_LASERS;
 
 /// Consecutive firings and their returns.
 struct FiringRays<'a> {
     surroundings: &'a Surroundings,
-    firings: &'a [Firing],
+    firings: &'a [SimulatedFiring],
     echoes: &'a mut [Echoes],
     packets_per_laser: usize,
 }
@@ -67,7 +67,11 @@ impl Packets for FiringRays<'_> {
 }
 
 /// See [`Surroundings::meet_all`].
-pub(super) fn firings(surroundings: &Surroundings, firings: &[Firing], echoes: &mut [Echoes]) {
+pub(super) fn firings(
+    surroundings: &Surroundings,
+    firings: &[SimulatedFiring],
+    echoes: &mut [Echoes],
+) {
     for echoes in echoes.iter_mut().filter(|echoes| echoes.two) {
         echoes.other = [Echo::NONE; MAX_LASERS];
     }

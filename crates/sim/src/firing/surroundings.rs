@@ -11,7 +11,7 @@ use glam::DVec3;
 
 use super::body::Body;
 use super::echo::{Echo, Echoes};
-use super::{Firing, batch};
+use super::{SimulatedFiring, batch};
 use crate::cast::Hit;
 use crate::scene::Scene;
 use crate::sensor::DetectionRange;
@@ -149,7 +149,7 @@ impl Surroundings {
 
     /// The static surfaces that all lasers of consecutive firings meet; there are no second
     /// returns, and none for lasers that do not fire.
-    pub(crate) fn meet_all(&self, firings: &[Firing], echoes: &mut [Echoes]) {
+    pub(crate) fn meet_all(&self, firings: &[SimulatedFiring], echoes: &mut [Echoes]) {
         batch::firings(self, firings, echoes);
     }
 
@@ -157,7 +157,7 @@ impl Surroundings {
     /// them.
     #[cold]
     #[inline(never)]
-    pub(crate) fn meet_bodies(&self, firing: &Firing, echoes: &mut Echoes) {
+    pub(crate) fn meet_bodies(&self, firing: &SimulatedFiring, echoes: &mut Echoes) {
         let lasers = echoes.strongest.iter_mut().zip(&echoes.static_m);
         let rays = firing.origins_m.iter().zip(&firing.directions);
         for (laser, ((echo, max_m), (origin, direction))) in lasers.zip(rays).enumerate() {

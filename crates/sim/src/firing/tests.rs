@@ -1,6 +1,6 @@
 //! Whole packets against single rays, bit for bit; moving objects against a caster of all objects.
 
-use super::{Body, Echo, Echoes, Firing, SurfaceHit, Surroundings};
+use super::{Body, Echo, Echoes, SimulatedFiring, SurfaceHit, Surroundings};
 use crate::sensor::{DetectionRange, LidarMount, LidarSensor, RayTable};
 use std::sync::Arc;
 
@@ -17,10 +17,10 @@ fn scene(name: &str) -> Arc<Scene> {
 }
 
 /// Consecutive firings, every third without some of its lasers.
-fn firings(sensor: &LidarSensor, count: usize, first: u32) -> Vec<Firing> {
+fn firings(sensor: &LidarSensor, count: usize, first: u32) -> Vec<SimulatedFiring> {
     let rays = RayTable::new(sensor, 3_600.0);
     let aimed = (0..count).zip(first..).map(|(at, number)| {
-        let mut firing = Firing::new(rays.count);
+        let mut firing = SimulatedFiring::new(rays.count);
         firing.azimuth_deg = (0.199 * f64::from(number)).rem_euclid(360.0);
         firing.tilt = AxisState {
             angle_deg: -0.011 * f64::from(number),
@@ -303,7 +303,7 @@ fn absorbing_surfaces_block() {
         let along = DVec3::new(0.6, 0.0, 0.8);
         let met = around.meet(DVec3::ZERO, along).map(|met| met.range_m);
         assert_eq!(met, range_m);
-        let mut firing = Firing::new(1);
+        let mut firing = SimulatedFiring::new(1);
         (firing.alive, firing.directions[0]) = (1, along);
         let mut echoes = [Echoes::new(1, false)];
         around.meet_all(core::slice::from_ref(&firing), &mut echoes);

@@ -5,13 +5,13 @@ use glam::DVec3;
 use super::*;
 use crate::cast::{Object, Sphere};
 use crate::lidar_clock::HOUR_NS;
-use crate::packet_maker::DataPacket;
+use crate::packet_maker::SimulatedPacket;
 
 const START: Stamp<Host> = Stamp::from_nanos(1_790_000_000_000_000_000);
 const QC: i64 = 1 << 32;
 
-fn lidar(at_start_us: u32, drift_ppm: f64) -> Lidar {
-    Lidar::new(
+fn lidar(at_start_us: u32, drift_ppm: f64) -> SimulatedLidar {
+    SimulatedLidar::new(
         LidarSensor::vlp16(),
         ReturnMode::Strongest,
         HeadRotation {
@@ -26,7 +26,7 @@ fn lidar(at_start_us: u32, drift_ppm: f64) -> Lidar {
 
 /// A lidar in a scene behind a known motion of the shaft, without the drive.
 struct Device {
-    lidar: Lidar,
+    lidar: SimulatedLidar,
     surroundings: Surroundings,
     maker: PacketMaker<RigEffects>,
     shaft: ShaftCourse,
@@ -34,7 +34,7 @@ struct Device {
 }
 
 impl Device {
-    fn new(scene: Scene, lidar: Lidar, shaft: ShaftCourse) -> Self {
+    fn new(scene: Scene, lidar: SimulatedLidar, shaft: ShaftCourse) -> Self {
         let surroundings = Surroundings::new(Arc::new(scene), lidar.sensor.range(), true);
         let effects = FiringEffectSet {
             objects: (),
@@ -52,7 +52,7 @@ impl Device {
         }
     }
 
-    fn packet(&mut self) -> DataPacket {
+    fn packet(&mut self) -> SimulatedPacket {
         let blocks = 12 * self.packets..12 * (self.packets + 1);
         self.packets += 1;
         (self.maker).packet(&self.lidar, &self.shaft, blocks, None)
@@ -152,7 +152,7 @@ fn packets_agree_with_the_truth_within_their_rounding() {
 #[test]
 fn stamps_count_in_the_lidars_own_time_and_wrap_at_the_hour() {
     let mut device = Device::new(scenes::hall(), lidar(3_599_999_000, -40.0), sweep(20));
-    let packets: Vec<DataPacket> = (0..5).map(|_| device.packet()).collect();
+    let packets: Vec<SimulatedPacket> = (0..5).map(|_| device.packet()).collect();
     let stamps: Vec<u32> = packets.iter().map(|p| stamp_us(&p.payload)).collect();
     // 1327.104 us per packet, rounded down to whole microseconds.
     assert_eq!(stamps, [3_599_999_000, 327, 1_654, 2_981, 4_308]);

@@ -8,18 +8,22 @@ use units::{Host, Span, Stamp};
 
 use super::shaft::ShaftCourse;
 use crate::firing::Surroundings;
-use crate::packet_maker::{Lidar, Platform};
+use crate::packet_maker::{Platform, SimulatedLidar};
 
 /// The truth of a run up to the time of the request.
 #[derive(Clone, Debug)]
 pub struct Truth {
-    lidar: Lidar,
+    lidar: SimulatedLidar,
     surroundings: Surroundings,
     shaft: ShaftCourse,
 }
 
 impl Truth {
-    pub(crate) const fn new(lidar: Lidar, surroundings: Surroundings, shaft: ShaftCourse) -> Self {
+    pub(crate) const fn new(
+        lidar: SimulatedLidar,
+        surroundings: Surroundings,
+        shaft: ShaftCourse,
+    ) -> Self {
         Self {
             lidar,
             surroundings,

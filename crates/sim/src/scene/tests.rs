@@ -196,7 +196,7 @@ fn the_nearest_surface_wins_with_its_reflectivity() {
     let hit = scene.cast(DVec3::ZERO, DVec3::X, 1.0, 100.0);
     assert_eq!(
         hit,
-        Some(Hit {
+        Some(SceneHit {
             range_m: 5.0,
             reflectivity: 20
         })

@@ -16,7 +16,7 @@ use super::threads::Chunk;
 use super::{DriveRequest, Polls, Simulation, SimulationEvent, SimulationSink, SimulationSummary};
 use crate::effects::{EncoderEffect, LinkEffect, LinkMessage, MessageKind};
 use crate::motion::AxisMove;
-use crate::packet_maker::DataPacket;
+use crate::packet_maker::SimulatedPacket;
 
 /// Periods after which a missing answer times out.
 const TIMEOUT_PERIODS: i64 = 8;
@@ -95,7 +95,7 @@ impl<'a, E: EncoderEffect, L: LinkEffect> Merge<'a, E, L> {
         ControlFlow::Continue(())
     }
 
-    fn packet(&mut self, packet: &DataPacket) -> ControlFlow<()> {
+    fn packet(&mut self, packet: &SimulatedPacket) -> ControlFlow<()> {
         let leaves_ns = packet.leaves_ns;
         self.poll_until(leaves_ns)?;
         let message = |kind, number| LinkMessage {

@@ -8,7 +8,7 @@ use crate::effects::{
     AxisAngles, ClockEffect, ConfiguredEffects, Effect, Effects, FiringEffectSet, FiringEffects,
     LinkEffect, LinkMessage, MechanismEffect, MeteredEffect, Needs, SurfaceEffect, ViewEffect,
 };
-use crate::firing::{Echoes, Firing};
+use crate::firing::{Echoes, SimulatedFiring};
 use crate::motion::Sweeps;
 use crate::packet_maker::{HeadRotation, TruePoint};
 use crate::scenes;
@@ -311,7 +311,7 @@ impl Effect for Dim {
 }
 
 impl SurfaceEffect for Dim {
-    fn reflect(&self, _: &Firing, echoes: &mut Echoes) -> u32 {
+    fn reflect(&self, _: &SimulatedFiring, echoes: &mut Echoes) -> u32 {
         let mut acted = 0;
         for echo in echoes.all_mut().flatten().filter(|echo| echo.is_present()) {
             echo.reflectivity *= 0.5;
@@ -332,7 +332,7 @@ impl<A: Effect, B: Effect> Effect for Both<A, B> {
 }
 
 impl<A: SurfaceEffect, B: SurfaceEffect> SurfaceEffect for Both<A, B> {
-    fn reflect(&self, firing: &Firing, echoes: &mut Echoes) -> u32 {
+    fn reflect(&self, firing: &SimulatedFiring, echoes: &mut Echoes) -> u32 {
         self.0.reflect(firing, echoes) + self.1.reflect(firing, echoes)
     }
 }
@@ -429,7 +429,7 @@ fn the_mechanism_acts_between_encoder_and_platform() {
 /// Every third message is lost, every fifth is duplicated, and all are delayed by up to 4 ms, so
 /// that they overtake each other.
 #[derive(Debug)]
-struct Bad(crate::random::Source);
+struct Bad(crate::random::RandomSource);
 
 impl Effect for Bad {
     fn name(&self) -> &'static str {
@@ -463,7 +463,7 @@ fn events_are_ordered_and_moves_commanded_over_bad_links() {
         firings: FiringEffectSet::default(),
         mechanism: (),
         encoder: (),
-        link: Bad(crate::random::Source::new(1, "bad")),
+        link: Bad(crate::random::RandomSource::new(1, "bad")),
     };
     let (taken, summary) = run_with::<FiringEffectSet, _, _, _>(&simulation, &mut effects);
     assert!(taken.times.is_sorted());

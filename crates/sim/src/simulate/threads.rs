@@ -13,7 +13,7 @@ use super::course::AxisCourse;
 use super::schedule::BlockSchedule;
 use crate::effects::FiringEffects;
 use crate::firing::Surroundings;
-use crate::packet_maker::{DataPacket, Lidar, PacketMaker, TruePoint};
+use crate::packet_maker::{PacketMaker, SimulatedLidar, SimulatedPacket, TruePoint};
 
 /// Packets per chunk.
 const CHUNK_PACKETS: u64 = 32;
@@ -22,7 +22,7 @@ const QUEUED_CHUNKS: usize = 4;
 
 /// State of all threads.
 pub(super) struct SharedRun<'a> {
-    lidar: Lidar,
+    lidar: SimulatedLidar,
     course: &'a AxisCourse,
     schedule: BlockSchedule,
     surroundings: Surroundings,
@@ -32,7 +32,7 @@ pub(super) struct SharedRun<'a> {
 /// Packets in the order in which they leave.
 #[derive(Debug, Default)]
 pub(super) struct Chunk {
-    pub packets: Vec<DataPacket>,
+    pub packets: Vec<SimulatedPacket>,
     /// The true points of all packets.
     pub points: Vec<TruePoint>,
 }

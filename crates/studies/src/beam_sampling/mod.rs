@@ -9,9 +9,9 @@ use analysis::tradeoff::{
 };
 use sim::effect_models::{Divergence, DivergenceSettings};
 use sim::effects::BeamEffect;
-use sim::firing::{Echo, Echoes, Firing};
+use sim::firing::{Echo, Echoes, SimulatedFiring};
 
-use crate::shots::Shots;
+use crate::shots::SampledFirings;
 use reference::ReferenceFootprint;
 
 /// The study.
@@ -80,7 +80,7 @@ fn measure(bench: &mut Bench<'_>) -> Result<StudyRows, StudyError> {
     let plan = bench.plan(&format!("{firings} firings"), 3, 9);
     let (mut scenes, mut counts) = (Vec::new(), Vec::new());
     for name in SCENES {
-        let shots = Shots::of(name, judged)?;
+        let shots = SampledFirings::of(name, judged)?;
         let edges = edges(&shots)?;
         counts.push(counted(name, &shots, &edges));
         let choices = choices(grids)?.into_iter().map(|choice| {
@@ -88,7 +88,7 @@ fn measure(bench: &mut Bench<'_>) -> Result<StudyRows, StudyError> {
             (choice, off)
         });
         let choices: Vec<_> = choices.collect();
-        scenes.push((name, Shots::of(name, firings)?, choices));
+        scenes.push((name, SampledFirings::of(name, firings)?, choices));
     }
     let mut timed = Vec::new();
     for (scene, shots, choices) in &scenes {
@@ -114,7 +114,7 @@ fn measure(bench: &mut Bench<'_>) -> Result<StudyRows, StudyError> {
     Ok((about(&counts), rows))
 }
 
-fn counted(scene: &str, shots: &Shots, edges: &[SilhouetteEdge]) -> String {
+fn counted(scene: &str, shots: &SampledFirings, edges: &[SilhouetteEdge]) -> String {
     let two = edges
         .iter()
         .filter(|edge| edge.truth_m[1].is_finite())
@@ -131,7 +131,7 @@ fn about(counts: &[String]) -> Vec<String> {
     let [columns, rows] = FINE;
     vec![
         format!(
-            "Shots of a VLP-16 spread over a sweep through built-in scenes ({}). The beam divergence is 3 x 1.5 mrad. The reference is \
+            "SampledFirings of a VLP-16 spread over a sweep through built-in scenes ({}). The beam divergence is 3 x 1.5 mrad. The reference is \
              {columns} x {rows} sub-rays of every \
              shot; a shot is at an edge unless all its sub-rays hit one plane within 2 mm.",
             counts.join("; ")
@@ -183,7 +183,7 @@ fn choices(grids: &[[usize; 2]]) -> Result<Vec<SamplingChoice>, StudyError> {
 
 impl SamplingMethod {
     /// The echoes of every firing, one after the other.
-    fn sample(&self, shots: &Shots, mut take: impl FnMut(usize, &Echoes)) {
+    fn sample(&self, shots: &SampledFirings, mut take: impl FnMut(usize, &Echoes)) {
         let Some((_, first)) = shots.firings.first() else {
             return;
         };
@@ -205,7 +205,7 @@ impl SamplingMethod {
 }
 
 /// Casts the centres of beams.
-fn middles(firing: &Firing, shots: &Shots, echoes: &mut Echoes) {
+fn middles(firing: &SimulatedFiring, shots: &SampledFirings, echoes: &mut Echoes) {
     let rays = firing.origins_m.iter().zip(&firing.directions);
     let places = echoes.strongest.iter_mut().zip(&mut echoes.other);
     for ((strongest, other), (from, way)) in places.zip(rays).take(firing.lasers) {
@@ -216,7 +216,7 @@ fn middles(firing: &Firing, shots: &Shots, echoes: &mut Echoes) {
 }
 
 /// The shots across edges, with the ranges of the reference.
-fn edges(shots: &Shots) -> Result<Vec<SilhouetteEdge>, StudyError> {
+fn edges(shots: &SampledFirings) -> Result<Vec<SilhouetteEdge>, StudyError> {
     let mut edges = Vec::new();
     for (number, (firing, _)) in shots.firings.iter().enumerate() {
         for laser in firing.alive() {
@@ -236,7 +236,7 @@ fn edges(shots: &Shots) -> Result<Vec<SilhouetteEdge>, StudyError> {
     Ok(edges)
 }
 
-fn errors(way: &SamplingMethod, shots: &Shots, edges: &[SilhouetteEdge]) -> SamplingError {
+fn errors(way: &SamplingMethod, shots: &SampledFirings, edges: &[SilhouetteEdge]) -> SamplingError {
     let mut left = edges.iter().peekable();
     let mut off = [0_u32; 2];
     let (mut two, mut wrong) = (0_u32, 0_u32);
@@ -275,7 +275,7 @@ mod tests {
     fn the_reference_agrees_with_the_effect_for_equal_sub_rays() {
         let mut two = 0;
         for scene in SCENES {
-            let shots = Shots::of(scene, 48).unwrap();
+            let shots = SampledFirings::of(scene, 48).unwrap();
             let choices = choices(&GRIDS).unwrap();
             let way = choices.iter().find(|choice| choice.label == "5x3 all");
             way.unwrap().way.sample(&shots, |number, echoes| {
@@ -297,7 +297,7 @@ mod tests {
 
     #[test]
     fn more_sub_rays_are_more_accurate() {
-        let shots = Shots::of("parking", 48).unwrap();
+        let shots = SampledFirings::of("parking", 48).unwrap();
         let edges = edges(&shots).unwrap();
         assert!(edges.len() > 20 && edges.len() * 10 < shots.count());
         let choices = choices(&GRIDS).unwrap();

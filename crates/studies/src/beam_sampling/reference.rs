@@ -2,7 +2,7 @@
 //! `sim::effect_models::Divergence`, without reflectivities, normals and the search for edges.
 
 use glam::DVec3;
-use sim::firing::{Firing, SurfaceHit, Surroundings};
+use sim::firing::{SimulatedFiring, SurfaceHit, Surroundings};
 
 /// Half the divergence of the beam along the scan and across it (63-9243, appendix F).
 const HALF: [f64; 2] = [1.5e-3, 0.75e-3];
@@ -37,7 +37,7 @@ pub struct Samples {
 impl ReferenceFootprint {
     /// The footprint of a laser in a firing of a VLP-16. The scan runs across the fan between its
     /// lowest laser (0) and its highest (15).
-    pub fn of(firing: &Firing, laser: usize) -> Option<Self> {
+    pub fn of(firing: &SimulatedFiring, laser: usize) -> Option<Self> {
         let (lowest, highest) = (firing.directions.first()?, firing.directions.get(15)?);
         let way = *firing.directions.get(laser)?;
         let scan = lowest.cross(*highest).normalize();

@@ -2,7 +2,7 @@
 //!
 //! All are written alike for the same registers, so that only the numbers differ.
 
-use crate::placing::Real;
+use crate::placing::Float;
 use fearless_simd::{Level, Simd, SimdBase, SimdFloat, dispatch, f32x8, f64x8, prelude::*};
 use sim::cast::ShearedRays;
 
@@ -82,7 +82,7 @@ kernels! {
 
 /// Every packet of every patch.
 #[inline(always)]
-fn all<T: Real>(
+fn all<T: Float>(
     patches: &[Patch<T>],
     ranges: &mut [[T; LANES]],
     nearest: impl Fn(&[[[T; 3]; 3]], &Eight<T>) -> [T; LANES],
@@ -100,7 +100,7 @@ fn all<T: Real>(
 type Three<V> = [V; 3];
 
 #[inline(always)]
-fn loaded<S: Simd, T: Real, V: SimdFloat<S> + SimdBase<S, Element = T>>(
+fn loaded<S: Simd, T: Float, V: SimdFloat<S> + SimdBase<S, Element = T>>(
     simd: S,
     [x, y, z]: &[[T; LANES]; 3],
 ) -> Three<V> {
@@ -112,7 +112,7 @@ fn loaded<S: Simd, T: Real, V: SimdFloat<S> + SimdBase<S, Element = T>>(
 }
 
 #[inline(always)]
-fn everywhere<S: Simd, T: Real, V: SimdFloat<S> + SimdBase<S, Element = T>>(
+fn everywhere<S: Simd, T: Float, V: SimdFloat<S> + SimdBase<S, Element = T>>(
     simd: S,
     [x, y, z]: [T; 3],
 ) -> Three<V> {
@@ -120,7 +120,7 @@ fn everywhere<S: Simd, T: Real, V: SimdFloat<S> + SimdBase<S, Element = T>>(
 }
 
 #[inline(always)]
-fn between<T: Real>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
+fn between<T: Float>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
     [b[0] - a[0], b[1] - a[1], b[2] - a[2]]
 }
 
@@ -146,7 +146,7 @@ fn dot<S: Simd, V: SimdFloat<S>>(a: Three<V>, b: Three<V>) -> V {
 /// Moeller and Trumbore, Fast, Minimum Storage Ray/Triangle Intersection (1997), for both sides of
 /// a triangle.
 #[inline(always)]
-fn moeller<S: Simd, T: Real, V: SimdFloat<S> + SimdBase<S, Element = T>>(
+fn moeller<S: Simd, T: Float, V: SimdFloat<S> + SimdBase<S, Element = T>>(
     simd: S,
     triangles: &[[[T; 3]; 3]],
     rays: &Eight<T>,
@@ -179,7 +179,7 @@ fn moeller<S: Simd, T: Real, V: SimdFloat<S> + SimdBase<S, Element = T>>(
 
 /// The caster's test (`sim::cast::ShearedRays`) in any number type.
 #[inline(always)]
-fn watertight<S: Simd, T: Real, V: SimdFloat<S> + SimdBase<S, Element = T>>(
+fn watertight<S: Simd, T: Float, V: SimdFloat<S> + SimdBase<S, Element = T>>(
     simd: S,
     triangles: &[[[T; 3]; 3]],
     rays: &Eight<T>,

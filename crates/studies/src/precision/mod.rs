@@ -5,7 +5,7 @@ mod reference;
 
 use std::hint::black_box;
 
-use crate::placing::Real;
+use crate::placing::Float;
 use analysis::tradeoff::{
     Bench, Row, SeededNoise, Study, StudyError, StudyFindings, StudyRows, TimedChoice, Trade, Work,
 };
@@ -126,7 +126,7 @@ fn about(rays: usize) -> Vec<String> {
 
 /// Errors of a kernel.
 #[derive(Clone, Copy, Debug)]
-struct CastError {
+struct RayError {
     rms_m: f64,
     worst_m: f64,
     /// Share of the rays without a hit.
@@ -151,7 +151,7 @@ impl Set {
         }
     }
 
-    fn off(&self, kernel: Kernel) -> Result<CastError, StudyError> {
+    fn off(&self, kernel: Kernel) -> Result<RayError, StudyError> {
         let ranges_m = match kernel {
             Kernel::F64(cast) => ranges(&self.wide, cast),
             Kernel::F32(cast) => ranges(&self.narrow, cast),
@@ -172,7 +172,7 @@ impl Set {
                 missed += 1;
             }
         }
-        Ok(CastError {
+        Ok(RayError {
             rms_m: (squares / f64::from(met)).sqrt(),
             worst_m,
             missed: f64::from(missed) / f64::from(met + missed),
@@ -187,18 +187,18 @@ impl Set {
     }
 }
 
-fn room<T: Real>(patches: &[Patch<T>]) -> Vec<[T; LANES]> {
+fn room<T: Float>(patches: &[Patch<T>]) -> Vec<[T; LANES]> {
     let packets: usize = patches.iter().map(|patch| patch.packets.len()).sum();
     vec![[T::of(f64::INFINITY); LANES]; packets]
 }
 
-fn ranges<T: Real>(patches: &[Patch<T>], cast: Cast<T>) -> Vec<[f64; LANES]> {
+fn ranges<T: Float>(patches: &[Patch<T>], cast: Cast<T>) -> Vec<[f64; LANES]> {
     let mut ranges = room(patches);
     cast(patches, &mut ranges);
     ranges.iter().map(|eight| eight.map(T::f64)).collect()
 }
 
-fn work<T: Real>(patches: &[Patch<T>], cast: Cast<T>) -> Work<'_> {
+fn work<T: Float>(patches: &[Patch<T>], cast: Cast<T>) -> Work<'_> {
     let mut ranges = room(patches);
     Box::new(move || {
         cast(black_box(patches), &mut ranges);
@@ -209,7 +209,7 @@ fn work<T: Real>(patches: &[Patch<T>], cast: Cast<T>) -> Work<'_> {
 
 impl Patch<f64> {
     /// The patches in other numbers, from another origin.
-    fn rounded<T: Real>(&self, origin_m: DVec3) -> Patch<T> {
+    fn rounded<T: Float>(&self, origin_m: DVec3) -> Patch<T> {
         let from = origin_m.to_array();
         let moved = |at: [f64; 3]| [0, 1, 2].map(|axis| T::of(at[axis] - from[axis]));
         let packets = self.packets.iter().map(|eight| Eight {
@@ -312,14 +312,14 @@ mod tests {
     use super::*;
 
     /// Errors of a test by its index in [`KERNELS`].
-    fn off(circumstance: usize, kernel: usize, patches: usize) -> CastError {
+    fn off(circumstance: usize, kernel: usize, patches: usize) -> RayError {
         let set = Set::new(circumstances()[circumstance], patches);
         set.off(KERNELS[kernel].2).unwrap()
     }
 
     #[test]
     fn errors_match_the_resolution_of_the_number_format() {
-        let near = |off: CastError, least_m: f64, most_m: f64| {
+        let near = |off: RayError, least_m: f64, most_m: f64| {
             assert!((least_m..most_m).contains(&off.worst_m), "{off:?}");
             assert!(off.rms_m <= off.worst_m && off.rms_m > 0.0, "{off:?}");
         };

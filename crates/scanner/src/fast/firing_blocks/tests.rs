@@ -270,7 +270,7 @@ proptest! {
             let (mut points, mut placed) = (Points::new(Fields::ALL), PlacementCounts::default());
             let mut decoder = Decoder::new(Options::default());
             for (ns, payload) in &packets {
-                decoder.firing_blocks(Stamp::from_nanos(EPOCH + ns), payload, &mut |block| {
+                decoder.decode_blocks(Stamp::from_nanos(EPOCH + ns), payload, &mut |block| {
                     placer.place(block, &mut points, &mut placed);
                 });
             }

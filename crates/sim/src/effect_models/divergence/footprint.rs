@@ -1,6 +1,6 @@
 //! The footprint of a pulse: directions of its parts, and whether it is plane.
 
-use crate::firing::{Echo, Firing, SurfaceHit, Surroundings};
+use crate::firing::{Echo, SimulatedFiring, SurfaceHit, Surroundings};
 use glam::DVec3;
 
 /// The footprint of one laser's pulse.
@@ -15,7 +15,7 @@ pub(super) struct Footprint {
 }
 
 /// Direction of the scan: perpendicular to the fan of the lasers, or level with a single laser.
-pub(super) fn scan_axis(firing: &Firing) -> Option<DVec3> {
+pub(super) fn scan_axis(firing: &SimulatedFiring) -> Option<DVec3> {
     let lasers = firing.directions.get(..firing.lasers)?;
     let first = *lasers.first()?;
     let widest = lasers.iter().fold(first, |widest, next| {

@@ -15,7 +15,7 @@ const BLACK: f64 = 1e-9;
 
 /// A sample: the surface that a sub-ray meets.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sample {
+pub(super) struct PulseSample {
     range_m: f64,
     /// Light head-on, 1 for a white wall.
     light: f64,
@@ -36,7 +36,7 @@ pub(super) struct Pulse {
     pub least_share: f64,
 }
 
-impl Sample {
+impl PulseSample {
     pub const NOTHING: Self = Self {
         range_m: f64::INFINITY,
         light: 0.0,
@@ -66,7 +66,7 @@ impl Sample {
 impl Pulse {
     /// Returns in order of range, and their number. A return ends where the next surface is farther
     /// behind than the separation.
-    pub fn returns(&self, samples: &mut [Sample]) -> ([Return; MOST_RETURNS], usize) {
+    pub fn returns(&self, samples: &mut [PulseSample]) -> ([Return; MOST_RETURNS], usize) {
         let mut returns = [Return {
             echo: Echo::NONE,
             strength: 0.0,
@@ -76,7 +76,7 @@ impl Pulse {
             let by_range = a.range_m.total_cmp(&b.range_m);
             by_range.then(a.off_middle.total_cmp(&b.off_middle))
         });
-        let apart = |a: &Sample, b: &Sample| b.range_m - a.range_m < self.separation_m;
+        let apart = |a: &PulseSample, b: &PulseSample| b.range_m - a.range_m < self.separation_m;
         for together in samples.chunk_by(apart) {
             if let Some(place) = returns.get_mut(count)
                 && let Some(found) = self.one(together)
@@ -89,13 +89,13 @@ impl Pulse {
     }
 
     /// The return of these samples, if it is detected.
-    fn one(&self, samples: &[Sample]) -> Option<Return> {
+    fn one(&self, samples: &[PulseSample]) -> Option<Return> {
         let rays = self.rays.max(1) as f64;
         let share = samples.len() as f64 / rays;
         if share < self.least_share {
             return None;
         }
-        let nearest = |a: &&Sample, b: &&Sample| a.off_middle.total_cmp(&b.off_middle);
+        let nearest = |a: &&PulseSample, b: &&PulseSample| a.off_middle.total_cmp(&b.off_middle);
         let middle = samples.iter().min_by(nearest)?;
         let strength: f64 = samples.iter().map(|sample| sample.strength).sum();
         let light: f64 = samples.iter().map(|sample| sample.light).sum();

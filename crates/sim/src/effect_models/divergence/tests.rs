@@ -3,7 +3,7 @@ use super::*;
 use crate::cast::{Cuboid, Object, Placement, Plane, Sphere};
 use crate::effect_models::testing::{around, cast, firing};
 use crate::effects::ObjectsEffect;
-use crate::firing::{Echoes, Firing, Surroundings};
+use crate::firing::{Echoes, SimulatedFiring, Surroundings};
 use crate::scene::Scene;
 use crate::scenes;
 use glam::{DMat3, DVec3, dvec3};
@@ -28,7 +28,10 @@ fn wall(through_m: DVec3, normal: DVec3) -> Scene {
     Scene::new().with(plane, 50).unwrap()
 }
 
-fn received(divergence: &Divergence, surroundings: &Surroundings) -> (Firing, Echoes, u32) {
+fn received(
+    divergence: &Divergence,
+    surroundings: &Surroundings,
+) -> (SimulatedFiring, Echoes, u32) {
     let firing = firing(0.0, 0.0);
     let mut echoes = cast(&firing, surroundings);
     let acted = divergence.receive(&firing, surroundings, &mut echoes);

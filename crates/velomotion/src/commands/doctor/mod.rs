@@ -235,8 +235,25 @@ fn can_profile(what: String, name: &str, interfaces: &[CanInterface]) -> Finding
     ))
 }
 
+/// Checks the axis configuration. The limit switch that homing finds (methods 17 and 18) is outside
+/// the range: a move that reaches it is stopped.
 fn axis(configured: &AxisSettings) -> Finding {
+    let AxisSettings { homing, .. } = configured;
+    let expected = match homing.method {
+        17 if homing.at_deg > configured.min_deg => "axis.min_deg or less",
+        18 if homing.at_deg < configured.max_deg => "axis.max_deg or more",
+        _ => "",
+    };
     match profile::axis(configured) {
+        Ok(_) if !expected.is_empty() => finding(
+            "[axis]",
+            Verdict::Problem,
+            format!(
+                "axis.homing.at_deg: expected {expected}, where method {} has its limit switch, got {}",
+                homing.method, homing.at_deg
+            ),
+        )
+        .todo("correct at_deg, or the range of the axis: a move that reaches the switch is stopped"),
         Ok(_) => finding("[axis]", Verdict::Ok, "axis configuration is valid"),
         Err(failure) => finding("[axis]", Verdict::Problem, failure.to_string()).todo(
             "correct that value in the configuration; velomotion help wiring describes every key",
@@ -357,7 +374,11 @@ mod tests {
             min_deg: 10.0,
             ..AxisSettings::default()
         };
-        assert_eq!(axis(&wrong).verdict, Verdict::Problem);
+        let mut switch_in_range = AxisSettings::default();
+        switch_in_range.homing.at_deg = -20.0;
+        for configured in [wrong, switch_in_range] {
+            assert_eq!(axis(&configured).verdict, Verdict::Problem);
+        }
         assert_eq!(axis(&AxisSettings::default()).verdict, Verdict::Ok);
     }
 }
