@@ -16,7 +16,7 @@ use io::files::{NewFile, Overwrite};
 use scanner::Accuracy;
 use sim::Truth;
 
-use engine::capture::run;
+use engine::capture::{completeness, run};
 use engine::document::Document;
 use engine::failure::{Failure, Kind};
 use engine::output::{BufferedFile, Target, file_failure};
@@ -136,6 +136,7 @@ fn build(state: &Arc<DaemonState>, job: &CloudJob) {
     }
     let waits = made.is_err() && quota.refused().is_some();
     let no_cloud = made.as_ref().err().map(run::no_cloud);
+    let missing = made.as_ref().ok().and_then(completeness::missing);
     let concluded = run::conclude(made, record.outcome(), (&cloud, &log));
     if let Ok((scan, _)) = &concluded
         && let Some((rms_m, worst_m)) = scan.live.and_then(|live| live.rms_m.zip(live.worst_m))
@@ -169,6 +170,7 @@ fn build(state: &Arc<DaemonState>, job: &CloudJob) {
                 Some(_) => ScanState::Partial,
             };
             record.why = why;
+            record.recording = record.recording.take().or(missing);
             record.points = Some(scan.points);
             record.duration_s = Some(scan.contents.duration_s);
             record.report = Some(scan.to_json());
