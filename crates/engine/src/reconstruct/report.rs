@@ -166,11 +166,12 @@ pub struct SweepReport {
 }
 
 /// A clock step during the recording.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[non_exhaustive]
 pub struct StepReport {
     /// `host` or `lidar`.
-    pub clock: String,
+    #[schema(value_type = String)]
+    pub clock: SetClock,
     /// Time of the step, Unix seconds of the host clock before the step.
     pub when_s: f64,
     /// Seconds after the lidar's first packet.
@@ -184,10 +185,7 @@ impl StepReport {
     #[must_use]
     pub fn new(step: &ClockStep) -> Self {
         Self {
-            clock: match step.clock {
-                SetClock::Host => "host".to_owned(),
-                SetClock::Lidar => "lidar".to_owned(),
-            },
+            clock: step.clock,
             when_s: step.when.as_secs_f64(),
             after_s: step.after.as_secs_f64(),
             by_s: step.by.as_secs_f64(),

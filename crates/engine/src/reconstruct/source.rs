@@ -207,7 +207,7 @@ impl Source {
         let calibration = config.calibration.as_ref();
         calibration
             .map_or(Ok(()), |calibration| calibration.check())
-            .map_err(wrong)?;
+            .map_err(|error| wrong(error.to_string()))?;
         Ok(config)
     }
 

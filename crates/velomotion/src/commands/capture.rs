@@ -6,7 +6,7 @@ use std::time::SystemTime;
 use daemon::client::Client;
 use daemon::local::LocalTask;
 use engine::capture::request::CapturePlan;
-use engine::capture::run;
+use engine::capture::run::{self, ScanFailure};
 use engine::capture::scan_plan::ScanPlanner;
 use engine::capture_request::CaptureRequest;
 use engine::config::{self, Config};
@@ -14,7 +14,6 @@ use engine::default_paths;
 use engine::devices::profile;
 use engine::failure::{Failure, Kind};
 use engine::output::{self, Backup, Target};
-use engine::reconstruct::report::ScanReport;
 
 use super::CommandOutput;
 use super::device_backend::DeviceBackend;
@@ -59,8 +58,9 @@ pub fn run(arguments: &cli::Capture, common: &Common) -> Result<CommandOutput, F
     if !matches!(&made, Err(failure) if failure.kind == Kind::BadInput) {
         older_log.replaced();
     }
-    let (scan, failure): (ScanReport, _) = run::conclude(made, outcome, (&plan.cloud, &plan.log))?;
-    let mut output = CommandOutput::scan(&scan, failure, stdout);
+    let concluded = run::conclude(made, outcome, (&plan.cloud, &plan.log));
+    let (scan, failure) = concluded.map_err(ScanFailure::into_failure)?;
+    let mut output = CommandOutput::scan(&scan, failure.map(ScanFailure::into_failure), stdout);
     if !stdout {
         let cloud = plan.cloud.display();
         output
