@@ -32,6 +32,7 @@ pub struct Calibration {
 
 /// A parameter's estimate, in the unit of its name.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ParameterEstimate {
     /// Quantity.
     pub kind: ParameterKind,
@@ -51,6 +52,7 @@ pub struct ParameterEstimate {
 
 /// What a calibration rests on.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct CalibrationEvidence {
     /// Loops until nothing moved.
     pub loops: usize,

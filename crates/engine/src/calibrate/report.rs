@@ -9,6 +9,7 @@ use super::{Calibrated, mount_config};
 
 /// Report of a calibration.
 #[derive(Clone, Debug, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct CalibrateReport {
     /// The logs.
     pub logs: Vec<LogReport>,
@@ -41,6 +42,7 @@ pub struct CalibrateReport {
 
 /// A log of a calibration.
 #[derive(Clone, Debug, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct LogReport {
     /// Its path.
     pub path: String,
@@ -50,6 +52,7 @@ pub struct LogReport {
 
 /// A parameter, in the unit that its name states.
 #[derive(Clone, Debug, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct ParameterReport {
     /// Name with unit.
     pub name: String,
@@ -87,6 +90,7 @@ pub struct BeforeAfter {
 
 /// Residuals of a laser's ranges on the surface elements, millimetres.
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct LaserResiduals {
     /// Index in firing order.
     pub laser: usize,

@@ -35,6 +35,7 @@ const LIDAR_WAIT: Duration = Duration::from_secs(2);
 const LIDAR_POLL: Duration = Duration::from_millis(5);
 
 /// Devices and files of a capture.
+#[non_exhaustive]
 pub struct CaptureJob<'a> {
     /// The plan.
     pub plan: &'a CapturePlan,

@@ -7,6 +7,7 @@ use utoipa::ToSchema;
 
 /// Packet counts by kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[non_exhaustive]
 pub struct PacketCounts {
     /// Decoded lidar data packets.
     pub data: u64,

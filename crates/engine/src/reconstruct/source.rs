@@ -36,6 +36,7 @@ pub struct SensorAddress {
 
 /// Result of one pass over a recording.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct PassSummary {
     /// Packet counts by kind.
     pub counts: RecordingCounts,
