@@ -110,7 +110,7 @@ fn now_s() -> f64 {
 }
 
 /// Points and the method of their angles.
-fn replayed(log: &Path, accuracy: Accuracy, cloud: &Path) -> (u64, &'static str) {
+fn replayed(log: &Path, accuracy: Accuracy, cloud: &Path) -> (u64, String) {
     let request = Reconstruction {
         recording: &Source::open(log, None).unwrap(),
         tilt: TiltSource::Log,

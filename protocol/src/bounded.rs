@@ -16,6 +16,7 @@ pub struct BoundedVec<T, const N: usize> {
 /// The list is at its capacity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("no room for more than {capacity} values")]
+#[non_exhaustive]
 pub struct CapacityError {
     /// The most values it holds.
     pub capacity: usize,

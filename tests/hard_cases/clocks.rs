@@ -1,6 +1,7 @@
 //! Clocks that are set or restarted, and times that make arithmetic hard.
 
 use scanner::clock::{Arrival, LidarClock, OnlineClock};
+use scanner::steps::SetClock;
 use sim::Attachment;
 use units::{Host, Lidar, Span, Stamp};
 use velomotion_tests::capture::{Captured, Setting};
@@ -35,7 +36,7 @@ fn a_step_of_the_host_clock_in_mid_sweep_is_corrected() {
                 let [step] = scan.sync.steps[..] else {
                     panic!("{printed}: {:?}", scan.sync.steps);
                 };
-                assert_eq!(step.clock, "host", "{printed}");
+                assert_eq!(step.clock, SetClock::Host, "{printed}");
                 assert!(
                     (step.by_s - by.as_secs_f64()).abs() < 50e-6,
                     "{printed}: {step:?}"
@@ -107,7 +108,7 @@ fn a_step_of_the_lidar_clock_in_mid_sweep_is_corrected() {
         let [step] = scan.sync.steps[..] else {
             panic!("{by_us}: {:?}", scan.sync.steps);
         };
-        assert_eq!(step.clock, "lidar", "{by_us}");
+        assert_eq!(step.clock, SetClock::Lidar, "{by_us}");
         assert!(
             (step.by_s - by.as_secs_f64()).abs() < 1e-3,
             "{by_us}: {step:?}"
@@ -140,8 +141,8 @@ fn steps_of_both_clocks_are_corrected() {
         ..Setting::default()
     };
     let (scan, cloud) = Captured::new(setting).scan();
-    let clocks: Vec<&str> = scan.sync.steps.iter().map(|step| step.clock).collect();
-    assert_eq!(clocks, ["host", "lidar"]);
+    let clocks: Vec<_> = scan.sync.steps.iter().map(|step| step.clock).collect();
+    assert_eq!(clocks, [SetClock::Host, SetClock::Lidar]);
     assert!(cloud.time().is_sorted() && cloud.len() > 180_000);
 }
 

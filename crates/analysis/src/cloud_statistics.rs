@@ -35,6 +35,7 @@ const FEW: f64 = 0.01;
 
 /// A class of ranges.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct RangeClass {
     /// Smallest range, metres.
     pub from_m: f64,
@@ -46,6 +47,7 @@ pub struct RangeClass {
 
 /// Standard deviations that a cloud states for its points, millimetres, to half a per cent.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct SdQuantiles {
     /// Half of the points state no more.
     pub p50: f64,

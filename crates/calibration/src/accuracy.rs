@@ -51,6 +51,7 @@ pub struct StudyRequest<'a> {
 
 /// What scans say of their accuracy.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct AccuracyStudy {
     /// Surface elements.
     pub patches: usize,

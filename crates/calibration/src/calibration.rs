@@ -4,7 +4,9 @@ use cloud::mount::Mount;
 
 use crate::floor;
 use crate::model::{self, Fixed, ScannerModel};
-use crate::parameters::{DEVICE, Layout, POSITION_X, POSITION_Z, ROTATION_X, ROTATION_Z};
+use crate::parameters::{
+    DEVICE, Layout, POSITION_X, POSITION_Z, ParameterKind, ROTATION_X, ROTATION_Z,
+};
 use crate::shots::Scan;
 
 /// Fewest surface elements.
@@ -30,7 +32,10 @@ pub struct Calibration {
 
 /// A parameter's estimate, in the unit of its name.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ParameterEstimate {
+    /// Quantity.
+    pub kind: ParameterKind,
     /// Name with unit.
     pub name: String,
     /// Value.
@@ -47,6 +52,7 @@ pub struct ParameterEstimate {
 
 /// What a calibration rests on.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct CalibrationEvidence {
     /// Loops until nothing moved.
     pub loops: usize,
@@ -182,6 +188,13 @@ impl Calibration {
         self.parameters
             .iter()
             .find(|parameter| parameter.name == name)
+    }
+
+    /// The value of the only parameter of a kind, in the unit of its name; 0 without one.
+    #[must_use]
+    pub fn value(&self, kind: ParameterKind) -> f64 {
+        let mut of_kind = self.parameters.iter().filter(|p| p.kind == kind);
+        of_kind.next().map_or(0.0, |estimate| estimate.value)
     }
 
     /// Values of the mount and the axis, then of the lasers: all but the drift of the logs.

@@ -407,6 +407,7 @@ impl<'a> Estimator<'a> {
             .iter()
             .enumerate()
             .map(|(i, p)| ParameterEstimate {
+                kind: p.kind,
                 name: p.name.clone(),
                 value: values[i] / unit(i),
                 sd: sd(i) / unit(i),

@@ -55,4 +55,5 @@ pub use accuracy::{
 };
 pub use calibration::{Calibration, CalibrationEvidence, CalibrationRefusal, ParameterEstimate};
 pub use estimate::{CalibrationRequest, calibrate};
+pub use parameters::ParameterKind;
 pub use shots::{NominalLaser, Scan};

@@ -16,9 +16,39 @@ pub(crate) const PLAY: usize = 8;
 /// Parameters of a log: velocity and rotation rate of its base.
 pub(crate) const DRIFT: usize = 6;
 
+/// The quantity that a parameter describes. Lasers are numbered from 0 in firing order, logs
+/// from 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ParameterKind {
+    /// Rotation of the mount.
+    MountRotation,
+    /// Position of the mount.
+    MountPosition,
+    /// Time by which the platform is ahead of its angle samples.
+    Delay,
+    /// Relative error of the tilt angle.
+    Scale,
+    /// Ripple of the tilt angle, the sine's factor.
+    RippleSin,
+    /// Ripple of the tilt angle, the cosine's factor.
+    RippleCos,
+    /// Play of the gear.
+    Play,
+    /// Range offset of a laser.
+    Range(usize),
+    /// Elevation of a laser.
+    Elevation(usize),
+    /// Azimuth offset of a laser.
+    Azimuth(usize),
+    /// Motion of the base during a log.
+    Drift(usize),
+}
+
 /// A parameter with its unit and prior.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameter {
+    /// Quantity.
+    pub kind: ParameterKind,
     /// Name with unit, such as `mount_rotation_x_deg`.
     pub name: String,
     /// SI units (radians, metres, seconds) per unit of the name.
@@ -69,42 +99,56 @@ impl Layout {
 
     /// Names, units and priors in order.
     pub fn parameters(&self) -> Vec<Parameter> {
+        use ParameterKind::{
+            Azimuth, Delay, Drift, Elevation, MountPosition, MountRotation, Play, Range, RippleCos,
+            RippleSin, Scale,
+        };
         let mut all = Vec::with_capacity(self.len());
-        let mut add = |name: String, si_per_unit: f64, prior_sd: f64, m_at_20_m: f64| {
+        let mut add = |kind, name: &str, si_per_unit: f64, prior_sd: f64, m_at_20_m: f64| {
             all.push(Parameter {
-                name,
+                kind,
+                name: name.to_owned(),
                 si_per_unit,
                 prior_sd,
                 m_at_20_m,
             });
         };
-        add("mount_rotation_x_deg".into(), DEG, 3.0 * DEG, DISTANCE_M);
-        add("mount_rotation_z_deg".into(), DEG, 3.0 * DEG, DISTANCE_M);
-        add("mount_position_x_m".into(), 1.0, 0.03, 1.0);
-        add("mount_position_z_m".into(), 1.0, 0.03, 1.0);
-        add("delay_us".into(), 1e-6, 5e-3, RATE_RAD_S * DISTANCE_M);
-        add("scale".into(), 1.0, 5e-3, 45.0 * DEG * DISTANCE_M);
-        add("ripple_sin_deg".into(), DEG, 0.05 * DEG, DISTANCE_M);
-        add("ripple_cos_deg".into(), DEG, 0.05 * DEG, DISTANCE_M);
-        add("play_deg".into(), DEG, 0.1 * DEG, 0.5 * DISTANCE_M);
+        for axis in ["x", "z"] {
+            let name = format!("mount_rotation_{axis}_deg");
+            add(MountRotation, &name, DEG, 3.0 * DEG, DISTANCE_M);
+        }
+        add(MountPosition, "mount_position_x_m", 1.0, 0.03, 1.0);
+        add(MountPosition, "mount_position_z_m", 1.0, 0.03, 1.0);
+        add(Delay, "delay_us", 1e-6, 5e-3, RATE_RAD_S * DISTANCE_M);
+        add(Scale, "scale", 1.0, 5e-3, 45.0 * DEG * DISTANCE_M);
+        add(RippleSin, "ripple_sin_deg", DEG, 0.05 * DEG, DISTANCE_M);
+        add(RippleCos, "ripple_cos_deg", DEG, 0.05 * DEG, DISTANCE_M);
+        add(Play, "play_deg", DEG, 0.1 * DEG, 0.5 * DISTANCE_M);
         for laser in 0..self.lasers {
-            add(format!("laser_{laser}_range_m"), 1.0, 0.02, 1.0);
+            add(
+                Range(laser),
+                &format!("laser_{laser}_range_m"),
+                1.0,
+                0.02,
+                1.0,
+            );
         }
         for laser in 0..self.lasers {
             let name = format!("laser_{laser}_elevation_deg");
-            add(name, DEG, 0.1 * DEG, DISTANCE_M);
+            add(Elevation(laser), &name, DEG, 0.1 * DEG, DISTANCE_M);
         }
         for laser in 0..self.lasers {
             let name = format!("laser_{laser}_azimuth_deg");
-            add(name, DEG, 0.1 * DEG, DISTANCE_M);
+            add(Azimuth(laser), &name, DEG, 0.1 * DEG, DISTANCE_M);
         }
         for log in 1..=self.logs {
             for axis in ["x", "y", "z"] {
-                add(format!("drift_{log}_velocity_{axis}_m_s"), 1.0, 0.05, 1.0);
+                let name = format!("drift_{log}_velocity_{axis}_m_s");
+                add(Drift(log), &name, 1.0, 0.05, 1.0);
             }
             for axis in ["x", "y", "z"] {
                 let name = format!("drift_{log}_rotation_{axis}_deg_s");
-                add(name, DEG, 0.5 * DEG, DISTANCE_M);
+                add(Drift(log), &name, DEG, 0.5 * DEG, DISTANCE_M);
             }
         }
         all
@@ -125,6 +169,9 @@ mod tests {
         assert_eq!(all.len(), layout.len());
         let mut names: Vec<&str> = all.iter().map(|p| &*p.name).collect();
         assert_eq!(names[PLAY], "play_deg");
+        assert_eq!(all[PLAY].kind, ParameterKind::Play);
+        assert_eq!(all[layout.azimuth(3)].kind, ParameterKind::Azimuth(3));
+        assert_eq!(all[layout.drift(1) + 5].kind, ParameterKind::Drift(2));
         assert_eq!(names[layout.range(3)], "laser_3_range_m");
         assert_eq!(names[layout.elevation(15)], "laser_15_elevation_deg");
         assert_eq!(names[layout.azimuth(0)], "laser_0_azimuth_deg");

@@ -168,6 +168,7 @@ impl fmt::Debug for Fields {
 /// Points lack columns that their reader needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the points lack columns: wanted also {}, got {got}", names(*.missing))]
+#[non_exhaustive]
 pub struct MissingColumns {
     /// Columns that were wanted and are not there.
     pub missing: Fields,

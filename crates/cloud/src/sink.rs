@@ -7,6 +7,7 @@ use crate::{Diagnostic, Fields, Metadata, Points, SinkError, Summary, TiltTrack}
 
 /// A small file to be stored next to a sink's own.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Companion {
     /// File name, in the same folder.
     pub name: &'static str,

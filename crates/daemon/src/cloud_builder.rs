@@ -16,7 +16,7 @@ use io::files::{NewFile, Overwrite};
 use scanner::Accuracy;
 use sim::Truth;
 
-use engine::capture::run;
+use engine::capture::{completeness, run};
 use engine::document::Document;
 use engine::failure::{Failure, Kind};
 use engine::output::{BufferedFile, Target, file_failure};
@@ -135,7 +135,7 @@ fn build(state: &Arc<DaemonState>, job: &CloudJob) {
         state.events().failure(MessageLevel::Warning, failure);
     }
     let waits = made.is_err() && quota.refused().is_some();
-    let no_cloud = made.as_ref().err().map(run::no_cloud);
+    let missing = made.as_ref().ok().and_then(completeness::missing);
     let concluded = run::conclude(made, record.outcome(), (&cloud, &log));
     if let Ok((scan, _)) = &concluded
         && let Some((rms_m, worst_m)) = scan.live.and_then(|live| live.rms_m.zip(live.worst_m))
@@ -153,31 +153,33 @@ fn build(state: &Arc<DaemonState>, job: &CloudJob) {
             Counters::count(&counters.whole);
         }
         Ok((scan, Some(why))) => {
-            tracing::warn!("scan {id}: partial, {} points: {why}", scan.points);
+            tracing::warn!("scan {id}: partial, {} points: {}", scan.points, why.cause);
             Counters::count(&counters.partial);
         }
-        Err(why) if waits => tracing::error!("scan {id}: no cloud until there is room: {why}"),
+        Err(why) if waits => {
+            tracing::error!("scan {id}: no cloud until there is room: {}", why.cause)
+        }
         Err(why) => {
-            tracing::error!("scan {id}: no cloud: {why}");
+            tracing::error!("scan {id}: no cloud: {}", why.cause);
             Counters::count(&counters.failed);
         }
     }
     state.change_scan(id, |record| match concluded {
-        Ok((scan, why)) => {
-            record.state = match &why {
+        Ok((scan, failure)) => {
+            record.state = match &failure {
                 None => ScanState::Whole,
                 Some(_) => ScanState::Partial,
             };
-            record.why = why;
+            record.set_failure(failure);
+            record.recording = record.recording.take().or(missing);
             record.points = Some(scan.points);
             record.duration_s = Some(scan.contents.duration_s);
             record.report = Some(scan.to_json());
         }
-        Err(why) => {
+        Err(failure) => {
             record.state = ScanState::Failed;
-            record.no_cloud = no_cloud;
             record.waits_for_room = waits;
-            record.why = Some(why);
+            record.set_failure(Some(failure));
         }
     });
 }

@@ -57,8 +57,9 @@ impl ros2::ScanService for BridgeScans {
     fn start_capture(
         &self,
         request: &engine::capture_request::CaptureRequest,
-    ) -> Result<String, String> {
-        crate::http::captures::start(&self.0, request).map_err(|refusal| refusal.to_string())
+    ) -> Result<String, Failure> {
+        crate::http::captures::start(&self.0, request)
+            .map_err(crate::http::refusal::Refusal::into_failure)
     }
 
     fn log(&self, scan: &str) -> std::path::PathBuf {

@@ -21,6 +21,7 @@ pub type FreeBytes = dyn Fn(&Path) -> std::io::Result<u64> + Send + Sync;
 
 /// Counters since the start.
 #[derive(Debug, Default)]
+#[non_exhaustive]
 pub struct Counters {
     /// Captures begun.
     pub captures: AtomicU64,

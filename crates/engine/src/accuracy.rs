@@ -41,6 +41,7 @@ pub struct AccuracyRequest<'a> {
 
 /// A study with its origin.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Studied {
     /// The result.
     pub study: AccuracyStudy,

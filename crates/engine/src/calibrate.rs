@@ -53,6 +53,7 @@ pub enum CalibrateProgress<'a> {
 
 /// A calibration with its origin.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Calibrated {
     /// The result.
     pub calibration: Calibration,

@@ -105,6 +105,15 @@ const fn of_model(name: &'static str, model: &'static Model, sensor: PatternSens
     }
 }
 
+/// A rate at which a lidar's head cannot rotate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("expected {expected} for the {lidar}, got {rpm}")]
+pub struct UnsupportedRate {
+    expected: &'static str,
+    lidar: &'static str,
+    rpm: u32,
+}
+
 impl PartialEq for LidarSheet {
     fn eq(&self, other: &Self) -> bool {
         self.name == other.name
@@ -138,10 +147,14 @@ impl LidarSheet {
     /// Whether its head can rotate at a rate, revolutions per minute.
     ///
     /// # Errors
-    /// The rates that it has.
-    pub fn check_rpm(&self, rpm: u32) -> Result<(), String> {
+    /// [`UnsupportedRate`] with the rates that it has.
+    pub fn check_rpm(&self, rpm: u32) -> Result<(), UnsupportedRate> {
         let checked = self.sensor.check_rpm(f64::from(rpm));
-        checked.map_err(|expected| format!("expected {expected} for the {}, got {rpm}", self.title))
+        checked.map_err(|expected| UnsupportedRate {
+            expected,
+            lidar: self.title,
+            rpm,
+        })
     }
 
     /// Standard deviation of a range from shot to shot, quantisation included, metres.

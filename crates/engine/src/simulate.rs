@@ -35,6 +35,7 @@ use log::{Log, cannot_write, scan_config};
 
 /// Report on a simulation.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct SimulationReport {
     /// Scene as named by the user.
     pub scene: String,

@@ -49,6 +49,7 @@ impl ReturnKind {
 
 /// Measurement of one laser.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct LaserReturn {
     /// Index in the firing order.
     pub laser: u8,

@@ -15,6 +15,7 @@ use zenoh::query::Query;
 use zenoh::{Session, Wait};
 
 use engine::config::ros2::Ros2;
+use engine::failure::Failure;
 
 use crate::Context;
 use crate::bridge::STOP_POLL;
@@ -130,7 +131,10 @@ fn start_capture(context: &Context) -> (bool, String) {
     };
     match context.scans.start_capture(request) {
         Ok(id) => (true, id),
-        Err(error) => (false, error),
+        Err(Failure { message, help, .. }) => match help {
+            Some(help) => (false, format!("{message} ({help})")),
+            None => (false, message),
+        },
     }
 }
 

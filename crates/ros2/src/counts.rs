@@ -4,6 +4,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Counters since the start.
 #[derive(Debug, Default)]
+#[non_exhaustive]
 pub struct Counts {
     /// Whether a router is connected.
     pub connected: AtomicBool,

@@ -28,6 +28,7 @@ use std::sync::Arc;
 
 use engine::capture_request::CaptureRequest;
 use engine::config::ros2::Ros2 as Ros2Config;
+use engine::failure::Failure;
 use engine::service::DeviceService;
 
 pub use bridge::Bridge;
@@ -42,7 +43,7 @@ pub trait ScanService: Send + Sync {
     ///
     /// # Errors
     /// Why it cannot be begun.
-    fn start_capture(&self, request: &CaptureRequest) -> Result<String, String>;
+    fn start_capture(&self, request: &CaptureRequest) -> Result<String, Failure>;
 
     /// The log of a scan.
     fn log(&self, scan: &str) -> PathBuf;

@@ -68,6 +68,31 @@ pub struct ParameterCovariance {
     pub correlation: Vec<Vec<f64>>,
 }
 
+/// Numbers in a calibration that no device has.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum InvalidCalibration {
+    /// A number outside its range.
+    #[error("{key}: expected a number from -{most} to {most}, got {number}")]
+    OutOfRange {
+        /// Key in the file.
+        key: &'static str,
+        /// Largest magnitude.
+        most: f64,
+        /// The number found.
+        number: f64,
+    },
+    /// A covariance whose parts differ in size.
+    #[error("covariance: expected {count} standard deviations and the triangle below them")]
+    CovarianceShape {
+        /// Number of its parameters.
+        count: usize,
+    },
+    /// A standard deviation or correlation outside its range.
+    #[error("covariance: expected standard deviations from 0 and correlations from -1 to 1")]
+    CovarianceValues,
+}
+
 impl AxisCorrection {
     /// Whether it corrects nothing.
     #[must_use]
@@ -86,8 +111,8 @@ impl DeviceCalibration {
     /// Refuses numbers that no device has.
     ///
     /// # Errors
-    /// The key, with the expected range.
-    pub fn check(&self) -> Result<(), String> {
+    /// [`InvalidCalibration`].
+    pub fn check(&self) -> Result<(), InvalidCalibration> {
         let axis = &self.axis_correction;
         let [ripple_sin, ripple_cos] = axis.ripple_deg;
         let mut numbers = vec![
@@ -104,9 +129,7 @@ impl DeviceCalibration {
         }
         for (key, number, most) in numbers {
             if !(-most..=most).contains(&number) {
-                return Err(format!(
-                    "{key}: expected a number from -{most} to {most}, got {number}"
-                ));
+                return Err(InvalidCalibration::OutOfRange { key, most, number });
             }
         }
         self.covariance
@@ -136,7 +159,7 @@ impl DeviceCalibration {
 }
 
 impl ParameterCovariance {
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), InvalidCalibration> {
         let count = self.names.len();
         let rows = &self.correlation;
         let is_triangle = self.correlation.len() == count
@@ -145,18 +168,13 @@ impl ParameterCovariance {
                 .enumerate()
                 .all(|(row, numbers)| numbers.len() == row);
         if self.sd.len() != count || !is_triangle {
-            return Err(format!(
-                "covariance: expected {count} standard deviations and the triangle below them"
-            ));
+            return Err(InvalidCalibration::CovarianceShape { count });
         }
         let are_valid = self.sd.iter().all(|sd| (0.0..1e6).contains(sd))
             && rows.iter().flatten().all(|r| (-1.0..=1.0).contains(r));
         match are_valid {
             true => Ok(()),
-            false => Err(
-                "covariance: expected standard deviations from 0 and correlations from -1 to 1"
-                    .into(),
-            ),
+            false => Err(InvalidCalibration::CovarianceValues),
         }
     }
 

@@ -11,6 +11,7 @@ const SHORTEST_GAP: Span = Span::from_millis(100);
 
 /// Gaps between the angle samples of all sweeps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct SampleGaps {
     /// Gaps of at least 0.1 s.
     pub count: u64,

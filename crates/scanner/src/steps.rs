@@ -34,7 +34,8 @@ use monotonic::before;
 pub(crate) use monotonic::{ClockSteps, HostTimeline};
 
 /// The clock that was set.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum SetClock {
     /// The recording host's clock.
     Host,

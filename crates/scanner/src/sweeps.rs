@@ -52,6 +52,7 @@ pub struct Commanded {
 
 /// The sweeps of a log.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct FoundSweeps {
     /// Those that the samples show, in order of time.
     pub seen: Vec<Sweep>,

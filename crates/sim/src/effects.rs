@@ -36,6 +36,7 @@ pub const STEP_S: f64 = 250e-6;
 
 /// Inputs of an effect that take time to compute.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Needs {
     /// The surface's normal at every return.
     pub normals: bool,
@@ -116,6 +117,7 @@ pub trait ViewEffect: Effect {
 /// Only each `every`-th firing (0 as 1) sends pulses: a sample of a scene that keeps its packets
 /// and its time.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct FiringSample {
     /// Firings from one to the next.
     pub every: u64,
@@ -231,6 +233,7 @@ pub trait EncoderEffect: Effect {
 
 /// A message between a device and the host.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct LinkMessage {
     /// Its kind.
     pub kind: MessageKind,
@@ -351,6 +354,7 @@ pub trait FiringEffects: Clone + Send {
 
 /// The five parts of [`FiringEffects`], borrowed.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct FiringEffectRefs<'a, F: FiringEffects> {
     /// Moving objects.
     pub objects: &'a F::Objects,

@@ -16,6 +16,7 @@ pub struct AxisState {
 
 /// A move from one angle to another.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct AxisMove {
     /// Beginning, seconds.
     pub begin_s: f64,
@@ -65,6 +66,7 @@ pub struct AxisMotion {
 /// An invalid motion.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("motion: {what}")]
+#[non_exhaustive]
 pub struct MotionError {
     /// The invalid number's name in [`Sweeps`] or [`AxisMotion::fixed`].
     pub key: &'static str,

@@ -36,6 +36,7 @@ pub struct Oscillator {
 
 /// Times of a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct TimedPacket {
     /// Reading of the device's clock.
     pub device: Stamp<Lidar>,

@@ -34,6 +34,7 @@ pub struct HeadRotation {
 
 /// A return without measurement error.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct TruePoint {
     /// Where the middle of the beam meets the scene, metres in the frame of the base: origin on the
     /// tilt axis, x right, y forward, z up.

@@ -29,6 +29,7 @@ use toml::Spanned;
 
 /// The materials and objects of a scene file.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Scenery {
     /// Materials in the order of their names.
     pub materials: Vec<Material>,

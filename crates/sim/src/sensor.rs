@@ -15,6 +15,7 @@ pub const MAX_LASERS: usize = 32;
 
 /// One laser, in firing order.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct LaserBeam {
     /// Angle above the sensor's horizontal, degrees.
     pub elevation_deg: f64,
@@ -28,6 +29,7 @@ pub struct LaserBeam {
 
 /// Distances at which a sensor detects surfaces, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct DetectionRange {
     /// A nearer surface blocks the beam without a return.
     pub min_m: f64,
@@ -50,6 +52,7 @@ pub struct LidarSensor {
 /// Mounting of the lidar on the tilt axis: from its own frame (x right, y forward, z up) to the
 /// platform's, whose y is the axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct LidarMount {
     /// Rotation.
     pub rotation: DMat3,

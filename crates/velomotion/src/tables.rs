@@ -1,5 +1,8 @@
 //! Reports as tables for the terminal.
 
+use std::path::Path;
+
+use cloud::formats::Format;
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, Table};
 use engine::reconstruct::report::{
@@ -152,7 +155,7 @@ fn warning_rows(contents: &Contents) -> impl Iterator<Item = Row> + '_ {
 fn cloud_line(scan: &ScanReport) -> String {
     match scan.clouds {
         None => scan.output.clone(),
-        Some(clouds) if scan.output.ends_with(".mcap") => {
+        Some(clouds) if Format::from_path(Path::new(&scan.output)) == Ok(Format::Mcap) => {
             format!("{clouds} frames in {}", scan.output)
         }
         Some(clouds) => format!("{clouds} frames, numbered from the name {}", scan.output),

@@ -7,6 +7,7 @@ pub use crate::canopen::{Address, Scalar, TypedObject};
 
 /// An entry of [`ALL`], without its type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct NamedObject {
     /// Its address.
     pub address: Address,

@@ -7,6 +7,7 @@ use super::data::{BLOCKS, CHANNELS, Product, ReturnMode};
 
 /// One laser of a model, in firing order.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Laser {
     /// Angle above the sensor's horizon in degrees.
     pub elevation_deg: f64,

@@ -56,6 +56,15 @@ fn simulator(folder: &Path) -> Daemon {
     daemon(Config::default(), Some("sim"), folder, 0)
 }
 
+/// A browser, and a daemon with software devices in a folder of its own.
+fn browser_and_simulator() -> (Driver, tempfile::TempDir, Daemon, String) {
+    let driver = Driver::start();
+    let folder = tempfile::tempdir().unwrap();
+    let daemon = simulator(folder.path());
+    let url = url(&daemon);
+    (driver, folder, daemon, url)
+}
+
 fn url(daemon: &Daemon) -> String {
     format!("http://{}/", daemon.address())
 }
@@ -124,10 +133,7 @@ const TOO_MANY: &str = "
 #[test]
 #[ignore = "needs chromium and chromedriver"]
 fn a_scan_is_started_displayed_and_counted() {
-    let driver = Driver::start();
-    let folder = tempfile::tempdir().unwrap();
-    let daemon = simulator(folder.path());
-    let url = url(&daemon);
+    let (driver, _folder, daemon, url) = browser_and_simulator();
     driver.test(DESKTOP, async |page| {
         ready(&page, &url).await;
         page.until_has("#simulated", "SIMULATED").await;
@@ -196,10 +202,7 @@ fn a_scan_is_started_displayed_and_counted() {
 #[test]
 #[ignore = "needs chromium and chromedriver"]
 fn a_sweep_is_displayed_and_stopped_by_key_and_by_touch() {
-    let driver = Driver::start();
-    let folder = tempfile::tempdir().unwrap();
-    let daemon = simulator(folder.path());
-    let url = url(&daemon);
+    let (driver, _folder, daemon, url) = browser_and_simulator();
     for (screen, name) in [
         (DESKTOP, "by-key"),
         (PHONE, "by-finger"),
@@ -241,10 +244,7 @@ fn a_sweep_is_displayed_and_stopped_by_key_and_by_touch() {
 #[test]
 #[ignore = "needs chromium and chromedriver"]
 fn the_axis_is_moved_by_hand_within_its_limits_and_stopped() {
-    let driver = Driver::start();
-    let folder = tempfile::tempdir().unwrap();
-    let daemon = simulator(folder.path());
-    let url = url(&daemon);
+    let (driver, _folder, daemon, url) = browser_and_simulator();
     for screen in [DESKTOP, PHONE.light(), NARROW] {
         driver.test(screen, async |page| {
             ready(&page, &url).await;

@@ -1,15 +1,12 @@
 //! The scan in view: losses and residuals, and on request density, gaps, ranges and errors.
 
-use super::browser::{DESKTOP, Driver, NARROW, PHONE};
-use super::{TOO_MANY, ready, simulator, start, until_in_sight, url};
+use super::browser::{DESKTOP, NARROW, PHONE};
+use super::{TOO_MANY, browser_and_simulator, ready, start, until_in_sight};
 
 #[test]
 #[ignore = "needs chromium and chromedriver"]
 fn the_scan_in_view_is_measured_on_request() {
-    let driver = Driver::start();
-    let folder = tempfile::tempdir().unwrap();
-    let daemon = simulator(folder.path());
-    let url = url(&daemon);
+    let (driver, _folder, daemon, url) = browser_and_simulator();
     driver.test(DESKTOP, async |page| {
         ready(&page, &url).await;
         assert_eq!(page.text("#quality").await, "", "no scan is in view");

@@ -6,7 +6,8 @@ use velomotion_tests::bench::Bench;
 
 use super::browser::{DESKTOP, Driver, PHONE, Page};
 use super::{
-    TO_THE_TOP, TOO_MANY, daemon, points, ready, reserving, simulator, start, until_in_sight, url,
+    TO_THE_TOP, TOO_MANY, browser_and_simulator, daemon, points, ready, reserving, simulator,
+    start, until_in_sight, url,
 };
 
 /// Requests to the daemon get no answer until `window.answer` is called.
@@ -22,10 +23,7 @@ const SILENT: &str = "
 #[test]
 #[ignore = "needs chromium and chromedriver"]
 fn an_unconfirmed_stop_is_repeated_under_an_alarm_of_full_width() {
-    let driver = Driver::start();
-    let folder = tempfile::tempdir().unwrap();
-    let daemon = simulator(folder.path());
-    let url = url(&daemon);
+    let (driver, _folder, daemon, url) = browser_and_simulator();
     for screen in [DESKTOP, PHONE] {
         driver.test(screen, async |page| {
             ready(&page, &url).await;
@@ -46,10 +44,7 @@ fn an_unconfirmed_stop_is_repeated_under_an_alarm_of_full_width() {
 #[test]
 #[ignore = "needs chromium and chromedriver"]
 fn refusals_are_visible_at_their_control() {
-    let driver = Driver::start();
-    let folder = tempfile::tempdir().unwrap();
-    let daemon = simulator(folder.path());
-    let url = url(&daemon);
+    let (driver, _folder, daemon, url) = browser_and_simulator();
     for screen in [DESKTOP, PHONE] {
         driver.test(screen, async |page| {
             ready(&page, &url).await;
@@ -95,10 +90,7 @@ const WATCH_ERROR: &str = "
 #[test]
 #[ignore = "needs chromium and chromedriver"]
 fn an_error_during_a_motion_stays_visible() {
-    let driver = Driver::start();
-    let folder = tempfile::tempdir().unwrap();
-    let daemon = simulator(folder.path());
-    let url = url(&daemon);
+    let (driver, _folder, daemon, url) = browser_and_simulator();
     driver.test(PHONE, async |page| {
         ready(&page, &url).await;
         page.run(ERROR_IN_MOTION).await;

@@ -8,7 +8,9 @@ use engine::failure::{Failure, Kind};
 use serde_json::{Value, json};
 
 use super::browser::{DESKTOP, Driver, NARROW, PHONE, Page, Screen};
-use super::{ENTER, ESCAPE, TOO_MANY, daemon, simulator, start, until_in_sight, url};
+use super::{
+    ENTER, ESCAPE, TOO_MANY, browser_and_simulator, daemon, simulator, start, until_in_sight, url,
+};
 
 /// Screens of these tests, dark and light.
 const SCREENS: [Screen; 4] = [DESKTOP, DESKTOP.light(), PHONE.light(), NARROW];
@@ -347,10 +349,7 @@ fn the_reason_of_a_partial_scan_is_readable_whole() {
 #[test]
 #[ignore = "needs chromium and chromedriver"]
 fn the_view_of_a_deleted_scan_is_back_with_it() {
-    let driver = Driver::start();
-    let folder = tempfile::tempdir().unwrap();
-    let daemon = simulator(folder.path());
-    let url = url(&daemon);
+    let (driver, _folder, daemon, url) = browser_and_simulator();
     driver.test(DESKTOP, async |page| {
         super::ready(&page, &url).await;
         start(&page, "short", "5", "-5").await;

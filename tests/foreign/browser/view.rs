@@ -11,7 +11,7 @@ use velomotion::cli::Common;
 use velomotion::commands::view::show;
 
 use super::browser::{DESKTOP, Driver, NARROW, PHONE, Page};
-use super::{points, ready, simulator, start, until_in_sight, url};
+use super::{browser_and_simulator, points, ready, simulator, start, until_in_sight, url};
 
 /// Makes a scan with a daemon and returns the folder of its log and cloud.
 fn scanned(driver: &Driver, folder: &Path) -> PathBuf {
@@ -169,10 +169,7 @@ fn files_are_shown_played_and_end_with_their_tab() {
 #[test]
 #[ignore = "needs chromium and chromedriver"]
 fn a_cloud_is_downloaded_with_uncertainty_and_echo() {
-    let driver = Driver::start();
-    let folder = tempfile::tempdir().unwrap();
-    let daemon = simulator(folder.path());
-    let url = url(&daemon);
+    let (driver, _folder, daemon, url) = browser_and_simulator();
     driver.test(DESKTOP, async |page| {
         ready(&page, &url).await;
         start(&page, "short", "5", "-5").await;
@@ -293,10 +290,7 @@ fn points_are_measured_cut_coloured_and_linked() {
 #[test]
 #[ignore = "needs chromium and chromedriver"]
 fn the_stop_stays_in_full_screen_and_leaving_that_stops_the_axis() {
-    let driver = Driver::start();
-    let folder = tempfile::tempdir().unwrap();
-    let daemon = simulator(folder.path());
-    let url = url(&daemon);
+    let (driver, _folder, daemon, url) = browser_and_simulator();
     for screen in [DESKTOP, NARROW] {
         driver.test(screen, async |page| {
             ready(&page, &url).await;

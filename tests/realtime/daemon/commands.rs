@@ -58,6 +58,16 @@ fn a_capture_through_the_daemon_equals_a_direct_one() {
         .join("cloud.ply");
     assert!(std::fs::read(kept).unwrap() == read("through.ply"));
 
+    // It makes no clouds of other formats, and has the truth of its simulator.
+    let line = "capture --speed 56.25 -o table.csv --json -vv";
+    let table = run(folder.path(), line);
+    assert!(table.status.success(), "{}", printed(&table));
+    assert!(!printed(&table).contains("copy of the daemon's"));
+    assert!(json(&table)["truth"]["rms_m"].as_f64().unwrap() < 0.05);
+    let text = String::from_utf8(read("table.csv")).unwrap();
+    let rows = text.lines().filter(|line| !line.starts_with('#')).count() - 1;
+    assert_eq!(json(&table)["points"], rows);
+
     // Errors have the same text.
     for (line, code, word) in [
         ("capture --speed 100", 2, "98"),
@@ -99,7 +109,7 @@ fn ctrl_c_stops_the_daemons_axis_and_keeps_the_log() {
     let folder = place();
     let daemon = Process::start(folder.path());
     ready(daemon.address);
-    let mut capture = velomotion(folder.path(), "capture --speed 5 -o scan.ply")
+    let mut capture = velomotion(folder.path(), "capture --speed 5 -o scan.ply -vv")
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
@@ -120,6 +130,9 @@ fn ctrl_c_stops_the_daemons_axis_and_keeps_the_log() {
     }
     assert_eq!(capture.wait().unwrap().code(), Some(130), "{text}");
     assert!(text.contains("stopped by the user"), "{text}");
+    assert!(text.contains("the log scan.pcapng"), "{text}");
+    // The daemon has made the cloud.
+    assert!(text.contains("copy of the daemon's"), "{text}");
     for name in ["scan.ply", "scan.pcapng"] {
         assert!(folder.path().join(name).is_file(), "{name}: {text}");
     }

@@ -18,6 +18,7 @@ use super::{DensityError, check};
 
 /// Holes at one angle from an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct HoleRow {
     /// Mean angle of the holes from the axis, degrees.
     pub from_axis_deg: f64,
@@ -29,6 +30,7 @@ pub struct HoleRow {
 
 /// A range of angles from an axis without points.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct EmptyBand {
     /// Start: the angle of the last point before, or 0; degrees.
     pub from_deg: f64,

@@ -28,6 +28,7 @@ pub struct Hole {
 
 /// The largest hole.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct LargestHole {
     /// The hole.
     pub hole: Hole,

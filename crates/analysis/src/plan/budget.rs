@@ -13,6 +13,7 @@ use super::{PlanLidar, TiltSweep};
 
 /// Times of the positions that a link to the drive gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct LinkTiming {
     /// Time from one position to the next, seconds.
     pub poll_s: f64,

@@ -34,6 +34,7 @@ pub struct PlannedScan {
 
 /// Distances of directions from the nearest ray.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct GapQuantiles {
     /// Of half of the directions in view.
     pub p50: f64,

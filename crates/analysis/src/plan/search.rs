@@ -31,6 +31,7 @@ pub enum LimitKind {
 
 /// What comes nearest to a limit that no scan keeps.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct NearestScan {
     /// The limit.
     pub limit: LimitKind,

@@ -222,6 +222,7 @@ impl Row {
 
 /// Two columns that are traded: a plot with a Pareto front.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Trade {
     /// Index of the column on the x axis.
     pub cost: usize,

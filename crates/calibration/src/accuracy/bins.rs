@@ -23,6 +23,7 @@ pub struct BinGroup {
 
 /// The residuals of a bin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct ResidualBin {
     /// The quantity from here on.
     pub from: f64,

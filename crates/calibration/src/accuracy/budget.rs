@@ -8,6 +8,7 @@ use crate::shots::AZIMUTH_SD_RAD;
 
 /// Errors of angles that residuals do not show.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct AngleErrors {
     /// Standard deviation of the fitted tilt, radians.
     pub tilt_sd_rad: f64,
@@ -26,6 +27,7 @@ pub struct KnownCovariance<'a> {
 
 /// Errors of points in a range of distances: root mean squares over three dimensions, metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct BudgetBin {
     /// Range from here on, metres.
     pub from_m: f64,

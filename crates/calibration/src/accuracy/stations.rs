@@ -9,6 +9,7 @@ use crate::patches::Patches;
 
 /// Two scans with common corners.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct StationPair {
     /// Numbers of the scans, from 0.
     pub logs: [usize; 2],

@@ -7,6 +7,7 @@ use crate::shots::RangeShot;
 
 /// Two sweeps of a scan.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SweepPair {
     /// Number of the scan, from 0.
     pub log: usize,

@@ -52,6 +52,7 @@ pub enum Format {
 /// An extension without a format.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no cloud format for {}: expected one of {}", shown(.got), expected())]
+#[non_exhaustive]
 pub struct UnsupportedFormat {
     /// The extension without its dot; empty if the name has none.
     pub got: String,

@@ -60,6 +60,7 @@ pub enum Topic {
 
 /// A message type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct MessageType {
     /// Full name, such as `sensor_msgs/msg/PointCloud2`.
     pub name: &'static str,
@@ -146,6 +147,7 @@ pub struct Time {
 #[error(
     "messages: time {got_ns} ns, expected between 1970 and 2038, as ROS counts seconds in 31 bits"
 )]
+#[non_exhaustive]
 pub struct UnsayableTime {
     /// The time, nanoseconds since 1970.
     pub got_ns: i64,

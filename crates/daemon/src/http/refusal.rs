@@ -1,7 +1,5 @@
 //! Refused and failed requests, all in the form of a failed command.
 
-use std::fmt;
-
 use axum::body::to_bytes;
 use axum::extract::rejection::QueryRejection;
 use axum::http::{StatusCode, header};
@@ -38,6 +36,12 @@ impl Refusal {
             failure: Failure::new(kind, error).help(help),
             retry_after_s: None,
         }
+    }
+
+    /// The failure, without its place in HTTP.
+    #[must_use]
+    pub fn into_failure(self) -> Failure {
+        self.failure
     }
 
     /// Adds when to try again.
@@ -131,16 +135,6 @@ pub async fn in_one_form(response: Response) -> Response {
         ..Refusal::usage(text)
     }
     .into_response()
-}
-
-impl fmt::Display for Refusal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.failure.message)?;
-        match &self.failure.help {
-            Some(help) => write!(f, " ({help})"),
-            None => Ok(()),
-        }
-    }
 }
 
 impl IntoResponse for Refusal {

@@ -49,6 +49,7 @@ pub enum FileState {
 
 /// A file as the page shows it.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct ViewedFile {
     /// Name.
     pub name: String,

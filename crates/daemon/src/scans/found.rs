@@ -6,6 +6,7 @@ use std::path::Path;
 
 use super::{CLOUD, LOG, RECORD};
 use engine::failure::{Failure, Kind};
+use engine::reconstruct::source::Source;
 use engine::service::scan_record::{ScanHead, ScanRecord, ScanState};
 
 /// Bytes of the largest record; those of captures have some kB.
@@ -103,13 +104,19 @@ fn of_folder(place: &Path, name: &str) -> ScanRecord {
         id: name.to_owned(),
         state: ScanState::Failed,
         started_s: modified_s(&place.join(LOG)),
-        simulated: name.contains("simulated"),
+        simulated: is_simulated(&place.join(LOG)),
         ..ScanHead::default()
     };
     ScanRecord {
         head,
         ..ScanRecord::default()
     }
+}
+
+/// Whether a log says that its devices were software.
+fn is_simulated(log: &Path) -> bool {
+    let config = || Source::open(log, None)?.config();
+    is_file(log) && config().is_ok_and(|config| config.simulated)
 }
 
 /// The failure of an interrupted scan.

@@ -3,7 +3,6 @@
 
 use std::path::Path;
 
-use engine::failure::Failure;
 use engine::service::scan_record::{ScanRecord, ScanState};
 
 /// The summary of a scan in `place`; `None` for a complete scan or one under way.
@@ -17,30 +16,20 @@ pub(super) fn of(record: &ScanRecord, place: &Path, has_log: bool) -> Option<Str
         (ScanState::Failed, false, false) => "Nothing was recorded.",
         (ScanState::Recording | ScanState::Making | ScanState::Whole, ..) => return None,
     };
-    let place = place.display().to_string();
-    let (why, help) = match &record.why {
-        Some(why) => (
-            why.message.replace(&format!("{place}/"), ""),
-            help_sentences(why, record.no_cloud.as_deref(), &place),
-        ),
-        None => (String::new(), Vec::new()),
-    };
-    let mut all = vec![sentence(&why), left.to_owned()];
-    all.extend(help);
+    let cause = record.cause.as_ref().or(record.why.as_ref());
+    let what = cause.map_or("", |cause| &cause.message);
+    let help = cause.and_then(|cause| cause.help.as_deref());
+    let mut all = vec![sentence(what), left.to_owned()];
+    all.extend(sentences(help.unwrap_or_default()));
+    all.extend(record.no_cloud.as_deref().map(sentence));
     all.retain(|text| !text.is_empty());
-    Some(all.join(" "))
+    Some(all.join(" ").replace(&format!("{}/", place.display()), ""))
 }
 
-/// The help, one sentence per line. Lines that name a folder are left out, except the one on the
-/// missing cloud.
-fn help_sentences(why: &Failure, no_cloud: Option<&str>, place: &str) -> Vec<String> {
-    let help = why.help.as_deref().unwrap_or_default();
+/// The help, one sentence per line.
+fn sentences(help: &str) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
-    let wanted = help
-        .lines()
-        .filter(|line| !line.contains(place) || Some(*line) == no_cloud)
-        .map(|line| line.replace(&format!("{place}/"), ""));
-    for line in wanted {
+    for line in help.lines() {
         let goes_on = line.starts_with('(') || lines.last().is_some_and(|l| l.ends_with(','));
         match lines.last_mut() {
             Some(before) if goes_on => *before = format!("{before} {}", line.trim()),
@@ -68,45 +57,46 @@ mod tests {
     use super::*;
     use crate::scans::{CLOUD, LOG};
     use engine::capture::run::{self, Outcome};
-    use engine::failure::Kind;
+    use engine::failure::{Failure, Kind};
     use engine::service::scan_record::ScanHead;
 
     const PLACE: &str = "/data/my scans/hall";
 
     fn describe(state: ScanState, why: Failure, waits: bool, has_log: bool) -> String {
-        describe_with(state, why, waits, has_log, None)
-    }
-
-    fn describe_with(
-        state: ScanState,
-        why: Failure,
-        waits: bool,
-        has_log: bool,
-        no_cloud: Option<String>,
-    ) -> String {
-        let record = ScanRecord {
-            head: ScanHead {
-                id: "hall".to_owned(),
-                state,
-                why: Some(why),
-                waits_for_room: waits,
-                simulated: true,
-                ..ScanHead::default()
-            },
-            no_cloud,
-            ..ScanRecord::default()
-        };
+        let mut record = record(state, waits);
+        record.why = Some(why);
         of(&record, Path::new(PLACE), has_log).unwrap()
     }
 
-    /// Failure of a capture without a cloud.
-    fn without_cloud(recording: Option<Failure>, making: Failure) -> Failure {
+    fn record(state: ScanState, waits_for_room: bool) -> ScanRecord {
+        ScanRecord {
+            head: ScanHead {
+                id: "hall".to_owned(),
+                state,
+                waits_for_room,
+                simulated: true,
+                ..ScanHead::default()
+            },
+            ..ScanRecord::default()
+        }
+    }
+
+    /// Summary of a capture without a cloud, and its failure.
+    fn without_cloud(
+        recording: Option<Failure>,
+        making: Failure,
+        waits: bool,
+    ) -> (String, Failure) {
         let files = [CLOUD, LOG].map(|name| Path::new(PLACE).join(name));
         let outcome = Outcome {
             failure: recording,
             ..Outcome::default()
         };
-        run::conclude(Err(making), outcome, (&files[0], &files[1])).unwrap_err()
+        let failure = run::conclude(Err(making), outcome, (&files[0], &files[1])).unwrap_err();
+        let mut record = record(ScanState::Failed, waits);
+        record.set_failure(Some(failure));
+        let summary = of(&record, Path::new(PLACE), true).unwrap();
+        (summary, record.head.why.unwrap())
     }
 
     #[test]
@@ -121,16 +111,15 @@ mod tests {
             "Stopped by the user. What was captured is kept."
         );
         assert_eq!(
-            describe(ScanState::Failed, without_cloud(None, full()), true, true),
+            without_cloud(None, full(), true).0,
             "The cloud cloud.ply could not be written: disk full. \
              The log is kept: its cloud is made as soon as the disk has room. Free some space."
         );
         let making = Failure::new(Kind::BadInput, format!("{PLACE}/log.pcapng: no packet"));
-        let no_cloud = Some(run::no_cloud(&making));
-        let both = without_cloud(Some(stopped()), making);
+        let (summary, both) = without_cloud(Some(stopped()), making, false);
         assert!(both.help.as_ref().unwrap().contains(PLACE), "{both:?}");
         assert_eq!(
-            describe_with(ScanState::Failed, both, false, true, no_cloud),
+            summary,
             "Stopped by the user. The log is kept. There is no cloud: log.pcapng: no packet."
         );
         let silent = Failure::new(Kind::NoDevice, "no lidar")

@@ -1,5 +1,7 @@
 use super::*;
 use crate::limits::UNDO;
+use io::log::{LogConfig, LogWriter};
+use scanner::ScanConfig;
 
 fn request(name: Option<&str>) -> CaptureRequest {
     CaptureRequest {
@@ -123,7 +125,17 @@ fn unfinished_scans_wait_for_their_cloud() {
     assert!(scans.delete(&without).is_err());
     // A folder with only a log, and one that is not a scan.
     fs::create_dir(folder.path().join("copied")).unwrap();
-    fs::write(folder.path().join("copied").join(LOG), b"log").unwrap();
+    let config = ScanConfig {
+        simulated: true,
+        ..ScanConfig::default()
+    };
+    let config = LogConfig {
+        metadata: toml::to_string(&config).unwrap(),
+        drive: None,
+    };
+    let log = folder.path().join("copied").join(LOG);
+    let log = LogWriter::create(&log, &config, Overwrite::Refuse).unwrap();
+    log.finish().unwrap();
     fs::create_dir(folder.path().join("other")).unwrap();
     let again = Scans::open(folder.path()).unwrap();
     let mut unfinished = again.unfinished();
@@ -131,6 +143,9 @@ fn unfinished_scans_wait_for_their_cloud() {
     assert_eq!(unfinished, [with_log.as_str(), "copied"]);
     assert_eq!(again.view(&without).unwrap().state, ScanState::Failed);
     assert!(again.record(&with_log).unwrap().recording.is_some());
+    // The log says that it is simulated, whatever its folder is called.
+    assert!(again.record("copied").unwrap().simulated);
+    assert!(!again.record(&with_log).unwrap().simulated);
     assert_eq!(again.list().len(), 3);
 }
 

@@ -9,6 +9,7 @@ use crate::calibrate::LogReport;
 
 /// Report of a study of accuracy.
 #[derive(Clone, Debug, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct AccuracyReport {
     /// The logs.
     pub logs: Vec<LogReport>,
@@ -41,6 +42,7 @@ pub struct AccuracyReport {
 
 /// A laser.
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct LaserNoise {
     /// Index in firing order.
     pub laser: usize,
@@ -53,6 +55,7 @@ pub struct LaserNoise {
 
 /// Residuals by one quantity.
 #[derive(Clone, Debug, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct ResidualGroup {
     /// The quantity, with its unit.
     pub by: String,
@@ -62,6 +65,7 @@ pub struct ResidualGroup {
 
 /// Residuals of a bin.
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct ResidualReport {
     /// The quantity from here on.
     pub from: f64,
@@ -82,6 +86,7 @@ pub struct ResidualReport {
 
 /// Errors of points against the truth.
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct PointErrors {
     /// Root mean square error.
     pub rms_mm: f64,
@@ -93,6 +98,7 @@ pub struct PointErrors {
 
 /// Two sweeps of a log, by the elements that both meet.
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct SweepDifference {
     /// The log, from 1.
     pub log: usize,
@@ -118,6 +124,7 @@ pub struct SweepDifference {
 
 /// Two logs that see the same corners.
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct StationReport {
     /// The first log, from 1.
     pub first: usize,
@@ -141,6 +148,7 @@ pub struct StationReport {
 
 /// Errors of points in a range of distances, root mean squares in millimetres.
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct BudgetReport {
     /// Range from here on.
     pub from_m: f64,

@@ -1,5 +1,6 @@
 //! The file of a calibration, `mount.toml`.
 
+use calibration::ParameterKind;
 use scanner::config::{
     AxisCorrection, DeviceCalibration, LaserCalibration, MountConfig, ParameterCovariance,
 };
@@ -30,8 +31,8 @@ struct EvidenceTable<'a> {
 /// The calibration as TOML, with the version of the program that made it.
 ///
 /// # Errors
-/// The serialiser's message.
-pub fn to_toml(calibrated: &Calibrated, version: &str) -> Result<String, String> {
+/// The serialiser's error.
+pub fn to_toml(calibrated: &Calibrated, version: &str) -> Result<String, toml::ser::Error> {
     let evidence = &calibrated.calibration.evidence;
     let file = CalibrationFileText {
         calibration: device_calibration(calibrated),
@@ -54,35 +55,30 @@ pub fn to_toml(calibrated: &Calibrated, version: &str) -> Result<String, String>
         true => "# SIMULATED: calibrated by logs of software devices\n",
         false => "",
     };
-    let text = toml::to_string(&file).map_err(|error| error.to_string())?;
+    let text = toml::to_string(&file)?;
     Ok(format!("{first}{text}"))
 }
 
 /// What the calibration says beside the mount.
 fn device_calibration(calibrated: &Calibrated) -> DeviceCalibration {
     let calibration = &calibrated.calibration;
-    let value = |name: &str| {
-        calibration
-            .parameter(name)
-            .map_or(0.0, |estimate| estimate.value)
-    };
+    let value = |kind| calibration.value(kind);
     let scanner = calibration.of_the_scanner();
-    let lasers = calibrated.model.lasers.iter().zip(0_u8..);
+    let lasers = calibrated.model.lasers.iter().zip(0_u8..).enumerate();
     DeviceCalibration {
         model: Some(calibrated.model.name.to_owned()),
         axis_correction: AxisCorrection {
-            delay_us: value("delay_us"),
-            scale: value("scale"),
-            ripple_deg: [value("ripple_sin_deg"), value("ripple_cos_deg")],
-            play_deg: value("play_deg"),
+            delay_us: value(ParameterKind::Delay),
+            scale: value(ParameterKind::Scale),
+            ripple_deg: [ParameterKind::RippleSin, ParameterKind::RippleCos].map(value),
+            play_deg: value(ParameterKind::Play),
         },
         laser: lasers
-            .map(|(laser, id)| LaserCalibration {
+            .map(|(index, (laser, id))| LaserCalibration {
                 id,
-                elevation_deg: laser.elevation_deg + value(&format!("laser_{id}_elevation_deg")),
-                azimuth_offset_deg: laser.azimuth_offset_deg
-                    + value(&format!("laser_{id}_azimuth_deg")),
-                range_offset_m: value(&format!("laser_{id}_range_m")),
+                elevation_deg: laser.elevation_deg + value(ParameterKind::Elevation(index)),
+                azimuth_offset_deg: laser.azimuth_offset_deg + value(ParameterKind::Azimuth(index)),
+                range_offset_m: value(ParameterKind::Range(index)),
             })
             .collect(),
         covariance: Some(ParameterCovariance {

@@ -1,6 +1,6 @@
 //! The object of `velomotion calibrate --json`.
 
-use calibration::{Calibration, ParameterEstimate};
+use calibration::{Calibration, ParameterEstimate, ParameterKind};
 use scanner::config::MountConfig;
 use serde::Serialize;
 use utoipa::ToSchema;
@@ -9,6 +9,7 @@ use super::{Calibrated, mount_config};
 
 /// Report of a calibration.
 #[derive(Clone, Debug, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct CalibrateReport {
     /// The logs.
     pub logs: Vec<LogReport>,
@@ -41,6 +42,7 @@ pub struct CalibrateReport {
 
 /// A log of a calibration.
 #[derive(Clone, Debug, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct LogReport {
     /// Its path.
     pub path: String,
@@ -50,6 +52,7 @@ pub struct LogReport {
 
 /// A parameter, in the unit that its name states.
 #[derive(Clone, Debug, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct ParameterReport {
     /// Name with unit.
     pub name: String,
@@ -87,6 +90,7 @@ pub struct BeforeAfter {
 
 /// Residuals of a laser's ranges on the surface elements, millimetres.
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct LaserResiduals {
     /// Index in firing order.
     pub laser: usize,
@@ -183,25 +187,24 @@ impl ParameterReport {
             correlation,
             moves_mm: 1e3 * estimate.at_20_m[0],
             sd_mm: 1e3 * estimate.at_20_m[1],
-            help: (!observable).then(|| help(&estimate.name).to_owned()),
+            help: (!observable).then(|| help(estimate.kind).to_owned()),
         }
     }
 }
 
 /// What determines a parameter.
-fn help(name: &str) -> &'static str {
-    let kind = |part: &str| name.starts_with(part);
-    if kind("delay") || kind("play") {
-        return "scan both ways, at two speeds";
-    }
-    if kind("drift") || kind("scale") {
-        return "scan both ways";
-    }
-    if kind("ripple") {
-        return "scan more turns of the motor, with surfaces beyond 10 m";
-    }
-    match kind("laser") {
-        true => "scan surfaces that this laser meets at several tilts, in several directions",
-        false => "scan a wider range of tilt, with surfaces in several directions",
+const fn help(kind: ParameterKind) -> &'static str {
+    match kind {
+        ParameterKind::Delay | ParameterKind::Play => "scan both ways, at two speeds",
+        ParameterKind::Drift(_) | ParameterKind::Scale => "scan both ways",
+        ParameterKind::RippleSin | ParameterKind::RippleCos => {
+            "scan more turns of the motor, with surfaces beyond 10 m"
+        }
+        ParameterKind::Range(_) | ParameterKind::Elevation(_) | ParameterKind::Azimuth(_) => {
+            "scan surfaces that this laser meets at several tilts, in several directions"
+        }
+        ParameterKind::MountRotation | ParameterKind::MountPosition => {
+            "scan a wider range of tilt, with surfaces in several directions"
+        }
     }
 }

@@ -26,6 +26,7 @@ pub struct SweepRequest {
 
 /// One move of a capture.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Step {
     /// Motion as the drive will run it.
     pub plan: MovePlan,

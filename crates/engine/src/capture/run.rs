@@ -35,6 +35,7 @@ const LIDAR_WAIT: Duration = Duration::from_secs(2);
 const LIDAR_POLL: Duration = Duration::from_millis(5);
 
 /// Devices and files of a capture.
+#[non_exhaustive]
 pub struct CaptureJob<'a> {
     /// The plan.
     pub plan: &'a CapturePlan,
@@ -295,10 +296,25 @@ impl RecordingEnd {
     }
 }
 
-/// The line of help that says why there is no cloud of a capture that failed otherwise.
-#[must_use]
-pub fn no_cloud(failure: &Failure) -> String {
-    format!("there is no cloud: {}", failure.message)
+/// Why a scan is incomplete, and where what was captured is.
+#[derive(Debug)]
+pub struct ScanFailure {
+    /// What went wrong first.
+    pub cause: Failure,
+    /// Why there is no cloud, where that is another reason.
+    pub no_cloud: Option<String>,
+    /// Where what was captured is.
+    saved: String,
+}
+
+impl ScanFailure {
+    /// All of it as one failure.
+    #[must_use]
+    pub fn into_failure(self) -> Failure {
+        let help = [self.cause.help.clone(), self.no_cloud, Some(self.saved)];
+        let lines: Vec<String> = help.into_iter().flatten().collect();
+        self.cause.help(lines.join("\n"))
+    }
 }
 
 /// Joins the cloud and the outcome of its recording: a scan, and why it is incomplete.
@@ -309,53 +325,41 @@ pub fn conclude(
     made: Result<ScanReport, Failure>,
     outcome: Outcome,
     (cloud, log): (&Path, &Path),
-) -> Result<(ScanReport, Option<Failure>), Failure> {
-    let saved = match &made {
-        Ok(_) => format!(
-            "what was captured is saved: the cloud {} and the log {}",
-            cloud.display(),
-            log.display()
-        ),
-        Err(failure) => format!("{}\nthe log is {}", no_cloud(failure), log.display()),
-    };
-    let missing = || completeness::missing(made.as_ref().ok()?);
-    let failure = outcome
-        .failure
-        .or_else(missing)
-        .map(|failure| add_help(failure, &saved));
-    match (made, failure) {
+) -> Result<(ScanReport, Option<ScanFailure>), ScanFailure> {
+    let log = log.display();
+    Err(match (made, outcome.failure) {
         (Ok(scan), failure) => {
-            let scan = ScanReport {
-                reception: outcome.reception,
-                ..scan
-            };
-            Ok((scan, failure))
+            let cause = failure.or_else(|| completeness::missing(&scan));
+            let failure = cause.map(|cause| ScanFailure {
+                cause,
+                no_cloud: None,
+                saved: format!(
+                    "what was captured is saved: the cloud {} and the log {log}",
+                    cloud.display()
+                ),
+            });
+            let reception = outcome.reception;
+            return Ok((ScanReport { reception, ..scan }, failure));
         }
-        (Err(_), Some(failure)) => Err(failure),
-        (Err(failure), None) => Err(without_cloud(failure, log)),
-    }
-}
-
-/// The failure of a complete capture whose cloud cannot be made without a choice, such as one of
-/// two lidars, that `replay` offers.
-fn without_cloud(failure: Failure, log: &Path) -> Failure {
-    let kind = match failure.kind {
-        Kind::BadInput => Kind::Incomplete,
-        kind => kind,
-    };
-    let saved = format!(
-        "the log is saved: velomotion replay {} makes the cloud",
-        log.display()
-    );
-    add_help(Failure { kind, ..failure }, &saved)
-}
-
-fn add_help(failure: Failure, line: &str) -> Failure {
-    let help = match &failure.help {
-        Some(help) => format!("{help}\n{line}"),
-        None => line.to_owned(),
-    };
-    failure.help(help)
+        (Err(making), Some(cause)) => ScanFailure {
+            cause,
+            no_cloud: Some(format!("there is no cloud: {}", making.message)),
+            saved: format!("the log is {log}"),
+        },
+        // The capture is complete. Its cloud needs a choice that `replay` offers, such as one of
+        // two lidars.
+        (Err(making), None) => ScanFailure {
+            cause: Failure {
+                kind: match making.kind {
+                    Kind::BadInput => Kind::Incomplete,
+                    kind => kind,
+                },
+                ..making
+            },
+            no_cloud: None,
+            saved: format!("the log is saved: velomotion replay {log} makes the cloud"),
+        },
+    })
 }
 
 fn reception(counts: &CaptureCounts) -> Reception {
@@ -447,7 +451,12 @@ mod tests {
     fn a_capture_without_a_cloud_reports_its_log() {
         let two = Failure::new(Kind::BadInput, "2 lidars in one recording")
             .help("choose one with --sensor");
-        let failure = without_cloud(two, Path::new("hall.pcapng"));
+        let without_cloud = |making| {
+            let files = (Path::new("hall.ply"), Path::new("hall.pcapng"));
+            let concluded = conclude(Err(making), Outcome::default(), files);
+            concluded.unwrap_err().into_failure()
+        };
+        let failure = without_cloud(two);
         assert_eq!(failure.kind, Kind::Incomplete);
         assert_eq!(failure.message, "2 lidars in one recording");
         let help = failure.help.unwrap();
@@ -457,7 +466,7 @@ mod tests {
         );
         // Ctrl-C during the reconstruction remains an interruption.
         let stopped = Failure::new(Kind::Interrupted, "stopped");
-        let failure = without_cloud(stopped, Path::new("hall.pcapng"));
+        let failure = without_cloud(stopped);
         assert_eq!(failure.kind, Kind::Interrupted);
     }
 }

@@ -49,6 +49,7 @@ impl LidarName {
 /// these.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct LidarSettings {
     /// Its model.
     pub model: LidarName,

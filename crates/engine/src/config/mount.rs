@@ -151,7 +151,8 @@ pub fn load_mount(path: &Path) -> Result<MountSettings, Failure> {
     }
     let pose = table.pose();
     check(pose).map_err(wrong)?;
-    file.calibration.check().map_err(wrong)?;
+    let checked = file.calibration.check();
+    checked.map_err(|error| wrong(error.to_string()))?;
     Ok(MountSettings {
         pose,
         file: None,

@@ -81,6 +81,7 @@ struct GuardianSetup {
 
 /// What a guardian did.
 #[derive(Clone, Debug, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct GuardianReport {
     /// Whether the parent had died, rather than been silent.
     pub parent_died: bool,

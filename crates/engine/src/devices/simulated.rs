@@ -23,6 +23,7 @@ use crate::failure::{Failure, Kind};
 
 /// Local ports of the software lidar's packets.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct LidarPorts {
     /// Local port that receives data packets.
     pub data: u16,

@@ -80,7 +80,7 @@ fn clock(sync: &SyncReport) -> Diagnostic {
     let steps = sync.steps.len();
     let problem = (steps > 0).then(|| format!("clocks were set {steps} times, which was undone"));
     let values = NamedValues::new()
-        .with("method", sync.clock_method)
+        .with("method", &sync.clock_method)
         .with("residual_us", sync.clock_residual_us)
         .with("bound_us", sync.clock_bound_us)
         .with("drift_ppm", sync.clock_drift_ppm)
@@ -93,7 +93,7 @@ fn tilt(scan: &ScanReport) -> Diagnostic {
     let sync = &scan.sync;
     let tilt = scan.contents.tilt.as_ref();
     let values = NamedValues::new()
-        .with("method", sync.angle_method)
+        .with("method", &sync.angle_method)
         .with_some("residual_rms_deg", sync.angle_rms_deg)
         .with_some("bound_deg", sync.angle_bound_deg)
         .with_some("samples", tilt.map(|tilt| tilt.samples))

@@ -9,6 +9,7 @@ use super::report::ScanReport;
 
 /// A field of view and what it is of.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct LogView {
     /// The directions.
     pub view: FieldOfView,

@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 /// Packet counts by kind.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, ToSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[non_exhaustive]
 pub struct PacketCounts {
     /// Decoded lidar data packets.
     pub data: u64,
@@ -19,7 +20,7 @@ pub struct PacketCounts {
 }
 
 /// The drive part of a log.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[non_exhaustive]
 pub struct TiltReport {
     /// Shaft samples.
@@ -30,7 +31,7 @@ pub struct TiltReport {
 }
 
 /// State of a lidar's satellite receiver.
-#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[non_exhaustive]
 pub struct Gps {
     /// State of the pulse per second: `absent`, `synchronising`, `locked` or `error`.
@@ -46,7 +47,7 @@ pub struct Gps {
 }
 
 /// Position of an antenna in WGS 84.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[non_exhaustive]
 pub struct GpsReport {
     /// Degrees, positive in the north.
@@ -56,7 +57,7 @@ pub struct GpsReport {
 }
 
 /// One of several lidars in a file.
-#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[non_exhaustive]
 pub struct SensorReport {
     /// Address and data port.
@@ -80,7 +81,7 @@ pub struct SensorReport {
 }
 
 /// Data packets that are missing at one place.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[non_exhaustive]
 pub struct MissingPackets {
     /// From the first firing, seconds of device time.
@@ -90,7 +91,7 @@ pub struct MissingPackets {
 }
 
 /// Contents of a file.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, ToSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Contents {
     /// Sensor model.
     pub model: Option<String>,
@@ -104,7 +105,7 @@ pub struct Contents {
     /// Data packets missing by device time.
     pub lost_packets: u64,
     /// Where they are missing: at most the first 100 places.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub packet_gaps: Vec<MissingPackets>,
     /// From the first to the last firing, seconds of device time.
     pub duration_s: f64,
@@ -114,7 +115,7 @@ pub struct Contents {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gps: Option<Gps>,
     /// One report per lidar if there are several. The other fields describe the first.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sensors: Vec<SensorReport>,
     /// Drive samples of a log.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -148,7 +149,7 @@ pub struct InfoReport {
 }
 
 /// One sweep.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[non_exhaustive]
 pub struct SweepReport {
     /// Angle at the start.
@@ -166,11 +167,12 @@ pub struct SweepReport {
 }
 
 /// A clock step during the recording.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[non_exhaustive]
 pub struct StepReport {
     /// `host` or `lidar`.
-    pub clock: &'static str,
+    #[schema(value_type = String)]
+    pub clock: SetClock,
     /// Time of the step, Unix seconds of the host clock before the step.
     pub when_s: f64,
     /// Seconds after the lidar's first packet.
@@ -184,10 +186,7 @@ impl StepReport {
     #[must_use]
     pub fn new(step: &ClockStep) -> Self {
         Self {
-            clock: match step.clock {
-                SetClock::Host => "host",
-                SetClock::Lidar => "lidar",
-            },
+            clock: step.clock,
             when_s: step.when.as_secs_f64(),
             after_s: step.after.as_secs_f64(),
             by_s: step.by.as_secs_f64(),
@@ -196,7 +195,7 @@ impl StepReport {
 }
 
 /// Choice of a trajectory method under a tolerance.
-#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[non_exhaustive]
 pub struct ToleranceReport {
     /// Tolerated error, metres.
@@ -212,11 +211,11 @@ pub struct ToleranceReport {
 }
 
 /// A method and its error bound.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[non_exhaustive]
 pub struct TriedMethod {
     /// Its name.
-    pub method: &'static str,
+    pub method: String,
     /// Error bound at the requested distance, metres.
     pub bound_m: f64,
 }
@@ -226,7 +225,7 @@ impl ToleranceReport {
     #[must_use]
     pub fn new(choice: &MethodChoice) -> Self {
         let tried = choice.bounds.iter().map(|(method, bound)| TriedMethod {
-            method: method.name(),
+            method: method.name().to_owned(),
             bound_m: bound.0,
         });
         Self {
@@ -240,11 +239,11 @@ impl ToleranceReport {
 }
 
 /// Synchronisation of clocks and angles.
-#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[non_exhaustive]
 pub struct SyncReport {
     /// Method of the clock model.
-    pub clock_method: &'static str,
+    pub clock_method: String,
     /// Median delay of a packet above the clock's envelope.
     pub clock_residual_us: f64,
     /// Bound on the clock error, apart from a constant delay.
@@ -259,7 +258,7 @@ pub struct SyncReport {
     pub steps: Vec<StepReport>,
     /// Method of the trajectory.
     #[schema(schema_with = crate::document::angle_methods)]
-    pub angle_method: &'static str,
+    pub angle_method: String,
     /// Choice of the method, if a tolerance was requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<ToleranceReport>,
@@ -302,7 +301,7 @@ pub struct TruthErrors {
 
 /// The points that the live view shows of a scan, against those of the cloud. One firing in eight
 /// is compared.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[non_exhaustive]
 pub struct LiveReport {
     /// Points placed live.
@@ -316,7 +315,7 @@ pub struct LiveReport {
 }
 
 /// Report of `replay` and `capture`.
-#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[non_exhaustive]
 pub struct ScanReport {
     /// Contents of the log.

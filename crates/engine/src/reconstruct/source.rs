@@ -36,6 +36,7 @@ pub struct SensorAddress {
 
 /// Result of one pass over a recording.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct PassSummary {
     /// Packet counts by kind.
     pub counts: RecordingCounts,
@@ -207,7 +208,7 @@ impl Source {
         let calibration = config.calibration.as_ref();
         calibration
             .map_or(Ok(()), |calibration| calibration.check())
-            .map_err(wrong)?;
+            .map_err(|error| wrong(error.to_string()))?;
         Ok(config)
     }
 

@@ -117,6 +117,12 @@ impl AxisReport {
         report
     }
 
+    /// Whether the drive is in its state of fault.
+    #[must_use]
+    pub fn is_in_fault(&self) -> bool {
+        DeviceState::from_statusword(self.statusword) == Some(DeviceState::Fault)
+    }
+
     /// Sets the statusword and what it shows.
     pub(crate) fn set_statusword(&mut self, statusword: u16) {
         self.statusword = statusword;

@@ -6,7 +6,7 @@ use scanner::Accuracy;
 use serde::{Deserialize, Deserializer, Serialize};
 use utoipa::ToSchema;
 
-use crate::capture::run::Outcome;
+use crate::capture::run::{Outcome, ScanFailure};
 use crate::capture_request::CaptureRequest;
 use crate::failure::{Failure, Kind};
 use crate::reconstruct::report::Reception;
@@ -176,7 +176,10 @@ pub struct ScanRecord {
     /// Counts of packets.
     #[serde(default)]
     pub reception: Option<Reception>,
-    /// The line of `why` that says why there is no cloud.
+    /// The failure in `why`, without what was saved.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cause: Option<Failure>,
+    /// Why there is no cloud, where that is another reason than the cause.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub no_cloud: Option<String>,
     /// The object that `capture --json` prints.
@@ -185,6 +188,13 @@ pub struct ScanRecord {
 }
 
 impl ScanRecord {
+    /// Sets why the scan is incomplete.
+    pub fn set_failure(&mut self, failure: Option<ScanFailure>) {
+        self.cause = failure.as_ref().map(|failure| failure.cause.clone());
+        self.no_cloud = failure.as_ref().and_then(|f| f.no_cloud.clone());
+        self.head.why = failure.map(ScanFailure::into_failure);
+    }
+
     /// The outcome of its recording.
     #[must_use]
     pub fn outcome(&self) -> Outcome {

@@ -38,6 +38,7 @@ const FIRINGS: f64 = 4_096.0;
 const SAMPLED_S: f64 = 20.0;
 /// What an effect changes in the cloud.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct EffectSize {
     /// Name of the effect.
     pub effect: &'static str,

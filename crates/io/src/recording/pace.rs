@@ -50,6 +50,7 @@ impl Timer for SteadyTimer {
 /// A factor outside 0.001 to 1000.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("pace: expected a factor of 0.001 to 1000, got {got}")]
+#[non_exhaustive]
 pub struct PaceError {
     /// The given factor.
     pub got: f64,

@@ -196,7 +196,7 @@ fn invalid_calibrations_are_refused() {
             "covariance",
         ),
     ] {
-        let error = of(text).unwrap_err();
+        let error = of(text).unwrap_err().to_string();
         assert!(error.starts_with(key), "{error}");
     }
 }

@@ -12,6 +12,7 @@ use super::profile::Profile;
 
 /// Parameters regularised towards the command.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct RegularisedParameters {
     /// Start of the motion.
     pub start: bool,

@@ -8,6 +8,7 @@ use utoipa::ToSchema;
 /// A tolerated difference of clouds: at most so many percent of the points are missing, added, or
 /// displaced by more than a length.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct EffectTolerance {
     /// The length, millimetres.
     pub displaced_mm: f64,

@@ -29,6 +29,7 @@ pub struct Surroundings {
 
 /// The surface that a ray meets.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SurfaceHit {
     /// Distance, metres.
     pub range_m: f64,

@@ -42,6 +42,7 @@ impl PlanarFront {
 
 /// Tilt of a pattern.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct PatternTilt {
     /// First angle, degrees; the only one without motion.
     pub from_deg: f64,
@@ -57,6 +58,7 @@ pub struct PatternTilt {
 
 /// Parameters of a pattern.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct PatternSettings {
     /// The sensor.
     pub head: PatternSensor,

@@ -11,6 +11,7 @@ use super::meshes::MeshFileError;
 
 /// A position in a scene file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct FilePosition {
     /// From 1.
     pub line: usize,

@@ -9,6 +9,7 @@ use crate::cast::{CastError, Caster, Object};
 /// `[materials.NAME]`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct MaterialTable {
     /// Calibrated: 0 to 100 percent of diffuse, 101 to 255 retroreflecting.
     pub reflectivity: Option<u8>,
@@ -20,6 +21,7 @@ pub struct MaterialTable {
 
 /// A material.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Material {
     /// Its name in the scene.
     pub name: String,
@@ -71,6 +73,7 @@ pub enum MaterialAssignment {
 
 /// A scene to cast rays at: its objects and, by the same index, their materials.
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct PlacedScenery {
     /// The objects.
     pub objects: Vec<Object>,

@@ -10,6 +10,7 @@ use crate::cast::{Object, Placement, PlacementError};
 
 /// A motion: the origin moves along a line, the object rotates about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Travel {
     /// Where its origin is at the start, metres in the frame of the base.
     pub from_m: DVec3,
@@ -37,6 +38,7 @@ impl Travel {
 
 /// Objects that move as one: all parts of an object, or of one of its copies.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Moving {
     /// Indices of the placed objects.
     pub objects: Range<usize>,

@@ -10,6 +10,7 @@ use super::materials::Material;
 /// translation.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct ObjectTable {
     /// For people.
     pub name: String,

@@ -98,7 +98,7 @@ fn replaces_only_a_calibration(output: &Path) -> Result<(), Failure> {
     }
 }
 
-fn cannot_write(path: &Path, error: &str) -> Failure {
+fn cannot_write(path: &Path, error: &dyn std::fmt::Display) -> Failure {
     Failure::new(
         Kind::Incomplete,
         format!("the mount {} cannot be written: {error}", path.display()),

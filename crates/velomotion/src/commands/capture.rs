@@ -1,13 +1,12 @@
 //! `velomotion capture`: homes, sweeps, records, and makes the cloud.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::time::SystemTime;
 
 use daemon::client::Client;
-use daemon::local::{LocalService, LocalTask};
+use daemon::local::LocalTask;
 use engine::capture::request::CapturePlan;
-use engine::capture::run;
+use engine::capture::run::{self, ScanFailure};
 use engine::capture::scan_plan::ScanPlanner;
 use engine::capture_request::CaptureRequest;
 use engine::config::{self, Config};
@@ -15,12 +14,9 @@ use engine::default_paths;
 use engine::devices::profile;
 use engine::failure::{Failure, Kind};
 use engine::output::{self, Backup, Target};
-use engine::reconstruct::report::ScanReport;
-use engine::service::CaptureEnd;
 
 use super::CommandOutput;
-use super::device_backend::{DaemonCapture, LocalCapture, record};
-use super::guard_axis::environment;
+use super::device_backend::DeviceBackend;
 use crate::cli::{self, Common};
 use crate::signals;
 use crate::terminal::{Progress, width_of, wrapped};
@@ -47,42 +43,24 @@ pub fn run(arguments: &cli::Capture, common: &Common) -> Result<CommandOutput, F
     for line in plan.headline().iter().chain(&expected) {
         progress.say(&wrapped(line, width_of(std::io::stderr()), "", "  "));
     }
-    let client = Client::find(&plan.name, &plan.device);
-    let mut by_daemon = match &client {
-        Some(client) => Some(DaemonCapture::begin(client, &arguments.into())?),
-        None => None,
-    };
     let older_log = Backup::put(&plan.log)?;
-    let recording = match &mut by_daemon {
-        Some(capture) => record(capture, &plan, &interrupt, &mut progress)?,
-        None => record_locally(&plan, config, &interrupt, &mut progress)?,
-    };
+    let device = (plan.name.as_str(), &plan.device);
+    let daemon = Client::find(device.0, device.1);
+    let backend = DeviceBackend::open(daemon, &config, device, LocalTask::Capture, &interrupt)?;
+    let recording = backend.record(&arguments.into(), &plan, &interrupt, &mut progress)?;
     // The stop is over: from here on Ctrl-C ends the making of the cloud.
     interrupt.store(false, Ordering::Relaxed);
     progress.say("making the cloud");
     let stdout = target.is_stdout();
-    let CaptureEnd { outcome, truth } = recording;
-    let mut made = run::cloud(
-        (&plan.log, plan.accuracy),
-        truth.as_ref(),
-        false,
-        outcome.lost_records,
-        &interrupt,
-        target,
-    );
-    // The daemon's own scan is complete when the command ends. A daemon that is gone costs nothing.
-    if let Some(Ok(truth)) = by_daemon.as_ref().map(|capture| capture.truth(&interrupt))
-        && let Ok(scan) = &mut made
-        && plan.scan.simulated
-    {
-        scan.truth = truth;
-    }
+    let fields = arguments.output.fields();
+    let (made, outcome) = recording.cloud(&plan, fields, target, &interrupt);
     // A log without a sweep does not replace an older one.
     if !matches!(&made, Err(failure) if failure.kind == Kind::BadInput) {
         older_log.replaced();
     }
-    let (scan, failure): (ScanReport, _) = run::conclude(made, outcome, (&plan.cloud, &plan.log))?;
-    let mut output = CommandOutput::scan(&scan, failure, stdout);
+    let concluded = run::conclude(made, outcome, (&plan.cloud, &plan.log));
+    let (scan, failure) = concluded.map_err(ScanFailure::into_failure)?;
+    let mut output = CommandOutput::scan(&scan, failure.map(ScanFailure::into_failure), stdout);
     if !stdout {
         let cloud = plan.cloud.display();
         output
@@ -90,24 +68,6 @@ pub fn run(arguments: &cli::Capture, common: &Common) -> Result<CommandOutput, F
             .push_str(&format!("\nshow it: velomotion view {cloud}"));
     }
     Ok(output)
-}
-
-/// Records with the devices of this process, which are closed before the cloud is made.
-fn record_locally(
-    plan: &CapturePlan,
-    config: Config,
-    interrupt: &Arc<AtomicBool>,
-    progress: &mut Progress,
-) -> Result<CaptureEnd, Failure> {
-    let device = (plan.name.clone(), plan.device.clone());
-    let local = LocalService::start(config, device, LocalTask::Capture, interrupt, environment())?;
-    if let Some(warning) = &local.thread.port_warning {
-        progress.say(&format!("warning: {warning}"));
-    }
-    let recorded = LocalCapture::begin(&local, plan.clone())
-        .and_then(|mut capture| record(&mut capture, plan, interrupt, progress));
-    local.stop();
-    recorded
 }
 
 /// Checks the arguments against the axis and plans the moves.

@@ -3,19 +3,23 @@
 
 use std::io::Write;
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+use cloud::Fields;
+use cloud::formats::Format;
 use daemon::client::Client;
-use daemon::local::LocalService;
+use daemon::local::{LocalService, LocalTask};
 use engine::capture::jog::JogRequest;
 use engine::capture::request::CapturePlan;
-use engine::capture::run::Outcome;
+use engine::capture::run::{self, Outcome};
 use engine::capture_request::CaptureRequest;
+use engine::config::{Config, Device};
 use engine::failure::{Failure, Kind};
-use engine::output::{self, file_failure, overwrite};
-use engine::reconstruct::report;
+use engine::output::{self, Target, file_failure, overwrite};
+use engine::reconstruct::report::ScanReport;
 use engine::service::axis_report::StopAnswer;
 use engine::service::scan_record::{ScanDetails, ScanState, ScanView};
 use engine::service::status::AxisTask;
@@ -24,6 +28,7 @@ use io::files::NewFile;
 use tokio::sync::oneshot;
 use units::{Degrees, Span, Stamp};
 
+use super::guard_axis::environment;
 use crate::terminal::Progress;
 
 /// Between two polls of a capture's progress.
@@ -33,9 +38,158 @@ const INTERRUPT_POLL: Duration = Duration::from_millis(5);
 /// Polls of the progress between two updates of the lidar's status: 1 s.
 const LIDAR_REFRESH: u32 = 20;
 
+/// The owner of the devices.
+pub enum DeviceBackend {
+    /// A daemon that has them.
+    Daemon(Client),
+    /// A device service of this process.
+    Local(Box<LocalService>),
+}
+
+impl DeviceBackend {
+    /// Takes the daemon, or opens the devices that `task` needs.
+    ///
+    /// # Errors
+    /// Returns the failure of a device that cannot be opened.
+    pub fn open(
+        daemon: Option<Client>,
+        config: &Config,
+        device: (&str, &Device),
+        task: LocalTask,
+        interrupt: &Arc<AtomicBool>,
+    ) -> Result<Self, Failure> {
+        if let Some(client) = daemon {
+            return Ok(Self::Daemon(client));
+        }
+        let device = (device.0.to_owned(), device.1.clone());
+        let config = config.clone();
+        let local = LocalService::start(config, device, task, interrupt, environment())?;
+        Ok(Self::Local(Box::new(local)))
+    }
+
+    /// Records a capture and shows its progress. Ctrl-C stops it. Devices of this process are
+    /// closed when it returns.
+    ///
+    /// # Errors
+    /// Where nothing was recorded.
+    pub fn record(
+        self,
+        request: &CaptureRequest,
+        plan: &CapturePlan,
+        interrupt: &AtomicBool,
+        progress: &mut Progress,
+    ) -> Result<RecordedCapture, Failure> {
+        match self {
+            Self::Daemon(client) => {
+                let mut capture = DaemonCapture::begin(client, request)?;
+                let end = follow(&mut capture, plan, interrupt, progress)?;
+                let scan = Some(capture);
+                Ok(RecordedCapture { end, scan })
+            }
+            Self::Local(local) => {
+                if let Some(warning) = &local.thread.port_warning {
+                    progress.say(&format!("warning: {warning}"));
+                }
+                let end = LocalCapture::begin(&local, plan.clone())
+                    .and_then(|mut capture| follow(&mut capture, plan, interrupt, progress));
+                local.stop();
+                Ok(RecordedCapture {
+                    end: end?,
+                    scan: None,
+                })
+            }
+        }
+    }
+
+    /// Runs a jog.
+    ///
+    /// # Errors
+    /// Where the axis cannot be moved, or the motion failed.
+    pub fn jog(self, jog: JogRequest, interrupt: &AtomicBool) -> Result<StopAnswer, Failure> {
+        match self {
+            Self::Daemon(client) => jog_by_daemon(&client, jog, interrupt),
+            Self::Local(local) => {
+                let answer = jog_locally(&local, jog);
+                local.stop();
+                answer
+            }
+        }
+    }
+
+    /// What a simulated drive of this owner is.
+    #[must_use]
+    pub const fn simulated_drive(&self) -> &'static str {
+        match self {
+            Self::Daemon(_) => "a software drive, the daemon's",
+            Self::Local(_) => "a software drive, switched on a moment ago",
+        }
+    }
+}
+
+/// A recorded capture, whose log is at its place.
+pub struct RecordedCapture {
+    end: CaptureEnd,
+    /// The daemon's scan, whose cloud the daemon makes.
+    scan: Option<DaemonCapture>,
+}
+
+impl RecordedCapture {
+    /// Writes the cloud and returns the report on it, with the recording's own. A daemon's cloud is
+    /// copied if it is the requested one.
+    pub fn cloud(
+        self,
+        plan: &CapturePlan,
+        fields: Fields,
+        target: Target,
+        interrupt: &AtomicBool,
+    ) -> (Result<ScanReport, Failure>, Outcome) {
+        let Self {
+            end: CaptureEnd { mut outcome, truth },
+            scan,
+        } = self;
+        let is_stored = !target.is_stdout()
+            && fields == Fields::FILE
+            && Format::from_path(&plan.cloud) == Ok(Format::Ply);
+        let scan = scan.filter(|_| is_stored || plan.scan.simulated);
+        let details = || scan.as_ref()?.finished(interrupt);
+        let finished = is_stored.then(details).flatten();
+        if let Some(scan) = &scan
+            && let Some(details) = finished
+            && let Some(report) = stored_report(&details, plan)
+            && scan.fetch("cloud", &plan.cloud, plan.force).is_ok()
+        {
+            tracing::debug!("the cloud is a copy of the daemon's");
+            outcome.failure = details.recording;
+            return (Ok(report), outcome);
+        }
+        let log = (plan.log.as_path(), plan.accuracy);
+        let lost = outcome.lost_records;
+        let mut made = run::cloud(log, truth.as_ref(), false, lost, interrupt, target);
+        // Only the daemon has the truth of its simulator.
+        if let Ok(report) = &mut made
+            && plan.scan.simulated
+            && let Some(details) = details()
+        {
+            report.truth = stored_report(&details, plan).and_then(|stored| stored.truth);
+        }
+        (made, outcome)
+    }
+}
+
+/// The report on a daemon's cloud as that on the same cloud at the user's place.
+fn stored_report(details: &ScanDetails, plan: &CapturePlan) -> Option<ScanReport> {
+    let report = details.report.clone()?;
+    let mut report: ScanReport = serde_json::from_value(report).ok()?;
+    report.output = plan.cloud.display().to_string();
+    report.log = plan.log.display().to_string();
+    // The command has no live view.
+    report.live = None;
+    Some(report)
+}
+
 /// Progress of a capture.
 #[derive(Default)]
-pub struct CaptureProgress {
+struct CaptureProgress {
     /// Messages so far.
     messages: Vec<String>,
     /// The axis, until the recording has ended.
@@ -45,15 +199,15 @@ pub struct CaptureProgress {
 }
 
 /// Progress of the axis during a capture.
-pub struct AxisProgress {
+struct AxisProgress {
     /// Number of the move, from 1.
     step: usize,
     packets: u64,
     angle_deg: Option<f64>,
 }
 
-/// Recorder of a capture.
-pub trait CaptureBackend {
+/// A capture under way.
+trait CaptureBackend {
     /// Looks how far the capture is.
     ///
     /// # Errors
@@ -68,10 +222,7 @@ pub trait CaptureBackend {
 }
 
 /// Waits for the end of a capture and shows its progress. Ctrl-C stops it.
-///
-/// # Errors
-/// Where nothing was recorded.
-pub fn record(
+fn follow(
     backend: &mut dyn CaptureBackend,
     plan: &CapturePlan,
     interrupt: &AtomicBool,
@@ -118,7 +269,7 @@ pub fn record(
 }
 
 /// A capture by the devices of this process.
-pub struct LocalCapture<'a> {
+struct LocalCapture<'a> {
     local: &'a LocalService,
     result: oneshot::Receiver<CaptureResult>,
     polls: u32,
@@ -126,10 +277,7 @@ pub struct LocalCapture<'a> {
 
 impl<'a> LocalCapture<'a> {
     /// Begins a capture, whose log goes to its place at once.
-    ///
-    /// # Errors
-    /// Where the axis cannot be moved.
-    pub fn begin(local: &'a LocalService, plan: CapturePlan) -> Result<Self, Failure> {
+    fn begin(local: &'a LocalService, plan: CapturePlan) -> Result<Self, Failure> {
         let service = &local.service;
         let lease = service.lease(AxisTask::Capturing).map_err(lease_failure)?;
         let result = service.capture(lease, plan).map_err(lease_failure)?;
@@ -179,59 +327,48 @@ impl CaptureBackend for LocalCapture<'_> {
 }
 
 /// A capture by a daemon.
-pub struct DaemonCapture<'a> {
-    client: &'a Client,
+struct DaemonCapture {
+    client: Client,
     id: String,
 }
 
-impl<'a> DaemonCapture<'a> {
+impl DaemonCapture {
     /// Begins a capture.
-    ///
-    /// # Errors
-    /// As without a daemon.
-    pub fn begin(client: &'a Client, request: &CaptureRequest) -> Result<Self, Failure> {
+    fn begin(client: Client, request: &CaptureRequest) -> Result<Self, Failure> {
         let scan: ScanView = client.post("/api/v1/captures", request)?;
-        Ok(Self {
-            client,
-            id: scan.head.id,
-        })
+        let id = scan.head.id;
+        Ok(Self { client, id })
     }
 
     fn details(&self) -> Result<ScanDetails, Failure> {
         self.client.get(&format!("/api/v1/scans/{}", self.id))
     }
 
-    /// The cloud's errors against the truth of the daemon's simulator, once the daemon has made its
-    /// own cloud.
-    ///
-    /// # Errors
-    /// Where the daemon is gone.
-    pub fn truth(&self, interrupt: &AtomicBool) -> Result<Option<report::TruthErrors>, Failure> {
-        loop {
-            let details = self.details()?;
-            if details.scan.state.is_final() || interrupt.load(Ordering::Relaxed) {
-                let truth = details
-                    .report
-                    .as_ref()
-                    .and_then(|report| report.get("truth"));
-                return Ok(truth.and_then(|truth| serde_json::from_value(truth.clone()).ok()));
+    /// The scan once the daemon has made its cloud, or has failed to; `None` where the daemon is
+    /// gone or Ctrl-C was pressed.
+    fn finished(&self, interrupt: &AtomicBool) -> Option<ScanDetails> {
+        while !interrupt.load(Ordering::Relaxed) {
+            let details = self.details().ok()?;
+            if details.scan.state.is_final() {
+                return Some(details);
             }
             std::thread::sleep(PROGRESS_POLL);
         }
+        None
     }
 
-    /// Copies the daemon's log to the user's place.
-    fn fetch_log(&self, log: &Path) -> Result<(), Failure> {
-        let mut file = NewFile::create(log, overwrite(false)).map_err(|e| file_failure(&e))?;
-        self.client
-            .download(&format!("/api/v1/scans/{}/log", self.id), &mut file)?;
+    /// Copies a file of the daemon's scan to the user's place.
+    fn fetch(&self, what: &str, to: &Path, force: bool) -> Result<(), Failure> {
+        let mut file = NewFile::create(to, overwrite(force)).map_err(|e| file_failure(&e))?;
+        let path = format!("/api/v1/scans/{}/{what}", self.id);
+        self.client.download(&path, &mut file)?;
         file.flush()
-            .map_err(|error| output::sink_failure(log, &cloud::SinkError::Other(error.into())))?;
+            .map_err(|error| output::sink_failure(to, &cloud::SinkError::Other(error.into())))?;
         file.commit().map_err(|error| file_failure(&error))
     }
 }
 
-impl CaptureBackend for DaemonCapture<'_> {
+impl CaptureBackend for DaemonCapture {
     fn poll(&mut self, plan: &CapturePlan) -> Result<CaptureProgress, Failure> {
         let details = self.details()?;
         if details.scan.state == ScanState::Recording {
@@ -246,13 +383,13 @@ impl CaptureBackend for DaemonCapture<'_> {
                 end: None,
             });
         }
-        // The log is complete. The daemon makes its own cloud later.
+        // The log is complete. The daemon makes the cloud next.
         if details.scan.log_bytes.is_none() {
             return Err(details.scan.head.why.unwrap_or_else(|| {
                 Failure::new(Kind::Incomplete, "the daemon made no log").help("see its messages")
             }));
         }
-        self.fetch_log(&plan.log)?;
+        self.fetch("log", &plan.log, false)?;
         Ok(CaptureProgress {
             messages: details.messages,
             axis: None,
@@ -275,10 +412,7 @@ impl CaptureBackend for DaemonCapture<'_> {
 }
 
 /// Runs a jog by the devices of this process.
-///
-/// # Errors
-/// Where the axis cannot be moved, or the motion failed.
-pub fn jog_locally(local: &LocalService, jog: JogRequest) -> Result<StopAnswer, Failure> {
+pub(super) fn jog_locally(local: &LocalService, jog: JogRequest) -> Result<StopAnswer, Failure> {
     let answer = local.service.jog(jog).map_err(lease_failure)?;
     let report = answer
         .blocking_recv()
@@ -304,10 +438,7 @@ const STOP_CONFIRMED: Duration = Duration::from_secs(2);
 
 /// Runs a jog by a daemon. Ctrl-C stops the axis; during a request that moves nothing it ends the
 /// wait.
-///
-/// # Errors
-/// As without a daemon.
-pub fn jog_by_daemon(
+fn jog_by_daemon(
     client: &Client,
     jog: JogRequest,
     interrupt: &AtomicBool,

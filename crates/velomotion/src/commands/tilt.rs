@@ -3,7 +3,7 @@
 use std::sync::atomic::Ordering;
 
 use daemon::client::Client;
-use daemon::local::{LocalService, LocalTask};
+use daemon::local::LocalTask;
 use engine::capture::jog::{self, JogRequest};
 use engine::config::{self, Device};
 use engine::devices::profile;
@@ -12,8 +12,7 @@ use engine::service::axis_report::{AxisReport, StopAnswer};
 use engine::service::status::AxisTask;
 
 use super::CommandOutput;
-use super::device_backend::{jog_by_daemon, jog_locally};
-use super::guard_axis::environment;
+use super::device_backend::DeviceBackend;
 use crate::cli::{self, Common, TiltVerb};
 use crate::signals;
 use crate::tables::table;
@@ -35,18 +34,11 @@ pub fn run(arguments: &cli::TiltArguments, common: &Common) -> Result<CommandOut
         JogRequest::Status => LocalTask::Read,
         _ => LocalTask::Jog,
     };
-    let jog = || match client_of(verb, &device) {
-        Some(client) => {
-            let answer = jog_by_daemon(&client, request, &interrupt)?;
-            Ok((answer, "a software drive, the daemon's"))
-        }
-        None => {
-            let (config, device) = (config.clone(), device.clone());
-            let local = LocalService::start(config, device, task, &interrupt, environment())?;
-            let answer = jog_locally(&local, request);
-            local.stop();
-            Ok((answer?, "a software drive, switched on a moment ago"))
-        }
+    let jog = || {
+        let (daemon, device) = (client_of(verb, &device), (device.0.as_str(), &device.1));
+        let backend = DeviceBackend::open(daemon, &config, device, task, &interrupt)?;
+        let simulated = backend.simulated_drive();
+        Ok((backend.jog(request, &interrupt)?, simulated))
     };
     // A program may take or release the drive in the meantime.
     let changed = |failure: &Failure| match failure.kind {

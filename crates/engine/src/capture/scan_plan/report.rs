@@ -22,6 +22,7 @@ pub struct CommandRow {
 
 /// A plan.
 #[derive(Clone, Debug, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct PlanReport {
     /// The device.
     pub device: String,
@@ -49,6 +50,7 @@ pub struct PlanReport {
 
 /// A limit that a row does not keep.
 #[derive(Clone, Debug, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct UnmetLimit {
     /// `error`, `gap` or `time`.
     pub limit: &'static str,

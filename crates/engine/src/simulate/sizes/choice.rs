@@ -25,6 +25,7 @@ const SMALL_COST_PERCENT: f64 = 1.0;
 
 /// Effects chosen by a tolerance.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct EffectChoice {
     /// The tolerance.
     pub tolerance: EffectTolerance,

@@ -2,19 +2,21 @@
 //! appends what it finds to a report.
 
 use std::fs::OpenOptions;
-use std::io::{BufRead, BufReader, IsTerminal, Write};
+use std::io::{BufRead, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant, SystemTime};
 
+use daemon::client::Client;
 use engine::bring_up::{BringUp, BringUpResult, BringUpStepReport, Judgement, Operator, STEPS};
 use engine::config::{Config, Device};
 use engine::default_paths;
 use engine::devices::drive_port::{self, GuardianOptions, OpenPort, Search};
 use engine::devices::profile;
 use engine::failure::{Failure, Kind};
+use engine::service::axis_report::AxisReport;
 use io::discover::discover;
 use serde::Serialize;
 use units::DegPerS2;
@@ -34,6 +36,8 @@ const REPORT: &str = "bring-up.md";
 const START_LIMIT: Duration = Duration::from_secs(90);
 /// Time that the axis moves before its process is killed.
 const MOVING: Duration = Duration::from_millis(500);
+/// Between two polls of the process that moves the axis.
+const MOVE_POLL: Duration = Duration::from_millis(50);
 
 /// Report of `doctor --bring-up`.
 #[derive(Serialize, ToSchema)]
@@ -322,7 +326,7 @@ fn kill(
     // Ten seconds from home.
     let speed = (config.axis.homing.to_deg - middle).abs().max(1.0) / 10.0;
     let mut command = Command::new(std::env::current_exe().map_err(|e| own(Kind::BadInput, e))?);
-    command.args(["tilt", "goto", &format!("{middle}"), "-vv"]);
+    command.args(["tilt", "goto", &format!("{middle}")]);
     command.args(["--speed", &format!("{speed}"), "--device", name]);
     if let Some(file) = &common.config {
         command.arg("--config").arg(file);
@@ -330,9 +334,9 @@ fn kill(
     command
         .stdin(Stdio::null())
         .stdout(Stdio::null())
-        .stderr(Stdio::piped());
+        .stderr(Stdio::null());
     let mut child = command.spawn().map_err(|e| own(Kind::NoDevice, e))?;
-    let moved = wait_for_move(&mut child);
+    let moved = wait_for_move(&mut child, name, device);
     let killed = Instant::now();
     let _ = child.kill();
     let _ = child.wait();
@@ -360,20 +364,18 @@ fn kill(
 }
 
 /// Waits until the process reports that the axis moves.
-fn wait_for_move(child: &mut Child) -> bool {
-    let Some(stderr) = child.stderr.take() else {
-        return false;
-    };
-    let (found, result) = std::sync::mpsc::channel();
-    std::thread::spawn(move || {
-        let mut lines = BufReader::new(stderr).lines().map_while(Result::ok);
-        let _ = found.send(lines.any(|line| line.contains("Moving(")));
-        // Goes on reading: a full pipe would say nothing about a killed program.
-        lines.for_each(drop);
-    });
-    let moved = result.recv_timeout(START_LIMIT).unwrap_or(false);
-    std::thread::sleep(MOVING);
-    moved
+fn wait_for_move(child: &mut Child, name: &str, device: &Device) -> bool {
+    let until = Instant::now() + START_LIMIT;
+    while Instant::now() < until && matches!(child.try_wait(), Ok(None)) {
+        let report = Client::find(name, device)
+            .and_then(|client| client.get::<AxisReport>("/api/v1/tilt").ok());
+        if report.is_some_and(|report| report.velocity_rpm != 0) {
+            std::thread::sleep(MOVING);
+            return true;
+        }
+        std::thread::sleep(MOVE_POLL);
+    }
+    false
 }
 
 /// Opens the port as soon as the killed process's guardian has closed it.

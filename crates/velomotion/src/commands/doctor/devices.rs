@@ -108,7 +108,7 @@ fn drive(name: &str, report: Result<AxisReport, Failure>) -> Finding {
                 "" => format!("{}, {homed}; in use by another program", report.state),
                 unit => format!("{unit}; {}, {homed}", report.state),
             };
-            match report.faults.first().filter(|_| report.state == "fault") {
+            match report.faults.first().filter(|_| report.is_in_fault()) {
                 None => finding(what, Verdict::Ok, found),
                 Some(fault) => {
                     let name = fault.name.as_deref().unwrap_or("unknown error");
