@@ -147,6 +147,23 @@ impl Mount {
         [along(0), along(1), along(2)]
     }
 
+    /// A placed point (metres) in the lidar's frame: the inverse of [`Mount::place`].
+    #[must_use]
+    pub fn in_lidar_frame(&self, placed_m: [f64; 3], tilt: Tilt) -> [f64; 3] {
+        let [x, y, z] = placed_m;
+        let [px, py, pz] = self.position_m;
+        let across = x * tilt.cos - z * tilt.sin - px;
+        let from = [across, y - py, z * tilt.cos + x * tilt.sin - pz];
+        if self.is_upright {
+            return from;
+        }
+        let rows = &self.rotation;
+        let along = |axis: usize| {
+            from[0] * rows[0][axis] + from[1] * rows[1][axis] + from[2] * rows[2][axis]
+        };
+        [along(0), along(1), along(2)]
+    }
+
     /// Squared distances of a placed point (Eq. 4-6, metres) from the tilt axis and from the
     /// lidar's spin axis: the lever arms of tilt and azimuth errors.
     #[inline(always)]
@@ -329,6 +346,8 @@ mod tests {
             let tilt_arm = on_platform.x * on_platform.x + on_platform.z * on_platform.z;
             prop_assert!((from_tilt - tilt_arm).abs() < 1e-9);
             prop_assert!((from_spin - (point[0] * point[0] + point[1] * point[1])).abs() < 1e-9);
+            let back = mount.in_lidar_frame(placed, Tilt::new(Degrees(gamma)));
+            prop_assert!(distance(back, point) < 1e-12);
         }
 
         #[test]

@@ -22,7 +22,7 @@ use io::log::{LogConfig, LogError, LogWriter};
 use protocol::record::DriveLink;
 use scanner::ScanConfig;
 use serde::Serialize;
-use sim::effect_models::{Explanation, InvalidSetting};
+use sim::effect_models::{EffectTolerance, EffectsConfig, Explanation, InvalidSetting};
 use sim::effects::{Effects, FiringEffectSet, Stopwatch};
 use sim::scene_file::{EffectDemand, EffectLine, SHIPPED, SceneFile};
 use sim::simulate::SimulateError;
@@ -162,6 +162,35 @@ fn is_pcap(path: &Path) -> bool {
 pub fn stem(name: &str) -> &str {
     let stem = Path::new(name).file_stem().and_then(|stem| stem.to_str());
     stem.unwrap_or("scene")
+}
+
+/// Switches on the effects of a scene: those that the file or a fact calls for, without those that
+/// `is_out` names, and of these as few as the tolerance allows; by default the scene's.
+///
+/// # Errors
+/// [`Kind::BadInput`] for an invalid setting, or a scene that gives no cloud.
+pub fn choose_effects(
+    scene: &mut SceneFile,
+    name: &str,
+    is_out: impl Fn(&str) -> bool,
+    tolerance: Option<EffectTolerance>,
+    threads: NonZeroUsize,
+    clock: Stopwatch,
+) -> Result<Option<EffectChoice>, Failure> {
+    let requested: Vec<&'static str> = (EffectsConfig::NAMES.iter().copied())
+        .filter(|effect| scene.is_requested(effect) && !is_out(effect))
+        .collect();
+    let choice = match tolerance.or(scene.tolerance) {
+        Some(chosen) if !requested.is_empty() => {
+            let sampler = Sampler::new(scene, threads);
+            Some(sampler.choose(chosen, &requested, tolerance.is_none())?)
+        }
+        _ => None,
+    };
+    let on = choice.as_ref().map_or(&requested, |choice| &choice.on);
+    let selected = scene.select(|name| on.contains(&name), clock);
+    scene.effects = selected.map_err(|error| invalid_setting(name, &error))?;
+    Ok(choice)
 }
 
 /// Simulates a scene into a log. A failure with a usable log is returned with the report.

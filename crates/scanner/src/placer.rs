@@ -2,7 +2,7 @@
 
 use cloud::{Points, Sink, SinkError};
 use drive::record::{Record, Wire};
-use lidar::{Decoder, Options, Stats};
+use lidar::{Decoder, FiringBlock, FrameCutter, Options, Stats};
 
 use crate::alignment::{Alignment, PlacementCounts};
 use crate::fast::{FiringBlockPlacer, MAX_PACKET_POINTS};
@@ -10,12 +10,21 @@ use crate::receive_order::ReceiveOrder;
 
 /// Second pass: places every firing and hands the points to a sink in batches.
 pub struct Placer<'a> {
-    blocks: FiringBlockPlacer<'a>,
     decoder: Decoder,
+    receive_order: ReceiveOrder,
+    batches: BatchWriter<'a>,
+}
+
+/// Collects points in batches for a sink.
+struct BatchWriter<'a> {
+    blocks: FiringBlockPlacer<'a>,
+    /// Finds the ends of revolutions, if the sink gets them.
+    cutter: Option<FrameCutter>,
     batch: Points,
     counts: PlacementCounts,
-    receive_order: ReceiveOrder,
     sink: &'a mut dyn Sink,
+    /// First error of the sink within a packet.
+    error: Option<SinkError>,
 }
 
 /// Points per batch: few enough to stay in the processor's cache.
@@ -25,13 +34,24 @@ impl<'a> Placer<'a> {
     /// A placer into `sink`, which has begun.
     pub fn new(alignment: &'a Alignment, options: Options, sink: &'a mut dyn Sink) -> Self {
         Self {
-            blocks: FiringBlockPlacer::new(alignment),
             decoder: Decoder::new(options),
-            batch: Points::with_capacity(sink.fields(), BATCH_POINTS + MAX_PACKET_POINTS),
-            counts: PlacementCounts::default(),
             receive_order: ReceiveOrder::default(),
-            sink,
+            batches: BatchWriter {
+                blocks: FiringBlockPlacer::new(alignment),
+                cutter: None,
+                batch: Points::with_capacity(sink.fields(), BATCH_POINTS + MAX_PACKET_POINTS),
+                counts: PlacementCounts::default(),
+                sink,
+                error: None,
+            },
         }
+    }
+
+    /// Also calls [`Sink::revolution`] at the end of each revolution that `cutter` finds.
+    #[must_use]
+    pub fn by_revolution(mut self, cutter: FrameCutter) -> Self {
+        self.batches.cutter = Some(cutter);
+        self
     }
 
     /// Takes one record.
@@ -43,14 +63,13 @@ impl<'a> Placer<'a> {
             return Ok(());
         };
         let host = self.receive_order.distinct(record.host);
-        let (blocks, batch, counts) = (&mut self.blocks, &mut self.batch, &mut self.counts);
-        self.decoder.decode_blocks(host, payload, &mut |block| {
-            blocks.place(block, batch, counts);
-        });
-        if self.batch.len() >= BATCH_POINTS {
-            self.flush()?;
+        let batches = &mut self.batches;
+        self.decoder
+            .decode_blocks(host, payload, &mut |block| batches.add(block));
+        if batches.batch.len() >= BATCH_POINTS {
+            batches.flush();
         }
-        Ok(())
+        batches.error.take().map_or(Ok(()), Err)
     }
 
     /// Places what the decoder still holds. The caller finishes the sink.
@@ -58,16 +77,58 @@ impl<'a> Placer<'a> {
     /// # Errors
     /// Returns the errors of the sink.
     pub fn finish(mut self) -> Result<(PlacementCounts, Stats), SinkError> {
-        let (blocks, batch, counts) = (&mut self.blocks, &mut self.batch, &mut self.counts);
-        self.decoder
-            .finish_blocks(&mut |block| blocks.place(block, batch, counts));
-        self.flush()?;
-        Ok((self.counts, self.decoder.stats().clone()))
+        let mut batches = self.batches;
+        self.decoder.finish_blocks(&mut |block| batches.add(block));
+        let last = batches.cutter.as_mut().and_then(FrameCutter::finish);
+        match last {
+            Some(_) => batches.end_revolution(),
+            None => batches.flush(),
+        }
+        match batches.error {
+            Some(error) => Err(error),
+            None => Ok((batches.counts, self.decoder.stats().clone())),
+        }
+    }
+}
+
+impl BatchWriter<'_> {
+    fn add(&mut self, block: &FiringBlock<'_>) {
+        let Some(cutter) = &mut self.cutter else {
+            return self.blocks.place(block, &mut self.batch, &mut self.counts);
+        };
+        let firings = block.firings();
+        let count = firings.len();
+        let mut cut = None;
+        for (n, firing) in firings.enumerate() {
+            if cutter.firing(&firing).is_some() {
+                cut = Some(n);
+            }
+        }
+        if let Some(cut) = cut {
+            self.place_firings(block, 0..cut);
+            self.end_revolution();
+            self.place_firings(block, cut..count);
+        } else {
+            self.blocks.place(block, &mut self.batch, &mut self.counts);
+        }
     }
 
-    fn flush(&mut self) -> Result<(), SinkError> {
-        self.sink.points(&self.batch)?;
+    fn place_firings(&mut self, block: &FiringBlock<'_>, firings: std::ops::Range<usize>) {
+        self.blocks
+            .place_firings(block, firings, &mut self.batch, &mut self.counts);
+    }
+
+    fn end_revolution(&mut self) {
+        self.flush();
+        if let Err(error) = self.sink.revolution() {
+            self.error.get_or_insert(error);
+        }
+    }
+
+    fn flush(&mut self) {
+        if let Err(error) = self.sink.points(&self.batch) {
+            self.error.get_or_insert(error);
+        }
         self.batch.clear();
-        Ok(())
     }
 }

@@ -8,12 +8,12 @@ mod common;
 
 use std::sync::Arc;
 
-use cloud::{Fields, Points};
+use cloud::{Fields, Points, Sink, SinkError};
 use common::{RECORDINGS, Recording};
 use drive::record::Wire;
-use lidar::{Corrections, Decoder, Duplicates, Options};
+use lidar::{Corrections, Decoder, Duplicates, FrameCutter, Options};
 use protocol::vlp16::Model;
-use scanner::{Alignment, PlacementCounts};
+use scanner::{Alignment, PlacementCounts, Placer};
 
 fn fast(
     recording: &Recording,
@@ -132,6 +132,61 @@ fn assert_models_placed_as_defined(read: impl Fn(&'static str) -> Recording) {
                 ..corrected
             };
             assert_same("corrected", &recording, &tilting, &corrected);
+        }
+    }
+}
+
+/// Numbers of points at the ends of revolutions.
+#[derive(Default)]
+struct RevolutionEnds {
+    points: usize,
+    ends: Vec<usize>,
+}
+
+impl Sink for RevolutionEnds {
+    fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
+        self.points += batch.len();
+        Ok(())
+    }
+
+    fn revolution(&mut self) -> Result<(), SinkError> {
+        self.ends.push(self.points);
+        Ok(())
+    }
+}
+
+#[test]
+fn revolutions_end_where_the_firings_say() {
+    for recording in RECORDINGS.into_iter().map(Recording::read_cut) {
+        for cut_deg in [0.0, 77.7] {
+            let cutter = || FrameCutter::new(cut_deg).unwrap();
+            let (alignment, options) = (recording.at_rest(), Options::default());
+            let mut by_placer = RevolutionEnds::default();
+            let placer = Placer::new(&alignment, options.clone(), &mut by_placer);
+            let mut placer = placer.by_revolution(cutter());
+            for record in recording.records() {
+                placer.observe(&record).unwrap();
+            }
+            let (counts, _) = placer.finish().unwrap();
+
+            let (mut points, mut ends, mut firings) = (0, Vec::new(), cutter());
+            let mut each = |firing: &lidar::Firing<'_>| {
+                if firings.firing(firing).is_some() {
+                    ends.push(points);
+                }
+                let placed = firing.points().filter_map(|point| alignment.place(&point));
+                points += placed.count();
+            };
+            let mut decoder = Decoder::new(options);
+            for record in recording.records() {
+                if let Wire::Lidar { payload, .. } = record.wire {
+                    decoder.packet(record.host, payload, &mut each);
+                }
+            }
+            decoder.finish(&mut each);
+            ends.push(points);
+            assert_eq!(by_placer.ends, ends, "{}", recording.name);
+            assert_eq!(counts.points, points as u64, "{}", recording.name);
         }
     }
 }

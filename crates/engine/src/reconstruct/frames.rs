@@ -88,10 +88,7 @@ impl<'a> FrameWriter<'a> {
         options: Options,
         metadata: Metadata,
     ) -> Result<Self, Failure> {
-        let cutter = FrameCutter::new(plan.cut.0).map_err(|error| {
-            Failure::new(Kind::Usage, error.to_string())
-                .help("give --frames an azimuth in degrees, such as 180")
-        })?;
+        let cutter = frame_cutter(plan.cut)?;
         if plan.output == Path::new("-") {
             return Err(Failure::new(
                 Kind::Usage,
@@ -207,6 +204,14 @@ impl<'a> FrameWriter<'a> {
         }
         Ok(())
     }
+}
+
+/// Cuts revolutions at an azimuth.
+pub(super) fn frame_cutter(cut: Degrees) -> Result<FrameCutter, Failure> {
+    FrameCutter::new(cut.0).map_err(|error| {
+        Failure::new(Kind::Usage, error.to_string())
+            .help("give --frames an azimuth in degrees, such as 180")
+    })
 }
 
 /// Opens the file that holds all frames.

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use analysis::truth::Comparison;
 use cloud::{Metadata, Sink, SinkError, TiltTrack};
 use io::recording::{Gap, Pacer, Wait};
-use lidar::{Options, Stats, UtcClock, is_dual};
+use lidar::{FrameCutter, Options, Stats, UtcClock, is_dual};
 use protocol::record::{DriveLink, Record, Wire};
 use protocol::vlp16::{DATA_LEN, DataPacket};
 use scanner::steps::SetClock;
@@ -15,11 +15,11 @@ use scanner::{
     Accuracy, Alignment, PlacementCounts, Placer, ScanConfig, ScanError, Survey, TiltSource,
 };
 use sim::Truth;
-use units::{Host, Span, Stamp};
+use units::{Degrees, Host, Span, Stamp};
 
 use super::contents::contents;
 use super::failures::scan_failure;
-use super::frames::{FramePlan, FrameWriter};
+use super::frames::{FramePlan, FrameWriter, frame_cutter};
 use super::live::{LiveDifference, LivePoints};
 use super::warnings::{alignment_warnings, incomplete_sweeps};
 use crate::failure::{Failure, Kind};
@@ -199,15 +199,38 @@ pub fn scan(
     sink: &mut dyn Sink,
     output: &Path,
 ) -> Result<ScanReport, Failure> {
+    scan_into(request, None, sink, output)
+}
+
+/// The same, with [`Sink::revolution`] at the end of each revolution of the lidar, which ends at
+/// azimuth `cut`.
+///
+/// # Errors
+/// As [`make`], and [`Kind::Usage`] for an invalid azimuth.
+pub fn scan_by_revolution(
+    request: &Reconstruction<'_>,
+    cut: Degrees,
+    sink: &mut dyn Sink,
+    output: &Path,
+) -> Result<ScanReport, Failure> {
+    scan_into(request, Some(frame_cutter(cut)?), sink, output)
+}
+
+fn scan_into(
+    request: &Reconstruction<'_>,
+    cutter: Option<FrameCutter>,
+    sink: &mut dyn Sink,
+    output: &Path,
+) -> Result<ScanReport, Failure> {
     let first_pass = survey(request)?;
     let Some(utc) = first_pass.utc.clone() else {
-        let (placed, stats) = place(request, &first_pass, sink, output)?;
+        let (placed, stats) = place(request, &first_pass, cutter, sink, output)?;
         let scan = report(request, &first_pass, placed, &stats, output)?;
         send_summary(sink, &scan, output)?;
         return Ok(scan);
     };
     let mut in_utc = InUtc::new(sink, utc);
-    let (mut placed, stats) = place(request, &first_pass, &mut in_utc, output)?;
+    let (mut placed, stats) = place(request, &first_pass, cutter, &mut in_utc, output)?;
     let without = in_utc.without;
     placed.points -= without;
     if placed.points == 0 {
@@ -275,6 +298,7 @@ fn omit_without_utc(scan: &mut ScanReport, without_utc: u64) {
 fn place(
     request: &Reconstruction<'_>,
     first_pass: &FirstPass,
+    cutter: Option<FrameCutter>,
     sink: &mut dyn Sink,
     output: &Path,
 ) -> Result<(PlacementCounts, Stats), Failure> {
@@ -287,6 +311,9 @@ fn place(
         sink.tilt(&track).map_err(cannot_write)?;
     }
     let mut placer = Placer::new(&first_pass.alignment, request.options.clone(), sink);
+    if let Some(cutter) = cutter {
+        placer = placer.by_revolution(cutter);
+    }
     request.recording.read(|record| {
         if let Some(pace) = &mut pace {
             wait_until_due(pace, record, request.interrupt);

@@ -6,11 +6,13 @@
 //! trajectory, kinks of the clock) the points are placed one by one. Results depend on the block
 //! alone, not on the blocks before it.
 
+use std::ops::Range;
+
 use cloud::mount::Tilt;
 use cloud::{Fields, Points, Spare};
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, dispatch};
-use lidar::{FiringBlock, ReturnLayer};
+use lidar::{Firing, FiringBlock, ReturnLayer};
 use units::{Degrees, Host, Span, Stamp};
 
 use super::clock_cursor::{ClockCursor, Tangent};
@@ -139,10 +141,27 @@ impl<'a> FiringBlockPlacer<'a> {
                 counts.points += points as u64;
             }
             BlockPlacement::Outside => counts.outside += returns(block),
-            BlockPlacement::OneByOne => {
-                one_by_one(self.alignment, self.received, block, batch, counts)
-            }
+            BlockPlacement::OneByOne => one_by_one(
+                self.alignment,
+                self.received,
+                block.firings(),
+                batch,
+                counts,
+            ),
         }
+    }
+
+    /// Adds the points of some firings of a block, by the definition.
+    pub(crate) fn place_firings(
+        &mut self,
+        block: &FiringBlock<'_>,
+        firings: Range<usize>,
+        batch: &mut Points,
+        counts: &mut PlacementCounts,
+    ) {
+        self.received(block.began);
+        let firings = block.firings().take(firings.end).skip(firings.start);
+        one_by_one(self.alignment, self.received, firings, batch, counts);
     }
 
     /// Looks up time and angle of a block.
@@ -281,16 +300,16 @@ impl<'a> FiringBlockPlacer<'a> {
     }
 }
 
-/// Places the points of a firing block by the definition.
+/// Places the points of firings by the definition.
 #[cold]
-fn one_by_one(
+fn one_by_one<'f>(
     alignment: &Alignment,
     received: Option<Stamp<Host>>,
-    block: &FiringBlock<'_>,
+    firings: impl Iterator<Item = Firing<'f>>,
     batch: &mut Points,
     counts: &mut PlacementCounts,
 ) {
-    for point in block.firings().flat_map(|firing| firing.points()) {
+    for point in firings.flat_map(|firing| firing.points()) {
         match alignment.place_received(&point, received) {
             Some(point) => {
                 counts.points += 1;

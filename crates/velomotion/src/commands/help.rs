@@ -123,7 +123,7 @@ macro_rules! pages {
 }
 
 /// The pages of the book for users, in its order.
-const PAGES: [(&str, &str); 31] = pages!(
+const PAGES: [(&str, &str); 32] = pages!(
     "quick-start",
     "first-scan",
     "which-speed",
@@ -141,6 +141,7 @@ const PAGES: [(&str, &str); 31] = pages!(
     "tilt",
     "daemon",
     "page",
+    "python",
     "ros2",
     "formats",
     "json",

@@ -10,11 +10,10 @@ use engine::document::Document;
 use engine::failure::Failure;
 use engine::output::{self, Target};
 use engine::simulate::{
-    Sampler, SimulationReport, SimulationRequest, find, invalid_setting, make, nanoseconds, read,
+    Sampler, SimulationReport, SimulationRequest, choose_effects, find, make, nanoseconds, read,
     stem, unmet,
 };
 use engine::words::counted;
-use sim::effect_models::EffectsConfig;
 use sim::effects::Stopwatch;
 use sim::scene_file::EffectLine;
 
@@ -55,19 +54,14 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, 
         None => None,
     };
     let stdout_taken = truth.as_ref().is_some_and(Target::is_stdout);
-    let requested: Vec<&'static str> = (EffectsConfig::NAMES.iter().copied())
-        .filter(|effect| scene.is_requested(effect) && !is_out(effect))
-        .collect();
-    let choice = match arguments.tolerance.or(scene.tolerance) {
-        Some(tolerance) if !requested.is_empty() => {
-            let is_of_scene = arguments.tolerance.is_none();
-            Some(Sampler::new(&scene, threads).choose(tolerance, &requested, is_of_scene)?)
-        }
-        _ => None,
-    };
-    let on = choice.as_ref().map_or(&requested, |choice| &choice.on);
-    let selected = scene.select(|name| on.contains(&name), clock);
-    scene.effects = selected.map_err(|error| invalid_setting(&name, &error))?;
+    let choice = choose_effects(
+        &mut scene,
+        &name,
+        is_out,
+        arguments.tolerance,
+        threads,
+        clock,
+    )?;
     let sampler = Sampler::new(&scene, threads);
     let sizes = match arguments.explain {
         true => Some(sampler.sizes(&sampler.candidates())?),

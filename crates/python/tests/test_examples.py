@@ -1,0 +1,60 @@
+"""The examples and the book's page run as they are."""
+
+import re
+import subprocess
+import sys
+
+import nbclient
+import nbformat
+import pytest
+import velomotion
+from conftest import RECORDINGS, ROOT
+
+EXAMPLES = ROOT / "crates" / "python" / "examples"
+
+
+def test_the_notebook(tmp_path):
+    notebook = nbformat.read(EXAMPLES / "first_cloud.ipynb", as_version=4)
+    nbclient.NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(tmp_path)}}).execute()
+
+
+def test_many_logs_on_a_local_cluster(tmp_path):
+    logs = [tmp_path / f"{seed}.pcapng" for seed in range(3)]
+    for seed, log in enumerate(logs):
+        velomotion.simulate("room", log, seed=seed)
+    command = [sys.executable, EXAMPLES / "many_logs.py", "--workers", "2", *logs]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stderr
+    table = [line.split() for line in done.stdout.splitlines()]
+    points = {row[0]: int(row[1]) for row in table if row and row[0].endswith(".pcapng")}
+    assert points == {log.name: len(velomotion.read(log)) for log in logs}
+    assert "MB/s" in done.stdout and "processes" in done.stdout
+
+
+def test_the_comparison_of_speed_runs():
+    """Once: it measures with more repetitions, and a release build."""
+    command = [sys.executable, EXAMPLES / "speed.py", "--repetitions", "2", RECORDINGS / "vlp16-strongest-gps.pcap"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stderr
+    assert "velodyne-decoder" in done.stdout and "times" in done.stdout
+
+
+def test_the_pages_python_runs(tmp_path, monkeypatch):
+    page = (ROOT / "docs" / "src" / "python.md").read_text()
+    blocks = re.findall(r"^```python\n(.*?)^```$", page, re.M | re.S)
+    assert len(blocks) >= 3
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "walk.pcap").write_bytes((RECORDINGS / "vlp16-dual.pcap").read_bytes())
+    (tmp_path / "mount.toml").write_text("[mount]\nd_m = 0.06\n")
+    names = {}
+    for block in blocks:
+        exec(compile(block, "python.md", "exec"), names)
+
+
+@pytest.mark.parametrize("readme", ["crates/python/README.md"])
+def test_the_readmes_python_runs(readme, tmp_path, monkeypatch):
+    blocks = re.findall(r"^```python\n(.*?)^```$", (ROOT / readme).read_text(), re.M | re.S)
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "walk.pcap").write_bytes((RECORDINGS / "vlp16-dual.pcap").read_bytes())
+    for block in blocks:
+        exec(compile(block, readme, "exec"), {})
