@@ -59,7 +59,8 @@ impl DirectionSource {
                 numpy.call_method1("column_stack", (columns,))?
             }
         };
-        let rows = numpy.call_method1("asarray", (columns, "f8"));
+        // Columns of packed rows are not aligned.
+        let rows = numpy.call_method1("require", (columns, "f8", "CA"));
         let rows: PyReadonlyArray2<'_, f64> =
             rows.and_then(|rows| rows.extract()).map_err(|_| wrong())?;
         let rows = rows.as_array();

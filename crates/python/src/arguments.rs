@@ -52,7 +52,7 @@ impl TiltArgument {
             .into_py(py)
         };
         let numpy = py.import("numpy")?;
-        let array = numpy.call_method1("asarray", (argument, "f8"));
+        let array = numpy.call_method1("require", (argument, "f8", "CA"));
         let array = array.map_err(|_| wrong())?;
         let rows: PyReadonlyArray2<'_, f64> = array.extract().map_err(|_| wrong())?;
         let rows = rows.as_array();

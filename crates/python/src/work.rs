@@ -12,9 +12,12 @@ use crate::binding_error::BindingError;
 /// Interval of checks for Python's signals.
 pub(crate) const LOOK_AGAIN: Duration = Duration::from_millis(20);
 
+/// Time for `work` to end after a signal.
+const END_LIMIT: Duration = Duration::from_secs(2);
+
 /// Does `work` in a thread of its own, without Python's lock, until it ends or Python has a signal
-/// such as Ctrl-C. Then `work` is told to stop by its flag and abandoned: some measurements do not
-/// look at it. A panic is an exception of Python.
+/// such as Ctrl-C. Then `work` is told to stop by its flag, and abandoned after [`END_LIMIT`]: some
+/// measurements do not look at it. A panic is an exception of Python.
 pub(crate) fn run<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce(&AtomicBool) -> Result<T, BindingError> + Send + 'static,
@@ -38,6 +41,8 @@ pub(crate) fn run<T: Send + 'static>(
             Err(RecvTimeoutError::Timeout) => {
                 if let Err(signal) = py.check_signals() {
                     interrupt.store(true, Ordering::Relaxed);
+                    // The thread may be writing its output.
+                    drop(py.detach(move || result.recv_timeout(END_LIMIT)));
                     return Err(signal);
                 }
             }

@@ -37,6 +37,10 @@ def test_density_of_points(tilted, program):
     assert density["density"]["sd"] == pytest.approx(told["density"]["sd"], rel=1e-3)
     xyz = np.column_stack([points["x"], points["y"], points["z"]])
     assert np.array_equal(velomotion.density(xyz)["counts"], density["counts"])
+    # Rows of 25 bytes, as other libraries have them: their columns are not aligned.
+    packed = np.zeros(len(xyz), dtype=[("at", "f8", 3), ("kind", "u1")])
+    packed["at"] = xyz
+    assert np.array_equal(velomotion.density(packed["at"])["counts"], density["counts"])
     moved = velomotion.density(xyz + [1, 2, 3], origin=(1, 2, 3))["counts"]
     assert np.abs(moved.astype(int) - density["counts"]).sum() < 0.001 * len(points)
     beyond = velomotion.density(np.vstack([xyz, np.zeros((5, 3)), np.full((2, 3), np.nan)]))

@@ -98,19 +98,20 @@ impl BatchWriter<'_> {
         };
         let firings = block.firings();
         let count = firings.len();
-        let mut cut = None;
-        for (n, firing) in firings.enumerate() {
-            if cutter.firing(&firing).is_some() {
-                cut = Some(n);
-            }
+        let cuts = firings.enumerate();
+        let cuts: Vec<usize> = cuts
+            .filter_map(|(n, firing)| cutter.firing(&firing).map(|_| n))
+            .collect();
+        if cuts.is_empty() {
+            return self.blocks.place(block, &mut self.batch, &mut self.counts);
         }
-        if let Some(cut) = cut {
-            self.place_firings(block, 0..cut);
+        let mut placed = 0;
+        for cut in cuts {
+            self.place_firings(block, placed..cut);
             self.end_revolution();
-            self.place_firings(block, cut..count);
-        } else {
-            self.blocks.place(block, &mut self.batch, &mut self.counts);
+            placed = cut;
         }
+        self.place_firings(block, placed..count);
     }
 
     fn place_firings(&mut self, block: &FiringBlock<'_>, firings: std::ops::Range<usize>) {

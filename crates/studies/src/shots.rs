@@ -1,4 +1,4 @@
-//! SampledFirings of a VLP-16 in scenes of the simulator: origins and directions of rays, and the
+//! Firings of a VLP-16 in scenes of the simulator: origins and directions of rays, and the
 //! surroundings.
 //!
 //! An effect without influence collects them from the simulation.

@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::file_sink::EncodeError;
 
-/// The first error of a [`ErrorHidingOutput`].
+/// The first error of an [`ErrorHidingOutput`].
 #[derive(Clone, Default)]
 pub(in crate::formats) struct WriteFault(Arc<Mutex<Option<io::Error>>>);
 

@@ -1,6 +1,6 @@
 //! Scans that a daemon finds at its start, interrupted ones included.
 
-use std::fs;
+use std::fs::{self, File};
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
@@ -11,6 +11,8 @@ use engine::service::scan_record::{ScanHead, ScanRecord, ScanState};
 
 /// Bytes of the largest record; those of captures have some kB.
 const MAX_RECORD: u64 = 16 << 20;
+/// Bytes at the beginning of a cloud that hold its mark: the first comment of a PLY file.
+const PLY_HEADER: u64 = 4096;
 
 /// The record of a scan's folder. A folder with a log and no record is a scan, too.
 pub(super) fn found(place: &Path, name: &str) -> Option<ScanRecord> {
@@ -104,7 +106,7 @@ fn of_folder(place: &Path, name: &str) -> ScanRecord {
         id: name.to_owned(),
         state: ScanState::Failed,
         started_s: modified_s(&place.join(LOG)),
-        simulated: is_simulated(&place.join(LOG)),
+        simulated: is_simulated(place),
         ..ScanHead::default()
     };
     ScanRecord {
@@ -113,10 +115,23 @@ fn of_folder(place: &Path, name: &str) -> ScanRecord {
     }
 }
 
-/// Whether a log says that its devices were software.
-fn is_simulated(log: &Path) -> bool {
-    let config = || Source::open(log, None)?.config();
-    is_file(log) && config().is_ok_and(|config| config.simulated)
+/// Whether the log, or the cloud of a scan without a readable log, says that its devices were
+/// software.
+fn is_simulated(place: &Path) -> bool {
+    let log = place.join(LOG);
+    let config = || Source::open(&log, None)?.config();
+    if is_file(&log)
+        && let Ok(config) = config()
+    {
+        return config.simulated;
+    }
+    let cloud = place.join(CLOUD);
+    let mut header = Vec::new();
+    is_file(&cloud)
+        && File::open(&cloud)
+            .and_then(|file| file.take(PLY_HEADER).read_to_end(&mut header))
+            .is_ok()
+        && header.windows(9).any(|letters| letters == b"SIMULATED")
 }
 
 /// The failure of an interrupted scan.

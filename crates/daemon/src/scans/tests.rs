@@ -70,6 +70,10 @@ fn unreadable_scans_are_listed_and_left_unchanged() {
         fs::write(theirs.join(name), name).unwrap();
     }
     std::os::unix::fs::symlink(&theirs, scans.place("linked")).unwrap();
+    let cloud_alone = scans.place("cloud-alone");
+    fs::create_dir(&cloud_alone).unwrap();
+    fs::write(cloud_alone.join(CLOUD), "ply\ncomment SIMULATED\n").unwrap();
+    fs::write(cloud_alone.join(RECORD), "damaged").unwrap();
 
     let again = Scans::open(folder.path()).unwrap();
     let view = |id: &str| again.view(id).unwrap();
@@ -81,6 +85,8 @@ fn unreadable_scans_are_listed_and_left_unchanged() {
     assert!(why.message.contains("superb"), "{why}");
     assert_eq!(view(&unknown).state, ScanState::Partial, "it has a cloud");
     assert_eq!(view("hall").state, ScanState::Partial);
+    assert!(!view("hall").simulated);
+    assert!(view("cloud-alone").simulated, "the cloud says it");
     assert_eq!(again.view("linked"), None);
     assert!(
         again.unfinished().is_empty(),

@@ -2,8 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-use drive::{AngleSource, CommandOutcome, DriveCommand, SampleTrigger, ShaftSample};
+use drive::{CommandOutcome, DriveCommand, SampleTrigger, ShaftSample};
 use protocol::epos2::objects::{self, input};
+use protocol::record::DriveLink;
 use units::Stamp;
 
 use super::{BringUp, BringUpResult, BringUpStep, Judgement, Operator};
@@ -109,16 +110,17 @@ fn connect(bring_up: &mut BringUp<'_>, _: &mut dyn Operator) -> Result<(), Sessi
         format!("{:?}", report.angle).to_lowercase(),
     );
     let notices = "the drive itself notices a dead host";
-    match (report.monitors_host, report.angle) {
+    let is_can = bring_up.opened.link == DriveLink::Can;
+    match (report.monitors_host, is_can) {
         (true, _) => bring_up.note(notices, "yes (heartbeat, 1016)"),
         // There is no guardian on a CAN bus.
-        (false, AngleSource::Stream) => bring_up.judge(
+        (false, true) => bring_up.judge(
             notices,
             "no (1016 is refused)",
             false,
             "nothing would stop the axis if the program died, so it is not moved: use USB or RS232",
         ),
-        (false, AngleSource::Polls) => {
+        (false, false) => {
             bring_up.note(notices, "no: a guardian process stops the axis");
         }
     }

@@ -86,7 +86,7 @@ impl Object {
         self
     }
 
-    /// BoundingBox in the object's frame, relative to [`Object::origin_m`]; `None` for infinite
+    /// Bounds in the object's frame, relative to [`Object::origin_m`]; `None` for infinite
     /// surfaces.
     fn own_bounds(&self) -> Option<BoundingBox> {
         match &self.surface {

@@ -131,7 +131,7 @@ fn about(counts: &[String]) -> Vec<String> {
     let [columns, rows] = FINE;
     vec![
         format!(
-            "SampledFirings of a VLP-16 spread over a sweep through built-in scenes ({}). The beam divergence is 3 x 1.5 mrad. The reference is \
+            "Shots of a VLP-16 spread over a sweep through built-in scenes ({}). The beam divergence is 3 x 1.5 mrad. The reference is \
              {columns} x {rows} sub-rays of every \
              shot; a shot is at an edge unless all its sub-rays hit one plane within 2 mm.",
             counts.join("; ")

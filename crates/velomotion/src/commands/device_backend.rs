@@ -152,15 +152,22 @@ impl RecordedCapture {
             && Format::from_path(&plan.cloud) == Ok(Format::Ply);
         let scan = scan.filter(|_| is_stored || plan.scan.simulated);
         let details = || scan.as_ref()?.finished(interrupt);
-        let finished = is_stored.then(details).flatten();
+        // A daemon of an earlier version does not say what is missing in a partial scan.
+        let is_explained = |details: &ScanDetails| {
+            details.scan.state == ScanState::Whole || details.recording.is_some()
+        };
+        let finished = is_stored.then(details).flatten().filter(is_explained);
         if let Some(scan) = &scan
             && let Some(details) = finished
             && let Some(report) = stored_report(&details, plan)
-            && scan.fetch("cloud", &plan.cloud, plan.force).is_ok()
         {
-            tracing::debug!("the cloud is a copy of the daemon's");
-            outcome.failure = details.recording;
-            return (Ok(report), outcome);
+            match scan.fetch("cloud", &plan.cloud, plan.force) {
+                Ok(()) => {
+                    outcome.failure = details.recording;
+                    return (Ok(report), outcome);
+                }
+                Err(error) => tracing::debug!("the daemon's cloud could not be copied: {error}"),
+            }
         }
         let log = (plan.log.as_path(), plan.accuracy);
         let lost = outcome.lost_records;
