@@ -24,6 +24,7 @@ pub struct TiltedSensor {
 
 /// Ranges and elevations that a tilted sensor covers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct VisibleRange {
     /// Smallest and largest distance of a point from the origin of the base, metres.
     pub range_m: [f64; 2],

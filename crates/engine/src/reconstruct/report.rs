@@ -92,6 +92,7 @@ pub struct MissingPackets {
 
 /// Contents of a file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[non_exhaustive]
 pub struct Contents {
     /// Sensor model.
     pub model: Option<String>,

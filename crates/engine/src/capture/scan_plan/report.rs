@@ -10,6 +10,7 @@ use crate::words::counted;
 
 /// A row with its command.
 #[derive(Clone, Debug, Serialize, ToSchema)]
+#[non_exhaustive]
 pub struct CommandRow {
     /// The capture; null for another lidar than the device has.
     pub command: Option<String>,

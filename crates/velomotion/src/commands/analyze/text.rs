@@ -249,6 +249,7 @@ impl DeviceReport {
             range_m: [near, far],
             forwards_deg,
             backwards_deg,
+            ..
         } = self.view;
         [
             format!("the device sees from {near:.3} to {far:.3} m"),
