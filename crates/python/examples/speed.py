@@ -13,6 +13,7 @@ import os
 import statistics
 import time
 import warnings
+from importlib.metadata import version
 
 import numpy as np
 import velodyne_decoder as vd
@@ -39,7 +40,7 @@ def main():
     # The reader of frames has a thread of its own, which may not run beside Python's.
     os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
     warnings.simplefilter("ignore", velomotion.IncompleteWarning)
-    print(f"velomotion {velomotion.__version__}, velodyne-decoder {vd.__version__}, load {os.getloadavg()[0]:.1f}")
+    print(f"velomotion {velomotion.__version__}, velodyne-decoder {version('velodyne-decoder')}, load {os.getloadavg()[0]:.1f}")
     for path in arguments.recordings:
         model = MODELS[velomotion.Log(path).info()["model"]]
         config = vd.Config(model=getattr(vd.Model, model), min_range=0.0, max_range=1000.0)
@@ -58,6 +59,12 @@ def main():
                 lambda: len(velomotion.read(path, fields=["x", "y", "z", "intensity", "time", "ring", "echo"])),
             ),
         }
+        try:
+            theirs()
+        except RuntimeError as error:
+            # It refuses other factory bytes than its model's.
+            print(f"{os.path.basename(path)}: velodyne-decoder: {error}")
+            continue
         print(f"{os.path.basename(path)}: {theirs()} points of velodyne-decoder, {len(velomotion.read(path))} of velomotion")
         for name, (their_work, our_work) in contests.items():
             ratios, rates = [], []
