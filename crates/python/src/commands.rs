@@ -157,7 +157,7 @@ pub(crate) fn calibrate<'py>(
         };
         let calibrated = calibration::calibrate(&request, &mut |_| {})?;
         let toml = to_toml(&calibrated, env!("CARGO_PKG_VERSION"));
-        let toml = toml.map_err(|error| Failure::new(Kind::Incomplete, error))?;
+        let toml = toml.map_err(|error| Failure::new(Kind::Incomplete, error.to_string()))?;
         Ok((CalibrateReport::new(&calibrated).to_json(), toml))
     })?;
     let report = to_python(py, &report)?;

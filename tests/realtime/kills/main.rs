@@ -109,7 +109,7 @@ fn on_transport(transport: &'static str, arguments: &Arguments, results: &Result
 /// Every signal meets every kind of motion, and the goto of a held axis; a kill meets the other
 /// motions of a held axis.
 fn every_signal(transport: &str, results: &Results) {
-    let check = |motion, signal: Signal, bench, held| {
+    let check = |motion, signal: Signal, bench: &Bench, held| {
         let case = Case {
             motion,
             signal,
