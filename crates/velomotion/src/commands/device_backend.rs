@@ -163,6 +163,7 @@ impl RecordedCapture {
         {
             match scan.fetch("cloud", &plan.cloud, plan.force) {
                 Ok(()) => {
+                    tracing::debug!("the cloud is a copy of the daemon's");
                     outcome.failure = details.recording;
                     return (Ok(report), outcome);
                 }
