@@ -111,7 +111,7 @@ impl DeviceCalibration {
     /// Refuses numbers that no device has.
     ///
     /// # Errors
-    /// [`InvalidCalibration`].
+    /// `InvalidCalibration`: the first invalid value.
     pub fn check(&self) -> Result<(), InvalidCalibration> {
         let axis = &self.axis_correction;
         let [ripple_sin, ripple_cos] = axis.ripple_deg;
