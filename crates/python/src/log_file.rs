@@ -290,8 +290,8 @@ impl LogFile {
     ///
     /// Fields: device_ns (i8), first firing by the lidar's clock; received_ns (i8), receive time
     /// less the time that the lidar takes to fill the packet; host_ns (i8), device_ns by the fitted
-    /// clock; bound_ns (i8), error bound of host_ns. received_ns - host_ns is the packet's delay. If
-    /// the host's clock was set during the recording (`info` shows it), host_ns is by the clock
+    /// clock; bound_ns (i8), error bound of host_ns. received_ns - host_ns is the packet's delay.
+    /// If the host's clock was set during the recording (`info` shows it), host_ns is by the clock
     /// before that, and received_ns as recorded.
     fn clocks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let open = opener(self);
