@@ -88,7 +88,7 @@ impl FrameIterator {
                 messages: sender.clone(),
             };
             let ended = request.read(Some(cut), &mut rows, &flag);
-            // Nobody waits for it if the iterator is gone.
+            // Sending fails if the iterator is gone.
             drop(sender.send(FrameMessage::End(ended)));
         });
         thread.map_err(|failure| BindingError::from(failure).into_py(py))?;

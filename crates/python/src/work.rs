@@ -16,7 +16,7 @@ pub(crate) const LOOK_AGAIN: Duration = Duration::from_millis(20);
 const END_LIMIT: Duration = Duration::from_secs(2);
 
 /// Does `work` in a thread of its own, without Python's lock, until it ends or Python has a signal
-/// such as Ctrl-C. Then `work` is told to stop by its flag, and abandoned after [`END_LIMIT`]: some
+/// such as Ctrl-C. Then its flag stops `work`, which is abandoned after [`END_LIMIT`]: some
 /// measurements do not look at it. A panic is an exception of Python.
 pub(crate) fn run<T: Send + 'static>(
     py: Python<'_>,
