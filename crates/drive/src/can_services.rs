@@ -36,8 +36,6 @@ pub(crate) enum Alarm {
 pub(crate) const STREAM: Pdo = Pdo::Transmit(PdoNumber::One);
 /// Shortest SYNC period: the drive's position loop runs at 1 kHz.
 const MIN_SYNC_PERIOD: Span = Span::from_millis(1);
-/// Time for a delayed host to read pending frames before it reports a lost heartbeat.
-const HEARTBEAT_GRACE: Span = Span::from_millis(10);
 
 /// The CANopen services of one node.
 #[derive(Debug)]
@@ -46,8 +44,6 @@ pub(crate) struct CanServices {
     config: CanHeartbeats,
     out: VecDeque<CanFrame>,
     heartbeat: HeartbeatConsumer,
-    /// When the host noticed a missing heartbeat.
-    missing_since: Option<Stamp<Host>>,
     operational: bool,
     /// When the host's next heartbeat is due; `None` while it sends none.
     pub next_heartbeat: Option<Stamp<Host>>,
@@ -74,7 +70,6 @@ impl CanServices {
             config,
             out: VecDeque::new(),
             heartbeat: HeartbeatConsumer::new(node, config.node_limit),
-            missing_since: None,
             operational: false,
             next_heartbeat: None,
             syncs: SyncMatcher::default(),
@@ -93,7 +88,6 @@ impl CanServices {
     pub fn begin(&mut self, now: Stamp<Host>) {
         self.syncs.observe(now);
         self.heartbeat = HeartbeatConsumer::new(self.node, self.config.node_limit);
-        self.missing_since = None;
         self.operational = false;
         self.latest = None;
         self.alarm = self.restarted.then_some(Alarm::BootUp);
@@ -176,33 +170,26 @@ impl CanServices {
     }
 
     pub fn deadline(&self) -> Option<Stamp<Host>> {
-        let lost = self
-            .missing_since
-            .map(|since| since.saturating_add(HEARTBEAT_GRACE));
         [
             self.next_sync,
             self.next_heartbeat,
-            lost.or(self.heartbeat.poll_timeout()),
+            self.heartbeat.poll_timeout(),
         ]
         .into_iter()
         .flatten()
         .min()
     }
 
-    /// Acts on deadlines that have passed.
+    /// Reports a lost heartbeat. No frame is waiting to be read.
     pub fn expire(&mut self, now: Stamp<Host>) {
-        let Some(due) = self.heartbeat.poll_timeout().filter(|due| *due <= now) else {
-            return;
-        };
-        let since = *self.missing_since.get_or_insert(now);
-        if now < since.saturating_add(HEARTBEAT_GRACE) {
-            return;
-        }
-        self.missing_since = None;
-        if let Some(HeartbeatEvent::Lost { silence }) = self.heartbeat.handle_timeout(now.max(due))
-        {
+        if let Some(HeartbeatEvent::Lost { silence }) = self.heartbeat.handle_timeout(now) {
             self.alarm.get_or_insert(Alarm::HeartbeatLost(silence));
         }
+    }
+
+    /// Moves the deadline of the heartbeat: the host did not run for `delay`.
+    pub fn postpone(&mut self, delay: Span) {
+        self.heartbeat.postpone(delay);
     }
 
     fn handle_heartbeat(&mut self, frame: &CanFrame, now: Stamp<Host>) {
@@ -226,9 +213,6 @@ impl CanServices {
                 }
             }
             Some(HeartbeatEvent::Lost { .. }) | None => {}
-        }
-        if self.heartbeat.poll_timeout().is_some_and(|due| due > now) {
-            self.missing_since = None;
         }
     }
 

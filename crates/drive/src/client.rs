@@ -167,8 +167,12 @@ impl DriveClient {
         of_command.chain([core.link.deadline()]).flatten().min()
     }
 
-    /// Acts on deadlines that have passed.
+    /// Acts on deadlines that have passed. The caller has read all input, so that a frame which
+    /// waited for a delayed host is no silence.
     pub fn handle_timeout(&mut self, now: Stamp<Host>) {
+        if let (true, Some(can)) = (self.running.is_some(), &mut lock(&self.core).can) {
+            can.expire(now);
+        }
         self.advance(now);
     }
 
@@ -180,6 +184,9 @@ impl DriveClient {
         let mut core = lock(&self.core);
         core.host_delayed = Some(now);
         core.link.postpone(delay);
+        if let Some(can) = &mut core.can {
+            can.postpone(delay);
+        }
     }
 
     /// Takes the oldest event.
@@ -213,9 +220,6 @@ impl DriveClient {
             core.now = now;
             core.begin(now);
             core.link.expire(now);
-            if let (true, Some(can)) = (self.running.is_some(), &mut core.can) {
-                can.expire(now);
-            }
         }
         let Some((kind, procedure)) = self.running.as_mut() else {
             return;

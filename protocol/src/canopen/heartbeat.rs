@@ -148,6 +148,11 @@ impl HeartbeatConsumer {
         self.last.map(|last| last.saturating_add(self.limit))
     }
 
+    /// Counts the silence from `delay` later: the consumer could not receive for that long.
+    pub fn postpone(&mut self, delay: Span) {
+        self.last = self.last.map(|last| last.saturating_add(delay));
+    }
+
     /// Reports the loss of the node at `now`, once.
     pub fn handle_timeout(&mut self, now: Stamp<Host>) -> Option<HeartbeatEvent> {
         let last = self.last?;
@@ -180,6 +185,17 @@ mod tests {
             state,
         }
         .to_frame()
+    }
+
+    #[test]
+    fn a_delay_of_the_consumer_is_no_silence() {
+        let mut consumer = HeartbeatConsumer::new(node(1), Span::from_millis(100));
+        consumer.postpone(Span::from_secs(1));
+        assert_eq!(consumer.poll_timeout(), None, "monitoring has not begun");
+        consumer.handle_frame(&beat(1, NmtState::Operational), at(0));
+        consumer.postpone(Span::from_secs(1));
+        assert_eq!(consumer.handle_timeout(at(1_099)), None);
+        assert!(consumer.handle_timeout(at(1_100)).is_some());
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! Features of a CAN bus: the stream at SYNC, NMT states, heartbeats both ways, boot-up.
 
 use protocol::canopen::nmt::NmtCommand;
-use protocol::epos2::CommError;
 use protocol::epos2::message::SerialRequest;
+use protocol::epos2::{CommError, DeviceError};
 use protocol::record::DriveLink;
 use units::{Host, Span, Stamp};
 
@@ -264,6 +264,25 @@ fn a_missing_heartbeat_in_mid_sweep_stops_the_axis() {
     assert!(reaction < Span::from_millis(1_015), "{reaction:?}");
     let safe = |p: &CommandProgress| matches!(p, CommandProgress::StoppedAfterFailure(_));
     assert!(rig.progress().iter().any(safe));
+}
+
+/// The host did not run: the node's frames wait to be read, and what they say is the cause.
+#[test]
+fn a_suspended_host_takes_its_own_delay_for_no_silence_of_the_node() {
+    let mut rig = homed();
+    rig.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
+    assert_eq!(rig.run_for(Span::from_millis(600)), None);
+    let delay = Span::from_millis(1_050);
+    rig.sleep(delay);
+    rig.client.handle_host_delay(delay, rig.now);
+    // The host is slow, too: it writes twice before it reads.
+    rig.sleep(Span::from_millis(15));
+    rig.sleep(Span::from_millis(1));
+    let error = rig.finish().unwrap_err();
+    let monitored = DriveError::Fault {
+        error: Some(DeviceError(0x8130)),
+    };
+    assert_eq!(error, monitored);
 }
 
 #[test]
