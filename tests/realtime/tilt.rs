@@ -6,6 +6,7 @@ use std::os::unix::fs::PermissionsExt;
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::PathBuf;
 use std::process::{Child, Command, Output, Stdio};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::Duration;
@@ -335,17 +336,71 @@ fn a_daemon_stops_its_axis_though_no_program_reads_its_log() {
 fn a_program_without_the_port_cannot_confirm_a_stop() {
     let bench = Bench::new("--usb");
     let listener = UnixListener::bind(bench.daemon_socket()).unwrap();
+    confirm_stops(listener, &Arc::default());
+    let stopped = bench.json("tilt stop");
+    assert_eq!(stopped["state"], "fault", "{stopped}");
+    assert_eq!(stopped["stopped"], serde_json::Value::Null, "{stopped}");
+}
+
+/// Any number of programs may use a CAN bus, so the command looks at the drive itself. This bus
+/// does not exist.
+#[test]
+fn a_program_on_a_can_bus_cannot_confirm_a_stop_alone() {
+    let bench = Bench::new("--usb");
+    let config = "[device]\ndefault = 'bus'\n[device.bus]\nkind = 'can'\ninterface = 'nobus0'\n";
+    std::fs::write(bench.folder.path().join("velomotion.toml"), config).unwrap();
+    let socket = bench.folder.path().join("velomotionnobus0.daemon.sock");
+    let listener = UnixListener::bind(socket).unwrap();
+    let asked = Arc::new(AtomicBool::new(false));
+    confirm_stops(listener, &asked);
+    let stopped = bench.run("tilt stop");
+    let printed = String::from_utf8_lossy(&stopped.stderr).into_owned();
+    assert!(asked.load(Ordering::Relaxed), "{printed}");
+    assert_eq!(stopped.status.code(), Some(4), "{printed}");
+    assert!(printed.contains("nobus0"), "{printed}");
+}
+
+/// A program that moves nothing answers that it has stopped the axis.
+fn confirm_stops(listener: UnixListener, asked: &Arc<AtomicBool>) {
+    let asked = Arc::clone(asked);
     std::thread::spawn(move || {
         for mut stream in listener.incoming().flatten() {
+            asked.store(true, Ordering::Relaxed);
             let body = r#"{"device":"soft","stopped":true,"state":"","power":false}"#;
             let length = body.len();
             let answer = format!("HTTP/1.1 200 OK\r\ncontent-length: {length}\r\n\r\n{body}");
             let _ = stream.write_all(answer.as_bytes());
         }
     });
-    let stopped = bench.json("tilt stop");
-    assert_eq!(stopped["state"], "fault", "{stopped}");
-    assert_eq!(stopped["stopped"], serde_json::Value::Null, "{stopped}");
+}
+
+/// The warning is in the report of the command and in its text.
+#[test]
+fn a_head_that_falls_after_a_move_is_a_warning() {
+    let bench = Bench::with("--usb", &["--gravity=60"], "");
+    let homed = bench.json("tilt home");
+    let warnings = homed["warnings"].to_string();
+    assert!(
+        warnings.contains("deg after its power was switched off"),
+        "{homed}"
+    );
+    assert!(warnings.contains("without_brake"), "{homed}");
+    let moved = bench.run("tilt goto -20");
+    let text = [moved.stdout, moved.stderr].concat();
+    let text = String::from_utf8_lossy(&text).into_owned();
+    assert!(
+        text.contains("deg after its power was switched off"),
+        "{text}"
+    );
+}
+
+#[test]
+fn the_status_of_a_held_axis_says_that_the_drive_holds_it() {
+    let bench = Bench::with("--usb", &[], "[axis]\nwithout_brake = 'hold'\n");
+    bench.json("tilt home");
+    let status = bench.run("tilt status");
+    let text = String::from_utf8_lossy(&status.stdout).into_owned();
+    assert!(text.contains("on: the drive holds the axis"), "{text}");
 }
 
 /// The message says what to do, and which process hangs.

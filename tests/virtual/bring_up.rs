@@ -70,12 +70,26 @@ fn a_healthy_drive_has_no_problem_on_any_link() {
         assert!(value("onto the other switch").starts_with("method 17"));
         assert!(value("in a move").starts_with("at rest after 0."));
         assert!(value("ready to switch on").starts_with("at rest after 0.000"));
+        assert!(value("dither with the power on").starts_with("0 qc"));
+        assert!(value("time of reading an object").starts_with("median "));
         let by = match attached {
             Attachment::Can => "positions by SYNC at rest",
             _ => "positions by polls at rest",
         };
         assert!(value(by).ends_with(" per second"));
     }
+}
+
+/// The encoder dithers under power alone.
+#[test]
+fn a_position_controller_that_dithers_is_a_problem() {
+    let found = bring_up(Attachment::Usb, |_, rig| rig.drive.dither_qc = 60);
+    let problems = problems(&found);
+    let dither = problems.first();
+    assert!(
+        dither.is_some_and(|dither| dither.0 == "dither with the power on"),
+        "{problems:?}"
+    );
 }
 
 #[test]

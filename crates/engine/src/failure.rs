@@ -120,4 +120,12 @@ impl Failure {
         self.help = Some(help.into());
         self
     }
+
+    /// Adds warnings before what to do next.
+    #[must_use]
+    pub fn warned(mut self, warnings: Vec<String>) -> Self {
+        let lines: Vec<String> = warnings.into_iter().chain(self.help).collect();
+        self.help = (!lines.is_empty()).then(|| lines.join("\n"));
+        self
+    }
 }

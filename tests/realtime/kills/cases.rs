@@ -13,13 +13,14 @@ use crate::bench::{Aftermath, Bench, wait};
 pub type Signal = (&'static str, bool);
 
 /// Every signal that ends or suspends a program from outside.
-pub const SIGNALS: [Signal; 6] = [
+pub const SIGNALS: [Signal; 7] = [
     ("KILL", false),
     ("STOP", false),
     ("TSTP", true),
     ("TERM", true),
     ("INT", true),
     ("HUP", true),
+    ("QUIT", true),
 ];
 
 /// What the program does.

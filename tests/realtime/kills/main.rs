@@ -106,8 +106,7 @@ fn on_transport(transport: &'static str, arguments: &Arguments, results: &Result
     }
 }
 
-/// Every signal meets every kind of motion, and the goto of a held axis; a kill meets the other
-/// motions of a held axis.
+/// Every signal meets every kind of motion, of an axis with a brake and of one that is held.
 fn every_signal(transport: &str, results: &Results) {
     let check = |motion, signal: Signal, bench: &Bench, held| {
         let case = Case {
@@ -132,10 +131,9 @@ fn every_signal(transport: &str, results: &Results) {
     let held = Bench::start(transport, HOLD);
     results.check(transport, held.run("tilt home"));
     for signal in SIGNALS {
-        check(Motion::Goto, signal, &held, true);
-    }
-    for motion in [Motion::Homing, Motion::Sweep, Motion::Daemon] {
-        check(motion, SIGNALS[0], &held, true);
+        for motion in Motion::ALL {
+            check(motion, signal, &held, true);
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! What a drive can do wrong.
 
 use crate::drive::Drive;
+use crate::run::Transport;
 
 /// When a misbehaviour begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,6 +40,8 @@ pub enum Expect {
     Unseen,
     /// The quick stop is ignored: stopped by power off and brake.
     Braked,
+    /// The first power off is lost, too.
+    BrakedLate,
     /// Homing ends within its bound of travel.
     HomingBound,
     /// Homing stops within 50 ms of the sample that shows that the axis does not follow.
@@ -66,6 +69,13 @@ pub struct Misbehaviour {
     pub only_can: bool,
     /// Who moves the axis.
     pub by: By,
+}
+
+impl Misbehaviour {
+    /// Whether it can be seen on this link.
+    pub fn is_possible(&self, transport: Transport) -> bool {
+        !self.only_can || transport == Transport::Slcan
+    }
 }
 
 /// Who moves the axis.

@@ -2,8 +2,8 @@
 
 use crate::drive::Drive;
 use crate::faults::Expect::{
-    self, Braked, Completes, Falls, HomingBound, HomingStopped, Refused, Safe, Silent, Stopped,
-    Unseen, Unstoppable,
+    self, Braked, BrakedLate, Completes, Falls, HomingBound, HomingStopped, Refused, Safe, Silent,
+    Stopped, Unseen, Unstoppable,
 };
 use crate::faults::When::{
     self, Braking, Homed, Homing, MidSweep, Start, Stopping, SweepStart, Waiting,
@@ -144,7 +144,7 @@ pub const ROWS: &[Misbehaviour] = &[
         d.faults.motor = Motor::KeepsOn;
         (d.faults.ignores_quick_stop, d.faults.ignores_disable) = (true, true);
     }),
-    row("it ignores quick stop and loses the first power off", Braking, Safe, |d| {
+    row("it ignores quick stop and loses the first power off", Braking, BrakedLate, |d| {
         unguarded(d);
         d.faults.motor = Motor::KeepsOn;
         (d.faults.ignores_quick_stop, d.faults.lost_disables) = (true, 1);

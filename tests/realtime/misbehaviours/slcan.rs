@@ -225,8 +225,9 @@ impl Link for Slcan {
         }
         if self.host_lost_at.is_some_and(|at| drive.now > at) {
             self.host_lost_at = None;
-            // In quick stop active as well.
-            if drive.value(0x1016, 1) & 0xFFFF != 0 && drive.axis.powered {
+            let is_monitored = drive.value(0x1016, 1) & 0xFFFF != 0;
+            // In quick stop active as well. Other reactions than 1 keep the power on.
+            if is_monitored && drive.axis.powered && drive.value(0x6007, 0) == 1 {
                 drive.fail(0x8130, true);
             }
         }

@@ -1,9 +1,10 @@
 //! Steps without power: who the drive is, how it is set, how it answers.
 
+use std::ops::RangeInclusive;
 use std::time::{Duration, Instant};
 
 use drive::{CommandOutcome, DriveCommand, SampleTrigger, ShaftSample};
-use protocol::epos2::objects::{self, input};
+use protocol::epos2::objects::{self, Address, input};
 use protocol::record::DriveLink;
 use units::Stamp;
 
@@ -13,6 +14,8 @@ use crate::service::axis_report;
 
 /// Duration of sampling at rest, ns.
 pub(super) const REST_NS: i64 = 2_000_000_000;
+/// Reads of an object whose time is measured.
+const READS: usize = 50;
 /// Attempts to see a pressed switch; each takes a few milliseconds.
 const SWITCH_READS: usize = 2_000;
 /// The longest gap between samples that the fit of the angle bridges within a count: the default
@@ -28,7 +31,7 @@ pub(super) const IDENTITY: BringUpStep = BringUpStep {
 
 pub(super) const OBJECTS: BringUpStep = BringUpStep {
     title: "configuration objects",
-    plan: "reads every object that the program uses; changes nothing",
+    plan: "reads every object that the program uses, and those of inputs, outputs, motor and controllers; changes nothing",
     moves: false,
     run: read_objects,
 };
@@ -42,7 +45,7 @@ pub(super) const CONNECTION: BringUpStep = BringUpStep {
 
 pub(super) const LINK: BringUpStep = BringUpStep {
     title: "link and encoder at rest",
-    plan: "samples the position for 2 s with the power off",
+    plan: "samples the position for 2 s with the power off, and times the reading of an object",
     moves: false,
     run: link,
 };
@@ -82,8 +85,17 @@ fn identity(bring_up: &mut BringUp<'_>, _: &mut dyn Operator) -> Result<(), Sess
 }
 
 fn read_objects(bring_up: &mut BringUp<'_>, _: &mut dyn Operator) -> Result<(), SessionError> {
-    for object in objects::ALL {
-        let value = match bring_up.read(object.address)? {
+    let used = objects::ALL
+        .iter()
+        .map(|object| (object.address, object.name));
+    let others = OTHER_OBJECTS.iter().flat_map(|(index, subs, name)| {
+        let addresses = subs.clone().map(|sub| Address::new(*index, sub));
+        addresses.map(|address| (address, *name))
+    });
+    let is_used = |address: Address| objects::ALL.iter().any(|used| used.address == address);
+    let others = others.filter(|(address, _)| !is_used(*address));
+    for (address, name) in used.chain(others) {
+        let value = match bring_up.read(address)? {
             None => "not readable".to_owned(),
             Some(bytes) => {
                 let number = bytes
@@ -93,10 +105,27 @@ fn read_objects(bring_up: &mut BringUp<'_>, _: &mut dyn Operator) -> Result<(), 
                 format!("{number} (0x{number:X})")
             }
         };
-        bring_up.note(&format!("{} {}", object.address, object.name), value);
+        bring_up.note(&format!("{address} {name}"), value);
     }
     Ok(())
 }
+
+/// Objects that a person who sets the drive up asks for and the program does not use (EPOS2
+/// Firmware Specification, "Object Dictionary").
+const OTHER_OBJECTS: [(u16, RangeInclusive<u8>, &str); 12] = [
+    (0x1800, 1..=3, "TxPDO 1"),
+    (0x1A00, 0..=8, "Mapping of TxPDO 1"),
+    (0x2001, 0..=0, "CAN Bitrate"),
+    (0x2002, 0..=0, "RS232 Baudrate"),
+    (0x2070, 1..=9, "Configuration of a Digital Input"),
+    (0x2079, 1..=5, "Configuration of a Digital Output"),
+    (0x2100, 1..=3, "Brake"),
+    (0x2210, 1..=4, "Position Sensor"),
+    (0x60F6, 1..=2, "Current Regulator"),
+    (0x60F9, 1..=5, "Speed Regulator"),
+    (0x60FB, 1..=5, "Position Regulator"),
+    (0x6410, 1..=5, "Motor Data"),
+];
 
 fn connect(bring_up: &mut BringUp<'_>, _: &mut dyn Operator) -> Result<(), SessionError> {
     let recording = bring_up.run(&[DriveCommand::Connect])?;
@@ -144,17 +173,39 @@ fn link(bring_up: &mut BringUp<'_>, _: &mut dyn Operator) -> Result<(), SessionE
     if !delays.is_empty() {
         bring_up.note("time of a poll", spread(&mut delays));
     }
+    let mut reads = Vec::new();
+    for _ in 0..READS {
+        let began = bring_up.opened.port.now();
+        bring_up.read(objects::STATUSWORD.address)?;
+        reads.push(ms(bring_up.opened.port.now().saturating_since(began)));
+    }
+    bring_up.note("time of reading an object", spread(&mut reads));
+    judge_dither(
+        bring_up,
+        "dither of the encoder at rest",
+        samples,
+        "check the encoder's cable and shield, or raise [axis.guard] standstill_deg",
+    );
+    Ok(())
+}
+
+/// Judges by how much the position of an axis at rest deviates.
+pub(super) fn judge_dither(
+    bring_up: &mut BringUp<'_>,
+    name: &str,
+    samples: &[ShaftSample],
+    advice: &str,
+) {
     let counts = || samples.iter().map(|sample| sample.position.0);
     let range = counts().max().unwrap_or(0) - counts().min().unwrap_or(0);
     let degrees = f64::from(range) * bring_up.axis.gearing.degrees_per_qc();
     let limit = bring_up.axis.standstill_spread.0;
     bring_up.judge(
-        "dither of the encoder at rest",
+        name,
         format!("{range} qc, {degrees:.4} deg (limit {limit} deg)"),
         degrees <= limit,
-        "check the encoder's cable and shield, or raise [axis.guard] standstill_deg",
+        advice,
     );
-    Ok(())
 }
 
 /// Notes the rate of positions in some periods, and judges the time between them: on a CAN bus
@@ -340,13 +391,16 @@ impl BringUp<'_> {
                 });
             };
             let at = self.axis.gearing.angle(status.position).0;
+            let is_second = before.is_some();
             let axis = KilledAxis {
                 is_still: before.replace(at).is_some_and(|before: f64| {
                     (before - at).abs() <= self.axis.standstill_spread.0
                 }),
                 has_power: axis_report::has_power(status.statusword),
             };
-            if axis.is_safe(self.axis.holds()) || killed.elapsed() > REST_LIMIT {
+            // Motion shows in the second reading.
+            let is_over = axis.is_safe(self.axis.holds()) || killed.elapsed() > REST_LIMIT;
+            if is_over && is_second {
                 return Ok(axis);
             }
             std::thread::sleep(Duration::from_millis(50));

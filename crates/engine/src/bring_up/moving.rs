@@ -9,7 +9,7 @@ use drive::{
 use protocol::epos2::objects::input;
 use units::{DegPerS, Degrees, Host, Quadcounts, Rpm, Span, Stamp};
 
-use super::at_rest::{REST_NS, inputs, positions};
+use super::at_rest::{REST_NS, inputs, judge_dither, positions};
 use super::{BringUp, BringUpStep, Operator, SessionRecord};
 use crate::devices::drive_session::SessionError;
 
@@ -17,12 +17,14 @@ use crate::devices::drive_session::SessionError;
 const STOP_SPEED: DegPerS = DegPerS(20.0);
 /// Delay of a stop: the position sample that shows it, its frame, and one control cycle.
 const STOP_DELAY: Span = Span::from_millis(100);
+/// Dither up to which the stop of an axis with power is confirmed, to measure it.
+const DITHER_LIMIT: Degrees = Degrees(2.0);
 /// Shares of the highest speed at which the axis is compared with its plan.
 const SPEED_SHARES: [f64; 3] = [0.1, 0.5, 1.0];
 
 pub(super) const HOMING: BringUpStep = BringUpStep {
     title: "homing",
-    plan: "MOVES: homes the axis by the configured method, at the configured speed, in the direction of its switch. Have the supply switch in hand: cut it if the axis goes the wrong way",
+    plan: "MOVES: samples the position with the power on, then homes the axis by the configured method, at the configured speed, in the direction of its switch. Have the supply switch in hand: cut it if the axis goes the wrong way",
     moves: true,
     run: home,
 };
@@ -55,7 +57,43 @@ pub(super) const FOLLOWING: BringUpStep = BringUpStep {
     run: following,
 };
 
+/// Judges the dither with the power on: that of the position controller comes in addition.
+fn powered_dither(bring_up: &mut BringUp<'_>) -> Result<(), SessionError> {
+    let state = |event: &DriveEvent| match event {
+        DriveEvent::Progress(CommandProgress::Statusword(word)) => {
+            DeviceState::from_statusword(*word)
+        }
+        _ => None,
+    };
+    // The stop ends however large the dither is.
+    let mut axis = bring_up.axis.clone();
+    axis.standstill_spread = DITHER_LIMIT;
+    let prepare = [DriveCommand::Connect, DriveCommand::Home];
+    let recording = bring_up.run_as(axis, &prepare, &mut |event| {
+        state(event) == Some(DeviceState::OperationEnabled)
+    })?;
+    let with_power = recording
+        .events
+        .iter()
+        .skip_while(|event| state(event) != Some(DeviceState::OperationEnabled))
+        .take_while(|event| state(event) != Some(DeviceState::SwitchOnDisabled));
+    let samples: Vec<ShaftSample> = with_power
+        .filter_map(|event| match event {
+            DriveEvent::Sample(sample) => Some(*sample),
+            _ => None,
+        })
+        .collect();
+    judge_dither(
+        bring_up,
+        "dither with the power on",
+        &samples,
+        "tune the drive's position controller with the maker's tool, check the encoder's cable, or raise [axis.guard] standstill_deg",
+    );
+    Ok(())
+}
+
 fn home(bring_up: &mut BringUp<'_>, _: &mut dyn Operator) -> Result<(), SessionError> {
+    powered_dither(bring_up)?;
     let axis = bring_up.axis.clone();
     let homed = home_as(bring_up, axis, "homing", false)?;
     let wanted = bring_up.axis.homing.home_position.0;

@@ -94,6 +94,8 @@ pub struct Session<'g, P: Port> {
 const INTERRUPT_POLL: Span = Span::from_millis(20);
 /// A loop that is so late shows that the machine did not run this program.
 const HOST_DELAY: Span = Span::from_millis(20);
+/// Frames that a late loop reads in a turn: more than 1 Mbit/s carries in a millisecond.
+const FRAMES_A_TURN: usize = 32;
 /// Attempts of a stop before it counts as failed; each takes some tenths of a second.
 const STOP_TRIES: u32 = 5;
 /// Time that a session dropped in motion waits for the axis to stop.
@@ -267,18 +269,37 @@ impl<'g, P: Port> Session<'g, P> {
                 .poll_timeout()
                 .map_or(INTERRUPT_POLL, |at| at.saturating_since(now))
                 .clamp(Span::ZERO, INTERRUPT_POLL);
-            let received = self.port.read(&mut buffer, wait)?;
-            self.report_delay(now.saturating_add(wait));
+            self.read_input(&mut buffer, now, wait)?;
             last_read = self.port.now();
-            match received {
-                // The stamp of these bytes comes from a clock that may step; the log has it.
-                Some((count, _)) => {
-                    let bytes = buffer.get(..count).unwrap_or_default();
-                    self.client.handle_input(bytes, last_read);
-                }
-                None => self.client.handle_timeout(last_read),
-            }
         }
+    }
+
+    /// Passes input to the client, or the time where none arrives in `wait`. A late loop reads all
+    /// that is there: at one frame a turn a slow machine would fall behind 1000 samples a second.
+    fn read_input(
+        &mut self,
+        buffer: &mut [u8],
+        began: Stamp<Host>,
+        mut wait: Span,
+    ) -> Result<(), SessionError> {
+        let due = began.saturating_add(wait);
+        let most = if wait == Span::ZERO { FRAMES_A_TURN } else { 1 };
+        for turn in 0..most {
+            let received = self.port.read(buffer, wait)?;
+            if turn == 0 {
+                self.report_delay(due);
+            }
+            let now = self.port.now();
+            // The stamp of these bytes comes from a clock that may step; the log has it.
+            let Some((count, _)) = received else {
+                self.client.handle_timeout(now);
+                break;
+            };
+            let bytes = buffer.get(..count).unwrap_or_default();
+            self.client.handle_input(bytes, now);
+            wait = Span::ZERO;
+        }
+        Ok(())
     }
 
     /// Reports to the client if the loop is later than it should be.

@@ -14,6 +14,7 @@ use super::status::AxisTask;
     "mode": 1, "referenced": true, "angle_deg": -12.5, "position_qc": -8_333, "velocity_rpm": 0,
     "negative_limit": false, "positive_limit": false, "home_switch": false, "faults": [],
     "simulated": false, "power": true, "activity": "moving", "age_s": 0.02, "switches_age_s": 1.4,
+    "warnings": [],
 }))]
 #[non_exhaustive]
 pub struct AxisReport {
@@ -53,6 +54,9 @@ pub struct AxisReport {
     pub age_s: f64,
     /// Age of switches and error history, seconds; absent if they have not been read.
     pub switches_age_s: Option<f64>,
+    /// Warnings about the motion that this report is the answer to.
+    #[serde(default)]
+    pub warnings: Vec<String>,
 }
 
 /// An entry of the error history.

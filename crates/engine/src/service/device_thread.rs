@@ -284,7 +284,9 @@ impl Worker {
             && connect.left().is_zero()
             && let Ok(lease) = AxisLease::take(&self.service, AxisTask::Connecting, None)
         {
-            let connected = self.run_commands(connection, &[DriveCommand::Connect], lease.stop());
+            let connect_only = [DriveCommand::Connect];
+            let connected =
+                self.run_commands(connection, &connect_only, lease.stop(), &mut Vec::new());
             drop(lease);
             match connected {
                 Ok(_) => *connect = Backoff::new(),
@@ -343,14 +345,15 @@ impl Worker {
                 answer,
             } => {
                 let stop = lease.stop().clone();
+                let mut warnings = Vec::new();
                 let done = catch_unwind(AssertUnwindSafe(|| {
-                    self.run_commands(connection, &commands, &stop)
+                    self.run_commands(connection, &commands, &stop, &mut warnings)
                 }));
                 let (result, lost) = match done {
-                    Ok(Ok(report)) => (Ok(report), None),
+                    Ok(Ok(report)) => (Ok(AxisReport { warnings, ..report }), None),
                     Ok(Err(error)) => {
                         let failure = stop.reason().unwrap_or_else(|| jog::failure(&error));
-                        (Err(failure), lost_port(&error))
+                        (Err(failure.warned(warnings)), lost_port(&error))
                     }
                     Err(_) => {
                         self.drive_fault(panic_failure());

@@ -28,15 +28,18 @@ impl Worker {
         &self,
         connection: &mut DriveConnection,
     ) -> Result<AxisReport, SessionError> {
-        self.run_commands(connection, &[], &StopSignal::default())
+        let reads_only = StopSignal::default();
+        self.run_commands(connection, &[], &reads_only, &mut Vec::new())
     }
 
-    /// Runs commands and reads the drive's state.
+    /// Runs commands and reads the drive's state. Warnings about the motion are added to those
+    /// given, whatever the end.
     pub(super) fn run_commands(
         &self,
         connection: &mut DriveConnection,
         commands: &[DriveCommand],
         stop: &StopSignal,
+        warnings: &mut Vec<String>,
     ) -> Result<AxisReport, SessionError> {
         let service = &self.service;
         connection.drain_stale()?;
@@ -63,6 +66,7 @@ impl Worker {
             motion.event(event, 0);
         });
         motion.end();
+        warnings.extend(motion.into_warnings());
         drop(session);
         let could_move = connection.axis == AxisKnowledge::MayMove;
         self.command_ended(
@@ -217,6 +221,7 @@ impl Worker {
             let events = service.events();
             events.message(MessageLevel::Warning, warning.clone(), None);
         }
+        outcome.warnings.extend(motion.into_warnings());
         // A suspension is looked for here, too: the port may fail before anything else shows it.
         if let Some(suspended) = suspension(suspended, service.suspended()) {
             outcome.failure = Some(with_suspension(outcome.failure.take(), suspended));

@@ -20,6 +20,7 @@ pub(super) struct MotionReporter<'a> {
     until: Option<Instant>,
     /// Whether the axis was homed before it began to search its home again.
     referenced: bool,
+    warnings: Vec<String>,
 }
 
 impl<'a> MotionReporter<'a> {
@@ -29,7 +30,23 @@ impl<'a> MotionReporter<'a> {
             last: None,
             until: None,
             referenced: false,
+            warnings: Vec::new(),
         }
+    }
+
+    /// What the report on the motion has to say, each warning with what to do about it.
+    pub(super) fn into_warnings(self) -> Vec<String> {
+        self.warnings
+    }
+
+    fn warn(&mut self, text: &str, help: Option<&str>) {
+        let help = help.map(str::to_owned);
+        self.warnings.push(match &help {
+            Some(help) => format!("{text}; {help}"),
+            None => text.to_owned(),
+        });
+        let events = self.service.events();
+        events.message(MessageLevel::Warning, text, help);
     }
 
     /// Takes in an event of the drive client, except the start of a move. `packets` counts those of
@@ -52,37 +69,28 @@ impl<'a> MotionReporter<'a> {
                 self.moved(*at, gearing.angle(*demand), packets);
             }
             DriveEvent::Progress(CommandProgress::Statusword(word)) => self.statusword(*word),
-            DriveEvent::Progress(CommandProgress::PowerCut) => {
-                let help =
-                    "check the drive's settings and what moves the axis before it moves again";
-                self.service.events().message(
-                    MessageLevel::Warning,
-                    "the quick stop did not stop the axis; switching its power off did",
-                    Some(help.to_owned()),
-                );
-            }
-            DriveEvent::Progress(CommandProgress::MovedAfterPowerOff(moved)) => {
-                let help = "check the brake (brake_output, its polarity and supply); without one set \
-                            without_brake = \"hold\" in [axis], or balance the head";
-                self.service.events().message(
-                    MessageLevel::Warning,
-                    format!(
-                        "the axis moved by {:.2} deg after its power was switched off",
-                        moved.0
-                    ),
-                    Some(help.to_owned()),
-                );
-            }
-            DriveEvent::Progress(CommandProgress::StoppedAtTarget(silent)) => {
-                self.service.events().message(
-                    MessageLevel::Warning,
-                    format!(
-                        "the drive was silent for {:.0} ms at the end of the move: the axis was stopped, and rests at its target",
-                        silent.as_secs_f64() * 1e3
-                    ),
-                    None,
-                );
-            }
+            DriveEvent::Progress(CommandProgress::PowerCut) => self.warn(
+                "the quick stop did not stop the axis; switching its power off did",
+                Some("check the drive's settings and what moves the axis before it moves again"),
+            ),
+            DriveEvent::Progress(CommandProgress::MovedAfterPowerOff(moved)) => self.warn(
+                &format!(
+                    "the axis moved by {:.2} deg after its power was switched off",
+                    moved.0
+                ),
+                Some(
+                    "check the brake (brake_output, its polarity and supply); without one set \
+                     without_brake = \"hold\" in [axis], or balance the head",
+                ),
+            ),
+            DriveEvent::Progress(CommandProgress::StoppedAtTarget(silent)) => self.warn(
+                &format!(
+                    "the drive was silent for {:.0} ms at the end of the move: the axis was \
+                     stopped, and rests at its target",
+                    silent.as_secs_f64() * 1e3
+                ),
+                None,
+            ),
             event => {
                 if matches!(event, DriveEvent::Progress(_)) {
                     self.service.heartbeat();

@@ -109,7 +109,12 @@ impl DeviceBackend {
         match self {
             Self::Daemon(client) => jog_by_daemon(&client, jog, interrupt),
             Self::Local(local) => {
-                let answer = jog_locally(&local, jog);
+                let mut answer = jog_locally(&local, jog);
+                if let (Ok(StopAnswer::Report(report)), Some(warning)) =
+                    (&mut answer, &local.thread.port_warning)
+                {
+                    report.warnings.insert(0, warning.clone());
+                }
                 local.stop();
                 answer
             }

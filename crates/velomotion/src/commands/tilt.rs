@@ -5,7 +5,7 @@ use std::sync::atomic::Ordering;
 use daemon::client::Client;
 use daemon::local::LocalTask;
 use engine::capture::jog::{self, JogRequest};
-use engine::config::{self, Device};
+use engine::config::{self, Device, DeviceKind, WithoutBrake};
 use engine::devices::profile;
 use engine::failure::{Failure, Kind};
 use engine::service::axis_report::{AxisReport, StopAnswer};
@@ -35,7 +35,18 @@ pub fn run(arguments: &cli::TiltArguments, common: &Common) -> Result<CommandOut
         _ => LocalTask::Jog,
     };
     let jog = || {
-        let (daemon, device) = (client_of(verb, &device), (device.0.as_str(), &device.1));
+        let mut daemon = client_of(verb, &device);
+        let device = (device.0.as_str(), &device.1);
+        // A bus has no owner: whatever a program says, the stop goes to the drive, too.
+        if device.1.kind == DeviceKind::Can
+            && matches!(verb, TiltVerb::Stop)
+            && let Some(client) = daemon.take()
+        {
+            let backend = DeviceBackend::Daemon(client);
+            if let Err(failure) = backend.jog(request, &interrupt) {
+                tracing::warn!("the program that has the drive: {}", failure.message);
+            }
+        }
         let backend = DeviceBackend::open(daemon, &config, device, task, &interrupt)?;
         let simulated = backend.simulated_drive();
         Ok((backend.jog(request, &interrupt)?, simulated))
@@ -53,7 +64,10 @@ pub fn run(arguments: &cli::TiltArguments, common: &Common) -> Result<CommandOut
         answer => answer?,
     };
     Ok(match answer {
-        StopAnswer::Report(report) => output(&verb, &report, simulated),
+        StopAnswer::Report(report) => {
+            let holds = config.axis.without_brake == WithoutBrake::Hold;
+            output(&verb, &report, simulated, holds)
+        }
         StopAnswer::Command(stopped) if stopped.stopped => {
             let power = if stopped.power { "on" } else { "off" };
             let text = format!(
@@ -81,7 +95,7 @@ fn client_of(verb: TiltVerb, (name, device): &(String, Device)) -> Option<Client
 }
 
 /// The report as the verb shows it.
-fn output(verb: &TiltVerb, report: &AxisReport, simulated: &str) -> CommandOutput {
+fn output(verb: &TiltVerb, report: &AxisReport, simulated: &str, holds: bool) -> CommandOutput {
     let text = match verb {
         TiltVerb::Faults { clear: true } => {
             let state = &report.state;
@@ -92,7 +106,7 @@ fn output(verb: &TiltVerb, report: &AxisReport, simulated: &str) -> CommandOutpu
             format!("the drive is not in fault: its state is {state}; {kept}")
         }
         TiltVerb::Faults { clear: false } => faults_table(report),
-        _ => status_table(report, simulated),
+        _ => status_table(report, simulated, holds),
     };
     match verb {
         TiltVerb::Status | TiltVerb::Faults { .. } => CommandOutput::result(report, text),
@@ -102,13 +116,18 @@ fn output(verb: &TiltVerb, report: &AxisReport, simulated: &str) -> CommandOutpu
     }
 }
 
-fn status_table(report: &AxisReport, simulated: &str) -> String {
+/// `holds` tells that the drive is configured to hold the axis at rest.
+fn status_table(report: &AxisReport, simulated: &str, holds: bool) -> String {
     let yes = |on: bool| if on { "pressed" } else { "free" };
     let angle = match report.angle_deg {
         Some(angle) => format!("{angle:.4} deg"),
         None => "not known: not homed since power-on (tilt home)".to_owned(),
     };
-    let power = if report.power { "on" } else { "off" };
+    let power = match report.power {
+        true if holds && report.activity == AxisTask::Idle => "on: the drive holds the axis",
+        true => "on",
+        false => "off",
+    };
     let mut rows = vec![
         ("drive", report.device.clone()),
         ("unit", report.unit.clone()),
@@ -144,6 +163,7 @@ fn status_table(report: &AxisReport, simulated: &str) -> String {
         let name = fault.name.as_deref().unwrap_or("unknown error");
         ("last fault", format!("{} {name} (tilt faults)", fault.code))
     }));
+    rows.extend(report.warnings.iter().map(|text| ("warning", text.clone())));
     if report.simulated {
         rows.insert(0, ("SIMULATED", simulated.to_owned()));
     }
