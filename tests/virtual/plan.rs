@@ -178,7 +178,7 @@ fn tight_limits_are_kept_when_measured() {
     for seed in 200..212 {
         let at_m = 5.0 + 0.05 * random.below(1_000) as f64;
         let free = planner(at_m, PlanLimits::default());
-        let mut scans = free.scans(1.1);
+        let mut scans = free.scans([1.1, 1.5]);
         scans.retain(|scan| scan.scan_s < 12.0);
         let scan = &scans[random.below(scans.len() as u64) as usize];
         let drawn = free.predictor().row(scan);
@@ -215,7 +215,7 @@ fn tight_limits_are_kept_when_measured() {
             truth.error_mm <= drawn.error_mm.total && truth.p99_deg <= drawn.gap_deg.p99,
             "{chosen:?} {truth:?}"
         );
-        // The search tries every 1 % of speed, and may reject a setting at the limit by chance.
+        // The search tries every 2 % of speed, and may reject a setting at the limit by chance.
         assert!(
             row.scan_s <= 1.05 * drawn.scan_s && truth.scan_s <= 1.05 * row.scan_s,
             "{drawn:?} {chosen:?} {truth:?}"
@@ -241,10 +241,10 @@ fn rays(setting: &ScanSetting, at_m: f64, starts_deg: [f64; 2]) -> Vec<DVec3> {
     sweeps.collect()
 }
 
-/// Ten other requests, against a slow search without the planner's gaps and short cuts: speeds 3 %
-/// apart in the order of scan time, the angle from every direction in view to the nearest of all
-/// rays, and the worst of four azimuths at the start of each sweep, which nothing controls. The
-/// choice is captured and measured.
+/// Ten other requests, against a slow search without the planner's gaps and short cuts: speeds 5 %
+/// and ramps 20 % apart in the order of scan time, the angle from every direction in view to the
+/// nearest of all rays, and the worst of four azimuths at the start of each sweep, which nothing
+/// controls. The choice is captured and measured.
 #[test]
 #[ignore = "takes a quarter of an hour"]
 fn choices_are_within_five_percent_of_the_best_by_brute_force() {
@@ -255,7 +255,7 @@ fn choices_are_within_five_percent_of_the_best_by_brute_force() {
         let (error_mm, gap_deg) = (limits.error_mm.unwrap(), limits.gap_deg.unwrap());
         let planner = planner(at_m, limits);
         let predictor = planner.predictor();
-        let mut scans = planner.scans(1.03);
+        let mut scans = planner.scans([1.05, 1.2]);
         scans.sort_by(|a, b| a.scan_s.total_cmp(&b.scan_s));
         let mut tried = 0;
         let best = scans.iter().find(|scan| {

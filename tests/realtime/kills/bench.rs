@@ -48,6 +48,7 @@ struct AxisRecord {
     now: Option<Stamp<Host>>,
     /// When the last state was recorded, and times that the machine did not run this thread.
     last: Option<Instant>,
+    longest_delay: Duration,
     stalls: Vec<(Stamp<Host>, Span)>,
 }
 
@@ -164,6 +165,7 @@ impl Bench {
         let last = record.states.pop();
         record.states.clear();
         record.stalls.clear();
+        record.longest_delay = Duration::ZERO;
         record.states.extend(last);
     }
 
@@ -199,6 +201,11 @@ impl Bench {
         let record = self.record.lock().unwrap();
         let stalls = record.stalls.iter().map(|stall| stall.1);
         stalls.max().unwrap_or(Span::ZERO)
+    }
+
+    /// Longest time between two control cycles since the record was forgotten.
+    pub fn longest_delay(&self) -> Duration {
+        self.record.lock().unwrap().longest_delay
     }
 
     /// Waits until the record reaches a second beyond `signal`, and judges it. A busy machine that
@@ -278,6 +285,7 @@ fn observe(record: &mut AxisRecord, at: Stamp<Host>, node: &Node) {
     let now = Instant::now();
     if let Some(last) = record.last.replace(now) {
         let gap = now - last;
+        record.longest_delay = record.longest_delay.max(gap);
         if gap > STALL {
             let ns = i64::try_from(gap.as_nanos()).unwrap_or(i64::MAX);
             record.stalls.push((at, Span::from_nanos(ns)));

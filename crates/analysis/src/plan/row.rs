@@ -116,11 +116,17 @@ impl GapEffort {
         stride: 3,
         starts: 4,
     };
-    /// The chosen row.
-    pub(super) const FULL: Self = Self {
-        stride: 1,
-        starts: 8,
-    };
+
+    /// The chosen row. The gaps of sweeps of few revolutions depend on the azimuth at the start: by
+    /// a tenth within 15 degrees of it.
+    pub(super) fn full(scan: &PlannedScan) -> Self {
+        let shortest_s = scan.sweeps.iter().map(TiltSweep::duration_s);
+        let revolutions = shortest_s.fold(f64::INFINITY, f64::min) * scan.setting.rpm / 60.0;
+        Self {
+            stride: 1,
+            starts: (640.0 / revolutions).clamp(12.0, 64.0) as u32,
+        }
+    }
 }
 
 /// Predicts what scans give.
@@ -171,10 +177,10 @@ impl ScanPredictor {
     /// What a scan gives.
     #[must_use]
     pub fn row(&self, scan: &PlannedScan) -> PlanRow {
-        self.row_with(scan, GapEffort::FULL)
+        self.row_with(scan, GapEffort::full(scan))
     }
 
-    /// The same from a third of the directions and half of the azimuths at the start, several times
+    /// The same from a third of the directions and few azimuths at the start, many times
     /// as fast.
     #[must_use]
     pub fn brief_row(&self, scan: &PlannedScan) -> PlanRow {

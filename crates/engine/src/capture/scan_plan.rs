@@ -53,17 +53,17 @@ pub const USUAL_M: f64 = 20.0;
 const HOMING_S: f64 = 0.62;
 /// Time between two moves: at rest before and after, and the commands; seconds.
 const STEP_S: f64 = 0.15;
-/// Ramps to choose from, as parts of the device's: a gentler one loads no head more.
-const RAMPS: [f64; 4] = [1.0, 0.5, 0.25, 0.1];
+/// Gentlest ramp to choose from, as a part of the device's: a gentler one loads no head more.
+const GENTLEST: f64 = 0.03;
 /// Numbers of sweeps to choose from.
 const SWEEPS: [u32; 2] = [1, 2];
-/// Ratios of neighbouring speeds: of the search, and of the table.
-const FINE: f64 = 1.01;
-const COARSE: f64 = 1.45;
-/// Ratio of a speed to a slower one that should see no more.
-const SLOWER: f64 = 0.95;
-/// Ratio of their gaps that is a resonance.
-const RESONANCE: f64 = 1.15;
+/// Ratios of neighbouring speeds and of neighbouring ramps: of the search, and of the table.
+const FINE: [f64; 2] = [1.02, 1.25];
+const COARSE: [f64; 2] = [1.2, 2.0];
+/// Ratios of a speed to slower ones that should see little more.
+const SLOWER: [f64; 2] = [0.95, 0.9];
+/// Ratio of their gaps, beyond that of the speeds, that is a resonance.
+const RESONANCE: f64 = 1.09;
 
 /// Plans captures with one device.
 pub struct ScanPlanner {
@@ -234,20 +234,28 @@ impl ScanPlanner {
     /// to a multiple or a part of the spacing of the lasers, and lines coincide.
     #[must_use]
     pub fn resonance(&self, request: &CaptureRequest, row: &PlanRow) -> Option<String> {
-        let slower = CaptureRequest {
-            speed_deg_s: SLOWER * row.setting.speed_deg_s,
-            ..request.clone()
+        let slower = SLOWER.into_iter().filter_map(|ratio| {
+            let slower = CaptureRequest {
+                speed_deg_s: ratio * row.setting.speed_deg_s,
+                ..request.clone()
+            };
+            self.of_request(&slower).ok()
+        });
+        let excess = |slower: &PlanRow| {
+            let speeds = row.setting.speed_deg_s / slower.setting.speed_deg_s;
+            row.gap_deg.p99 / slower.gap_deg.p99 / speeds
         };
-        let slower = self.of_request(&slower).ok()?;
-        let (gap, better) = (row.gap_deg.p99, slower.gap_deg.p99);
-        (gap > RESONANCE * better).then(|| {
+        let slower = slower.max_by(|a, b| excess(a).total_cmp(&excess(b)))?;
+        (excess(&slower) > RESONANCE).then(|| {
             format!(
                 "at {} deg/s and {} rpm many scan lines coincide ({:.2} deg of tilt per revolution): 99 % of directions have a point within \
-                 {gap:.2} deg, at {} deg/s within {better:.2} deg",
+                 {:.2} deg, at {} deg/s within {:.2} deg",
                 trim(row.setting.speed_deg_s),
                 row.setting.rpm,
                 60.0 * row.setting.speed_deg_s / row.setting.rpm,
+                row.gap_deg.p99,
                 trim(slower.setting.speed_deg_s),
+                slower.gap_deg.p99,
             )
         })
     }
@@ -299,33 +307,36 @@ impl ScanPlanner {
         &self.predictor
     }
 
-    /// Every setting, with speeds in such a ratio.
+    /// Every setting, with speeds and ramps in such ratios.
     #[must_use]
-    pub fn scans(&self, ratio: f64) -> Vec<PlannedScan> {
+    pub fn scans(&self, [speed_ratio, ramp_ratio]: [f64; 2]) -> Vec<PlannedScan> {
         let most = self.axis.max_speed.0;
         let mut speeds = vec![most];
-        let mut next = f64::from(most) / ratio;
+        let mut next = f64::from(most) / speed_ratio;
         while next >= 1.0 {
             let rpm = next.round() as u32;
             if speeds.last() != Some(&rpm) {
                 speeds.push(rpm);
             }
             // Whole revolutions: slow speeds are more than the ratio apart.
-            next = (next / ratio).min(f64::from(rpm) - 0.5);
+            next = (next / speed_ratio).min(f64::from(rpm) - 0.5);
         }
-        let mut scans = Vec::new();
-        for speed in speeds {
-            for (ramp, sweeps) in RAMPS.iter().flat_map(|ramp| SWEEPS.map(|n| (ramp, n))) {
-                let request = self.capture(Rpm(speed), *ramp, sweeps);
-                // A ramp that the axis refuses is no setting.
-                let Ok(steps) = self.steps(&request) else {
-                    continue;
-                };
+        let ramps: Vec<f64> = std::iter::successors(Some(1.0), |ramp| Some(ramp / ramp_ratio))
+            .take_while(|ramp| *ramp >= GENTLEST)
+            .collect();
+        let of_speed = |speed: &u32| {
+            let settings = ramps.iter().flat_map(|ramp| SWEEPS.map(|n| (ramp, n)));
+            // A ramp that the axis refuses is no setting.
+            let moves = settings.filter_map(|(ramp, sweeps)| {
+                self.steps(&self.capture(Rpm(*speed), *ramp, sweeps)).ok()
+            });
+            let scans = moves.flat_map(|steps| {
                 let rates = self.request.rpm.iter();
-                scans.extend(rates.map(|rpm| self.scan(&steps, *rpm)));
-            }
-        }
-        scans
+                rates.map(|rpm| self.scan(&steps, *rpm)).collect::<Vec<_>>()
+            });
+            scans.collect::<Vec<_>>()
+        };
+        speeds.iter().flat_map(of_speed).collect()
     }
 
     /// A capture with a part of the device's ramps.

@@ -136,7 +136,7 @@ fn about(recommended: usize) -> Result<Vec<String>, StudyError> {
     }
     Ok(vec![
         format!(
-            "Choose the speed by the gap. With the ranges of a VLP-16 (10 mm, one standard deviation) 95 % of points are within 20 to 22 mm \
+            "Choose the speed by the gap. With the ranges of a VLP-16 (10 mm, one standard deviation) 95 % of points are within 20 to 26 mm \
              at {USUAL_M} m at any speed; a slower scan has more points, not better ones. The fastest scans by the gap of 99 % of \
              directions: {}. velomotion plan --at 20m --gap 0.3deg --error 25mm chooses for other limits and devices, with \
              --range-sd, --rpm and --time.",
