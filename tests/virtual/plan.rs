@@ -21,7 +21,7 @@ fn planner(at_m: f64, limits: PlanLimits) -> ScanPlanner {
         rest_deg: Some(REST_DEG),
         ..PlanRequest::new(at_m, &lidars::VLP_16, 600)
     };
-    // A light head, so that there are four ramps of which one hardly counts.
+    // A light head: ramps of which some hardly count.
     let device = Device {
         accel_deg_s2: 5_000.0,
         ..Device::simulator()
@@ -215,7 +215,7 @@ fn tight_limits_are_kept_when_measured() {
             truth.error_mm <= drawn.error_mm.total && truth.p99_deg <= drawn.gap_deg.p99,
             "{chosen:?} {truth:?}"
         );
-        // The search tries every 2 % of speed, and may reject a setting at the limit by chance.
+        // The search tries every 2 % of speed, and stays a little within the limit.
         assert!(
             row.scan_s <= 1.05 * drawn.scan_s && truth.scan_s <= 1.05 * row.scan_s,
             "{drawn:?} {chosen:?} {truth:?}"

@@ -194,6 +194,12 @@ impl DriveClient {
         lock(&self.core).events.pop_front()
     }
 
+    /// Whether the drive is on a CAN bus, where frames come unasked.
+    #[must_use]
+    pub fn is_on_can(&self) -> bool {
+        lock(&self.core).can.is_some()
+    }
+
     /// Counters of the link.
     #[must_use]
     pub fn link_stats(&self) -> LinkStats {

@@ -37,6 +37,9 @@ impl Motion {
     pub const ALL: [Self; 4] = [Self::Homing, Self::Goto, Self::Sweep, Self::Daemon];
 }
 
+/// A held axis has lost its power.
+pub const NOT_HELD: &str = "held axis without power";
+
 /// When the signal is sent.
 #[derive(Clone, Copy, Debug)]
 pub enum Moment {
@@ -129,7 +132,7 @@ impl Case {
         };
         rule(!aftermath.moves, "moves after 1 s")?;
         match self.held {
-            true => rule(aftermath.powered, "held axis without power")?,
+            true => rule(aftermath.powered, NOT_HELD)?,
             false => {
                 rule(!aftermath.powered, "powered after 1 s")?;
                 rule(aftermath.brake != BrakeState::Open, "brake open after 1 s")?;

@@ -26,8 +26,7 @@ use super::power::{is_fault, is_held, is_off, is_referenced, wait_for};
 use super::ramp::QuickStopRamp;
 use super::report::newest_error;
 
-/// Time between two commands of power off while the axis still moves: a lost one costs 1.1 deg at
-/// the highest speed of a scan.
+/// Time between two commands of power off while the axis still moves: 1.1 deg at 56.25 deg/s.
 const POWER_OFF_PERIOD: Span = Span::from_millis(20);
 /// Time after the ramp in which an axis with power comes to rest: ten standstill windows. An axis
 /// without power coasts longer.
@@ -290,7 +289,7 @@ async fn wait_for_standstill(ops: &mut Ops) -> Result<Quadcounts, DriveError> {
         if window.is_at_rest_with(&sample) {
             return Ok(sample.position);
         }
-        // Both positions were requested after the limit: a delayed host may have missed the stop.
+        // All positions were requested after the limit: a delayed host may have missed the stop.
         let has_left = ramp.as_mut().is_some_and(|ramp| ramp.is_left_by(&sample));
         if has_left || is_overdue && !window.is_steady() {
             return Err(DriveError::StillMoving {
@@ -299,7 +298,8 @@ async fn wait_for_standstill(ops: &mut Ops) -> Result<Quadcounts, DriveError> {
                 power_off: false,
             });
         }
-        is_overdue = sample.request > limit;
+        let first = window.samples.front();
+        is_overdue = first.is_some_and(|first| first.request > limit);
     }
 }
 

@@ -3,7 +3,7 @@
 use firmware_sim::epos2::NodeConfig;
 use protocol::epos2::cia402::DeviceState;
 use protocol::record::DriveLink;
-use units::{Degrees, Rpm, RpmPerS};
+use units::{Degrees, Rpm, RpmPerS, Span};
 
 use super::firmware::rig_with;
 use super::rig::Rig;
@@ -103,4 +103,31 @@ fn a_held_axis_stays_powered_when_the_host_dies_on_can() {
         }
     }
     assert_eq!(rig.unit.node.state(), DeviceState::QuickStopActive);
+}
+
+/// The samples before and after the delay spread far, though the axis has come to rest meanwhile.
+#[test]
+fn a_delay_of_the_host_in_a_stop_does_not_cost_the_power() {
+    for link in [DriveLink::Usb, DriveLink::Rs232] {
+        let mut rig = held_on(link);
+        rig.client.start(goto(-20.0)).unwrap();
+        for _ in 0..2_000 {
+            assert!(rig.step().is_none(), "{link:?}");
+        }
+        rig.client.start(DriveCommand::Stop).unwrap();
+        assert!(rig.run_for(Span::from_millis(20)).is_none(), "{link:?}");
+        let delay = Span::from_millis(900);
+        rig.sleep(delay);
+        rig.client.handle_host_delay(delay, rig.now);
+        let stopped = loop {
+            assert!(is_powered(&rig), "{link:?}");
+            if let Some(end) = rig.step() {
+                break end;
+            }
+        };
+        assert!(
+            matches!(&stopped, Ok(CommandOutcome::Stopped(rest)) if rest.held),
+            "{link:?}: {stopped:?}"
+        );
+    }
 }

@@ -17,8 +17,9 @@ use crate::devices::drive_session::SessionError;
 const STOP_SPEED: DegPerS = DegPerS(20.0);
 /// Delay of a stop: the position sample that shows it, its frame, and one control cycle.
 const STOP_DELAY: Span = Span::from_millis(100);
-/// Dither up to which the stop of an axis with power is confirmed, to measure it.
-const DITHER_LIMIT: Degrees = Degrees(2.0);
+/// Dither up to which the stop of an axis with power is confirmed, and for how long, to measure it.
+const DITHER_LIMIT: Degrees = Degrees(0.2);
+const DITHER_SPAN: Span = Span::from_millis(500);
 /// Shares of the highest speed at which the axis is compared with its plan.
 const SPEED_SHARES: [f64; 3] = [0.1, 0.5, 1.0];
 
@@ -57,7 +58,8 @@ pub(super) const FOLLOWING: BringUpStep = BringUpStep {
     run: following,
 };
 
-/// Judges the dither with the power on: that of the position controller comes in addition.
+/// Judges the dither with the power on, to which the position controller adds its own. The stop
+/// that follows the power confirms standstill over half a second.
 fn powered_dither(bring_up: &mut BringUp<'_>) -> Result<(), SessionError> {
     let state = |event: &DriveEvent| match event {
         DriveEvent::Progress(CommandProgress::Statusword(word)) => {
@@ -65,9 +67,16 @@ fn powered_dither(bring_up: &mut BringUp<'_>) -> Result<(), SessionError> {
         }
         _ => None,
     };
-    // The stop ends however large the dither is.
+    let has_power = |state| {
+        matches!(
+            state,
+            DeviceState::OperationEnabled | DeviceState::QuickStopActive
+        )
+    };
     let mut axis = bring_up.axis.clone();
     axis.standstill_spread = DITHER_LIMIT;
+    axis.timing.standstill = DITHER_SPAN;
+    axis.hold_without_brake = false;
     let prepare = [DriveCommand::Connect, DriveCommand::Home];
     let recording = bring_up.run_as(axis, &prepare, &mut |event| {
         state(event) == Some(DeviceState::OperationEnabled)
@@ -75,18 +84,27 @@ fn powered_dither(bring_up: &mut BringUp<'_>) -> Result<(), SessionError> {
     let with_power = recording
         .events
         .iter()
-        .skip_while(|event| state(event) != Some(DeviceState::OperationEnabled))
-        .take_while(|event| state(event) != Some(DeviceState::SwitchOnDisabled));
+        .skip_while(|event| !state(event).is_some_and(has_power))
+        .take_while(|event| state(event).is_none_or(has_power));
     let samples: Vec<ShaftSample> = with_power
         .filter_map(|event| match event {
             DriveEvent::Sample(sample) => Some(*sample),
             _ => None,
         })
         .collect();
+    let name = "dither with the power on";
+    let Some(last) = samples.last() else {
+        bring_up.problem(name, "no position came", "check the link (links.md)");
+        return Ok(());
+    };
+    // Homing may have begun before the stop.
+    let at_rest = samples
+        .iter()
+        .filter(|sample| last.answer.saturating_since(sample.request) < DITHER_SPAN);
     judge_dither(
         bring_up,
-        "dither with the power on",
-        &samples,
+        name,
+        &at_rest.copied().collect::<Vec<_>>(),
         "tune the drive's position controller with the maker's tool, check the encoder's cable, or raise [axis.guard] standstill_deg",
     );
     Ok(())

@@ -89,7 +89,7 @@ pub struct Outcome {
     pub lost_records: u64,
     /// Counts of packets.
     pub reception: Option<Reception>,
-    /// Reasons to doubt its completeness.
+    /// Warnings about its completeness and its motion.
     pub warnings: Vec<String>,
 }
 

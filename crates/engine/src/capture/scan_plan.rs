@@ -5,8 +5,8 @@
 mod report;
 
 use analysis::plan::{
-    ErrorBudget, ErrorModel, LinkTiming, PlanLimits, PlanRow, PlannedScan, ScanPredictor,
-    ScanSetting, TiltSweep,
+    ErrorBudget, ErrorModel, LimitKind, LinkTiming, NearestScan, PlanLimits, PlanRow, PlannedScan,
+    ScanPredictor, ScanSetting, TiltSweep,
 };
 use drive::AxisConfig;
 use protocol::vlp16::Model;
@@ -282,11 +282,19 @@ impl ScanPlanner {
         } else {
             Vec::new()
         };
-        let chosen = self.predictor.choose(&scans, limits);
-        let nearest = match &chosen {
+        let mut chosen = self.predictor.choose(&scans, limits);
+        let mut nearest = match &chosen {
             None if has_limits => self.predictor.nearest(&scans, limits),
             _ => None,
         };
+        // A choice stays a little within the gap; this row is at its limit.
+        let is_within = |nearest: &NearestScan| {
+            let gap_deg = limits.gap_deg.unwrap_or_default();
+            nearest.limit == LimitKind::Gap && nearest.row.gap_deg.p99 <= gap_deg
+        };
+        if let Some(nearest) = nearest.take_if(|nearest| is_within(nearest)) {
+            chosen = Some(nearest.row);
+        }
         Ok(PlanReport {
             device: self.name.clone(),
             simulated: profile::simulated(&self.device),

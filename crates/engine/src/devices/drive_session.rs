@@ -269,37 +269,35 @@ impl<'g, P: Port> Session<'g, P> {
                 .poll_timeout()
                 .map_or(INTERRUPT_POLL, |at| at.saturating_since(now))
                 .clamp(Span::ZERO, INTERRUPT_POLL);
-            self.read_input(&mut buffer, now, wait)?;
-            last_read = self.port.now();
+            last_read = self.read_input(&mut buffer, now, wait)?;
         }
     }
 
-    /// Passes input to the client, or the time where none arrives in `wait`. A late loop reads all
-    /// that is there: at one frame a turn a slow machine would fall behind 1000 samples a second.
+    /// Passes input to the client, or the time where none arrives in `wait`; returns the time of the
+    /// last read. On a bus a late loop reads all that is there: at one frame a turn a slow machine
+    /// would fall behind 1000 samples a second.
     fn read_input(
         &mut self,
         buffer: &mut [u8],
         began: Stamp<Host>,
         mut wait: Span,
-    ) -> Result<(), SessionError> {
-        let due = began.saturating_add(wait);
-        let most = if wait == Span::ZERO { FRAMES_A_TURN } else { 1 };
-        for turn in 0..most {
+    ) -> Result<Stamp<Host>, SessionError> {
+        let is_late = wait == Span::ZERO && self.client.is_on_can();
+        let mut due = began.saturating_add(wait);
+        for _ in 0..if is_late { FRAMES_A_TURN } else { 1 } {
             let received = self.port.read(buffer, wait)?;
-            if turn == 0 {
-                self.report_delay(due);
-            }
-            let now = self.port.now();
+            self.report_delay(due);
+            due = self.port.now();
             // The stamp of these bytes comes from a clock that may step; the log has it.
             let Some((count, _)) = received else {
-                self.client.handle_timeout(now);
+                self.client.handle_timeout(due);
                 break;
             };
             let bytes = buffer.get(..count).unwrap_or_default();
-            self.client.handle_input(bytes, now);
+            self.client.handle_input(bytes, due);
             wait = Span::ZERO;
         }
-        Ok(())
+        Ok(due)
     }
 
     /// Reports to the client if the loop is later than it should be.

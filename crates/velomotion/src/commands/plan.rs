@@ -440,7 +440,7 @@ mod tests {
                     error_mm: Some(0.5),
                     ..PlanLimits::default()
                 },
-                "the fastest within 2 % of the least has",
+                "the fastest within 4 % of the least has",
             ),
             (
                 PlanLimits {

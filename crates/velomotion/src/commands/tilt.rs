@@ -1,6 +1,8 @@
 //! `velomotion tilt`: jogs of the axis.
 
+use std::sync::Arc;
 use std::sync::atomic::Ordering;
+use std::thread::JoinHandle;
 
 use daemon::client::Client;
 use daemon::local::LocalTask;
@@ -37,19 +39,21 @@ pub fn run(arguments: &cli::TiltArguments, common: &Common) -> Result<CommandOut
     let jog = || {
         let mut daemon = client_of(verb, &device);
         let device = (device.0.as_str(), &device.1);
-        // A bus has no owner: whatever a program says, the stop goes to the drive, too.
-        if device.1.kind == DeviceKind::Can
-            && matches!(verb, TiltVerb::Stop)
-            && let Some(client) = daemon.take()
-        {
-            let backend = DeviceBackend::Daemon(client);
-            if let Err(failure) = backend.jog(request, &interrupt) {
-                tracing::warn!("the program that has the drive: {}", failure.message);
-            }
+        // A bus has no owner, and its user's word proves nothing: the stop goes to the drive, too.
+        let is_bus = device.1.kind == DeviceKind::Can && matches!(verb, TiltVerb::Stop);
+        let user = daemon.take_if(|_| is_bus).map(|client| {
+            let interrupt = Arc::clone(&interrupt);
+            std::thread::spawn(move || DeviceBackend::Daemon(client).jog(request, &interrupt))
+        });
+        let backend = DeviceBackend::open(daemon, &config, device, task, &interrupt);
+        let stopped = backend.and_then(|backend| {
+            let simulated = backend.simulated_drive();
+            Ok((backend.jog(request, &interrupt)?, simulated))
+        });
+        if let Some(user) = user {
+            warn_of_user(user);
         }
-        let backend = DeviceBackend::open(daemon, &config, device, task, &interrupt)?;
-        let simulated = backend.simulated_drive();
-        Ok((backend.jog(request, &interrupt)?, simulated))
+        stopped
     };
     // A program may take or release the drive in the meantime.
     let changed = |failure: &Failure| match failure.kind {
@@ -86,6 +90,16 @@ pub fn run(arguments: &cli::TiltArguments, common: &Common) -> Result<CommandOut
     })
 }
 
+/// Warns where the program that uses the bus has not stopped its own motion.
+fn warn_of_user(user: JoinHandle<Result<StopAnswer, Failure>>) {
+    let problem = match user.is_finished().then(|| user.join()) {
+        None | Some(Err(_)) => "has not answered".to_owned(),
+        Some(Ok(Err(failure))) => failure.message,
+        Some(Ok(Ok(_))) => return,
+    };
+    tracing::warn!("the program that uses the bus: {problem}");
+}
+
 /// The program that has the drive. A stop is confirmed only by one that has its port; else it goes
 /// to the drive itself.
 fn client_of(verb: TiltVerb, (name, device): &(String, Device)) -> Option<Client> {
@@ -116,7 +130,7 @@ fn output(verb: &TiltVerb, report: &AxisReport, simulated: &str, holds: bool) ->
     }
 }
 
-/// `holds` tells that the drive is configured to hold the axis at rest.
+/// `holds`: the drive is configured to hold the axis at rest.
 fn status_table(report: &AxisReport, simulated: &str, holds: bool) -> String {
     let yes = |on: bool| if on { "pressed" } else { "free" };
     let angle = match report.angle_deg {

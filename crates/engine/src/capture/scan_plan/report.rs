@@ -172,7 +172,7 @@ impl ScanPlanner {
         };
         match nearest.limit {
             LimitKind::Error => format!(
-                "no setting has an error of {} mm at {at_m} m: the fastest within 2 % of the least has {:.2} mm, of which {:.2} mm by the ranges (95 %), in {:.1} s \
+                "no setting has an error of {} mm at {at_m} m: the fastest within 4 % of the least has {:.2} mm, of which {:.2} mm by the ranges (95 %), in {:.1} s \
                  ({by}); only more accurate ranges, --range-sd, lessen the latter",
                 limits.error_mm.unwrap_or_default(),
                 row.error_mm.total,
