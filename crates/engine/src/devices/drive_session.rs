@@ -273,9 +273,9 @@ impl<'g, P: Port> Session<'g, P> {
         }
     }
 
-    /// Passes input to the client, or the time where none arrives in `wait`; returns the time of the
-    /// last read. On a bus a late loop reads all that is there: at one frame a turn a slow machine
-    /// would fall behind 1000 samples a second.
+    /// Passes input to the client, or the time where none arrives in `wait`; returns the time of
+    /// the last read. On a bus a late loop reads all that is there: at one frame a turn a slow
+    /// machine would fall behind 1000 samples a second.
     fn read_input(
         &mut self,
         buffer: &mut [u8],
