@@ -141,8 +141,12 @@ impl Case {
         if self.motion != Motion::Daemon {
             let code = status.code();
             match self.signal {
+                // A held axis whose host was lost stops without a fault: it is behind its plan.
                 ("STOP", _) => rule(
-                    messages.contains("did not run") || messages.contains("8130"),
+                    ["did not run", "8130"]
+                        .iter()
+                        .any(|why| messages.contains(why))
+                        || self.held && messages.contains("behind its plan"),
                     "unexplained",
                 )?,
                 (_, true) => rule(code == Some(130), "exit code is not 130")?,
