@@ -117,8 +117,8 @@ impl GapEffort {
         starts: 4,
     };
 
-    /// The chosen row. The gaps of sweeps of few revolutions depend on the azimuth at the start: by
-    /// a tenth within 15 degrees of it.
+    /// The chosen row. The gaps of sweeps of few revolutions depend on the azimuth at the start: at
+    /// 10 revolutions by a tenth within 15 degrees of it, so that 64 azimuths are examined.
     pub(super) fn full(scan: &PlannedScan) -> Self {
         let shortest_s = scan.sweeps.iter().map(TiltSweep::duration_s);
         let revolutions = shortest_s.fold(f64::INFINITY, f64::min) * scan.setting.rpm / 60.0;

@@ -106,8 +106,8 @@ impl ScanPredictor {
         kept.map(|(row, _)| row).collect()
     }
 
-    /// The fastest scan within the limits; with a limit of time only, the densest. `None` if there
-    /// is none, or no limit.
+    /// The fastest scan within the limits; with a limit of time only, the densest; with one of the
+    /// error only, the densest of the fastest. `None` if there is none, or no limit.
     #[must_use]
     pub fn choose(&self, scans: &[PlannedScan], limits: &PlanLimits) -> Option<PlanRow> {
         let is_short = |scan: &&PlannedScan| limits.time_s.is_none_or(|most| scan.scan_s <= most);

@@ -266,9 +266,9 @@ fn a_missing_heartbeat_in_mid_sweep_stops_the_axis() {
     assert!(rig.progress().iter().any(safe));
 }
 
-/// The host did not run: the node's frames wait to be read, and what they say is the cause.
+/// The node's frames wait to be read: its emergency message is the cause.
 #[test]
-fn a_suspended_host_takes_its_own_delay_for_no_silence_of_the_node() {
+fn the_delay_of_a_suspended_host_is_not_a_missing_heartbeat() {
     let mut rig = homed();
     rig.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
     assert_eq!(rig.run_for(Span::from_millis(600)), None);

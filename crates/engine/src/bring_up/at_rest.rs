@@ -110,8 +110,8 @@ fn read_objects(bring_up: &mut BringUp<'_>, _: &mut dyn Operator) -> Result<(), 
     Ok(())
 }
 
-/// Objects that a person who sets the drive up asks for and the program does not use (EPOS2
-/// Firmware Specification, "Object Dictionary").
+/// Objects that the program does not use, for the record of how the drive was set (EPOS2 Firmware
+/// Specification, "Object Dictionary").
 const OTHER_OBJECTS: [(u16, RangeInclusive<u8>, &str); 12] = [
     (0x1800, 1..=3, "TxPDO 1"),
     (0x1A00, 0..=8, "Mapping of TxPDO 1"),

@@ -32,8 +32,8 @@ impl Worker {
         self.run_commands(connection, &[], &reads_only, &mut Vec::new())
     }
 
-    /// Runs commands and reads the drive's state. Warnings about the motion are added to those
-    /// given, whatever the end.
+    /// Runs commands and reads the drive's state. Adds warnings about the motion to `warnings`,
+    /// also where it fails.
     pub(super) fn run_commands(
         &self,
         connection: &mut DriveConnection,

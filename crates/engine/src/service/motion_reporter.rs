@@ -34,7 +34,7 @@ impl<'a> MotionReporter<'a> {
         }
     }
 
-    /// What the report on the motion has to say, each warning with what to do about it.
+    /// The warnings so far, each with what to do about it.
     pub(super) fn into_warnings(self) -> Vec<String> {
         self.warnings
     }

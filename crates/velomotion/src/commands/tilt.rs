@@ -39,7 +39,7 @@ pub fn run(arguments: &cli::TiltArguments, common: &Common) -> Result<CommandOut
     let jog = || {
         let mut daemon = client_of(verb, &device);
         let device = (device.0.as_str(), &device.1);
-        // A bus has no owner, and its user's word proves nothing: the stop goes to the drive, too.
+        // Any program may use a bus, so its answer proves nothing: the stop goes to the drive, too.
         let is_bus = device.1.kind == DeviceKind::Can && matches!(verb, TiltVerb::Stop);
         let user = daemon.take_if(|_| is_bus).map(|client| {
             let interrupt = Arc::clone(&interrupt);
