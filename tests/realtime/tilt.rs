@@ -1,6 +1,6 @@
 //! `velomotion tilt` with the software drive in its own process.
 
-use std::io::{BufRead, BufReader, Write};
+use std::io::{BufRead, BufReader, Read, Write};
 use std::net::UdpSocket;
 use std::os::unix::fs::PermissionsExt;
 use std::os::unix::net::{UnixListener, UnixStream};
@@ -365,7 +365,11 @@ fn confirm_stops(listener: UnixListener, asked: &Arc<AtomicBool>) {
     let asked = Arc::clone(asked);
     std::thread::spawn(move || {
         for mut stream in listener.incoming().flatten() {
-            asked.store(true, Ordering::Relaxed);
+            let mut request = [0; 256];
+            let length = stream.read(&mut request).unwrap_or(0);
+            if String::from_utf8_lossy(&request[..length]).starts_with("POST") {
+                asked.store(true, Ordering::Relaxed);
+            }
             let body = r#"{"device":"soft","stopped":true,"state":"","power":false}"#;
             let length = body.len();
             let answer = format!("HTTP/1.1 200 OK\r\ncontent-length: {length}\r\n\r\n{body}");

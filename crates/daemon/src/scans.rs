@@ -301,6 +301,7 @@ impl Scans {
             messages: record.messages,
             recording: record.recording,
             lost_records: record.lost_records,
+            warnings: record.warnings,
             reception: record.reception,
             report: record.report,
         })

@@ -127,14 +127,11 @@ impl DaemonState {
             }
         };
         let lost_records = outcome.lost_records;
-        let warnings = outcome.warnings.iter();
-        for warning in warnings {
-            self.scans.say(id, &format!("warning: {warning}"));
-        }
         self.change_scan(id, |record| {
             record.state = ScanState::Making;
             record.recording = outcome.failure;
             record.lost_records = lost_records;
+            record.warnings = outcome.warnings;
             record.reception = outcome.reception;
         });
         let job = CloudJob {

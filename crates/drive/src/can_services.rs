@@ -47,6 +47,9 @@ pub(crate) struct CanServices {
     operational: bool,
     /// When the host's next heartbeat is due; `None` while it sends none.
     pub next_heartbeat: Option<Stamp<Host>>,
+    /// Longest time between two heartbeats of the host in this command, if the node does not
+    /// tolerate it.
+    pub host_silence: Option<Span>,
     syncs: SyncMatcher,
     next_sync: Option<Stamp<Host>>,
     /// The node is configured to send the stream.
@@ -72,6 +75,7 @@ impl CanServices {
             heartbeat: HeartbeatConsumer::new(node, config.node_limit),
             operational: false,
             next_heartbeat: None,
+            host_silence: None,
             syncs: SyncMatcher::default(),
             next_sync: None,
             streaming: false,
@@ -90,6 +94,7 @@ impl CanServices {
         self.heartbeat = HeartbeatConsumer::new(self.node, self.config.node_limit);
         self.operational = false;
         self.latest = None;
+        self.host_silence = None;
         self.alarm = self.restarted.then_some(Alarm::BootUp);
     }
 
@@ -160,7 +165,11 @@ impl CanServices {
         if let Some(due) = self.next_sync.filter(|due| *due <= now) {
             return Some(self.send_sync(due, now, sync_period));
         }
-        if self.next_heartbeat.is_some_and(|due| due <= now) {
+        if let Some(due) = self.next_heartbeat.filter(|due| *due <= now) {
+            let silence = now.saturating_since(due) + self.config.host_heartbeat;
+            if silence > self.config.host_limit {
+                self.host_silence = self.host_silence.max(Some(silence));
+            }
             self.next_heartbeat = Some(now.saturating_add(self.config.host_heartbeat));
             let state = NmtState::Operational;
             let node = NodeId::new(self.config.host_node)?;

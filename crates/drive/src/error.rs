@@ -141,6 +141,13 @@ pub enum DriveError {
         /// Time since the last heartbeat.
         silence: Span,
     },
+    /// This program sent no heartbeat for longer than the drive tolerates, so the drive has stopped
+    /// the axis and holds it (CAN).
+    #[error("this program did not run for {:.1} s while the axis could move: the drive has stopped the axis", silence.as_secs_f64())]
+    HostSilent {
+        /// Time between two heartbeats.
+        silence: Span,
+    },
     /// The drive left the NMT state operational, by another master's command (CAN).
     #[error("node {node} on the CAN bus: expected the state operational, got {state}")]
     NodeLeft {
@@ -480,6 +487,9 @@ impl DriveError {
             Self::NodeSilent { .. } => {
                 "check the drive's supply, the CAN wiring and termination; if the axis was moving, \
                  assume that it still is until a stop is confirmed"
+            }
+            Self::HostSilent { .. } => {
+                "do not suspend the program or the machine while the axis moves; then move again"
             }
             Self::NodeLeft { .. } => {
                 "another master on the CAN bus changed the drive's state: stop it, then connect again"

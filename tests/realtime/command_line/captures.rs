@@ -1,5 +1,11 @@
 //! Captures: logs, clouds, signals, refusals.
 
+use std::io::Write;
+use std::os::unix::fs::OpenOptionsExt;
+use std::process::{Child, Stdio};
+
+use io::port::Pty;
+
 use super::*;
 
 #[test]
@@ -117,23 +123,48 @@ fn ctrl_c_in_mid_sweep_saves_the_partial_cloud_and_exits_130() {
     assert!(place.path("scan.pcapng").is_file(), "the log is gone");
 }
 
-/// A command whose stdout and stderr are full pipes that no program reads, such as a terminal after
-/// Ctrl-S or at the end of a dead connection.
-fn with_unread_output(place: &Place, line: &str) -> std::process::Child {
+/// What stdout and stderr are. Neither is read, and both are full.
+#[derive(Clone, Copy)]
+enum Unread {
+    /// Pipes, such as those to a program that hangs.
+    Pipes,
+    /// A terminal, as after Ctrl-S or at the end of a dead connection. The progress is drawn on it.
+    Terminal,
+}
+
+/// A command whose output no program reads, and the terminal that is its output.
+fn with_unread_output(place: &Place, line: &str, output: Unread) -> (Child, Option<Pty>) {
     // A pipe of Linux holds 64 KiB (pipe(7)).
-    let script = "head -c 65536 /dev/zero; head -c 65536 /dev/zero >&2; exec \"$0\" \"$@\"";
-    Command::new("sh")
-        .args(["-c", script, env!("CARGO_BIN_EXE_velomotion")])
+    let fill = match output {
+        Unread::Pipes => "head -c 65536 /dev/zero; head -c 65536 /dev/zero >&2; ",
+        Unread::Terminal => "",
+    };
+    let script = format!("{fill}exec \"$0\" \"$@\"");
+    let mut command = Command::new("sh");
+    command
+        .args(["-c", &script, env!("CARGO_BIN_EXE_velomotion")])
         .args(line.split_whitespace())
         .current_dir(place.0.path())
         .env("XDG_CONFIG_HOME", place.0.path())
-        .stdout(std::process::Stdio::piped())
-        .stderr(std::process::Stdio::piped())
-        .spawn()
-        .unwrap()
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    let terminal = matches!(output, Unread::Terminal).then(|| {
+        let terminal = Pty::open().unwrap();
+        let mut options = std::fs::OpenOptions::new();
+        options.read(true).write(true);
+        command
+            .stdout(options.open(terminal.path()).unwrap())
+            .stderr(options.open(terminal.path()).unwrap());
+        // O_NONBLOCK of Linux.
+        let mut filling = options.custom_flags(0o4000).open(terminal.path()).unwrap();
+        let full = std::iter::repeat_with(|| filling.write(b" ")).find_map(Result::err);
+        assert_eq!(full.unwrap().kind(), std::io::ErrorKind::WouldBlock);
+        terminal
+    });
+    (command.spawn().unwrap(), terminal)
 }
 
-fn send(signal: &str, process: &std::process::Child) {
+fn send(signal: &str, process: &Child) {
     let mut kill = Command::new("kill");
     kill.args([signal, &process.id().to_string()]);
     assert!(kill.status().unwrap().success());
@@ -141,33 +172,36 @@ fn send(signal: &str, process: &std::process::Child) {
 
 #[test]
 fn a_capture_ends_as_planned_though_no_program_reads_its_output() {
-    let place = Place::new();
-    let mut capture = with_unread_output(&place, "capture --speed 56.25 -o scan.ply -vv");
-    crate::daemon::rig::wait("the cloud", || {
-        assert_eq!(
-            capture.try_wait().unwrap(),
-            None,
-            "the result has no reader"
-        );
-        place.path("scan.ply").is_file().then_some(())
-    });
-    // The devices are closed: a signal ends the process.
-    send("-TERM", &capture);
-    assert!(capture.wait().unwrap().code().is_some());
-    assert!(place.run("info scan.pcapng").status.success());
+    for output in [Unread::Pipes, Unread::Terminal] {
+        let place = Place::new();
+        let line = "capture --speed 56.25 -o scan.ply -vv";
+        let (mut capture, _terminal) = with_unread_output(&place, line, output);
+        crate::daemon::rig::wait("the cloud", || {
+            assert_eq!(
+                capture.try_wait().unwrap(),
+                None,
+                "the result has no reader"
+            );
+            place.path("scan.ply").is_file().then_some(())
+        });
+        // The devices are closed: a signal ends the process.
+        send("-TERM", &capture);
+        assert!(capture.wait().unwrap().code().is_some());
+        assert!(place.run("info scan.pcapng").status.success());
+    }
 }
 
 /// Ctrl-Z stops the axis, too: a suspended process could not.
 #[test]
 fn signals_stop_a_sweep_though_no_program_reads_the_output() {
-    for signal in ["-TERM", "-TSTP"] {
-        stops_a_sweep(signal);
-    }
+    stops_a_sweep("-TERM", Unread::Pipes);
+    stops_a_sweep("-TSTP", Unread::Terminal);
 }
 
-fn stops_a_sweep(signal: &str) {
+fn stops_a_sweep(signal: &str, output: Unread) {
     let place = Place::new();
-    let mut capture = with_unread_output(&place, "capture --speed 2 -o scan.ply -vv");
+    let line = "capture --speed 2 -o scan.ply -vv";
+    let (mut capture, _terminal) = with_unread_output(&place, line, output);
     // The log grows by several records per millisecond once the axis is sampled.
     crate::daemon::rig::wait("the log of a sweep", || {
         let log = std::fs::metadata(place.path("scan.pcapng")).ok()?;

@@ -141,12 +141,10 @@ impl Case {
         if self.motion != Motion::Daemon {
             let code = status.code();
             match self.signal {
-                // A held axis whose host was lost stops without a fault: it is behind its plan.
                 ("STOP", _) => rule(
                     ["did not run", "8130"]
                         .iter()
-                        .any(|why| messages.contains(why))
-                        || self.held && messages.contains("behind its plan"),
+                        .any(|why| messages.contains(why)),
                     "unexplained",
                 )?,
                 (_, true) => rule(code == Some(130), "exit code is not 130")?,

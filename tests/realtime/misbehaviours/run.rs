@@ -134,7 +134,7 @@ pub fn run(row: &'static Misbehaviour, transport: Transport) -> Result<Outcome, 
             drive,
             exit: exit?,
             ended,
-            printed: read("stderr"),
+            printed: read("printed"),
             kept: kept(folder.path()),
             gap,
             silence,
@@ -219,8 +219,9 @@ fn client(
             .stdout(Stdio::piped())
             .stderr(Stdio::piped());
     } else {
-        let file = File::create(folder.join("stderr")).map_err(|error| error.to_string())?;
-        client.stdout(Stdio::null()).stderr(file);
+        let file = File::create(folder.join("printed")).map_err(|error| error.to_string())?;
+        let same = file.try_clone().map_err(|error| error.to_string())?;
+        client.stdout(same).stderr(file);
     }
     let mut child = client.spawn().map_err(|error| error.to_string())?;
     let begin = Instant::now();

@@ -164,16 +164,23 @@ async fn diagnose(ops: &Ops, cause: DriveError) -> DriveError {
         // Without a readable history the cause stays unknown.
         None => newest_error(ops).await.unwrap_or_default(),
     };
-    match cause {
-        DriveError::Restarted { .. } => DriveError::Restarted { error: newest },
-        _ if has_lost_settings(ops).await == Ok(true) => DriveError::Restarted { error: newest },
-        DriveError::Fault { .. } => DriveError::Fault { error: newest },
-        DriveError::OffPlan { .. } | DriveError::LimitSwitch { .. }
-            if ops.read(objects::STATUSWORD).await.is_ok_and(is_fault) =>
-        {
+    if matches!(cause, DriveError::Restarted { .. }) || has_lost_settings(ops).await == Ok(true) {
+        return DriveError::Restarted { error: newest };
+    }
+    let is_faulty = ops.read(objects::STATUSWORD).await.is_ok_and(is_fault);
+    // A drive that holds the axis stops it without a fault (6007 = 3).
+    let stays = ops.config.holds() && !is_faulty;
+    let silence = ops.on_can(|can, _| can.host_silence).flatten();
+    match (cause, silence.filter(|_| stays)) {
+        (
+            DriveError::Fault { .. } | DriveError::State { .. } | DriveError::OffPlan { .. },
+            Some(silence),
+        ) => DriveError::HostSilent { silence },
+        (DriveError::OffPlan { .. } | DriveError::LimitSwitch { .. }, _) if is_faulty => {
             DriveError::Fault { error: newest }
         }
-        other => other,
+        (DriveError::Fault { .. }, _) => DriveError::Fault { error: newest },
+        (other, _) => other,
     }
 }
 

@@ -105,6 +105,25 @@ fn a_held_axis_stays_powered_when_the_host_dies_on_can() {
     assert_eq!(rig.unit.node.state(), DeviceState::QuickStopActive);
 }
 
+/// The drive stops without a fault: the samples alone show an axis that is behind its plan.
+#[test]
+fn a_suspended_host_is_named_as_the_cause_of_a_stop_on_can() {
+    let mut rig = held_on(DriveLink::Can);
+    rig.client.start(goto(-20.0)).unwrap();
+    for _ in 0..2_000 {
+        assert!(rig.step().is_none());
+    }
+    let delay = Span::from_millis(1_000);
+    rig.sleep(delay);
+    rig.client.handle_host_delay(delay, rig.now);
+    let error = rig.finish().unwrap_err();
+    assert!(
+        matches!(error, DriveError::HostSilent { silence } if silence >= delay),
+        "{error}"
+    );
+    assert!(is_powered(&rig));
+}
+
 /// The samples before and after the delay spread far, though the axis has come to rest meanwhile.
 #[test]
 fn a_delay_of_the_host_in_a_stop_does_not_cost_the_power() {

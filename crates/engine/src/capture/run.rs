@@ -328,7 +328,14 @@ pub fn conclude(
 ) -> Result<(ScanReport, Option<ScanFailure>), ScanFailure> {
     let log = log.display();
     Err(match (made, outcome.failure) {
-        (Ok(scan), failure) => {
+        (Ok(mut scan), failure) => {
+            // A report by a daemon has them.
+            let warnings = &mut scan.contents.warnings;
+            for warning in outcome.warnings {
+                if !warnings.contains(&warning) {
+                    warnings.push(warning);
+                }
+            }
             let cause = failure.or_else(|| completeness::missing(&scan));
             let failure = cause.map(|cause| ScanFailure {
                 cause,
@@ -342,7 +349,7 @@ pub fn conclude(
             return Ok((ScanReport { reception, ..scan }, failure));
         }
         (Err(making), Some(cause)) => ScanFailure {
-            cause,
+            cause: cause.warned(outcome.warnings),
             no_cloud: Some(format!("there is no cloud: {}", making.message)),
             saved: format!("the log is {log}"),
         },
@@ -354,7 +361,7 @@ pub fn conclude(
                     Kind::BadInput => Kind::Incomplete,
                     kind => kind,
                 },
-                ..making
+                ..making.warned(outcome.warnings)
             },
             no_cloud: None,
             saved: format!("the log is saved: velomotion replay {log} makes the cloud"),
@@ -453,7 +460,11 @@ mod tests {
             .help("choose one with --sensor");
         let without_cloud = |making| {
             let files = (Path::new("hall.ply"), Path::new("hall.pcapng"));
-            let concluded = conclude(Err(making), Outcome::default(), files);
+            let outcome = Outcome {
+                warnings: vec!["the axis moved by 2.00 deg".to_owned()],
+                ..Outcome::default()
+            };
+            let concluded = conclude(Err(making), outcome, files);
             concluded.unwrap_err().into_failure()
         };
         let failure = without_cloud(two);
@@ -461,7 +472,9 @@ mod tests {
         assert_eq!(failure.message, "2 lidars in one recording");
         let help = failure.help.unwrap();
         assert!(
-            help.contains("--sensor") && help.contains("replay hall.pcapng"),
+            ["--sensor", "replay hall.pcapng", "moved by 2.00 deg"]
+                .iter()
+                .all(|part| help.contains(part)),
             "{help}"
         );
         // Ctrl-C during the reconstruction remains an interruption.

@@ -173,6 +173,9 @@ pub struct ScanRecord {
     /// Records lost on the way to the log.
     #[serde(default)]
     pub lost_records: u64,
+    /// Warnings about its completeness and its motion.
+    #[serde(default)]
+    pub warnings: Vec<String>,
     /// Counts of packets.
     #[serde(default)]
     pub reception: Option<Reception>,
@@ -202,7 +205,7 @@ impl ScanRecord {
             failure: self.recording.clone(),
             lost_records: self.lost_records,
             reception: self.reception,
-            warnings: Vec::new(),
+            warnings: self.warnings.clone(),
         }
     }
 }
@@ -237,6 +240,9 @@ pub struct ScanDetails {
     pub recording: Option<Failure>,
     /// Records lost on the way to the log.
     pub lost_records: u64,
+    /// Warnings about its completeness and its motion; also in those of the report.
+    #[serde(default)]
+    pub warnings: Vec<String>,
     /// Counts of packets.
     pub reception: Option<Reception>,
     /// The object that `capture --json` prints.

@@ -110,10 +110,15 @@ impl DeviceBackend {
             Self::Daemon(client) => jog_by_daemon(&client, jog, interrupt),
             Self::Local(local) => {
                 let mut answer = jog_locally(&local, jog);
-                if let (Ok(StopAnswer::Report(report)), Some(warning)) =
-                    (&mut answer, &local.thread.port_warning)
-                {
-                    report.warnings.insert(0, warning.clone());
+                if let Some(warning) = local.thread.port_warning.clone() {
+                    answer = match answer {
+                        Ok(StopAnswer::Report(mut report)) => {
+                            report.warnings.insert(0, warning);
+                            Ok(StopAnswer::Report(report))
+                        }
+                        Err(failure) => Err(failure.warned(vec![warning])),
+                        other => other,
+                    };
                 }
                 local.stop();
                 answer
@@ -307,12 +312,9 @@ impl CaptureBackend for LocalCapture<'_> {
         let service = &self.local.service;
         match self.result.try_recv() {
             Ok(result) => {
-                let end = result?;
-                let warnings = end.outcome.warnings.iter();
                 return Ok(CaptureProgress {
-                    messages: warnings.map(|line| format!("warning: {line}")).collect(),
-                    axis: None,
-                    end: Some(end),
+                    end: Some(result?),
+                    ..CaptureProgress::default()
                 });
             }
             Err(oneshot::error::TryRecvError::Empty) => {}
@@ -411,7 +413,7 @@ impl CaptureBackend for DaemonCapture {
                     failure: details.recording,
                     lost_records: details.lost_records,
                     reception: details.reception,
-                    warnings: Vec::new(),
+                    warnings: details.warnings,
                 },
                 truth: None,
             }),
