@@ -47,8 +47,8 @@ pub(crate) struct CanServices {
     operational: bool,
     /// When the host's next heartbeat is due; `None` while it sends none.
     pub next_heartbeat: Option<Stamp<Host>>,
-    /// Longest time between two heartbeats of the host in this command, if the node does not
-    /// tolerate it.
+    /// Longest time between two heartbeats of the host since its monitoring began in this command,
+    /// if the node does not tolerate it.
     pub host_silence: Option<Span>,
     syncs: SyncMatcher,
     next_sync: Option<Stamp<Host>>,

@@ -9,7 +9,7 @@ use protocol::canopen::sdo::TransferError;
 use protocol::epos2::cia402::DeviceState;
 use protocol::epos2::objects::Address;
 use protocol::epos2::{CommError, DeviceError};
-use units::{DegPerS, DegPerS2, Degrees, Rpm, Span};
+use units::{DegPerS, DegPerS2, Degrees, Rpm, ShortNumber, Span};
 
 use crate::command::CommandKind;
 
@@ -28,7 +28,7 @@ pub enum DriveError {
         got: String,
     },
     /// The target is outside the configured limits or not a number; nothing was sent.
-    #[error("{} deg is outside the axis' limits of {} to {} deg", brief(target.0), min.0, max.0)]
+    #[error("{} deg is outside the axis' limits of {} to {} deg", ShortNumber(target.0), min.0, max.0)]
     Limits {
         /// Requested angle.
         target: Degrees,
@@ -39,7 +39,7 @@ pub enum DriveError {
     },
     /// The speed is not within the axis' range; nothing was sent.
     #[error("speed {} deg/s is not between {} deg/s (1 rpm of the motor) and {} deg/s ({} rpm)",
-        brief(requested.0), slowest.0, fastest.0, max_rpm.0)]
+        ShortNumber(requested.0), slowest.0, fastest.0, max_rpm.0)]
     Speed {
         /// Requested speed.
         requested: DegPerS,
@@ -51,7 +51,7 @@ pub enum DriveError {
         max_rpm: Rpm,
     },
     /// The acceleration is not within the axis' range; nothing was sent.
-    #[error("acceleration {} deg/s2 is not between {} and {} deg/s2", brief(requested.0), slowest.0, fastest.0)]
+    #[error("acceleration {} deg/s2 is not between {} and {} deg/s2", ShortNumber(requested.0), slowest.0, fastest.0)]
     Acceleration {
         /// Requested acceleration.
         requested: DegPerS2,
@@ -143,7 +143,7 @@ pub enum DriveError {
     },
     /// This program sent no heartbeat for longer than the drive tolerates, so the drive has stopped
     /// the axis and holds it (CAN).
-    #[error("this program did not run for {:.1} s while the axis could move: the drive has stopped the axis", silence.as_secs_f64())]
+    #[error("this program sent no heartbeat for {:.1} s while the axis could move: the drive has stopped it", silence.as_secs_f64())]
     HostSilent {
         /// Time between two heartbeats.
         silence: Span,
@@ -409,14 +409,6 @@ impl fmt::Display for Operation {
     }
 }
 
-/// A requested value; 1e300 and 1e-300 would have hundreds of digits.
-fn brief(value: f64) -> String {
-    match value.abs() {
-        0.0 | 1e-4..1e6 => value.to_string(),
-        _ => format!("{value:e}"),
-    }
-}
-
 fn state_text(statusword: u16) -> String {
     DeviceState::from_statusword(statusword)
         .map_or_else(|| "no known state".into(), |state| state.to_string())
@@ -489,7 +481,7 @@ impl DriveError {
                  assume that it still is until a stop is confirmed"
             }
             Self::HostSilent { .. } => {
-                "do not suspend the program or the machine while the axis moves; then move again"
+                "the program or the machine was suspended or stuck; move the axis again"
             }
             Self::NodeLeft { .. } => {
                 "another master on the CAN bus changed the drive's state: stop it, then connect again"

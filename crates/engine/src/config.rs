@@ -14,6 +14,7 @@ pub mod ros2;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
+use units::ShortNumber;
 
 pub use axis::{AxisSettings, HomingSettings, LimitSwitchSettings, WithoutBrake};
 pub use device::{Device, DeviceKind, Devices};
@@ -111,7 +112,8 @@ fn between(name: &str, value: f64, low: f64, high: f64) -> Result<(), String> {
     match (low..=high).contains(&value) {
         true => Ok(()),
         false => Err(format!(
-            "{name}: expected a number from {low} to {high}, got {value}"
+            "{name}: expected a number from {low} to {high}, got {}",
+            ShortNumber(value)
         )),
     }
 }
@@ -121,7 +123,8 @@ fn positive(name: &str, value: f64, high: f64) -> Result<(), String> {
     match value > 0.0 && value <= high {
         true => Ok(()),
         false => Err(format!(
-            "{name}: expected a number above 0 up to {high}, got {value}"
+            "{name}: expected a number above 0 up to {high}, got {}",
+            ShortNumber(value)
         )),
     }
 }

@@ -80,6 +80,10 @@ impl Document for TradeoffReport {
 
 /// The object of a command or request that failed without a result.
 #[derive(Clone, Debug, Serialize, ToSchema)]
+#[schema(example = json!({"error": {
+    "kind": "not-found", "exit_code": 4, "message": "there is no scan hall-2",
+    "help": "GET /api/v1/scans lists all",
+}}))]
 pub struct ErrorReport {
     /// The failure.
     pub error: Failure,

@@ -4,6 +4,7 @@
 //! [`MechanismEffect`](crate::effects::MechanismEffect) applies servo and gear.
 
 use thiserror::Error;
+use units::ShortNumber;
 
 /// Angle and rate of the axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -232,7 +233,7 @@ fn number(
         true => Ok(()),
         false => Err(MotionError {
             key,
-            what: format!("{key}: expected {what}, got {got}"),
+            what: format!("{key}: expected {what}, got {}", ShortNumber(got)),
         }),
     }
 }

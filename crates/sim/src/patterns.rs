@@ -14,6 +14,7 @@ mod view;
 
 use glam::{DMat3, DVec3};
 use thiserror::Error;
+use units::ShortNumber;
 
 use crate::motion::{AxisMotion, Sweeps};
 use crate::sensor::DetectionRange;
@@ -79,7 +80,7 @@ pub enum PatternError {
         got: String,
     },
     /// A number out of range.
-    #[error("pattern {name}: {key}: expected {expected}, got {got}")]
+    #[error("pattern {name}: {key}: expected {expected}, got {}", ShortNumber(*got))]
     Number {
         /// The pattern.
         name: String,

@@ -4,9 +4,11 @@
 mod angle;
 mod gearing;
 mod real;
+mod short_number;
 mod time;
 
 pub use angle::{DegPerS, DegPerS2, Degrees, Metres, Radians};
 pub use gearing::{Gearing, GearingError, Quadcounts, Rpm, RpmPerS};
 pub use real::Real;
+pub use short_number::ShortNumber;
 pub use time::{Drive, Host, Lidar, Span, Stamp};

@@ -88,6 +88,31 @@ fn cut_off(place: &Place) {
     assert_eq!(output.status.code(), Some(6));
     assert!(json(&output)["truncated"].is_string());
     assert!(json(&output)["points"].as_u64().unwrap() > 100_000);
+    // The advice is to do what works: so early in the log there is no sweep.
+    std::fs::write(place.path("begun.pcapng"), &log[..20_000]).unwrap();
+    let advice = "replay --tilt none makes a cloud";
+    place.fails("info begun.pcapng", 6, &["is incomplete", advice]);
+    let mut view = Command::new(env!("CARGO_BIN_EXE_velomotion"))
+        .args(["view", "--no-open", "cut.pcapng"])
+        .current_dir(place.0.path())
+        .env("XDG_CONFIG_HOME", place.0.path())
+        .env_remove("RUST_LOG")
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let printed = std::io::BufReader::new(view.stderr.take().unwrap());
+    let (send, reported) = std::sync::mpsc::channel();
+    std::thread::spawn(move || {
+        let mut lines = std::io::BufRead::lines(printed).map_while(Result::ok);
+        let _ = send.send(lines.find(|line| line.contains("cut.pcapng: the log is incomplete")));
+    });
+    let reported = reported.recv_timeout(std::time::Duration::from_secs(60));
+    view.kill().unwrap();
+    view.wait().unwrap();
+    assert!(
+        matches!(reported, Ok(Some(_))),
+        "view says nothing of the cut"
+    );
 }
 
 #[test]

@@ -206,6 +206,12 @@ fn invalid_options_and_files_are_one_line_that_names_them() {
         &["error:", "'-1'", "--level"],
     );
     place.fails(
+        "plan --at 500m --error 5mm",
+        2,
+        &["500", "--at", "name a distance within it"],
+    );
+    place.fails("analyze vlp16:1e300", 2, &["1e300"]);
+    place.fails(
         "capture --speed 1e300",
         2,
         &["error:", "'1e300'", "--speed"],

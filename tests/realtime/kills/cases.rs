@@ -142,7 +142,7 @@ impl Case {
             let code = status.code();
             match self.signal {
                 ("STOP", _) => rule(
-                    ["did not run", "8130"]
+                    ["did not run", "sent no heartbeat", "8130"]
                         .iter()
                         .any(|why| messages.contains(why)),
                     "unexplained",

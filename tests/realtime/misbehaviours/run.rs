@@ -220,8 +220,8 @@ fn client(
             .stderr(Stdio::piped());
     } else {
         let file = File::create(folder.join("printed")).map_err(|error| error.to_string())?;
-        let same = file.try_clone().map_err(|error| error.to_string())?;
-        client.stdout(same).stderr(file);
+        let stdout = file.try_clone().map_err(|error| error.to_string())?;
+        client.stdout(stdout).stderr(file);
     }
     let mut child = client.spawn().map_err(|error| error.to_string())?;
     let begin = Instant::now();

@@ -135,6 +135,7 @@ fn run(
 
 /// Body of `POST /captures/stop`.
 #[derive(Clone, Debug, Serialize, ToSchema)]
+#[schema(example = json!({"stopped": true, "scan": "hall-2026-11-26T09-17-55Z"}))]
 pub struct StoppedCapture {
     /// Whether a capture was stopped.
     stopped: bool,

@@ -23,7 +23,7 @@ use tokio::sync::OwnedSemaphorePermit;
 use utoipa::IntoParams;
 
 use super::Api;
-use super::openapi::{NotNow, StoredFile};
+use super::openapi::{NotNow, StoredFile, StoredPicture};
 use super::partial::{FileRange, is_known, range_of, tag_of};
 use super::refusal::Refusal;
 use crate::cloud_builder::defect;
@@ -194,7 +194,7 @@ pub async fn log(
 }
 
 /// A picture of the cloud.
-#[utoipa::path(get, path = "/api/v1/scans/{id}/thumbnail", tag = "scans", params(("id" = String, Path, description = "Id of a scan"), ("Range" = Option<String>, Header, description = "The requested part (RFC 9110)")), responses(StoredFile))]
+#[utoipa::path(get, path = "/api/v1/scans/{id}/thumbnail", tag = "scans", params(("id" = String, Path, description = "Id of a scan"), ("Range" = Option<String>, Header, description = "The requested part (RFC 9110)")), responses(StoredPicture))]
 pub async fn thumbnail(
     State(api): State<Arc<Api>>,
     Path(id): Path<String>,

@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use axum::body::{HttpBody, to_bytes};
 use axum::extract::{Request, State};
-use axum::http::{Extensions, HeaderMap, Method, StatusCode, header};
+use axum::http::{Extensions, HeaderMap, HeaderName, HeaderValue, Method, StatusCode, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 
@@ -19,7 +19,8 @@ use super::connection_limits::{Connection, Trust};
 use super::page;
 use super::refusal::{Refusal, in_one_form};
 use crate::limits::{
-    BODY_BYTES, SIGNED_IN, TARGET_BYTES, WRONG_TOKENS, WRONG_TOKENS_WITHIN, Waits,
+    BODY_BYTES, HEAD_BYTES, HEADERS, SIGNED_IN, TARGET_BYTES, WRONG_TOKENS, WRONG_TOKENS_WITHIN,
+    Waits,
 };
 use engine::config::daemon::Token;
 use engine::config::daemon::equal;
@@ -166,6 +167,19 @@ pub async fn limits(State(waits): State<Waits>, request: Request, next: Next) ->
             Kind::Limit,
             format!("path and query have more than {TARGET_BYTES} bytes"),
             "no request needs as much",
+        )
+        .into_response();
+    }
+    let headers = request.headers();
+    let length = |(name, value): (&HeaderName, &HeaderValue)| name.as_str().len() + value.len();
+    if headers.len() > HEADERS || headers.iter().map(length).sum::<usize>() > HEAD_BYTES {
+        return Refusal::new(
+            StatusCode::REQUEST_HEADER_FIELDS_TOO_LARGE,
+            Kind::Limit,
+            format!(
+                "the request has more than {HEADERS} headers, or more than {HEAD_BYTES} bytes of them"
+            ),
+            "no request needs as many",
         )
         .into_response();
     }

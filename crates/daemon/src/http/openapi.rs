@@ -10,9 +10,10 @@ use engine::document::{self, Document, ErrorReport};
 use engine::failure::{Failure, Kind};
 use engine::service::events::Event;
 use serde_json::Value;
+use utoipa::openapi::header::HeaderBuilder;
 use utoipa::openapi::path::PathItem;
 use utoipa::openapi::response::{Response as Answer, ResponseBuilder};
-use utoipa::openapi::schema::{ObjectBuilder, Type};
+use utoipa::openapi::schema::{Object, ObjectBuilder, Type};
 use utoipa::openapi::security::{
     ApiKey, ApiKeyValue, HttpAuthScheme, HttpBuilder, SecurityRequirement, SecurityScheme,
 };
@@ -68,23 +69,50 @@ pub struct StoredFile;
 
 impl IntoResponses for StoredFile {
     fn responses() -> BTreeMap<String, RefOr<Answer>> {
-        let plain = |meaning: &str| RefOr::T(Answer::new(meaning));
-        let named = |name: &str| RefOr::Ref(Ref::from_response_name(name));
-        let file = ResponseBuilder::new().description("The file").content(
-            "application/octet-stream",
-            ContentBuilder::new().schema(None::<Schema>).build(),
-        );
-        let all = [
-            ("200", file.build().into()),
-            ("206", plain("The requested part")),
-            ("304", plain("Not modified")),
-            ("404", named("NotFound")),
-            ("416", named("Usage")),
-            ("429", named("Limit")),
-        ];
-        all.map(|(status, answer)| (status.to_owned(), answer))
-            .into()
+        stored("application/octet-stream")
     }
+}
+
+/// Responses of a request for a picture that is stored.
+pub struct StoredPicture;
+
+impl IntoResponses for StoredPicture {
+    fn responses() -> BTreeMap<String, RefOr<Answer>> {
+        stored("image/png")
+    }
+}
+
+fn stored(content: &str) -> BTreeMap<String, RefOr<Answer>> {
+    let text = || HeaderBuilder::new().schema(Some(Object::with_type(Type::String)));
+    let tag = || text().description(Some("Version of the file")).build();
+    let part = text().description(Some("Which part of how many bytes (RFC 9110)"));
+    let named = |name: &str| RefOr::Ref(Ref::from_response_name(name));
+    let file = |meaning: &str| {
+        ResponseBuilder::new()
+            .description(meaning)
+            .content(
+                content,
+                ContentBuilder::new().schema(None::<Schema>).build(),
+            )
+            .header("ETag", tag())
+    };
+    let unchanged = ResponseBuilder::new().description("Not modified");
+    let all = [
+        ("200", file("The file").build().into()),
+        (
+            "206",
+            file("The requested part")
+                .header("Content-Range", part.build())
+                .build()
+                .into(),
+        ),
+        ("304", unchanged.header("ETag", tag()).build().into()),
+        ("404", named("NotFound")),
+        ("416", named("Usage")),
+        ("429", named("Limit")),
+    ];
+    all.map(|(status, answer)| (status.to_owned(), answer))
+        .into()
 }
 
 /// Extensions of the formats of clouds.
@@ -141,11 +169,12 @@ struct Description;
 struct SharedParts;
 
 /// Responses of every request.
-const EVERY: [(&str, &str); 4] = [
+const EVERY: [(&str, &str); 5] = [
     ("403", "Denied"),
     ("408", "Limit"),
     ("413", "Limit"),
     ("414", "Limit"),
+    ("431", "Limit"),
 ];
 /// Responses of every request that needs a token.
 const GUARDED: [(&str, &str); 2] = [("400", "Usage"), ("401", "Denied")];
@@ -284,27 +313,58 @@ mod tests {
         }
     }
 
+    /// Keys of an object of a schema; those of each variant where it has some.
+    fn keys(schemas: &Value, schema: &Value) -> Vec<BTreeSet<String>> {
+        if let Some(reference) = schema["$ref"].as_str() {
+            return keys(schemas, &schemas[reference.rsplit('/').next().unwrap()]);
+        }
+        if let Some(variants) = schema["oneOf"].as_array() {
+            return variants.iter().flat_map(|v| keys(schemas, v)).collect();
+        }
+        let parts = schema["allOf"].as_array().into_iter().flatten();
+        let mut all: BTreeSet<String> = parts
+            .flat_map(|part| keys(schemas, part).into_iter().flatten())
+            .collect();
+        let own = schema["properties"].as_object().into_iter();
+        all.extend(own.flat_map(|own| own.keys().cloned()));
+        vec![all]
+    }
+
     /// An example has exactly the keys of its schema, or, of a request, some of them.
     #[test]
     fn examples_have_the_keys_of_their_schemas() {
         let described: Value = serde_json::from_str(&JSON).unwrap();
-        let schemas = described["components"]["schemas"].as_object().unwrap();
+        let all = &described["components"]["schemas"];
+        let schemas = all.as_object().unwrap();
         let mut checked = 0;
         for (name, schema) in schemas {
             let Some(example) = schema["example"].as_object() else {
                 continue;
             };
-            let keys: BTreeSet<&String> = example.keys().collect();
-            let known: BTreeSet<&String> =
-                schema["properties"].as_object().unwrap().keys().collect();
-            assert!(keys.is_subset(&known), "{name}");
-            assert!(REQUESTS.contains(&name.as_str()) || keys == known, "{name}");
+            let given: BTreeSet<String> = example.keys().cloned().collect();
+            let is_request = REQUESTS.contains(&name.as_str());
+            let known = keys(all, schema);
+            let fits = |known: &BTreeSet<String>| match is_request {
+                true => given.is_subset(known),
+                false => given == *known,
+            };
+            assert!(known.iter().any(fits), "{name}: {given:?} of {known:?}");
             checked += 1;
         }
-        assert!(checked >= 6, "{checked}");
+        assert!(checked >= 15, "{checked}");
         let operations = described["paths"].as_object().unwrap().values();
         let operations = operations.flat_map(|path| path.as_object().unwrap().values());
-        let bodies = operations.filter_map(|operation| {
+        let operations: Vec<&Value> = operations.collect();
+        let answers = operations
+            .iter()
+            .filter_map(|operation| operation["responses"].as_object());
+        for answer in answers.flat_map(|answers| answers.values()) {
+            let schema = answer.pointer("/content/application~1json/schema/$ref");
+            if let Some(name) = schema.and_then(|schema| schema.as_str()?.rsplit('/').next()) {
+                assert!(schemas[name]["example"].is_object(), "{name}");
+            }
+        }
+        let bodies = operations.iter().filter_map(|operation| {
             let body = operation.pointer("/requestBody/content/application~1json/schema/$ref")?;
             body.as_str()?.rsplit('/').next()
         });

@@ -270,6 +270,7 @@ pub async fn logout(State(api): State<Arc<Api>>, headers: HeaderMap) -> Response
 
 /// Body of `GET /login`.
 #[derive(Serialize, ToSchema)]
+#[schema(example = json!({"signed_in": true}))]
 struct SignedIn {
     /// Whether the browser is signed in.
     signed_in: bool,

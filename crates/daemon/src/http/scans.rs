@@ -31,6 +31,13 @@ pub struct ScansQuery {
 
 /// Body of `GET /scans`.
 #[derive(Clone, Debug, Serialize, ToSchema)]
+#[schema(example = json!({"scans": [{
+    "id": "hall-2026-11-26T09-17-55Z", "name": "hall", "notes": null, "state": "recording",
+    "why": null, "waits_for_room": false, "started_s": 1_795_684_675.219, "simulated": false,
+    "asked": {"speed_deg_s": 56.25, "both_ways": false, "name": "hall"}, "points": null,
+    "duration_s": null, "bytes": 443, "log_bytes": null, "cloud_bytes": null, "thumbnail": false,
+    "summary": null,
+}]}))]
 pub struct ScanList {
     /// The newest first.
     scans: Vec<ScanView>,

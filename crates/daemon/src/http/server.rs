@@ -280,8 +280,9 @@ async fn serve<S: AsyncRead + AsyncWrite + Unpin + Send + 'static>(
     let connection = http1::Builder::new()
         .timer(TokioTimer::new())
         .header_read_timeout(waits.headers)
-        .max_buf_size(HEAD_BYTES)
-        .max_headers(HEADERS)
+        // Twice the limits: `guard::limits` refuses more with an error object.
+        .max_buf_size(2 * HEAD_BYTES)
+        .max_headers(2 * HEADERS)
         .serve_connection(TokioIo::new(stream), answer)
         .with_upgrades();
     let mut connection = std::pin::pin!(connection);

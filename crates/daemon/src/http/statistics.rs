@@ -36,6 +36,20 @@ const POLL: Duration = Duration::from_millis(50);
 
 /// Statistics of a scan.
 #[derive(Clone, Debug, Serialize, ToSchema)]
+#[schema(example = json!({
+    "points": 262_749, "of": "view",
+    "density": {
+        "bins": 2_462, "mean": 105.6, "sd": 51.9, "min": 0, "max": 267, "mean_per_deg2": 13.1,
+        "sd_per_deg2": 6.4, "empty": 1, "sd_over_mean": 0.49, "coverage": 0.9996,
+    },
+    "gap_deg": {"p50": 0.142, "p95": 0.649, "p99": 0.890, "worst": 2.102},
+    "ranges": [{"from_m": 1.0, "to_m": 1.5, "points": 244}],
+    "sd_mm": {"p50": 0.693, "p95": 0.881, "p99": 0.958},
+    "budget": [{"at_m": 2.0, "error_mm": {
+        "range": 0.0, "range_step": 0.577, "azimuth": 0.082, "tilt": 0.030, "clock": 0.004,
+        "delay": 0.489, "mount": null, "column_sd": 0.584, "total": 1.493,
+    }}],
+}))]
 pub struct ScanStatistics {
     /// Of its cloud.
     #[serde(flatten)]

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use engine::config::daemon::{DaemonConfig, warn_if_readable};
+use engine::config::daemon::{DaemonConfig, warn_if_exposed};
 use engine::failure::{Failure, Kind};
 use tokio_rustls::TlsAcceptor;
 use tokio_rustls::rustls::ServerConfig;
@@ -23,7 +23,7 @@ pub fn acceptor(config: &DaemonConfig) -> Result<Option<TlsAcceptor>, Failure> {
         (Some(_), None) => return Err(half("certificate without certificate_key")),
         (None, Some(_)) => return Err(half("certificate_key without certificate")),
     };
-    warn_if_readable("private key", key);
+    warn_if_exposed("private key", key);
     let chain = CertificateDer::pem_file_iter(certificate)
         .and_then(Iterator::collect::<Result<Vec<_>, _>>)
         .map_err(|error| unusable("certificate", certificate, &error))?;

@@ -65,7 +65,7 @@ pub struct ViewedFile {
     pub scanner: bool,
     /// Whether it is a log or recording.
     pub log: bool,
-    /// Why there is no cloud.
+    /// Why there is no cloud, or what it lacks.
     pub error: Option<String>,
     /// What to do about it.
     pub help: Option<String>,

@@ -64,7 +64,8 @@ function update(now: ViewFile[]): void {
   document.title = `${only?.name ?? `${files.length} files`} \u2013 velomotion`;
   files.forEach((file, place) => {
     if (file.state === before[place]?.state) return;
-    if (file.state === "ready") announce(`${file.name}: the cloud is made`);
+    if (file.state === "ready" && !file.error) announce(`${file.name}: the cloud is made`);
+    else if (file.state === "ready") alarm(`${file.name}: ${file.error}`);
     if (file.state === "failed") alarm(`${file.name}: ${file.error ?? "failed"}`);
   });
   const wanted = viewer?.linked_scan ?? null;
@@ -92,8 +93,9 @@ function waiting(file: ViewFile | undefined): void {
 function open(place: number): void {
   const file = files[place];
   if (file === undefined || viewer === null) return;
-  const { name, simulated, scanner, log } = file;
-  viewer.open({ id: key(place), title: name, simulated, url: () => `clouds/${place}.ply`, certain: false, scanner, plays: log });
+  const { simulated, scanner, log } = file;
+  const title = file.error ? `${file.name}: ${file.error}` : file.name;
+  viewer.open({ id: key(place), title, simulated, url: () => `clouds/${place}.ply`, certain: false, scanner, plays: log });
 }
 
 function card(file: ViewFile, place: number): HTMLElement {
@@ -102,6 +104,6 @@ function card(file: ViewFile, place: number): HTMLElement {
     h("div", {},
       h("h3", { title: file.name }, file.name),
       h("p", {}, state, " ", file.simulated ? h("span", { class: "badge", "data-state": "simulated" }, "SIMULATED") : null)),
-    file.state === "failed" ? h("p", { class: "wrong" }, [file.error, file.help].filter(Boolean).join("\n")) : null,
+    file.error ? h("p", { class: "wrong" }, [file.error, file.help].filter(Boolean).join("\n")) : null,
     file.state === "ready" ? h("button", { type: "button", "aria-label": `Open ${file.name} in the view`, click: () => open(place) }, "Open") : null);
 }

@@ -181,7 +181,10 @@ pub(super) async fn arm(ops: &Ops) -> Result<(), DriveError> {
     ops.write_verified(objects::CONSUMER_HEARTBEAT, entry.to_u32())
         .await?;
     // The node monitors from the first heartbeat on: one goes out before anything can move.
-    ops.on_can(|can, now| can.next_heartbeat = Some(now));
+    ops.on_can(|can, now| {
+        can.next_heartbeat = Some(now);
+        can.host_silence = None;
+    });
     Ok(())
 }
 

@@ -155,8 +155,9 @@ async fn diagnose(ops: &Ops, cause: DriveError) -> DriveError {
         DriveError::Fault { error } => error,
         DriveError::State { .. } | DriveError::NotReferenced { .. } => None,
         DriveError::NotTaken { .. } | DriveError::Restarted { error: None } => None,
-        // A fault or a restart explains the motion.
+        // A fault or a restart explains the motion, a silent host the state.
         DriveError::OffPlan { .. } | DriveError::LimitSwitch { .. } => None,
+        DriveError::NodeLeft { .. } => None,
         other => return other,
     };
     let newest = match known {
@@ -167,16 +168,24 @@ async fn diagnose(ops: &Ops, cause: DriveError) -> DriveError {
     if matches!(cause, DriveError::Restarted { .. }) || has_lost_settings(ops).await == Ok(true) {
         return DriveError::Restarted { error: newest };
     }
-    let is_faulty = ops.read(objects::STATUSWORD).await.is_ok_and(is_fault);
+    let state = ops.read(objects::STATUSWORD).await.ok();
     // A drive that holds the axis stops it without a fault (6007 = 3).
-    let stays = ops.config.holds() && !is_faulty;
+    let is_held = ops.config.holds() && state.is_some_and(|word| !is_fault(word));
     let silence = ops.on_can(|can, _| can.host_silence).flatten();
-    match (cause, silence.filter(|_| stays)) {
+    match (cause, silence.filter(|_| is_held)) {
         (
-            DriveError::Fault { .. } | DriveError::State { .. } | DriveError::OffPlan { .. },
+            DriveError::Fault {
+                error: None | Some(DeviceError(0x8130)),
+            }
+            | DriveError::State { .. }
+            | DriveError::NotTaken { .. }
+            | DriveError::NodeLeft { .. }
+            | DriveError::OffPlan { .. },
             Some(silence),
         ) => DriveError::HostSilent { silence },
-        (DriveError::OffPlan { .. } | DriveError::LimitSwitch { .. }, _) if is_faulty => {
+        (DriveError::OffPlan { .. } | DriveError::LimitSwitch { .. }, _)
+            if state.is_some_and(is_fault) =>
+        {
             DriveError::Fault { error: newest }
         }
         (DriveError::Fault { .. }, _) => DriveError::Fault { error: newest },

@@ -329,7 +329,7 @@ pub fn conclude(
     let log = log.display();
     Err(match (made, outcome.failure) {
         (Ok(mut scan), failure) => {
-            // A report by a daemon has them.
+            // A daemon's report already has them.
             let warnings = &mut scan.contents.warnings;
             for warning in outcome.warnings {
                 if !warnings.contains(&warning) {
@@ -353,9 +353,15 @@ pub fn conclude(
             no_cloud: Some(format!("there is no cloud: {}", making.message)),
             saved: format!("the log is {log}"),
         },
-        // The capture is complete. Its cloud needs a choice that `replay` offers, such as one of
-        // two lidars.
+        // The capture is complete.
         (Err(making), None) => ScanFailure {
+            saved: match making.kind {
+                // It needs a choice, such as one of two lidars, or lacks the positions of a sweep.
+                Kind::BadInput => format!(
+                    "the log is saved; make the cloud with velomotion replay {log} and what is named above"
+                ),
+                _ => format!("the log is saved: velomotion replay {log} makes the cloud"),
+            },
             cause: Failure {
                 kind: match making.kind {
                     Kind::BadInput => Kind::Incomplete,
@@ -364,7 +370,6 @@ pub fn conclude(
                 ..making.warned(outcome.warnings)
             },
             no_cloud: None,
-            saved: format!("the log is saved: velomotion replay {log} makes the cloud"),
         },
     })
 }

@@ -11,7 +11,7 @@ use analysis::plan::{
 use drive::AxisConfig;
 use protocol::vlp16::Model;
 use sim::RigLidar;
-use units::{Degrees, Rpm};
+use units::{Degrees, Rpm, ShortNumber};
 
 use super::moves::{self, Step};
 use super::request::{CapturePlan, sweep_request};
@@ -464,17 +464,25 @@ fn check(request: &PlanRequest) -> Result<(), Failure> {
     ];
     for (flag, value, unit) in positive {
         if let Some(value) = value.filter(|value| !(*value > 0.0 && value.is_finite())) {
-            let message = format!("{flag}: expected a number above 0 {unit}, got {value}");
-            return Err(Failure::new(Kind::Usage, message));
+            let message = format!(
+                "{flag}: expected a number above 0 {unit}, got {}",
+                ShortNumber(value)
+            );
+            let help = "plan --help explains the limits";
+            return Err(Failure::new(Kind::Usage, message).help(help));
         }
     }
     let range = request.lidar.sensor.range();
     if !(range.min_m..=range.max_m).contains(&request.at_m) {
         let message = format!(
             "--at: expected {} to {} m, the range of the {}, got {}",
-            range.min_m, range.max_m, request.lidar.title, request.at_m
+            range.min_m,
+            range.max_m,
+            request.lidar.title,
+            ShortNumber(request.at_m)
         );
-        return Err(Failure::new(Kind::Usage, message));
+        return Err(Failure::new(Kind::Usage, message)
+            .help("name a distance within it, or another --lidar"));
     }
     Ok(())
 }

@@ -111,13 +111,13 @@ pub fn equal(secret: &[u8], given: &[u8]) -> bool {
     black_box(different) == 0
 }
 
-/// Warns if other users can read a file that holds a secret. Returns whether they can.
-pub fn warn_if_readable(secret: &str, path: &Path) -> bool {
+/// Warns if other users can read or change a file that holds a secret. Returns whether they can.
+pub fn warn_if_exposed(secret: &str, path: &Path) -> bool {
     // Bits of group and others.
-    let readable = std::fs::metadata(path).is_ok_and(|there| there.mode() & 0o044 != 0);
+    let readable = std::fs::metadata(path).is_ok_and(|there| there.mode() & 0o066 != 0);
     if readable {
         tracing::warn!(
-            "other users can read the {secret} in {}: move it to a file of its own, chmod 600",
+            "other users can read or change the {secret} in {}: move it to a file of its own, chmod 600",
             path.display()
         );
     }
@@ -153,11 +153,15 @@ impl DaemonConfig {
             Failure::new(Kind::BadInput, message)
                 .help("write the token alone into the file; see man velomotion-daemon")
         };
+        // Opening a pipe waits for a writer.
+        if std::fs::metadata(&path).is_ok_and(|there| !there.is_file()) {
+            return Err(wrong("not a regular file".to_owned()));
+        }
         let text = std::fs::read_to_string(&path).map_err(|error| wrong(error.to_string()))?;
         self.token = Some(Token::try_from(text.trim().to_owned()).map_err(wrong)?);
         // Credentials are in a folder of their own that others cannot enter.
         if self.token_file.is_some() {
-            warn_if_readable("token", &path);
+            warn_if_exposed("token", &path);
         }
         Ok(())
     }
@@ -254,9 +258,11 @@ mod tests {
         std::fs::write(&file, "0123456789abcdef\n").unwrap();
         let mode = |bits| std::fs::set_permissions(&file, PermissionsExt::from_mode(bits)).unwrap();
         mode(0o600);
-        assert!(!warn_if_readable("token", &file));
-        mode(0o640);
-        assert!(warn_if_readable("token", &file));
+        assert!(!warn_if_exposed("token", &file));
+        for others in [0o640, 0o602] {
+            mode(others);
+            assert!(warn_if_exposed("token", &file));
+        }
         let from_file = format!("token_file = {file:?}");
         for (text, credentials) in [(from_file.as_str(), None), ("", Some(folder.path()))] {
             let mut config = settings(text).unwrap();
@@ -272,6 +278,16 @@ mod tests {
             .unwrap_err();
         assert!(failure.message.contains("16"), "{failure:?}");
         assert!(!failure.message.contains("short"), "{failure:?}");
+        // Nothing but a file: a pipe would be waited for.
+        let folder = format!("token_file = {:?}", folder.path());
+        let failure = settings(&folder)
+            .unwrap()
+            .load_credentials(None)
+            .unwrap_err();
+        assert!(
+            failure.message.contains("not a regular file"),
+            "{failure:?}"
+        );
         let mut none = settings("").unwrap();
         none.load_credentials(Some(Path::new("/nonexistent")))
             .unwrap();

@@ -18,19 +18,19 @@ pub fn scan_failure(path: &Path, link: Option<DriveLink>, error: &ScanError) -> 
             "use a recording of the lidar's UDP traffic (ports 2368 and 8308); velomotion info lists what this file holds"
         }
         ScanError::NoTilt => {
-            "this is a plain lidar recording: add --tilt none for the sensor's own frame, or --tilt ANGLES.csv"
+            "this is a plain lidar recording: velomotion replay with --tilt none makes a cloud in the sensor's own frame, with --tilt ANGLES.csv a tilted one"
         }
         ScanError::NoSweep => {
-            "the recording ended before a sweep began: --tilt none gives its points in the sensor's own frame"
+            "the recording ended before a sweep began: replay --tilt none gives its points in the sensor's own frame"
         }
         ScanError::UnseenSweep { .. } => {
-            "the command alone would place its points: scan again, and see why the drive's link was silent; --tilt none gives them in the sensor's own frame"
+            "the command alone would place its points: scan again, and see why the drive's link was silent; replay --tilt none gives them in the sensor's own frame"
         }
         ScanError::SurplusSweep { .. } => {
-            "a program has joined the logs of several scans: replay each by itself; --tilt none gives all points in the sensor's own frame"
+            "a program has joined the logs of several scans: replay each by itself; replay --tilt none gives all points in the sensor's own frame"
         }
         ScanError::AmbiguousMotion { .. } => {
-            "the recorder dropped the command: whether this was a sweep cut short or another move, the log does not show; --tilt none gives its points in the sensor's own frame"
+            "the recorder dropped the command: whether this was a sweep cut short or another move, the log does not show; replay --tilt none gives its points in the sensor's own frame"
         }
         ScanError::Table(_) => {
             "give times as Unix seconds like the recording's, or as seconds since its first packet"

@@ -90,6 +90,13 @@ pub struct StoppedCommand {
 
 /// Answer to `POST /tilt/stop`.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
+#[schema(example = json!({
+    "device": "epos2", "unit": "EPOS2 24/5", "state": "switch-on disabled", "statusword": 33_088,
+    "mode": 1, "referenced": true, "angle_deg": -12.5, "position_qc": -8_333, "velocity_rpm": 0,
+    "negative_limit": false, "positive_limit": false, "home_switch": false, "faults": [],
+    "simulated": false, "power": false, "activity": "idle", "age_s": 0.0, "switches_age_s": 0.0,
+    "warnings": [],
+}))]
 #[serde(untagged)]
 pub enum StopAnswer {
     /// Of a daemon: the drive's state.

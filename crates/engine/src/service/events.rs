@@ -25,6 +25,9 @@ pub const QUEUE: usize = 256;
 
 /// Something that happened. All but points have a JSON form with a `type`.
 #[derive(Clone, Debug, Serialize, ToSchema)]
+#[schema(example = json!({
+    "type": "motion", "angle_deg": -12.5, "speed_deg_s": -56.25, "left_s": 0.6, "received": 5_210,
+}))]
 #[serde(tag = "type", rename_all = "lowercase")]
 pub enum Event {
     /// The status changed, or a second has passed.

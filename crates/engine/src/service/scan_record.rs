@@ -212,6 +212,13 @@ impl ScanRecord {
 
 /// A scan in a list.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[schema(example = json!({
+    "id": "hall-2026-11-26T09-17-55Z", "name": "hall", "notes": null, "state": "whole", "why": null,
+    "waits_for_room": false, "started_s": 1_795_684_675.219, "simulated": false,
+    "asked": {"speed_deg_s": 56.25, "both_ways": false, "name": "hall"}, "points": 262_749,
+    "duration_s": 2.783, "bytes": 10_819_191, "log_bytes": 3_144_848, "cloud_bytes": 7_620_246,
+    "thumbnail": true, "summary": null,
+}))]
 pub struct ScanView {
     /// Head.
     #[serde(flatten)]
@@ -230,6 +237,19 @@ pub struct ScanView {
 
 /// A scan in full.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[schema(example = json!({
+    "id": "hall-2026-11-26T09-17-55Z", "name": "hall", "notes": null, "state": "whole", "why": null,
+    "waits_for_room": false, "started_s": 1_795_684_675.219, "simulated": false,
+    "asked": {"speed_deg_s": 56.25, "both_ways": false, "name": "hall"}, "points": 262_749,
+    "duration_s": 2.783, "bytes": 10_819_191, "log_bytes": 3_144_848, "cloud_bytes": 7_620_246,
+    "thumbnail": true, "summary": null,
+    "messages": ["homing by method 18"], "recording": null, "lost_records": 0, "warnings": [],
+    "reception": {
+        "received": 2_516, "dropped_by_kernel": 0, "dropped_by_log": 0, "without_kernel_time": 0,
+        "from_others": 0,
+    },
+    "report": null,
+}))]
 pub struct ScanDetails {
     /// As in a list.
     #[serde(flatten)]

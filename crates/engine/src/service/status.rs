@@ -186,6 +186,33 @@ pub struct ClientsStatus {
 
 /// Status of the whole service: the body of `GET /api/v1/status`.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[schema(example = json!({
+    "version": "0.1.0", "device": "epos2", "simulated": false, "started_s": 1_795_684_672.186,
+    "now_s": 1_795_684_684.279,
+    "activity": {
+        "doing": "idle", "scan": null, "homes": false, "step": 0, "steps": 0, "from_deg": null,
+        "to_deg": null, "left_s": null, "received": 0,
+    },
+    "drive": {
+        "state": "connected", "problem": null, "port": "/dev/ttyUSB0", "link": "rs232",
+        "cia402": "switch-on disabled", "referenced": true, "angle_deg": -45.0, "speed_deg_s": 0.0,
+        "faults": [],
+    },
+    "lidar": {
+        "state": "connected", "problem": null, "model": "VLP-16", "return_mode": "strongest",
+        "rpm": 600.0, "received": 10_849, "packets_per_s": 754.0, "lost_packets": 0,
+        "dropped_by_kernel": 0,
+    },
+    "axis": {
+        "min_deg": -45.0, "max_deg": 0.0, "max_speed_deg_s": 98.0, "min_speed_deg_s": 0.05,
+        "max_accel_deg_s2": 10_000.0, "accel_deg_s2": 500.0, "home_deg": 0.0,
+    },
+    "disk": {
+        "free_bytes": 48_911_720_448_u64, "reserve_bytes": 1_000_000_000, "scans": 1,
+        "scans_bytes": 10_819_191, "keep_scans": 100, "keep_bytes": 50_000_000_000_u64,
+    },
+    "clients": {"events": 0, "dropped": 0},
+}))]
 #[non_exhaustive]
 pub struct ServiceStatus {
     /// Version of the program.

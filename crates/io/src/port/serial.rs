@@ -1,22 +1,22 @@
 //! A serial port through the `serialport` crate: exclusive, raw, 8N1.
 //!
-//! On Linux the crate waits with `ppoll`, so timeouts below a millisecond hold. The EPOS2 uses no
+//! The crate sets and locks the port. Bytes go through a descriptor of this program's own, as the
+//! crate waits before each write and makes an error with a text of each timeout. The EPOS2 uses no
 //! modem lines, parity or flow control.
 
-use std::fs;
-use std::io::{self, ErrorKind, Read, Write};
+use std::fs::{self, OpenOptions};
+use std::io::{self, ErrorKind};
 use std::os::fd::AsRawFd;
+use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
 
+use nix::fcntl::OFlag;
 use serialport::{ClearBuffer, SerialPort as _, TTYPort};
 use units::{Host, Span, Stamp};
 
-use super::wait::duration;
+use super::descriptor::DescriptorPort;
 use super::{Port, PortError};
-use crate::{clock, processes};
-
-const WRITE_TIMEOUT: Duration = Duration::from_millis(500);
+use crate::processes;
 
 /// Latency timer of a USB serial adapter: the time for which it buffers received bytes (FTDI,
 /// factory setting 16 ms).
@@ -37,11 +37,11 @@ pub enum LatencyTimer {
 /// An open serial port.
 #[derive(Debug)]
 pub struct SerialPort {
+    /// Holds the lock.
     tty: TTYPort,
-    name: String,
+    bytes: DescriptorPort,
     /// Latency timer of the USB adapter.
     pub latency: LatencyTimer,
-    timeout: Duration,
 }
 
 impl SerialPort {
@@ -53,78 +53,45 @@ impl SerialPort {
     pub fn open(path: impl AsRef<Path>, baud: u32) -> Result<Self, PortError> {
         let path = path.as_ref();
         let name = path.display().to_string();
-        let tty = serialport::new(name.as_str(), baud)
+        // Before the lock, which refuses any other.
+        let own = OpenOptions::new()
+            .read(true)
+            .write(true)
+            .custom_flags((OFlag::O_NOCTTY | OFlag::O_NONBLOCK).bits())
+            .open(path);
+        let locked = serialport::new(name.as_str(), baud)
             .exclusive(true)
-            .open_native()
-            .map_err(|e| open_error(path, baud, &e))?;
+            .open_native();
         // Input that an earlier client left unread.
-        tty.clear(ClearBuffer::All)
-            .map_err(|e| open_error(path, baud, &e))?;
+        let tty = locked.and_then(|tty| tty.clear(ClearBuffer::All).map(|()| tty));
+        let tty = match tty {
+            Ok(tty) => tty,
+            Err(error) => {
+                // The error names the processes that have the port open.
+                drop(own);
+                return Err(open_error(path, baud, &error));
+            }
+        };
+        let bytes = own.and_then(|own| Ok(DescriptorPort::new(own.into(), name.clone())?));
         Ok(Self {
             tty,
+            bytes: bytes.map_err(|source| PortError::Io {
+                port: name,
+                action: "open",
+                source,
+            })?,
             latency: set_low_latency(path),
-            name,
-            timeout: Duration::ZERO,
         })
     }
 
     pub(super) fn raw_fd(&self) -> std::os::fd::RawFd {
         self.tty.as_raw_fd()
     }
-
-    fn set_timeout(&mut self, timeout: Duration) {
-        if timeout != self.timeout && self.tty.set_timeout(timeout).is_ok() {
-            self.timeout = timeout;
-        }
-    }
-
-    fn io_error(&self, action: &'static str, source: io::Error) -> PortError {
-        match source.kind() {
-            // serialport gives BrokenPipe for a hang-up, NotFound for "no device", Other for EIO,
-            // ENXIO and ENODEV.
-            ErrorKind::BrokenPipe
-            | ErrorKind::NotFound
-            | ErrorKind::Other
-            | ErrorKind::UnexpectedEof => PortError::Disconnected {
-                port: self.name.clone(),
-                reason: source.to_string(),
-            },
-            _ => PortError::Io {
-                port: self.name.clone(),
-                action,
-                source,
-            },
-        }
-    }
 }
 
 impl Port for SerialPort {
     fn write_frame(&mut self, frame: &[u8]) -> Result<Stamp<Host>, PortError> {
-        let deadline = Instant::now() + WRITE_TIMEOUT;
-        self.set_timeout(WRITE_TIMEOUT);
-        let host = clock::now();
-        let mut written = 0;
-        while let Some(rest) = frame.get(written..).filter(|rest| !rest.is_empty()) {
-            match self.tty.write(rest) {
-                Ok(n) => written += n,
-                Err(e)
-                    if matches!(
-                        e.kind(),
-                        ErrorKind::Interrupted | ErrorKind::WouldBlock | ErrorKind::TimedOut
-                    ) =>
-                {
-                    if Instant::now() >= deadline {
-                        return Err(PortError::WriteTimeout {
-                            port: self.name.clone(),
-                            expected: frame.len(),
-                            got: written,
-                        });
-                    }
-                }
-                Err(e) => return Err(self.io_error("write", e)),
-            }
-        }
-        Ok(host)
+        self.bytes.write_frame(frame)
     }
 
     fn read(
@@ -132,30 +99,7 @@ impl Port for SerialPort {
         buffer: &mut [u8],
         timeout: Span,
     ) -> Result<Option<(usize, Stamp<Host>)>, PortError> {
-        if buffer.is_empty() {
-            return Ok(None);
-        }
-        let timeout = duration(timeout);
-        let deadline = Instant::now().checked_add(timeout);
-        self.set_timeout(timeout);
-        loop {
-            match self.tty.read(buffer) {
-                Ok(0) => {
-                    return Err(self.io_error("read", ErrorKind::UnexpectedEof.into()));
-                }
-                Ok(n) => return Ok(Some((n, clock::now()))),
-                Err(e) if matches!(e.kind(), ErrorKind::TimedOut | ErrorKind::WouldBlock) => {
-                    return Ok(None);
-                }
-                // A signal interrupted the read: continue for the rest of the time.
-                Err(e) if e.kind() == ErrorKind::Interrupted => {
-                    if let Some(deadline) = deadline {
-                        self.set_timeout(deadline.saturating_duration_since(Instant::now()));
-                    }
-                }
-                Err(e) => return Err(self.io_error("read", e)),
-            }
-        }
+        self.bytes.read(buffer, timeout)
     }
 }
 

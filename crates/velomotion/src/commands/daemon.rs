@@ -105,7 +105,7 @@ fn load(common: &Common) -> Result<config::Config, Failure> {
     let config = config::load(common.config.as_deref())?;
     let path = common.config.clone().or_else(config::usual_place);
     if let Some(path) = path.filter(|_| config.daemon.token.is_some()) {
-        config::daemon::warn_if_readable("token", &path);
+        config::daemon::warn_if_exposed("token", &path);
     }
     Ok(config)
 }

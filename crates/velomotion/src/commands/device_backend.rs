@@ -33,6 +33,9 @@ use crate::terminal::Progress;
 
 /// Between two polls of a capture's progress.
 const PROGRESS_POLL: Duration = Duration::from_millis(50);
+/// Longest wait for a daemon to make a cloud, behind those of other scans; then the command makes
+/// it itself. A cloud takes seconds per minute of scanning.
+const CLOUD_WAIT: Duration = Duration::from_secs(300);
 /// Between two polls of Ctrl-C.
 const INTERRUPT_POLL: Duration = Duration::from_millis(5);
 /// Polls of the progress between two updates of the lidar's status: 1 s.
@@ -161,7 +164,8 @@ impl RecordedCapture {
             && fields == Fields::FILE
             && Format::from_path(&plan.cloud) == Ok(Format::Ply);
         let scan = scan.filter(|_| is_stored || plan.scan.simulated);
-        let details = || scan.as_ref()?.finished(interrupt);
+        let until = Instant::now() + CLOUD_WAIT;
+        let details = || scan.as_ref()?.finished(interrupt, until);
         // A daemon of an earlier version does not say what is missing in a partial scan.
         let is_explained = |details: &ScanDetails| {
             details.scan.state == ScanState::Whole || details.recording.is_some()
@@ -359,10 +363,10 @@ impl DaemonCapture {
         self.client.get(&format!("/api/v1/scans/{}", self.id))
     }
 
-    /// The scan once the daemon has made its cloud, or has failed to; `None` where the daemon is
-    /// gone or Ctrl-C was pressed.
-    fn finished(&self, interrupt: &AtomicBool) -> Option<ScanDetails> {
-        while !interrupt.load(Ordering::Relaxed) {
+    /// The scan once the daemon has made its cloud, or has failed to; `None` if the daemon is gone
+    /// or has not done so by `until`, or Ctrl-C was pressed.
+    fn finished(&self, interrupt: &AtomicBool, until: Instant) -> Option<ScanDetails> {
+        while !interrupt.load(Ordering::Relaxed) && Instant::now() < until {
             let details = self.details().ok()?;
             if details.scan.state.is_final() {
                 return Some(details);

@@ -212,7 +212,11 @@ fn usage(error: &clap::Error) -> Failure {
     // A long list of values is help, which is not cut.
     let (message, values) = match message.split_once(" [possible values: ") {
         Some((message, values)) => (message, Some(values.trim_end_matches(']'))),
-        None => (message, None),
+        // The list has hidden subcommands; --help has the others.
+        None => match message.split_once(" [subcommands: ") {
+            Some((message, _)) => (message, None),
+            None => (message, None),
+        },
     };
     let values = values.map(|values| format!("use one of: {values}"));
     let message = match message.char_indices().nth(LONGEST_MESSAGE) {

@@ -30,7 +30,10 @@ fn info(arguments: &cli::Info, file: &Path) -> Result<CommandOutput, Failure> {
             Kind::Incomplete,
             format!("{} is incomplete: {truncated}", source.path().display()),
         )
-        .help("the report covers the existing part; velomotion replay makes a cloud of it")
+        .help(match report.sweeps.is_empty() {
+            true => "the report covers the existing part; velomotion replay --tilt none makes a cloud of it",
+            false => "the report covers the existing part; velomotion replay makes a cloud of it",
+        })
     });
     Ok(CommandOutput {
         failure,

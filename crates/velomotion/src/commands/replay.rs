@@ -132,10 +132,13 @@ fn replay(
             Some(_) => "copy the recording from its source again if you need the rest",
             None => "scan again if what is missing matters",
         };
-        Failure::new(Kind::Incomplete, format!("{}: {missing}", input.display())).help(format!(
-            "the cloud of what is there is {}; {help}",
-            cloud.display()
-        ))
+        let made = match (stdout, arguments.frames) {
+            (true, _) => "what is there is on stdout".to_owned(),
+            (_, Some(_)) => "the clouds of what is there are made".to_owned(),
+            _ => format!("the cloud of what is there is {}", cloud.display()),
+        };
+        Failure::new(Kind::Incomplete, format!("{}: {missing}", input.display()))
+            .help(format!("{made}; {help}"))
     });
     Ok(CommandOutput::scan(&scan, failure, stdout))
 }

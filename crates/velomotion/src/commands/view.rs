@@ -13,6 +13,7 @@ use cloud::formats::ply::PlyWriter;
 use cloud::read::positions;
 use cloud::{Fields, Points, Sink, SinkError, TiltTrack};
 use daemon::http::view::{FileState, ViewServer, ViewedFile, ViewedFiles};
+use engine::capture::completeness;
 use engine::document::Document;
 use engine::failure::{Failure, Kind};
 use engine::reconstruct::decoder_options::{DecoderRequest, decoder_options};
@@ -202,9 +203,17 @@ fn make_all(
                     let name = input.path().display();
                     progress.say(&format!("SIMULATED: {name} is not of a real scan"));
                 }
+                if let Some(missing) = &made.missing {
+                    let name = input.path().display();
+                    tracing::warn!("{name}: {}", missing.message);
+                }
                 files.update(index, |file| {
                     file.state = FileState::Ready;
                     file.points = Some(made.points);
+                    if let Some(missing) = &made.missing {
+                        file.error = Some(missing.message.clone());
+                        file.help.clone_from(&missing.help);
+                    }
                     file.simulated = made.simulated;
                     file.scanner = made.scanner;
                     file.cloud = Some(Arc::new(made.file));
@@ -234,6 +243,8 @@ struct MadeCloud {
     points: u64,
     simulated: bool,
     scanner: bool,
+    /// What it lacks.
+    missing: Option<Failure>,
 }
 
 fn no_scratch(error: std::io::Error) -> Failure {
@@ -275,6 +286,7 @@ fn log(source: &Source, share: &dyn Fn(f64), interrupt: &AtomicBool) -> Result<M
         points: scan.points,
         simulated: scan.contents.simulated,
         scanner: tilted,
+        missing: completeness::missing(&scan),
     })
 }
 
@@ -348,6 +360,7 @@ fn cloud(path: &Path, format: Format) -> Result<MadeCloud, Failure> {
                 simulated: contains(&head, SIMULATED),
                 scanner: contains(&head, FROM_AXIS),
                 file,
+                missing: None,
             });
         }
         file.seek(SeekFrom::Start(0)).map_err(wrong)?;
@@ -367,6 +380,7 @@ fn cloud(path: &Path, format: Format) -> Result<MadeCloud, Failure> {
         points: read.positions.len() as u64,
         simulated,
         scanner,
+        missing: None,
     })
 }
 
