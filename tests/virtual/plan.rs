@@ -127,7 +127,7 @@ fn chosen_settings_keep_their_limits_when_measured() {
             .unwrap_or_else(|| panic!("{limits:?}: {:?}", report.unmet));
         let row = &chosen.row;
         let planner = planner(at_m, limits);
-        let truth = measure(row, at_m, planner.predictor().places(), seed, 0.5);
+        let truth = measure(row, at_m, &planner.predictor().places(), seed, 0.5);
         let command = chosen.command.as_deref().unwrap();
         let command = command.trim_start_matches("velomotion capture ");
         let (error, gap) = (&row.error_mm, &row.gap_deg);
@@ -192,7 +192,7 @@ fn tight_limits_are_kept_when_measured() {
             .unwrap_or_else(|| panic!("{drawn:?}"));
         let row = &chosen.row;
         let late = random.below(11) as f64 / 10.0;
-        let truth = measure(row, at_m, free.predictor().places(), seed, late);
+        let truth = measure(row, at_m, &free.predictor().places(), seed, late);
         println!(
             "|{at_m:.1}|{:.2}|{:.3}|{}, {}, {}|{:.2}|{}, {}, {}|{:.2}|{late}|{:.2}|{:.2}|{:.2}|{:.3}|{:.3}|",
             drawn.error_mm.total,
@@ -267,7 +267,7 @@ fn choices_are_within_five_percent_of_the_best_by_brute_force() {
                     .map(|(a, b)| [a, b].map(|n| 90.0 * f64::from(n)))
                     .all(|starts_deg| {
                         let rays = rays(&scan.setting, at_m, starts_deg);
-                        let gaps = gaps(&rays, predictor.places()).unwrap();
+                        let gaps = gaps(&rays, &predictor.places()).unwrap();
                         quantile(&gaps, 0.99).unwrap().to_degrees() <= gap_deg
                     })
             };
@@ -283,7 +283,7 @@ fn choices_are_within_five_percent_of_the_best_by_brute_force() {
             continue;
         };
         let row = &chosen.row;
-        let truth = measure(row, at_m, predictor.places(), seed, 0.5);
+        let truth = measure(row, at_m, &predictor.places(), seed, 0.5);
         let command = chosen.command.as_deref().unwrap();
         println!(
             "|{at_m:.1}|{error_mm:.1}|{gap_deg:.2}|`{}`|{:.2}|{:.2}|{tried}|{:.1}|{:.3}|",

@@ -5,7 +5,9 @@ use rayon::prelude::*;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::{ErrorBudget, ErrorModel, PlanLidar, PlannedRays, StartedSweep, TiltSweep};
+use super::{
+    ErrorBudget, ErrorModel, PlanLidar, PlannedPlace, PlannedRays, StartedSweep, TiltSweep,
+};
 use crate::density::{Icosahedron, quantile};
 
 /// What a capture sets.
@@ -139,7 +141,7 @@ pub struct ScanPredictor {
     /// Requested gap, degrees.
     pub gap_deg: Option<f64>,
     /// Directions in view of the tilts.
-    places: Vec<DVec3>,
+    pub(super) places: Vec<PlannedPlace>,
 }
 
 impl ScanPredictor {
@@ -157,6 +159,7 @@ impl ScanPredictor {
             let centres = icosahedron.bins().iter().map(|bin| bin.centre);
             centres
                 .filter(|place| rays.is_in_view(*place, tilts_deg))
+                .map(|place| PlannedPlace::new(&rays, place, tilts_deg))
                 .collect()
         });
         Self {
@@ -170,8 +173,8 @@ impl ScanPredictor {
 
     /// Directions in view.
     #[must_use]
-    pub fn places(&self) -> &[DVec3] {
-        &self.places
+    pub fn places(&self) -> Vec<DVec3> {
+        self.places.iter().map(PlannedPlace::direction).collect()
     }
 
     /// What a scan gives.
@@ -241,7 +244,7 @@ impl ScanPredictor {
         }
     }
 
-    fn rays(&self, scan: &PlannedScan) -> PlannedRays {
+    pub(super) fn rays(&self, scan: &PlannedScan) -> PlannedRays {
         PlannedRays::new(&self.lidar, scan.setting.rpm, self.errors.range_m)
     }
 
@@ -249,7 +252,7 @@ impl ScanPredictor {
     fn gaps_deg(&self, scan: &PlannedScan, effort: GapEffort, start: u32) -> Vec<f64> {
         let (rays, sweeps) = (self.rays(scan), started(scan, start, effort.starts));
         let places = self.places.par_iter().step_by(effort.stride);
-        places.map(|place| rays.gap_deg(&sweeps, *place)).collect()
+        places.map(|place| rays.gap_deg(&sweeps, place)).collect()
     }
 
     /// The 99 % gap from few directions.
@@ -257,30 +260,11 @@ impl ScanPredictor {
         let gaps = self.gaps_deg(scan, GapEffort::ROUGH, 0);
         quantile(&gaps, 0.99).unwrap_or(180.0)
     }
-
-    /// Whether more than a share of the directions, and so many more, have no point within a gap,
-    /// at any of the azimuths at the start.
-    pub(super) fn exceeds(
-        &self,
-        scan: &PlannedScan,
-        gap_deg: f64,
-        effort: GapEffort,
-        (share, more): (f64, usize),
-    ) -> bool {
-        let rays = self.rays(scan);
-        let most = (self.places.len().div_ceil(effort.stride) as f64 * share) as usize + more;
-        (0..effort.starts).any(|start| {
-            let sweeps = started(scan, start, effort.starts);
-            let places = self.places.iter().step_by(effort.stride);
-            let unseen = places.filter(|place| !rays.is_within(&sweeps, **place, gap_deg));
-            unseen.take(most + 1).count() > most
-        })
-    }
 }
 
 /// Sweeps of a scan with one of so many azimuths at the start: evenly spaced for the first sweep,
 /// and by the golden ratio for later ones, since the time between sweeps is not controlled.
-fn started(scan: &PlannedScan, start: u32, starts: u32) -> Vec<StartedSweep> {
+pub(super) fn started(scan: &PlannedScan, start: u32, starts: u32) -> Vec<StartedSweep> {
     const GOLDEN: f64 = 0.618_033_988_749_895;
     let first = f64::from(start) / f64::from(starts);
     let begin = |(number, sweep): (usize, &TiltSweep)| StartedSweep {
