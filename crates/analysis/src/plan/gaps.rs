@@ -14,13 +14,22 @@ use super::place::{ElevationPath, LaserPass, PlannedPlace, SweepEnd, azimuth, lo
 use super::sweep::SweepMotion;
 use super::{PlanLidar, TiltSweep};
 
-/// A sweep and the azimuth of the lidar at its start, revolutions.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A sweep and the azimuth of the lidar at its start.
+#[derive(Clone, Copy, Debug)]
 pub struct StartedSweep {
-    /// The sweep.
-    pub sweep: TiltSweep,
-    /// The azimuth, 0..1.
-    pub start: f64,
+    motion: SweepMotion,
+    start: f64,
+}
+
+impl StartedSweep {
+    /// A sweep with the lidar at an azimuth of 0..1 revolutions at its start.
+    #[must_use]
+    pub fn new(sweep: &TiltSweep, start: f64) -> Self {
+        Self {
+            motion: sweep.motion(),
+            start,
+        }
+    }
 }
 
 /// A laser seen from the tilt axis.
@@ -168,11 +177,17 @@ impl PlannedRays {
         enough: f64,
         nearest: &mut f64,
     ) {
+        let motion = &started.motion;
+        let lines_deg = motion.peak_deg_s / self.revolutions_per_s;
+        let firings_deg = 360.0 * self.period_s * self.revolutions_per_s;
         let pass = SweepPass {
             rays: self,
             place,
-            motion: started.sweep.motion(),
+            motion,
             start: started.start,
+            lines_deg,
+            more: u8::from(lines_deg < 2.0 * firings_deg),
+            moved_rad: (motion.peak_deg_s * self.period_s).to_radians(),
         };
         pass.compare(enough, nearest);
     }
@@ -182,8 +197,15 @@ impl PlannedRays {
 struct SweepPass<'a> {
     rays: &'a PlannedRays,
     place: &'a PlannedPlace,
-    motion: SweepMotion,
+    motion: &'a SweepMotion,
     start: f64,
+    /// Greatest tilt per revolution.
+    lines_deg: f64,
+    /// Lines on each side to compare besides the next one: where lines are closer than firings, one
+    /// of them may have a firing nearer by.
+    more: u8,
+    /// Greatest tilt between two firings.
+    moved_rad: f64,
 }
 
 /// Part of a linear estimate of an elevation that is certain.
@@ -191,14 +213,11 @@ const CERTAIN: f64 = 0.97;
 
 impl SweepPass<'_> {
     fn compare(&self, enough: f64, nearest: &mut f64) {
-        let (rays, motion) = (self.rays, &self.motion);
+        let (rays, motion) = (self.rays, self.motion);
         let sweep = &motion.sweep;
-        let lines_deg = motion.peak_deg_s / rays.revolutions_per_s;
-        let firings_deg = 360.0 * rays.period_s * rays.revolutions_per_s;
-        // Where lines are closer than firings, one of the next lines may have a firing nearer by.
-        let more = i32::from(lines_deg < 2.0 * firings_deg);
         let low = sweep.from_deg.min(sweep.to_deg);
         let high = sweep.from_deg.max(sweep.to_deg);
+        let revolution_s = rays.revolutions_per_s.recip();
         for laser in self.place.passes() {
             if laser.tilt_deg < low || laser.tilt_deg > high {
                 continue;
@@ -206,20 +225,26 @@ impl SweepPass<'_> {
             let crosses_s = motion.time_s(laser.tilt_deg);
             let turned = self.start + crosses_s * rays.revolutions_per_s - laser.azimuth;
             let after = turned - turned.floor();
-            for line in -more..=1 + more {
-                let t = crosses_s + (f64::from(line) - after) / rays.revolutions_per_s;
-                if (0.0..=motion.whole_s).contains(&t) {
-                    self.compare_laser(laser, t, nearest);
+            for (next, outwards) in [(-after, -1.0), (1.0 - after, 1.0)] {
+                for line in 0..=self.more {
+                    let t = crosses_s + (next + outwards * f64::from(line)) * revolution_s;
+                    // Lines farther out are farther away.
+                    if !(0.0..=motion.whole_s).contains(&t)
+                        || !self.compare_laser(laser, t, nearest)
+                    {
+                        break;
+                    }
                 }
             }
             if *nearest <= enough {
                 return;
             }
         }
+        let more = i64::from(self.more);
         for end in self.place.ends() {
             let turned = self.start + motion.time_s(end.tilt_deg) * rays.revolutions_per_s;
             let before = (turned - end.azimuth).floor() as i64;
-            for number in before - i64::from(more)..=before + 1 + i64::from(more) {
+            for number in before - more..=before + 1 + more {
                 self.compare_lasers(end, number, nearest);
             }
             if *nearest <= enough {
@@ -228,34 +253,33 @@ impl SweepPass<'_> {
         }
     }
 
-    /// Compares the firing of a laser in a revolution that passes near the time.
-    fn compare_laser(&self, laser: &LaserPass, t: f64, nearest: &mut f64) {
-        let (rays, motion) = (self.rays, &self.motion);
-        let across = self.place.across();
+    /// Compares the firing of a laser in a revolution that passes near the time, unless it is too
+    /// far in elevation.
+    fn compare_laser(&self, laser: &LaserPass, t: f64, nearest: &mut f64) -> bool {
+        let (rays, motion) = (self.rays, self.motion);
         let past_deg = motion.angle_deg(t) - laser.tilt_deg;
-        // The azimuth changes with the tilt.
-        let t = t + laser.azimuth_per_deg * past_deg / rays.revolutions_per_s;
-        let tilt_deg = motion.angle_deg(t);
-        let past_deg = tilt_deg - laser.tilt_deg;
+        // The azimuth changes with the tilt, and the time of the pass with the azimuth.
+        let certain = CERTAIN * (1.0 - laser.azimuth_per_deg.abs() * self.lines_deg);
         let past_rad = past_deg.to_radians();
-        let moved = (motion.peak_deg_s * rays.period_s).to_radians();
-        let apart = CERTAIN * (laser.up_per_rad * past_rad).abs()
-            - 0.6 * across * past_rad * past_rad
-            - moved;
+        let bend = 0.6 * self.place.across() * past_rad * past_rad;
+        let apart = certain * (laser.up_per_rad * past_rad).abs() - bend - self.moved_rad;
         if apart > 0.0 && apart * apart > *nearest {
-            return;
+            return false;
         }
         let Some(ray) = rays.lasers.get(laser.number) else {
-            return;
+            return false;
         };
+        let t = t + laser.azimuth_per_deg * past_deg / rays.revolutions_per_s;
         let turned = self.start + t * rays.revolutions_per_s + ray.offset;
-        let ahead = azimuth(local(self.place.direction(), tilt_deg), turned) - turned;
+        let seen = local(self.place.direction(), motion.angle_deg(t));
+        let ahead = azimuth(seen, turned) - turned;
         self.compare_ray(ray, t + ahead / rays.revolutions_per_s, nearest);
+        true
     }
 
     /// Compares the lasers of one revolution near a tilt.
     fn compare_lasers(&self, end: &SweepEnd, number: i64, nearest: &mut f64) {
-        let (rays, motion) = (self.rays, &self.motion);
+        let (rays, motion) = (self.rays, self.motion);
         let place = self.place.direction();
         let time_of =
             |azimuth: f64| (number as f64 + azimuth - self.start) / rays.revolutions_per_s;
@@ -297,7 +321,7 @@ impl SweepPass<'_> {
 
     /// Compares the firing of a laser that is nearest to a time.
     fn compare_ray(&self, laser: &AxisRay, t: f64, nearest: &mut f64) {
-        let (rays, motion) = (self.rays, &self.motion);
+        let (rays, motion) = (self.rays, self.motion);
         // Before the start and after the end the first and the last firing are the nearest.
         let firings = ((motion.whole_s - laser.delay_s) / rays.period_s).floor();
         let azimuth_of = |firing: f64| {
@@ -340,7 +364,8 @@ mod tests {
     /// mount.
     fn rays(lidar: &PlanLidar, rpm: f64, range_m: f64, sweeps: &[StartedSweep]) -> Vec<DVec3> {
         let mut found = Vec::new();
-        for StartedSweep { sweep, start } in sweeps {
+        for StartedSweep { motion, start } in sweeps {
+            let sweep = motion.sweep;
             for firing in 0.. {
                 let begin_s = f64::from(firing) * lidar.firing_period_s;
                 if begin_s > sweep.duration_s() {
@@ -402,7 +427,7 @@ mod tests {
             let sweep = TiltSweep { from_deg: 0.0, to_deg, speed_deg_s, accel_deg_s2 };
             let back = TiltSweep { from_deg: to_deg, to_deg: 0.0, ..sweep };
             let sweeps = [sweep, back].into_iter().zip(starts);
-            let sweeps: Vec<_> = sweeps.map(|(sweep, start)| StartedSweep { sweep, start }).collect();
+            let sweeps: Vec<_> = sweeps.map(|(sweep, start)| StartedSweep::new(&sweep, start)).collect();
             let sweeps = if both_ways { &sweeps[..] } else { &sweeps[..1] };
             let planned = PlannedRays::new(&lidar, rpm, 10.0);
             let places: Vec<DVec3> = places().into_iter().filter(|p| planned.is_in_view(*p, [0.0, to_deg])).collect();
@@ -449,7 +474,7 @@ mod tests {
                 speed_deg_s,
                 accel_deg_s2,
             };
-            let sweeps = [StartedSweep { sweep, start }];
+            let sweeps = [StartedSweep::new(&sweep, start)];
             let planned = PlannedRays::new(&lidar, 2_400.0, 10.0);
             let in_view = |place: &DVec3| planned.is_in_view(*place, [0.0, -45.0]);
             let (seen, unseen): (Vec<DVec3>, Vec<DVec3>) = places().into_iter().partition(in_view);
@@ -489,7 +514,7 @@ mod tests {
             speed_deg_s: 56.25,
             accel_deg_s2: 500.0,
         };
-        let started = StartedSweep { sweep, start: 0.3 };
+        let started = StartedSweep::new(&sweep, 0.3);
         for ray in rays(&lidar, 600.0, 10.0, &[started]).iter().step_by(97) {
             let inwards = (*ray * (1.0 - 1e-9)).normalize();
             assert!(rays_at_10_m.is_in_view(inwards, [0.0, -45.0]) || ray.z.abs() > 0.2);

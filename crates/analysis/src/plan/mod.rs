@@ -9,6 +9,7 @@ mod figure;
 mod gaps;
 mod lidar;
 mod place;
+mod places;
 mod row;
 mod search;
 mod sweep;

@@ -8,7 +8,7 @@ use std::sync::atomic::Ordering::Relaxed;
 use rayon::prelude::*;
 
 use super::row::{GapEffort, started};
-use super::{PlanRow, PlannedScan, ScanPredictor};
+use super::{PlanRow, PlannedPlace, PlannedScan, ScanPredictor};
 use crate::tradeoff::front::front;
 
 /// Requested limits.
@@ -197,6 +197,10 @@ impl ScanPredictor {
     /// The first scan whose gaps are within the limit at all azimuths of the lidar at the start.
     fn fastest_within(&self, scans: &[&PlannedScan], gap_deg: f64) -> Option<PlanRow> {
         let gap_deg = KEPT * gap_deg;
+        let out_of_reach = |place: &&PlannedPlace| place.least_chord() > gap_deg.to_radians();
+        if self.places.iter().filter(out_of_reach).count() > self.most_unseen() {
+            return None;
+        }
         let mut places = HardestFirst::new(self.places.len());
         for block in scans.chunks(BLOCK) {
             let at_first = |scan: &&&PlannedScan| !self.exceeds(scan, gap_deg, (0, 1), &places);
@@ -213,6 +217,11 @@ impl ScanPredictor {
         None
     }
 
+    /// 1 % of the directions.
+    const fn most_unseen(&self) -> usize {
+        self.places.len() / 100
+    }
+
     /// Whether more than 1 % of the directions have no point within a gap, with one of so many
     /// azimuths at the start.
     fn exceeds(
@@ -223,7 +232,7 @@ impl ScanPredictor {
         places: &HardestFirst,
     ) -> bool {
         let (rays, sweeps) = (self.rays(scan), started(scan, start, starts));
-        let most = self.places.len() / 100;
+        let most = self.most_unseen();
         let unseen = places.order.iter().filter(|number| {
             let place = self.places.get(**number);
             let is_unseen = place.is_some_and(|place| !rays.is_within(&sweeps, place, gap_deg));
@@ -295,7 +304,7 @@ mod tests {
     }
 
     fn scans() -> Vec<PlannedScan> {
-        let speeds = (0..14).map(|step| 5.0 * 1.25_f64.powi(step));
+        let speeds = (0..9).map(|step| 5.0 * 1.4_f64.powi(step));
         let settings = speeds.flat_map(|speed| {
             [500.0, 5_000.0].into_iter().flat_map(move |accel| {
                 [600.0, 1_200.0]
@@ -325,7 +334,7 @@ mod tests {
             scans().iter().map(|scan| predictor.row(scan)).collect()
         };
         // Limits of the gap that one of the settings just keeps.
-        let tight = all.iter().step_by(9);
+        let tight = all.iter().step_by(7);
         let tight = tight.map(|row| (None, Some((1.0 + 1e-9) * row.gap_deg.p99 / KEPT)));
         let mut refused = Vec::new();
         for (error_mm, gap_deg) in tight.chain([
