@@ -236,8 +236,8 @@ pub struct Backup {
 }
 
 impl Backup {
-    /// Renames `path` if it exists. Dropping the guard restores it, unless [`Backup::replaced`] was
-    /// called.
+    /// Renames `path` if it exists. Dropping the guard restores it like [`Backup::restore`], unless
+    /// [`Backup::replaced`] was called.
     ///
     /// # Errors
     /// [`Kind::BadInput`] if it cannot be renamed.
@@ -268,13 +268,45 @@ impl Backup {
             let _ = std::fs::remove_file(aside);
         }
     }
+
+    /// Gives the older file its name again. A newer one of that name is kept beside it; returns
+    /// where it is.
+    #[must_use]
+    pub fn restore(mut self) -> PathBuf {
+        self.swap().unwrap_or_else(|| self.path.clone())
+    }
+
+    /// The new name of the newer file, where there is an older one.
+    fn swap(&mut self) -> Option<PathBuf> {
+        let aside = self.aside.take()?;
+        let newer = self.path.is_file().then(|| self.free_name());
+        if let Some(newer) = &newer
+            && std::fs::rename(&self.path, newer).is_err()
+        {
+            // The older one keeps its other name: neither is lost.
+            return None;
+        }
+        let _ = std::fs::rename(aside, &self.path);
+        newer
+    }
+
+    /// A name beside the file that no file has: `scan-new.pcapng`.
+    fn free_name(&self) -> PathBuf {
+        let stem = self.path.file_stem().unwrap_or_default().to_string_lossy();
+        let extension = self.path.extension().unwrap_or_default().to_string_lossy();
+        let name = |number: u64| match number {
+            1 => format!("{stem}-new.{extension}"),
+            _ => format!("{stem}-new-{number}.{extension}"),
+        };
+        let names = (1..).map(|number| self.path.with_file_name(name(number)));
+        let mut free = names.skip_while(|name| name.exists());
+        free.next().unwrap_or_else(|| self.path.clone())
+    }
 }
 
 impl Drop for Backup {
     fn drop(&mut self) {
-        if let Some(aside) = self.aside.take() {
-            let _ = std::fs::rename(aside, &self.path);
-        }
+        self.swap();
     }
 }
 
@@ -355,4 +387,35 @@ pub fn sink_failure(path: &Path, error: &SinkError) -> Failure {
         format!("the cloud {} could not be written: {error}", path.display()),
     )
     .help("free some space or choose another folder; velomotion replay makes the cloud again from its log")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Backup;
+
+    #[test]
+    fn neither_an_older_nor_a_newer_file_is_lost() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scan.pcapng");
+        let text = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
+        std::fs::write(&path, "older").unwrap();
+        for newer in ["scan-new.pcapng", "scan-new-2.pcapng"] {
+            let backup = Backup::put(&path).unwrap();
+            std::fs::write(&path, newer).unwrap();
+            assert_eq!(backup.restore(), folder.path().join(newer));
+            assert_eq!(
+                (text("scan.pcapng"), text(newer)),
+                ("older".into(), newer.into())
+            );
+        }
+        // Without a newer one.
+        assert_eq!(Backup::put(&path).unwrap().restore(), path);
+        drop(Backup::put(&path).unwrap());
+        assert_eq!(text("scan.pcapng"), "older");
+        let backup = Backup::put(&path).unwrap();
+        std::fs::write(&path, "newer").unwrap();
+        backup.replaced();
+        assert_eq!(text("scan.pcapng"), "newer");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3);
+    }
 }

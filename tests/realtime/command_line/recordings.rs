@@ -88,6 +88,17 @@ fn a_real_recording_becomes_a_cloud() {
     );
 }
 
+#[test]
+fn a_recording_goes_from_stdin_to_stdout() {
+    let output = Command::new(env!("CARGO_BIN_EXE_velomotion"))
+        .args(["replay", "-", "--tilt", "none", "-o", "-"])
+        .stdin(std::fs::File::open(recording("vlp16-strongest-gps.pcap")).unwrap())
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{output:?}");
+    assert!(output.stdout.starts_with(b"ply\n"));
+}
+
 /// A calling program learns of lost packets by its exit code, with `-q` too.
 #[test]
 fn a_recording_with_missing_packets_is_incomplete() {

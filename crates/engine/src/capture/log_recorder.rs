@@ -127,7 +127,7 @@ fn log_failure(error: &LogError) -> Failure {
         ),
         _ => (
             Kind::Incomplete,
-            "see whether the disk is full; what was written is there and can be replayed",
+            "see whether the disk is full; what was written is in the log",
         ),
     };
     Failure::new(kind, error.to_string()).help(help)

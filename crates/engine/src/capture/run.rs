@@ -327,6 +327,10 @@ pub fn conclude(
     (cloud, log): (&Path, &Path),
 ) -> Result<(ScanReport, Option<ScanFailure>), ScanFailure> {
     let log = log.display();
+    let earlier = match cloud.is_file() {
+        true => format!("; {} is that of an earlier scan", cloud.display()),
+        false => String::new(),
+    };
     Err(match (made, outcome.failure) {
         (Ok(mut scan), failure) => {
             // A daemon's report already has them.
@@ -350,7 +354,7 @@ pub fn conclude(
         }
         (Err(making), Some(cause)) => ScanFailure {
             cause: cause.warned(outcome.warnings),
-            no_cloud: Some(format!("there is no cloud: {}", making.message)),
+            no_cloud: Some(format!("there is no cloud: {}{earlier}", making.message)),
             saved: format!("the log is {log}"),
         },
         // The capture is complete.
@@ -358,9 +362,9 @@ pub fn conclude(
             saved: match making.kind {
                 // It needs a choice, such as one of two lidars, or lacks the positions of a sweep.
                 Kind::BadInput => format!(
-                    "the log is saved; make the cloud with velomotion replay {log} and what is named above"
+                    "the log is saved; make the cloud with velomotion replay {log} and what is named above{earlier}"
                 ),
-                _ => format!("the log is saved: velomotion replay {log} makes the cloud"),
+                _ => format!("the log is saved: velomotion replay {log} makes the cloud{earlier}"),
             },
             cause: Failure {
                 kind: match making.kind {

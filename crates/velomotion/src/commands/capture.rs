@@ -55,10 +55,14 @@ pub fn run(arguments: &cli::Capture, common: &Common) -> Result<CommandOutput, F
     let fields = arguments.output.fields();
     let (made, outcome) = recording.cloud(&plan, fields, target, &interrupt);
     // A log without a sweep does not replace an older one.
-    if !matches!(&made, Err(failure) if failure.kind == Kind::BadInput) {
-        older_log.replaced();
-    }
-    let concluded = run::conclude(made, outcome, (&plan.cloud, &plan.log));
+    let log = match &made {
+        Err(failure) if failure.kind == Kind::BadInput => older_log.restore(),
+        _ => {
+            older_log.replaced();
+            plan.log.clone()
+        }
+    };
+    let concluded = run::conclude(made, outcome, (&plan.cloud, &log));
     let (scan, failure) = concluded.map_err(ScanFailure::into_failure)?;
     let mut output = CommandOutput::scan(&scan, failure.map(ScanFailure::into_failure), stdout);
     if !stdout {

@@ -108,7 +108,10 @@ fn replay(
         .output
         .clone()
         .unwrap_or_else(|| default_paths::cloud_of(input));
-    output::two_files(input, &cloud)?;
+    // From stdin to stdout.
+    if input.as_os_str() != "-" {
+        output::two_files(input, &cloud)?;
+    }
     let plan = arguments.frames.map(|cut| FramePlan {
         cut: Degrees(cut),
         organised: arguments.organised,
