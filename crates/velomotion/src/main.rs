@@ -46,7 +46,9 @@ fn main() -> ExitCode {
                 Kind::Incomplete,
                 format!("cannot print the result: {error}"),
             )
-            .help("check the destination of stdout; the files are saved"),
+            .help(
+                "check the destination of stdout; what the command has written to files is saved",
+            ),
         ),
         _ => None,
     });

@@ -92,6 +92,8 @@ fn cut_off(place: &Place) {
     std::fs::write(place.path("begun.pcapng"), &log[..20_000]).unwrap();
     let advice = "replay --tilt none makes a cloud";
     place.fails("info begun.pcapng", 6, &["is incomplete", advice]);
+    let cut = ["the file is incomplete", "copy it from its source"];
+    place.fails("replay begun.pcapng", 3, &cut);
     let mut view = Command::new(env!("CARGO_BIN_EXE_velomotion"))
         .args(["view", "--no-open", "cut.pcapng"])
         .current_dir(place.0.path())

@@ -176,9 +176,20 @@ fn survey(request: &Reconstruction<'_>) -> Result<FirstPass, Failure> {
         request.check_interrupt()
     })?;
     let drive = survey.drive();
-    let alignment = survey
-        .solve(&config, &request.tilt, request.accuracy)
-        .map_err(cannot_scan(drive.map(|drive| drive.0)))?;
+    let solved = survey.solve(&config, &request.tilt, request.accuracy);
+    let alignment = solved.map_err(|error| {
+        let failure = cannot_scan(drive.map(|drive| drive.0))(error);
+        let Some(truncated) = &pass.truncated else {
+            return failure;
+        };
+        let message = format!(
+            "{}, and the file is incomplete ({truncated})",
+            failure.message
+        );
+        let help = failure.help.unwrap_or_default();
+        Failure::new(failure.kind, message)
+            .help(format!("copy it from its source again; otherwise: {help}"))
+    })?;
     Ok(FirstPass {
         config,
         drive,

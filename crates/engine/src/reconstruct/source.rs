@@ -354,10 +354,10 @@ pub fn failure(error: &RecordingError) -> Failure {
         }
         RecordingError::Read { .. } => "check the disk; copy the file and try the copy",
         RecordingError::Empty { .. } | RecordingError::Short { .. } => {
-            "the recording is empty: copy it from its source again"
+            "copy the recording from its source again"
         }
         RecordingError::Foreign { .. } => {
-            "give a pcap or pcapng with lidar packets, as tcpdump, Wireshark or velomotion capture write it"
+            "give a pcap or pcapng with lidar packets, as tcpdump, Wireshark or velomotion capture write it; velomotion view shows clouds"
         }
         RecordingError::Link { .. } => {
             "record on an Ethernet interface (tcpdump -i eth0 udp), or convert with editcap"
