@@ -9,7 +9,7 @@ pub struct ShortNumber(pub f64);
 impl fmt::Display for ShortNumber {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.0.abs() {
-            0.0 | 1e-4..1e15 => self.0.fmt(f),
+            0.0 | 1e-4..1e6 => self.0.fmt(f),
             _ => write!(f, "{:e}", self.0),
         }
     }
