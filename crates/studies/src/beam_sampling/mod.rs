@@ -258,12 +258,11 @@ fn errors(way: &SamplingMethod, shots: &SampledFirings, edges: &[SilhouetteEdge]
             }
         }
     });
-    // A share of nothing is no number.
-    let [off_5mm, off_50mm] = off.map(|count| f64::from(count) / edges.len() as f64);
+    let [off_5mm, off_50mm] = off.map(|count| f64::from(count) / edges.len().max(1) as f64);
     SamplingError {
         off_5mm,
         off_50mm,
-        wrong: f64::from(wrong) / f64::from(two),
+        wrong: f64::from(wrong) / f64::from(two.max(1)),
     }
 }
 
