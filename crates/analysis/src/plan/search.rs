@@ -1,10 +1,14 @@
 //! The search for a setting: a coarse grid for the table, and every setting in the order of its
 //! scan time for the choice.
 
+use std::cmp::Reverse;
+use std::sync::atomic::AtomicU32;
+use std::sync::atomic::Ordering::Relaxed;
+
 use rayon::prelude::*;
 
-use super::row::GapEffort;
-use super::{PlanRow, PlannedScan, ScanPredictor};
+use super::row::{GapEffort, started};
+use super::{PlanRow, PlannedPlace, PlannedScan, ScanPredictor};
 use crate::tradeoff::front::front;
 
 /// Requested limits.
@@ -56,10 +60,30 @@ const BLOCK: usize = 64;
 /// given time, and of all settings, whose gaps differ little.
 const FINALISTS: (usize, usize) = (12, 2);
 const FINALISTS_OF_ALL: (usize, usize) = (24, 6);
-/// Share of a third of the directions that may be without a point: 1 %, and a quarter for chance.
-const NEAR: f64 = 0.0125;
 /// Part of the given time below which scans are not compared for their density.
 const SHORT: f64 = 0.6;
+
+/// Directions, first those that most scans left without a point: they refuse a scan soonest. Their
+/// order changes no answer.
+struct HardestFirst {
+    order: Vec<usize>,
+    unseen: Vec<AtomicU32>,
+}
+
+impl HardestFirst {
+    fn new(places: usize) -> Self {
+        Self {
+            order: (0..places).collect(),
+            unseen: (0..places).map(|_| AtomicU32::new(0)).collect(),
+        }
+    }
+
+    fn sort(&mut self) {
+        let Self { order, unseen } = self;
+        let count = |number: &usize| unseen.get(*number).map(|count| count.load(Relaxed));
+        order.sort_by_key(|number| Reverse(count(number)));
+    }
+}
 
 impl ScanPredictor {
     /// Rows that no other scan beats in time, 99 % gap and error at once: the fastest of each of at
@@ -121,7 +145,8 @@ impl ScanPredictor {
         }
     }
 
-    /// The fastest of the scans that come nearest to a limit which none keeps.
+    /// The fastest of the scans that come nearest to a limit which none keeps, if
+    /// [`Self::choose`] finds none.
     #[must_use]
     pub fn nearest(&self, scans: &[PlannedScan], limits: &PlanLimits) -> Option<NearestScan> {
         let error_mm = |scan: &PlannedScan| self.errors.budget(&self.lidar, &scan.sweeps).total;
@@ -138,10 +163,11 @@ impl ScanPredictor {
             });
         }
         let scans = self.accurate(scans, limits);
-        let fastest = match limits.gap_deg {
+        // Without a limit of time the choice would have found it.
+        let fastest = limits.time_s.and_then(|_| match limits.gap_deg {
             Some(gap_deg) => self.fastest_within(&scans, gap_deg),
             None => self.densest_of_fastest(scans.clone()),
-        };
+        });
         if let Some(row) = fastest {
             return Some(NearestScan {
                 limit: LimitKind::Time,
@@ -168,30 +194,54 @@ impl ScanPredictor {
         scans
     }
 
+    /// The first scan whose gaps are within the limit at all azimuths of the lidar at the start.
     fn fastest_within(&self, scans: &[&PlannedScan], gap_deg: f64) -> Option<PlanRow> {
-        const NO_MORE: usize = 0;
         let gap_deg = KEPT * gap_deg;
+        let out_of_reach = |place: &&PlannedPlace| place.least_chord() > gap_deg.to_radians();
+        if self.places.iter().filter(out_of_reach).count() > self.most_unseen() {
+            return None;
+        }
+        let mut places = HardestFirst::new(self.places.len());
         for block in scans.chunks(BLOCK) {
-            let hopeful: Vec<&PlannedScan> = block
-                .par_iter()
-                .copied()
-                .filter(|scan| {
-                    // Three more than 1 % of few directions for chance.
-                    !self.exceeds(scan, gap_deg, GapEffort::ROUGH, (0.01, 3))
-                        && !self.exceeds(scan, gap_deg, GapEffort::ROW, (NEAR, NO_MORE))
-                })
-                .collect();
-            // As many at a time as there are threads: later ones are rarely needed.
-            for few in hopeful.chunks(rayon::current_num_threads()) {
-                let kept = few.par_iter().find_first(|scan| {
-                    !self.exceeds(scan, gap_deg, GapEffort::full(scan), (0.01, NO_MORE))
-                });
-                if let Some(scan) = kept {
+            let at_first = |scan: &&&PlannedScan| !self.exceeds(scan, gap_deg, (0, 1), &places);
+            let hopeful: Vec<&&PlannedScan> = block.par_iter().filter(at_first).collect();
+            for scan in hopeful {
+                let starts = GapEffort::full(scan).starts;
+                let others = (1..starts).into_par_iter();
+                if !others.any(|start| self.exceeds(scan, gap_deg, (start, starts), &places)) {
                     return Some(self.row(scan));
                 }
             }
+            places.sort();
         }
         None
+    }
+
+    /// 1 % of the directions.
+    const fn most_unseen(&self) -> usize {
+        self.places.len() / 100
+    }
+
+    /// Whether more than 1 % of the directions have no point within a gap, with one of so many
+    /// azimuths at the start.
+    fn exceeds(
+        &self,
+        scan: &PlannedScan,
+        gap_deg: f64,
+        (start, starts): (u32, u32),
+        places: &HardestFirst,
+    ) -> bool {
+        let (rays, sweeps) = (self.rays(scan), started(scan, start, starts));
+        let most = self.most_unseen();
+        let unseen = places.order.iter().filter(|number| {
+            let place = self.places.get(**number);
+            let is_unseen = place.is_some_and(|place| !rays.is_within(&sweeps, place, gap_deg));
+            if let (true, Some(count)) = (is_unseen, places.unseen.get(**number)) {
+                count.fetch_add(1, Relaxed);
+            }
+            is_unseen
+        });
+        unseen.take(most + 1).count() > most
     }
 
     /// Of the fastest scans, which take nearly the same time, the densest.
@@ -254,7 +304,7 @@ mod tests {
     }
 
     fn scans() -> Vec<PlannedScan> {
-        let speeds = (0..14).map(|step| 5.0 * 1.25_f64.powi(step));
+        let speeds = (0..9).map(|step| 5.0 * 1.4_f64.powi(step));
         let settings = speeds.flat_map(|speed| {
             [500.0, 5_000.0].into_iter().flat_map(move |accel| {
                 [600.0, 1_200.0]
@@ -283,8 +333,11 @@ mod tests {
             let predictor = predictor(None);
             scans().iter().map(|scan| predictor.row(scan)).collect()
         };
+        // Limits of the gap that one of the settings just keeps.
+        let tight = all.iter().step_by(7);
+        let tight = tight.map(|row| (None, Some((1.0 + 1e-9) * row.gap_deg.p99 / KEPT)));
         let mut refused = Vec::new();
-        for (error_mm, gap_deg) in [
+        for (error_mm, gap_deg) in tight.chain([
             (None, Some(2.0)),
             (None, Some(0.8)),
             (Some(6.0), Some(0.8)),
@@ -293,7 +346,7 @@ mod tests {
             (Some(4.0), None),
             (Some(1.0), None),
             (None, Some(0.05)),
-        ] {
+        ]) {
             let limits = PlanLimits {
                 error_mm,
                 gap_deg,
@@ -310,7 +363,15 @@ mod tests {
             match chosen {
                 Some(row) => {
                     assert!(fits(&&row), "{row:?}");
-                    assert!(row.scan_s <= 1.05 * best_s, "{best_s} {row:?}");
+                    let is_within = |row: &&PlanRow| {
+                        gap_deg.is_some_and(|limit| row.gap_deg.p99 <= KEPT * limit)
+                    };
+                    let fastest = all.iter().filter(fits).filter(is_within);
+                    let fastest = fastest.min_by(|a, b| a.scan_s.total_cmp(&b.scan_s));
+                    match fastest {
+                        Some(fastest) => assert_eq!(row.setting, fastest.setting),
+                        None => assert!(row.scan_s <= 1.05 * best_s, "{best_s} {row:?}"),
+                    }
                 }
                 None => {
                     assert_eq!(best_s, f64::INFINITY);

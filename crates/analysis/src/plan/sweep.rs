@@ -39,41 +39,72 @@ impl TiltSweep {
     /// and after.
     #[must_use]
     pub fn angle_deg(&self, t_s: f64) -> f64 {
-        let (peak, whole) = (self.peak_deg_s(), self.duration_s());
-        let ramp = peak / self.accel_deg_s2;
-        let t = t_s.clamp(0.0, whole);
-        let rising = |t: f64| {
-            if t < ramp {
-                0.5 * self.accel_deg_s2 * t * t
-            } else {
-                peak * (t - 0.5 * ramp)
-            }
-        };
-        let gone = if t <= whole / 2.0 {
-            rising(t)
-        } else {
-            self.way_deg() - rising(whole - t)
-        };
-        self.from_deg + gone.copysign(self.to_deg - self.from_deg)
+        self.motion().angle_deg(t_s)
     }
 
     /// Time from the start at which the tilt reaches an angle between its ends, seconds.
     #[must_use]
     pub fn time_s(&self, angle_deg: f64) -> f64 {
-        let (peak, whole, way) = (self.peak_deg_s(), self.duration_s(), self.way_deg());
-        let gone = (angle_deg - self.from_deg).abs().min(way);
-        let ramp = peak / self.accel_deg_s2;
-        let rising = |gone: f64| {
-            if gone < 0.5 * peak * ramp {
-                (2.0 * gone / self.accel_deg_s2).sqrt()
+        self.motion().time_s(angle_deg)
+    }
+
+    /// The sweep, for many angles and times.
+    pub(super) fn motion(&self) -> SweepMotion {
+        let peak_deg_s = self.peak_deg_s();
+        SweepMotion {
+            sweep: *self,
+            way_deg: self.way_deg(),
+            peak_deg_s,
+            ramp_s: peak_deg_s / self.accel_deg_s2,
+            whole_s: self.duration_s(),
+        }
+    }
+}
+
+/// A sweep with what angles and times need.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SweepMotion {
+    pub sweep: TiltSweep,
+    way_deg: f64,
+    pub peak_deg_s: f64,
+    ramp_s: f64,
+    /// Duration.
+    pub whole_s: f64,
+}
+
+impl SweepMotion {
+    /// [`TiltSweep::angle_deg`].
+    pub(super) fn angle_deg(&self, t_s: f64) -> f64 {
+        let t = t_s.clamp(0.0, self.whole_s);
+        let rising = |t: f64| {
+            if t < self.ramp_s {
+                0.5 * self.sweep.accel_deg_s2 * t * t
             } else {
-                gone / peak + 0.5 * ramp
+                self.peak_deg_s * (t - 0.5 * self.ramp_s)
             }
         };
-        if gone <= way / 2.0 {
+        let gone = if t <= self.whole_s / 2.0 {
+            rising(t)
+        } else {
+            self.way_deg - rising(self.whole_s - t)
+        };
+        self.sweep.from_deg + gone.copysign(self.sweep.to_deg - self.sweep.from_deg)
+    }
+
+    /// [`TiltSweep::time_s`].
+    pub(super) fn time_s(&self, angle_deg: f64) -> f64 {
+        let gone = (angle_deg - self.sweep.from_deg).abs().min(self.way_deg);
+        let rising = |gone: f64| {
+            if gone < 0.5 * self.peak_deg_s * self.ramp_s {
+                (2.0 * gone / self.sweep.accel_deg_s2).sqrt()
+            } else {
+                gone / self.peak_deg_s + 0.5 * self.ramp_s
+            }
+        };
+        if gone <= self.way_deg / 2.0 {
             rising(gone)
         } else {
-            whole - rising(way - gone)
+            self.whole_s - rising(self.way_deg - gone)
         }
     }
 }

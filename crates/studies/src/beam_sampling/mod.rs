@@ -258,11 +258,12 @@ fn errors(way: &SamplingMethod, shots: &SampledFirings, edges: &[SilhouetteEdge]
             }
         }
     });
-    let [off_5mm, off_50mm] = off.map(|count| f64::from(count) / edges.len().max(1) as f64);
+    // A share of nothing is no number.
+    let [off_5mm, off_50mm] = off.map(|count| f64::from(count) / edges.len() as f64);
     SamplingError {
         off_5mm,
         off_50mm,
-        wrong: f64::from(wrong) / f64::from(two.max(1)),
+        wrong: f64::from(wrong) / f64::from(two),
     }
 }
 

@@ -232,8 +232,9 @@ fn choice(chosen: &CommandRow, at_m: f64) -> Vec<String> {
             row.resolution_deg,
         ),
         format!(
-            "gap at {at_m} m: 50 % of directions {:.2} deg ({:.0} mm), 95 % {:.2} deg ({:.0} mm), 99 % {:.2} deg ({:.0} mm), all {:.2} deg \
-             ({:.0} mm); without a point within the limit: {:.2} %",
+            "gap at {at_m} m: 50 % of directions {:.2} deg ({:.0} mm), 95 % {:.2} deg ({:.0} mm), 99 % {:.2} deg ({:.0} mm), the widest found \
+             {:.2} deg ({:.0} mm); without a point within the limit: {:.2} %; with the lidar at {:.0} deg at the start, which a capture does not \
+             control, 99 % {:.2} deg",
             gap.p50,
             mm.p50,
             gap.p95,
@@ -243,6 +244,8 @@ fn choice(chosen: &CommandRow, at_m: f64) -> Vec<String> {
             gap.worst,
             mm.worst,
             100.0 * row.share_without_point,
+            row.best_start_deg,
+            row.best_start_p99_deg,
         ),
         format!(
             "error at {at_m} m in mm, one standard deviation: range {:.2}, its steps {:.2}, azimuth {:.2}, tilt angle {:.2}, clock {:.3}, \
