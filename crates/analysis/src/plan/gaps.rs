@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 
-use super::place::{ElevationPath, LaserPass, PlannedPlace, SweepEnd, azimuth, local};
+use super::place::{AxisRay, ElevationPath, LaserPass, PlannedPlace, SweepEnd, azimuth, local};
 use super::sweep::SweepMotion;
 use super::{PlanLidar, TiltSweep};
 
@@ -30,19 +30,6 @@ impl StartedSweep {
             start,
         }
     }
-}
-
-/// A laser seen from the tilt axis.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct AxisRay {
-    /// Elevation of its points at the given distance, seen from the origin of the base, with sine
-    /// and cosine.
-    elevation_rad: f64,
-    pub sin: f64,
-    cos: f64,
-    /// Revolutions added to the azimuth.
-    pub offset: f64,
-    delay_s: f64,
 }
 
 /// Rays of a lidar that end at one distance from the origin of the base.
@@ -134,9 +121,10 @@ impl PlannedRays {
         least <= high.sin && most >= low.sin
     }
 
-    /// The lasers by elevation.
-    pub(super) fn lasers(&self) -> &[AxisRay] {
-        &self.lasers
+    /// A direction for sweeps between two tilts. Rays at other rates of the lidar pass it alike.
+    #[must_use]
+    pub fn place(&self, direction: DVec3, tilts_deg: [f64; 2]) -> PlannedPlace {
+        PlannedPlace::new(&self.lasers, direction, tilts_deg)
     }
 
     /// The angle from a direction to the nearest ray of any of the sweeps, degrees; infinite

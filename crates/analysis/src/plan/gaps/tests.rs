@@ -81,7 +81,7 @@ proptest! {
         let mut sum = 0.0;
         let slow = gaps(&rays(&lidar, rpm, 10.0, sweeps), &places).unwrap();
         for (place, slow) in places.iter().zip(slow) {
-            let place = PlannedPlace::new(&planned, *place, [0.0, to_deg]);
+            let place = planned.place(*place, [0.0, to_deg]);
             let fast = planned.gap_deg(sweeps, &place);
             let slow = slow.to_degrees();
             // No ray is nearer than the nearest; one of another revolution may be nearer by a
@@ -129,7 +129,7 @@ fn gaps_of_planar_scanners_agree_with_the_analysis_of_all_rays() {
         let slow = gaps(&rays, &seen).unwrap();
         let mut sum = 0.0;
         for (place, slow) in seen.iter().zip(slow) {
-            let planned_place = PlannedPlace::new(&planned, *place, [0.0, -45.0]);
+            let planned_place = planned.place(*place, [0.0, -45.0]);
             let fast = planned.gap_deg(&sweeps, &planned_place);
             let slow = slow.to_degrees();
             assert!(
