@@ -202,7 +202,8 @@ fn tight_limits_are_kept_when_measured() {
         let drawn = free.predictor().row(scan);
         let limits = PlanLimits {
             error_mm: Some(drawn.error_mm.total),
-            gap_deg: Some(drawn.gap_deg.p99),
+            // A choice stays 1 % within the limit.
+            gap_deg: Some(drawn.gap_deg.p99 / 0.99),
             time_s: None,
         };
         let chosen = plan(at_m, limits)
@@ -214,7 +215,7 @@ fn tight_limits_are_kept_when_measured() {
         println!(
             "|{at_m:.1}|{:.2}|{:.3}|{}, {}, {}|{:.2}|{}, {}, {}|{:.2}|{late}|{:.2}|{:.2}|{:.2}|{:.3}|{:.3}|",
             drawn.error_mm.total,
-            drawn.gap_deg.p99,
+            drawn.gap_deg.p99 / 0.99,
             drawn.setting.speed_deg_s,
             drawn.setting.accel_deg_s2,
             drawn.setting.sweeps,
@@ -233,7 +234,7 @@ fn tight_limits_are_kept_when_measured() {
             truth.error_mm <= drawn.error_mm.total && truth.p99_deg <= drawn.gap_deg.p99,
             "{chosen:?} {truth:?}"
         );
-        // The search tries every 2 % of speed, and stays a little within the limit.
+        // The search tries every 2 % of speed and 5 % of the ramps.
         assert!(
             row.scan_s <= 1.05 * drawn.scan_s && truth.scan_s <= 1.05 * row.scan_s,
             "{drawn:?} {chosen:?} {truth:?}"
@@ -261,10 +262,10 @@ fn rays(setting: &ScanSetting, at_m: f64, starts_deg: [f64; 2]) -> Vec<DVec3> {
 
 /// Ten other requests, against a slow search without the planner's gaps and short cuts: speeds 5 %
 /// and ramps 20 % apart in the order of scan time, the angle from every direction in view to the
-/// nearest of all rays, and the worst of four azimuths at the start of each sweep, which nothing
-/// controls. The choice is captured and measured.
+/// nearest of all rays, and the worst of 48 azimuths at the start of one sweep, which nothing
+/// controls, or of 144 pairs at the starts of two. The choice is captured and measured.
 #[test]
-#[ignore = "takes a quarter of an hour"]
+#[ignore = "takes an hour and more"]
 fn choices_are_within_five_percent_of_the_best_by_brute_force() {
     println!(
         "|at m|error mm|gap deg|capture|scan s|best by brute force|settings tried|error mm|99 % gap|"
@@ -279,16 +280,23 @@ fn choices_are_within_five_percent_of_the_best_by_brute_force() {
         let mut tried = 0;
         let best = scans.iter().find(|scan| {
             let budget = predictor.errors.budget(&predictor.lidar, &scan.sweeps);
+            let keeps_gap_at = |starts_deg: [f64; 2]| {
+                let rays = rays(&scan.setting, at_m, starts_deg);
+                let gaps = gaps(&rays, &places).unwrap();
+                quantile(&gaps, 0.99).unwrap().to_degrees() <= gap_deg
+            };
+            // Few azimuths refuse most; of few revolutions the gap depends on every 15 degrees.
+            let has_two = scan.setting.sweeps > 1;
+            let counts = if has_two { [4, 12] } else { [4, 48] };
             let keeps_gap = || {
-                let later = if scan.setting.sweeps > 1 { 4 } else { 1 };
-                let starts = (0..4).flat_map(|first| (0..later).map(move |other| (first, other)));
-                starts
-                    .map(|(a, b)| [a, b].map(|n| 90.0 * f64::from(n)))
-                    .all(|starts_deg| {
-                        let rays = rays(&scan.setting, at_m, starts_deg);
-                        let gaps = gaps(&rays, &places).unwrap();
-                        quantile(&gaps, 0.99).unwrap().to_degrees() <= gap_deg
-                    })
+                counts.into_iter().all(|count| {
+                    let others = if has_two { count } else { 1 };
+                    let starts =
+                        (0..count).flat_map(|first| (0..others).map(move |other| [first, other]));
+                    let mut starts =
+                        starts.map(|pair| pair.map(|n| 360.0 * f64::from(n) / f64::from(count)));
+                    starts.all(keeps_gap_at)
+                })
             };
             tried += 1;
             budget.total <= error_mm && keeps_gap()

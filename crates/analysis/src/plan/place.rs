@@ -4,7 +4,18 @@ use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 
-use super::PlannedRays;
+/// A laser seen from the tilt axis.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct AxisRay {
+    /// Elevation of its points at the given distance, seen from the origin of the base, with sine
+    /// and cosine.
+    pub elevation_rad: f64,
+    pub sin: f64,
+    pub cos: f64,
+    /// Revolutions added to the azimuth.
+    pub offset: f64,
+    pub delay_s: f64,
+}
 
 /// A direction and the tilts at which the lasers pass it. They depend on no speed, so that one
 /// place serves many scans.
@@ -41,30 +52,25 @@ pub(super) struct SweepEnd {
 }
 
 impl PlannedPlace {
-    /// A direction for sweeps between two tilts. Rays at other rates of the lidar pass it alike.
-    #[must_use]
-    pub fn new(rays: &PlannedRays, direction: DVec3, [a_deg, b_deg]: [f64; 2]) -> Self {
+    /// A direction for sweeps between two tilts, with the lasers by elevation.
+    pub(super) fn new(lasers: &[AxisRay], direction: DVec3, [a_deg, b_deg]: [f64; 2]) -> Self {
         let path = ElevationPath::new(direction, [a_deg.min(b_deg), a_deg.max(b_deg)]);
-        let passes = rays
-            .lasers()
-            .iter()
-            .enumerate()
-            .flat_map(|(number, laser)| {
-                path.at_deg(laser.sin).map(move |tilt_deg| {
-                    let seen = local(direction, tilt_deg);
-                    let level2 = seen.x * seen.x + seen.y * seen.y;
-                    LaserPass {
-                        number,
-                        tilt_deg,
-                        azimuth: azimuth(seen, 0.0) - laser.offset,
-                        azimuth_per_deg: -seen.y * seen.z / level2 / 360.0,
-                        up_per_rad: seen.x,
-                    }
-                })
-            });
+        let passes = lasers.iter().enumerate().flat_map(|(number, laser)| {
+            path.at_deg(laser.sin).map(move |tilt_deg| {
+                let seen = local(direction, tilt_deg);
+                let level2 = seen.x * seen.x + seen.y * seen.y;
+                LaserPass {
+                    number,
+                    tilt_deg,
+                    azimuth: azimuth(seen, 0.0) - laser.offset,
+                    azimuth_per_deg: -seen.y * seen.z / level2 / 360.0,
+                    up_per_rad: seen.x,
+                }
+            })
+        });
         let ends = path.turning_deg().chain([a_deg, b_deg]).map(|tilt_deg| {
             let seen = local(direction, tilt_deg);
-            let apart = rays.lasers().iter().map(|laser| (laser.sin - seen.z).abs());
+            let apart = lasers.iter().map(|laser| (laser.sin - seen.z).abs());
             SweepEnd {
                 tilt_deg,
                 azimuth: azimuth(seen, 0.0),

@@ -171,7 +171,7 @@ impl ScanPredictor {
     ) -> Self {
         let rays = PlannedRays::new(&lidar, 600.0, errors.range_m);
         let in_view = |place: &DVec3| rays.is_in_view(*place, tilts_deg);
-        let place = |place| PlannedPlace::new(&rays, place, tilts_deg);
+        let place = |place| rays.place(place, tilts_deg);
         let places = evenly_spread(DIRECTIONS).filter(in_view).map(place);
         let random_places = random().filter(in_view).take(RANDOM_DIRECTIONS).map(place);
         Self {
@@ -274,7 +274,7 @@ impl ScanPredictor {
     ) -> f64 {
         let (rays, sweeps) = (self.rays(scan), started(scan, start, effort.starts));
         let gap = |place: DVec3| {
-            let place = PlannedPlace::new(&rays, place, self.tilts_deg);
+            let place = rays.place(place, self.tilts_deg);
             rays.gap_deg(&sweeps, &place)
         };
         let in_view = |place: &DVec3| rays.is_in_view(*place, self.tilts_deg);
@@ -379,7 +379,7 @@ mod tests {
             let gaps = |others: &[DVec3]| -> Vec<f64> {
                 let others = others.par_iter().map(|place| place.normalize());
                 let seen = others.filter(|place| rays.is_in_view(*place, tilts_deg));
-                let place = |place| PlannedPlace::new(&rays, place, tilts_deg);
+                let place = |place| rays.place(place, tilts_deg);
                 seen.map(|direction| rays.gap_deg(&started, &place(direction)))
                     .collect()
             };

@@ -56,10 +56,8 @@ const KEPT: f64 = 0.99;
 const NEARLY_FASTEST: f64 = 1.03;
 /// Settings examined at a time.
 const BLOCK: usize = 64;
-/// Settings of which the densest is chosen by a third of the directions, and of these by all: in a
-/// given time, and of all settings, whose gaps differ little.
+/// Settings of which the densest is chosen by some of the directions, and of these by all.
 const FINALISTS: (usize, usize) = (12, 2);
-const FINALISTS_OF_ALL: (usize, usize) = (24, 6);
 /// Part of the given time below which scans are not compared for their density.
 const SHORT: f64 = 0.6;
 
@@ -130,17 +128,29 @@ impl ScanPredictor {
         kept.map(|(row, _)| row).collect()
     }
 
-    /// The fastest scan within the limits; with a limit of time only, the densest; with one of the
-    /// error only, the densest of the fastest. `None` if there is none, or no limit.
+    /// The fastest scan within the limits, or a faster one of those `nearby`; with a limit of time
+    /// only, the densest; with one of the error only, the densest of the fastest. `None` if there
+    /// is none, or no limit.
     #[must_use]
-    pub fn choose(&self, scans: &[PlannedScan], limits: &PlanLimits) -> Option<PlanRow> {
+    pub fn choose(
+        &self,
+        scans: &[PlannedScan],
+        nearby: impl Fn(&PlannedScan) -> Vec<PlannedScan>,
+        limits: &PlanLimits,
+    ) -> Option<PlanRow> {
         let is_short = |scan: &&PlannedScan| limits.time_s.is_none_or(|most| scan.scan_s <= most);
         let mut scans = self.accurate(scans, limits);
         scans.retain(is_short);
         match (limits.gap_deg, limits.error_mm, limits.time_s) {
-            (Some(gap_deg), ..) => self.fastest_within(&scans, gap_deg),
+            (Some(gap_deg), ..) => {
+                let found = self.fastest_within(&scans, gap_deg)?;
+                let mut faster = nearby(found);
+                faster.retain(|scan| scan.scan_s < found.scan_s);
+                let faster = self.fastest_within(&self.accurate(&faster, limits), gap_deg);
+                Some(self.row(faster.unwrap_or(found)))
+            }
             (None, Some(_), _) => self.densest_of_fastest(scans),
-            (None, None, Some(time_s)) => self.densest(scans, time_s, FINALISTS),
+            (None, None, Some(time_s)) => self.densest(scans, time_s),
             (None, None, None) => None,
         }
     }
@@ -165,7 +175,9 @@ impl ScanPredictor {
         let scans = self.accurate(scans, limits);
         // Without a limit of time the choice would have found it.
         let fastest = limits.time_s.and_then(|_| match limits.gap_deg {
-            Some(gap_deg) => self.fastest_within(&scans, gap_deg),
+            Some(gap_deg) => self
+                .fastest_within(&scans, gap_deg)
+                .map(|scan| self.row(scan)),
             None => self.densest_of_fastest(scans.clone()),
         });
         if let Some(row) = fastest {
@@ -175,12 +187,12 @@ impl ScanPredictor {
                 row,
             });
         }
-        let densest = self.densest(scans.clone(), f64::INFINITY, FINALISTS_OF_ALL)?;
+        let densest = self.densest(scans.clone(), f64::INFINITY)?;
         let cheaper = self.fastest_within(&scans, NEARLY_LEAST * densest.gap_deg.p99);
         Some(NearestScan {
             limit: LimitKind::Gap,
             with_others: limits.error_mm.is_some(),
-            row: cheaper.unwrap_or(densest),
+            row: cheaper.map_or(densest, |scan| self.row(scan)),
         })
     }
 
@@ -195,7 +207,11 @@ impl ScanPredictor {
     }
 
     /// The first scan whose gaps are within the limit at all azimuths of the lidar at the start.
-    fn fastest_within(&self, scans: &[&PlannedScan], gap_deg: f64) -> Option<PlanRow> {
+    fn fastest_within<'a>(
+        &self,
+        scans: &[&'a PlannedScan],
+        gap_deg: f64,
+    ) -> Option<&'a PlannedScan> {
         let gap_deg = KEPT * gap_deg;
         let out_of_reach = |place: &&PlannedPlace| place.least_chord() > gap_deg.to_radians();
         if self.places.iter().filter(out_of_reach).count() > self.most_unseen() {
@@ -204,12 +220,12 @@ impl ScanPredictor {
         let mut places = HardestFirst::new(self.places.len());
         for block in scans.chunks(BLOCK) {
             let at_first = |scan: &&&PlannedScan| !self.exceeds(scan, gap_deg, (0, 1), &places);
-            let hopeful: Vec<&&PlannedScan> = block.par_iter().filter(at_first).collect();
+            let hopeful: Vec<&&'a PlannedScan> = block.par_iter().filter(at_first).collect();
             for scan in hopeful {
                 let starts = GapEffort::full(scan).starts;
                 let others = (1..starts).into_par_iter();
                 if !others.any(|start| self.exceeds(scan, gap_deg, (start, starts), &places)) {
-                    return Some(self.row(scan));
+                    return Some(*scan);
                 }
             }
             places.sort();
@@ -248,15 +264,11 @@ impl ScanPredictor {
     fn densest_of_fastest(&self, mut scans: Vec<&PlannedScan>) -> Option<PlanRow> {
         let most_s = NEARLY_FASTEST * scans.first()?.scan_s;
         scans.retain(|scan| scan.scan_s <= most_s);
-        self.densest(scans, most_s, FINALISTS)
+        self.densest(scans, most_s)
     }
 
-    fn densest(
-        &self,
-        mut scans: Vec<&PlannedScan>,
-        time_s: f64,
-        (roughly, briefly): (usize, usize),
-    ) -> Option<PlanRow> {
+    fn densest(&self, mut scans: Vec<&PlannedScan>, time_s: f64) -> Option<PlanRow> {
+        let (roughly, briefly) = FINALISTS;
         let longest_s = scans.last()?.scan_s.min(time_s);
         scans.retain(|scan| scan.scan_s >= SHORT * longest_s);
         let rough = scans.par_iter().map(|scan| self.rough_p99_deg(scan));
@@ -326,6 +338,10 @@ mod tests {
         ScanPredictor::new(vlp_16(), errors, gap_deg, [0.0, -45.0])
     }
 
+    fn none(_: &PlannedScan) -> Vec<PlannedScan> {
+        Vec::new()
+    }
+
     /// Against every setting at full effort.
     #[test]
     fn choices_agree_with_brute_force() {
@@ -358,7 +374,7 @@ mod tests {
             };
             let best = all.iter().filter(fits).map(|row| row.scan_s);
             let best_s = best.fold(f64::INFINITY, f64::min);
-            let chosen = predictor(gap_deg).choose(&scans(), &limits);
+            let chosen = predictor(gap_deg).choose(&scans(), none, &limits);
             println!("{limits:?}: {best_s} {chosen:?}");
             match chosen {
                 Some(row) => {
@@ -403,13 +419,13 @@ mod tests {
             let best = best
                 .map(|row| row.gap_deg.p99)
                 .fold(f64::INFINITY, f64::min);
-            let row = predictor(None).choose(&scans(), &limits).unwrap();
+            let row = predictor(None).choose(&scans(), none, &limits).unwrap();
             assert!(
                 row.scan_s <= time_s && row.gap_deg.p99 <= 1.05 * best,
                 "{best} {row:?}"
             );
         }
-        let free = predictor(None).choose(&scans(), &PlanLimits::default());
+        let free = predictor(None).choose(&scans(), none, &PlanLimits::default());
         assert_eq!(free, None);
     }
 

@@ -3,6 +3,7 @@
 //! `analysis::plan` predicts; the moves are those that [`super::moves`] plans for the drive.
 
 mod report;
+mod settings;
 
 use analysis::plan::{
     ErrorBudget, ErrorModel, LimitKind, LinkTiming, NearestScan, PlanLimits, PlanRow, PlannedScan,
@@ -11,7 +12,7 @@ use analysis::plan::{
 use drive::AxisConfig;
 use protocol::vlp16::Model;
 use sim::RigLidar;
-use units::{Degrees, Rpm, ShortNumber};
+use units::{Degrees, ShortNumber};
 
 use super::moves::{self, Step};
 use super::request::{CapturePlan, sweep_request};
@@ -53,10 +54,6 @@ pub const USUAL_M: f64 = 20.0;
 const HOMING_S: f64 = 0.62;
 /// Time between two moves: at rest before and after, and the commands; seconds.
 const STEP_S: f64 = 0.15;
-/// Gentlest ramp to choose from, as a part of the device's: a gentler one loads no head more.
-const GENTLEST: f64 = 0.03;
-/// Numbers of sweeps to choose from.
-const SWEEPS: [u32; 2] = [1, 2];
 /// Ratios of neighbouring speeds and of neighbouring ramps: of the search, and of the table.
 const FINE: [f64; 2] = [1.02, 1.25];
 const COARSE: [f64; 2] = [1.2, 2.0];
@@ -282,7 +279,8 @@ impl ScanPlanner {
         } else {
             Vec::new()
         };
-        let mut chosen = self.predictor.choose(&scans, limits);
+        let nearby = |scan: &PlannedScan| self.nearby(&scan.setting);
+        let mut chosen = self.predictor.choose(&scans, nearby, limits);
         let mut nearest = match &chosen {
             None if has_limits => self.predictor.nearest(&scans, limits),
             _ => None,
@@ -313,51 +311,6 @@ impl ScanPlanner {
     #[must_use]
     pub const fn predictor(&self) -> &ScanPredictor {
         &self.predictor
-    }
-
-    /// Every setting, with speeds and ramps in such ratios.
-    #[must_use]
-    pub fn scans(&self, [speed_ratio, ramp_ratio]: [f64; 2]) -> Vec<PlannedScan> {
-        let most = self.axis.max_speed.0;
-        let mut speeds = vec![most];
-        let mut next = f64::from(most) / speed_ratio;
-        while next >= 1.0 {
-            let rpm = next.round() as u32;
-            if speeds.last() != Some(&rpm) {
-                speeds.push(rpm);
-            }
-            // Whole revolutions: slow speeds are more than the ratio apart.
-            next = (next / speed_ratio).min(f64::from(rpm) - 0.5);
-        }
-        let ramps: Vec<f64> = std::iter::successors(Some(1.0), |ramp| Some(ramp / ramp_ratio))
-            .take_while(|ramp| *ramp >= GENTLEST)
-            .collect();
-        let of_speed = |speed: &u32| {
-            let settings = ramps.iter().flat_map(|ramp| SWEEPS.map(|n| (ramp, n)));
-            // A ramp that the axis refuses is no setting.
-            let moves = settings.filter_map(|(ramp, sweeps)| {
-                self.steps(&self.capture(Rpm(*speed), *ramp, sweeps)).ok()
-            });
-            let scans = moves.flat_map(|steps| {
-                let rates = self.request.rpm.iter();
-                rates.map(|rpm| self.scan(&steps, *rpm)).collect::<Vec<_>>()
-            });
-            scans.collect::<Vec<_>>()
-        };
-        speeds.iter().flat_map(of_speed).collect()
-    }
-
-    /// A capture with a part of the device's ramps.
-    fn capture(&self, speed: Rpm, ramp: f64, sweeps: u32) -> CaptureRequest {
-        CaptureRequest {
-            speed_deg_s: self.axis.gearing.rate(speed).0,
-            accel_deg_s2: Some(ramp * self.device.accel_deg_s2),
-            both_ways: sweeps > 1,
-            sweeps: Some(sweeps),
-            from_deg: self.request.from_deg,
-            to_deg: self.request.to_deg,
-            ..CaptureRequest::default()
-        }
     }
 
     fn steps(&self, request: &CaptureRequest) -> Result<Vec<Step>, Failure> {

@@ -224,7 +224,7 @@ impl ScanPlanner {
             "gear: its error behind the encoder is not known and counts as none".to_owned(),
             "azimuth of the lidar at the start is not controlled: gaps are those of the worst of it"
                 .to_owned(),
-            "the widest gap is sought from the widest of directions 2 deg apart; wider ones have fewer than 1 in 1000 directions, with a risk of \
+            "the widest gap is sought from the widest of directions 2 deg apart; fewer than 1 in 1000 directions have a wider one, with a risk of \
              1 in 1000"
                 .to_owned(),
             match self.request.rest_deg {

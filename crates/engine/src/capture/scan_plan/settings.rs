@@ -1,0 +1,82 @@
+//! The settings among which a plan chooses.
+
+use analysis::plan::{PlannedScan, ScanSetting};
+use units::Rpm;
+
+use super::ScanPlanner;
+use crate::capture_request::CaptureRequest;
+
+/// Gentlest ramp to choose from, as a part of the device's: a gentler one loads no head more.
+const GENTLEST: f64 = 0.03;
+/// Numbers of sweeps to choose from.
+const SWEEPS: [u32; 2] = [1, 2];
+/// Ratios of a chosen speed, and of its ramps, to those between it and the next of the search.
+const NEARBY_SPEEDS: [f64; 4] = [0.99, 1.0, 1.01, 1.02];
+const NEARBY_RAMPS: [f64; 6] = [0.95, 1.0, 1.05, 1.1, 1.15, 1.2];
+
+impl ScanPlanner {
+    /// Every setting, with speeds and ramps in such ratios.
+    #[must_use]
+    pub fn scans(&self, [speed_ratio, ramp_ratio]: [f64; 2]) -> Vec<PlannedScan> {
+        let most = self.axis.max_speed.0;
+        let mut speeds = vec![most];
+        let mut next = f64::from(most) / speed_ratio;
+        while next >= 1.0 {
+            let rpm = next.round() as u32;
+            if speeds.last() != Some(&rpm) {
+                speeds.push(rpm);
+            }
+            // Whole revolutions: slow speeds are more than the ratio apart.
+            next = (next / speed_ratio).min(f64::from(rpm) - 0.5);
+        }
+        let ramps: Vec<f64> = std::iter::successors(Some(1.0), |ramp| Some(ramp / ramp_ratio))
+            .take_while(|ramp| *ramp >= GENTLEST)
+            .collect();
+        self.scans_of(&speeds, &ramps)
+    }
+
+    /// Settings between one and its neighbours in the search.
+    pub(super) fn nearby(&self, setting: &ScanSetting) -> Vec<PlannedScan> {
+        let gearing = self.axis.gearing;
+        let most = self.axis.max_speed.0;
+        let rpm = f64::from(most) * setting.speed_deg_s / gearing.rate(Rpm(most)).0;
+        let mut speeds: Vec<u32> = NEARBY_SPEEDS
+            .into_iter()
+            .map(|ratio| ((ratio * rpm).round() as u32).min(most))
+            .collect();
+        speeds.dedup();
+        let ramp = setting.accel_deg_s2 / self.device.accel_deg_s2;
+        let mut ramps = NEARBY_RAMPS.map(|ratio| (ratio * ramp).min(1.0)).to_vec();
+        ramps.dedup();
+        self.scans_of(&speeds, &ramps)
+    }
+
+    fn scans_of(&self, speeds: &[u32], ramps: &[f64]) -> Vec<PlannedScan> {
+        let of_speed = |speed: &u32| {
+            let settings = ramps.iter().flat_map(|ramp| SWEEPS.map(|n| (ramp, n)));
+            // A ramp that the axis refuses is no setting.
+            let moves = settings.filter_map(|(ramp, sweeps)| {
+                self.steps(&self.capture(Rpm(*speed), *ramp, sweeps)).ok()
+            });
+            let scans = moves.flat_map(|steps| {
+                let rates = self.request.rpm.iter();
+                rates.map(|rpm| self.scan(&steps, *rpm)).collect::<Vec<_>>()
+            });
+            scans.collect::<Vec<_>>()
+        };
+        speeds.iter().flat_map(of_speed).collect()
+    }
+
+    /// A capture with a part of the device's ramps.
+    pub(super) fn capture(&self, speed: Rpm, ramp: f64, sweeps: u32) -> CaptureRequest {
+        CaptureRequest {
+            speed_deg_s: self.axis.gearing.rate(speed).0,
+            accel_deg_s2: Some(ramp * self.device.accel_deg_s2),
+            both_ways: sweeps > 1,
+            sweeps: Some(sweeps),
+            from_deg: self.request.from_deg,
+            to_deg: self.request.to_deg,
+            ..CaptureRequest::default()
+        }
+    }
+}
