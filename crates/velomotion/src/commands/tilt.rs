@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use std::thread::JoinHandle;
+use std::sync::mpsc::{self, Receiver};
+use std::time::Duration;
 
 use daemon::client::Client;
 use daemon::local::LocalTask;
@@ -18,6 +19,10 @@ use super::device_backend::DeviceBackend;
 use crate::cli::{self, Common, TiltVerb};
 use crate::signals;
 use crate::tables::table;
+
+/// How long the program that uses the bus may take to answer after the drive has: the command would
+/// else end before the request is sent where the bus fails at once.
+const USER_WAIT: Duration = Duration::from_secs(1);
 
 /// Runs the command.
 ///
@@ -43,7 +48,11 @@ pub fn run(arguments: &cli::TiltArguments, common: &Common) -> Result<CommandOut
         let is_bus = device.1.kind == DeviceKind::Can && matches!(verb, TiltVerb::Stop);
         let user = daemon.take_if(|_| is_bus).map(|client| {
             let interrupt = Arc::clone(&interrupt);
-            std::thread::spawn(move || DeviceBackend::Daemon(client).jog(request, &interrupt))
+            let (sender, answer) = mpsc::channel();
+            std::thread::spawn(move || {
+                let _ = sender.send(DeviceBackend::Daemon(client).jog(request, &interrupt));
+            });
+            answer
         });
         let backend = DeviceBackend::open(daemon, &config, device, task, &interrupt);
         let stopped = backend.and_then(|backend| {
@@ -91,11 +100,11 @@ pub fn run(arguments: &cli::TiltArguments, common: &Common) -> Result<CommandOut
 }
 
 /// Warns where the program that uses the bus has not stopped its own motion.
-fn warn_of_user(user: JoinHandle<Result<StopAnswer, Failure>>) {
-    let problem = match user.is_finished().then(|| user.join()) {
-        None | Some(Err(_)) => "has not answered".to_owned(),
-        Some(Ok(Err(failure))) => failure.message,
-        Some(Ok(Ok(_))) => return,
+fn warn_of_user(answer: Receiver<Result<StopAnswer, Failure>>) {
+    let problem = match answer.recv_timeout(USER_WAIT) {
+        Err(_) => "has not answered".to_owned(),
+        Ok(Err(failure)) => failure.message,
+        Ok(Ok(_)) => return,
     };
     tracing::warn!("the program that uses the bus: {problem}");
 }
