@@ -13,11 +13,13 @@ mod bvh_quality;
 mod clocks;
 mod formats;
 mod granularity;
+mod k_function;
 mod placing;
 mod precision;
 mod shots;
 #[cfg(test)]
 mod tests;
+mod trajectory;
 mod trigonometry;
 mod workload;
 
@@ -49,10 +51,12 @@ const BOOK: Book<'_> = Book {
 };
 
 /// The studies in the order of the page.
-const STUDIES: [Study; 7] = [
+const STUDIES: [Study; 9] = [
+    trajectory::TRAJECTORIES,
     granularity::GRANULARITY,
     trigonometry::TRIGONOMETRY,
     clocks::CLOCKS,
+    k_function::K_FUNCTION,
     formats::FORMATS,
     beam_sampling::BEAM_SAMPLING,
     precision::PRECISION,

@@ -94,7 +94,7 @@ pub enum Command {
     Plan(Plan),
     /// Measure how densely and evenly scan patterns, clouds or logs cover the surroundings
     Analyze(Analyze),
-    /// Measure on this machine what accuracy costs in time
+    /// Show what gaps and accuracy cost in time
     Tradeoff(Tradeoff),
     /// Show, home, move or stop the tilt axis
     Tilt(TiltArguments),
@@ -499,15 +499,12 @@ pub struct Analyze {
 /// `tradeoff`.
 #[derive(Clone, Debug, Args)]
 pub struct Tradeoff {
-    /// Folder for a report: page (index.html), one figure per study (SVG) and tradeoff.json
+    /// Folder for a report: page (index.html), figure (SVG) and tradeoff.json
     #[arg(long, value_name = "DIR")]
     pub report: Option<PathBuf>,
     /// Folder of book pages: writes tradeoff.md, and its figures to tradeoff/
     #[arg(long, value_name = "DIR")]
     pub markdown: Option<PathBuf>,
-    /// Only these studies
-    #[arg(long, value_name = "NAME[,NAME]", value_delimiter = ',')]
-    pub only: Vec<String>,
     /// Quick run: smaller workloads and fewer rounds
     #[arg(long)]
     pub quick: bool,

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{StudyFindings, StudyReport, svg};
+use super::{Measurement, StudyFindings, StudyReport, svg};
 
 /// A page of the book that a command writes, with its figures in a folder of the page's name.
 #[derive(Clone, Copy, Debug)]
@@ -33,16 +33,27 @@ impl Book<'_> {
     /// The page alone.
     #[must_use]
     pub fn page(&self, report: &StudyReport) -> String {
+        let rows = report.studies.iter().flat_map(|study| &study.rows);
+        let mut values = rows.flat_map(|row| &row.values);
+        let is_timed = values.any(|value| matches!(value, Measurement::Timed(_)));
+        let (how, compared) = match is_timed {
+            true => (
+                format!(
+                    "Measured by `{}` on {}. Times are the median of repeated runs, with the \
+                     minimum and the maximum; the choices ran in turns.",
+                    self.command,
+                    escaped(&report.machine.line())
+                ),
+                ", compared with the best run",
+            ),
+            false => (format!("Computed by `{}`.", self.command), ""),
+        };
         let mut page = vec![
             format!("# {}", escaped(self.title)),
             format!(
-                "Measured by `{}` on {}. Times are the median of repeated runs, with the minimum \
-                 and the maximum; the choices ran in turns. Smaller is better everywhere. A \
-                 choice is on the Pareto front (*, or the number of the figure) unless another \
-                 choice is at least as good in both columns and better in one, compared with the \
-                 best run.",
-                self.command,
-                escaped(&report.machine.line())
+                "{how} Smaller is better everywhere. A choice is on the Pareto front (*, or the \
+                 number of the figure) unless another choice is at least as good in both columns \
+                 and better in one{compared}."
             ),
         ];
         page.extend(

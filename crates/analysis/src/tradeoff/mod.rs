@@ -2,14 +2,13 @@
 //!
 //! A [`Study`] measures every choice. [`StudyFindings`] are a table, the pairs of columns that are
 //! traded, and the choices on the Pareto front ([`front`]). [`svg`], [`Book`], [`html`] and
-//! [`TradeoffReport`] show them. [`K_FUNCTION`] is a study; others are in
-//! `velomotion` and in `studies`. The clock is an argument.
+//! [`TradeoffReport`] show them. The studies are in `velomotion` and in `studies`. The clock is an
+//! argument.
 
 mod findings;
 pub mod front;
 pub mod html;
 mod json;
-mod k_function;
 mod machine;
 mod markdown;
 mod panel;
@@ -21,7 +20,6 @@ mod timing;
 pub use crate::noise::SeededNoise;
 pub use findings::StudyFindings;
 pub use json::TradeoffReport;
-pub use k_function::K_FUNCTION;
 pub use machine::Machine;
 pub use markdown::Book;
 pub use report::StudyReport;

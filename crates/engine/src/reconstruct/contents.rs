@@ -44,7 +44,7 @@ pub fn read_contents(source: &Source, options: Options) -> Result<InfoReport, Fa
                     .map(|sweep| SweepReport::new(sweep, contents.rpm))
                     .collect();
             }
-            Err(error) => contents.warnings.push(format!("no sweeps: {error}")),
+            Err(error) => contents.warnings.push(error.to_string()),
         }
     }
     Ok(InfoReport {

@@ -87,10 +87,7 @@ const EXAMPLES: [(&str, [&str; 2], &str); 16] = [
     ),
     (
         "tradeoff",
-        [
-            "tradeoff --quick",
-            "tradeoff --only k-function --report tradeoff-report",
-        ],
+        ["tradeoff --quick", "tradeoff --report tradeoff-report"],
         "tradeoff",
     ),
     ("tilt", ["tilt status", "tilt goto -20 --speed 5"], "tilt"),

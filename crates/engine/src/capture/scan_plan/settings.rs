@@ -1,6 +1,6 @@
 //! The settings among which a plan chooses.
 
-use analysis::plan::{PlannedScan, ScanSetting};
+use analysis::plan::{PlannedScan, ScanSetting, TiltSweep};
 use units::Rpm;
 
 use super::ScanPlanner;
@@ -62,7 +62,12 @@ impl ScanPlanner {
                 let rates = self.request.rpm.iter();
                 rates.map(|rpm| self.scan(&steps, *rpm)).collect::<Vec<_>>()
             });
-            scans.collect::<Vec<_>>()
+            // Of speeds that a sweep does not reach, the lowest is the same scan.
+            let slower = speeds.iter().filter(|slower| *slower < speed).max();
+            let slower = slower.map_or(0.0, |slower| self.axis.gearing.rate(Rpm(*slower)).0);
+            let reaches = |sweep: &TiltSweep| sweep.peak_deg_s() > slower;
+            let differ = scans.filter(|scan| scan.sweeps.iter().all(reaches));
+            differ.collect::<Vec<_>>()
         };
         speeds.iter().flat_map(of_speed).collect()
     }

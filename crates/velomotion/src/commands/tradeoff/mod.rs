@@ -1,17 +1,14 @@
-//! `velomotion tradeoff`: measures the time that accuracy costs on this machine.
+//! `velomotion tradeoff`: the time that gaps and errors cost.
 //!
-//! `analysis::tradeoff` has the studies, tables and pages; the clock and the files are here.
-//! Studies behind the program's own choices are in the crate `studies`.
+//! `analysis::tradeoff` has tables and pages; the study and the files are here. Studies behind the
+//! program's own choices are in the crate `studies`.
 
 mod overview;
 mod text;
-mod trajectory;
 
 use std::path::{Path, PathBuf};
 
-use analysis::tradeoff::{
-    self, Bench, Book, Effort, K_FUNCTION, Machine, Study, StudyReport, TradeoffReport, html, svg,
-};
+use analysis::tradeoff::{Bench, Book, Effort, Machine, StudyReport, TradeoffReport, html, svg};
 
 use super::CommandOutput;
 use crate::cli::{self, Common};
@@ -19,9 +16,6 @@ use crate::terminal::Progress;
 use engine::document::Document;
 use engine::failure::{Failure, Kind};
 use engine::output::{check_free, make_folder, write_text};
-
-/// The studies in the order of the page.
-const STUDIES: [Study; 3] = [overview::SCAN_SPEED, trajectory::TRAJECTORIES, K_FUNCTION];
 
 /// The page of the book that `--markdown` writes.
 const BOOK: Book<'_> = Book {
@@ -33,17 +27,10 @@ const BOOK: Book<'_> = Book {
 /// Runs the command.
 ///
 /// # Errors
-/// [`Kind::Usage`] for an unknown study or a file that exists; [`Kind::Incomplete`] if a study or a
-/// file fails.
+/// [`Kind::Usage`] for a file that exists; [`Kind::Incomplete`] if the study or a file fails.
 pub fn run(arguments: &cli::Tradeoff, common: &Common) -> Result<CommandOutput, Failure> {
-    let selected = tradeoff::select(&STUDIES, &arguments.only).map_err(|error| {
-        Failure::new(Kind::Usage, error.to_string()).help(format!(
-            "choose from {}, or leave --only out for all studies",
-            error.known.join(", ")
-        ))
-    })?;
-    let names: Vec<&str> = selected.iter().map(|study| study.name).collect();
-    prepare(arguments, &names)?;
+    let study = overview::SCAN_SPEED;
+    prepare(arguments, study.name)?;
     let effort = if arguments.quick {
         Effort::Quick
     } else {
@@ -56,10 +43,9 @@ pub fn run(arguments: &cli::Tradeoff, common: &Common) -> Result<CommandOutput, 
         say: &mut |line| progress.say(line),
     };
     let machine = Machine::current(|path| std::fs::read_to_string(path).ok());
-    let report = StudyReport::measure(&selected, machine, bench).map_err(|(name, error)| {
-        Failure::new(Kind::Incomplete, format!("study {name}: {error}")).help(format!(
-            "leave it out with --only, and report it with the output of --only {name} -vv"
-        ))
+    let report = StudyReport::measure(&[study], machine, bench).map_err(|(name, error)| {
+        Failure::new(Kind::Incomplete, format!("study {name}: {error}"))
+            .help("report it with the output of velomotion tradeoff -vv")
     })?;
     for (path, content) in files(arguments, &report) {
         write_text(&path, &content, arguments.force)?;
@@ -72,19 +58,16 @@ pub fn run(arguments: &cli::Tradeoff, common: &Common) -> Result<CommandOutput, 
 }
 
 /// Creates the folders, and refuses to overwrite files without `--force`, before any measurement.
-fn prepare(arguments: &cli::Tradeoff, studies: &[&str]) -> Result<(), Failure> {
-    let figures = |folder: &Path| -> Vec<PathBuf> {
-        let names = studies.iter().map(|name| format!("{name}.svg"));
-        names.map(|name| folder.join(name)).collect()
-    };
+fn prepare(arguments: &cli::Tradeoff, study: &str) -> Result<(), Failure> {
+    let figure = |folder: &Path| folder.join(format!("{study}.svg"));
     let mut files = Vec::new();
     if let Some(folder) = &arguments.report {
         files.extend(["index.html", "tradeoff.json"].map(|name| folder.join(name)));
-        files.extend(figures(folder));
+        files.push(figure(folder));
     }
     if let Some(folder) = &arguments.markdown {
         files.push(folder.join(format!("{}.md", BOOK.name)));
-        files.extend(figures(&folder.join(BOOK.name)));
+        files.push(figure(&folder.join(BOOK.name)));
     }
     for file in &files {
         check_free(file, arguments.force)?;

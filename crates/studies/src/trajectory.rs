@@ -15,7 +15,7 @@ use scanner::trajectory::{Method, Trajectory};
 use units::{DegPerS, DegPerS2, Degrees, Host, Span, Stamp};
 
 /// The study.
-pub(super) const TRAJECTORIES: Study = Study {
+pub(crate) const TRAJECTORIES: Study = Study {
     name: "trajectory",
     title: "The angle between polls",
     choice: "polls, method",

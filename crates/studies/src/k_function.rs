@@ -5,15 +5,16 @@ use std::f64::consts::PI;
 use std::hint::black_box;
 use std::num::NonZeroUsize;
 
-use glam::DVec3;
-
-use super::{Bench, Row, Study, StudyError, StudyFindings, StudyRows, TimedChoice, Trade};
-use crate::k::{
+use analysis::k::{
     Edges, Estimate, FrameRotation, KError, Registers, Sampling, exact_by, sampled, turned,
 };
+use analysis::tradeoff::{
+    Bench, Row, Study, StudyError, StudyFindings, StudyRows, TimedChoice, Trade,
+};
+use glam::DVec3;
 
 /// The study.
-pub const K_FUNCTION: Study = Study {
+pub(crate) const K_FUNCTION: Study = Study {
     name: "k-function",
     title: "Ways to the K function",
     choice: "way",
@@ -135,9 +136,9 @@ fn scan(frames: usize) -> Result<StudyScan, KError> {
 
 #[cfg(test)]
 mod tests {
+    use analysis::tradeoff::Effort;
     use units::{Host, Stamp};
 
-    use super::super::Effort;
     use super::*;
 
     #[test]
