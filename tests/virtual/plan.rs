@@ -2,14 +2,15 @@
 //! the requested distance, replayed and measured.
 
 use std::collections::HashMap;
+use std::sync::atomic::AtomicUsize;
+use std::sync::atomic::Ordering::Relaxed;
 
 use analysis::density::{gaps, quantile};
-use analysis::plan::{PlanLimits, PlanRow, PlannedRays, ScanSetting};
+use analysis::plan::{PlanLimits, PlanRow, PlannedRays, PlannedScan, ScanSetting};
 use engine::capture::scan_plan::{PlanReport, PlanRequest, ScanPlanner};
 use engine::config::{Config, Device};
 use engine::lidars;
 use glam::DVec3;
-use rayon::prelude::*;
 use sim::patterns::PatternRequest;
 use units::{DegPerS, DegPerS2, Span};
 use velomotion_tests::capture::{Captured, Setting};
@@ -34,6 +35,33 @@ fn planner(at_m: f64, limits: PlanLimits) -> ScanPlanner {
 
 fn plan(at_m: f64, limits: PlanLimits) -> PlanReport {
     planner(at_m, limits).plan().unwrap()
+}
+
+/// Neighbours of some of the grid's choices are faster, and such a choice is found in exactly its
+/// time.
+#[test]
+fn choices_are_refined_also_within_a_time() {
+    let limits = |gap_deg, time_s| PlanLimits {
+        gap_deg: Some(gap_deg),
+        time_s,
+        ..PlanLimits::default()
+    };
+    let refined = [0.4, 0.5, 0.6, 0.7, 0.8, 0.9]
+        .into_iter()
+        .find_map(|gap_deg| {
+            let row = plan(25.0, limits(gap_deg, None)).chosen.unwrap().row;
+            let grid = planner(25.0, limits(gap_deg, None)).scans([1.02, 1.1]);
+            let is_listed = grid.iter().any(|scan| scan.setting == row.setting);
+            (!is_listed).then_some((gap_deg, row))
+        });
+    let (gap_deg, row) = refined.unwrap();
+    let timed = plan(25.0, limits(gap_deg, Some(row.scan_s)))
+        .chosen
+        .unwrap();
+    assert_eq!(timed.row.setting, row.setting);
+    let late = plan(25.0, limits(gap_deg, Some(0.99 * row.scan_s)));
+    assert!(late.chosen.is_none());
+    assert_eq!(late.nearest.unwrap().row.setting, row.setting);
 }
 
 /// So many random directions in view of the whole sweep: others than the planner's.
@@ -237,7 +265,7 @@ fn tight_limits_are_kept_when_measured() {
             truth.error_mm <= drawn.error_mm.total && truth.p99_deg <= drawn.gap_deg.p99,
             "{chosen:?} {truth:?}"
         );
-        // The search tries every 2 % of speed and 5 % of the ramps.
+        // The search tries every 1 % of speed and 5 % of the ramps.
         assert!(
             row.scan_s <= 1.05 * drawn.scan_s && truth.scan_s <= 1.05 * row.scan_s,
             "{drawn:?} {chosen:?} {truth:?}"
@@ -309,6 +337,27 @@ fn cell(place: DVec3, width: f64) -> [i32; 3] {
     (place / width).floor().as_ivec3().to_array()
 }
 
+/// The place of the first scan that is good, sought by two threads.
+fn first_of(scans: &[PlannedScan], is_good: impl Fn(&PlannedScan) -> bool + Sync) -> Option<usize> {
+    let (next, first) = (AtomicUsize::new(0), AtomicUsize::new(scans.len()));
+    let seek = || {
+        loop {
+            let place = next.fetch_add(1, Relaxed);
+            if place >= first.load(Relaxed) {
+                return;
+            }
+            if is_good(&scans[place]) {
+                first.fetch_min(place, Relaxed);
+            }
+        }
+    };
+    std::thread::scope(|scope| {
+        scope.spawn(seek);
+        seek();
+    });
+    Some(first.into_inner()).filter(|place| *place < scans.len())
+}
+
 /// Ten other requests, against a slow search without the planner's gaps and short cuts: speeds 5 %
 /// and ramps 20 % apart in the order of scan time, all rays of each, which of 10,000 directions in
 /// view one of them is near, and the worst of 48 azimuths at the start of one sweep, which nothing
@@ -317,8 +366,9 @@ fn cell(place: DVec3, width: f64) -> [i32; 3] {
 #[ignore = "takes an hour"]
 fn choices_are_within_five_percent_of_the_best_by_brute_force() {
     println!(
-        "|at m|error mm|gap deg|capture|scan s|best by brute force|settings tried|error mm|99 % gap|"
+        "|at m|error mm|gap deg|capture|scan s|best by brute force|scan s|99 % gap of it|settings tried|error mm|99 % gap|"
     );
+    let mut slower = Vec::new();
     for (seed, (at_m, limits)) in (100..).zip(requests(2_018)) {
         let (error_mm, gap_deg) = (limits.error_mm.unwrap(), limits.gap_deg.unwrap());
         let planner = planner(at_m, limits);
@@ -340,7 +390,7 @@ fn choices_are_within_five_percent_of_the_best_by_brute_force() {
                 starts.all(keeps_gap_at)
             })
         };
-        let best = scans.par_iter().position_first(|scan| {
+        let best = first_of(&scans, |scan| {
             let budget = predictor.errors.budget(&predictor.lidar, &scan.sweeps);
             budget.total <= error_mm && keeps_gap(&scan.setting)
         });
@@ -357,12 +407,16 @@ fn choices_are_within_five_percent_of_the_best_by_brute_force() {
         let truth = measure(row, at_m, &directions(&planner, 30_000, seed), seed, 0.5);
         let command = chosen.command.as_deref().unwrap();
         println!(
-            "|{at_m:.1}|{error_mm:.1}|{gap_deg:.2}|`{}`|{:.2}|{:.2}|{}|{:.1}|{:.3}|",
+            "|{at_m:.1}|{error_mm:.1}|{gap_deg:.3}|`{}`|{:.2}|{:.2}, {:.1}, {}|{:.2}|{:.3}|{}|{:.1}|{:.3}|",
             command
                 .trim_start_matches("velomotion capture ")
                 .trim_end_matches(" --device sim"),
             row.scan_s,
+            best.setting.speed_deg_s,
+            best.setting.accel_deg_s2,
+            best.setting.sweeps,
             best.scan_s,
+            predictor.row(best).gap_deg.p99,
             tried + 1,
             truth.error_mm,
             truth.p99_deg,
@@ -371,6 +425,9 @@ fn choices_are_within_five_percent_of_the_best_by_brute_force() {
             truth.error_mm <= error_mm && truth.p99_deg <= gap_deg,
             "{chosen:?} {truth:?}"
         );
-        assert!(row.scan_s <= 1.05 * best.scan_s, "{chosen:?} {best:?}");
+        if row.scan_s > 1.05 * best.scan_s {
+            slower.push((row.setting, best.clone()));
+        }
     }
+    assert!(slower.is_empty(), "{slower:?}");
 }

@@ -505,7 +505,7 @@ pub struct Tradeoff {
     /// Folder of book pages: writes tradeoff.md, and its figures to tradeoff/
     #[arg(long, value_name = "DIR")]
     pub markdown: Option<PathBuf>,
-    /// Quick run: smaller workloads and fewer rounds
+    /// Quick run: fewer settings
     #[arg(long)]
     pub quick: bool,
     /// Overwrite existing files

@@ -96,12 +96,12 @@ impl PlannedPlace {
         self.across
     }
 
-    /// Chord to which no ray comes nearer, however slow the scan: 0 where a laser passes.
+    /// Chord to which no ray comes nearer, however slow the scan between exactly these tilts: 0
+    /// where a laser passes.
     pub(super) fn least_chord(&self) -> f64 {
         let apart = self.ends.iter().map(|end| end.apart);
         match self.passes.is_empty() {
-            // Ends of sweeps are whole counts of the encoder.
-            true => apart.fold(f64::INFINITY, f64::min) - 1e-4,
+            true => apart.fold(f64::INFINITY, f64::min),
             false => 0.0,
         }
     }

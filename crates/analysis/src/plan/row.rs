@@ -120,14 +120,20 @@ pub(super) struct GapEffort {
 }
 
 impl GapEffort {
-    /// Rejects hopeless settings.
+    /// Ranks settings.
     pub(super) const ROUGH: Self = Self {
         stride: 31,
         starts: 1,
     };
-    /// A row of a table.
+    /// A row of a table, or of the best of a ranking.
     pub(super) const ROW: Self = Self {
         stride: 6,
+        starts: 4,
+    };
+
+    /// What a capture gives: as many directions as of the chosen row, fewer azimuths.
+    const CAPTURE: Self = Self {
+        stride: 1,
         starts: 4,
     };
 
@@ -184,16 +190,26 @@ impl ScanPredictor {
         }
     }
 
+    /// Whether so many directions are in view that shares of gaps hold: a short sweep has fewer.
+    #[must_use]
+    pub const fn sees_enough(&self) -> bool {
+        self.random_places.len() == RANDOM_DIRECTIONS && self.places.len() >= 100
+    }
+
     /// What a scan gives.
     #[must_use]
     pub fn row(&self, scan: &PlannedScan) -> PlanRow {
         self.row_with(scan, GapEffort::full(scan))
     }
 
-    /// The same from a third of the directions and few azimuths at the start, many times
-    /// as fast.
+    /// The same with few azimuths at the start, several times as fast.
     #[must_use]
-    pub fn brief_row(&self, scan: &PlannedScan) -> PlanRow {
+    pub fn capture_row(&self, scan: &PlannedScan) -> PlanRow {
+        self.row_with(scan, GapEffort::CAPTURE)
+    }
+
+    /// The same from a sixth of the directions, too.
+    pub(super) fn brief_row(&self, scan: &PlannedScan) -> PlanRow {
         self.row_with(scan, GapEffort::ROW)
     }
 
@@ -302,6 +318,16 @@ impl ScanPredictor {
         wider
             .map(|place| rays.gap_deg(&sweeps, place))
             .reduce(|| widest, f64::max)
+    }
+
+    /// The 99 % gap of [`Self::brief_row`].
+    #[must_use]
+    pub fn brief_p99_deg(&self, scan: &PlannedScan) -> f64 {
+        let at_start = |start| self.gaps_deg(scan, GapEffort::ROW, start);
+        let p99 = |gaps: Vec<f64>| quantile(&gaps, 0.99).unwrap_or(180.0);
+        (0..GapEffort::ROW.starts)
+            .map(|start| p99(at_start(start)))
+            .fold(0.0, f64::max)
     }
 
     /// The 99 % gap from few directions.

@@ -138,27 +138,45 @@ impl ScanPredictor {
         nearby: impl Fn(&PlannedScan) -> Vec<PlannedScan>,
         limits: &PlanLimits,
     ) -> Option<PlanRow> {
-        let is_short = |scan: &&PlannedScan| limits.time_s.is_none_or(|most| scan.scan_s <= most);
-        let mut scans = self.accurate(scans, limits);
-        scans.retain(is_short);
-        match (limits.gap_deg, limits.error_mm, limits.time_s) {
-            (Some(gap_deg), ..) => {
-                let found = self.fastest_within(&scans, gap_deg)?;
-                let mut faster = nearby(found);
-                faster.retain(|scan| scan.scan_s < found.scan_s);
-                let faster = self.fastest_within(&self.accurate(&faster, limits), gap_deg);
-                Some(self.row(faster.unwrap_or(found)))
-            }
-            (None, Some(_), _) => self.densest_of_fastest(scans),
-            (None, None, Some(time_s)) => self.densest(scans, time_s),
-            (None, None, None) => None,
+        let is_short = |scan_s: f64| limits.time_s.is_none_or(|most| scan_s <= most);
+        if let Some(gap_deg) = limits.gap_deg {
+            let row = self.fastest_nearby(scans, nearby, limits, gap_deg);
+            return row.filter(|row| is_short(row.scan_s));
         }
+        let mut scans = self.accurate(scans, limits);
+        scans.retain(|scan| is_short(scan.scan_s));
+        match (limits.error_mm, limits.time_s) {
+            (Some(_), _) => self.densest_of_fastest(scans),
+            (None, Some(time_s)) => self.densest(scans, time_s),
+            (None, None) => None,
+        }
+    }
+
+    /// The fastest scan within a gap and the limit of the error, or a faster one of those `nearby`.
+    fn fastest_nearby(
+        &self,
+        scans: &[PlannedScan],
+        nearby: impl Fn(&PlannedScan) -> Vec<PlannedScan>,
+        limits: &PlanLimits,
+        gap_deg: f64,
+    ) -> Option<PlanRow> {
+        let scans = self.accurate(scans, limits);
+        let found = self.fastest_within(&scans, gap_deg)?;
+        let mut faster = nearby(found);
+        faster.retain(|scan| scan.scan_s < found.scan_s);
+        let faster = self.fastest_within(&self.accurate(&faster, limits), gap_deg);
+        Some(self.row(faster.unwrap_or(found)))
     }
 
     /// The fastest of the scans that come nearest to a limit which none keeps, if
     /// [`Self::choose`] finds none.
     #[must_use]
-    pub fn nearest(&self, scans: &[PlannedScan], limits: &PlanLimits) -> Option<NearestScan> {
+    pub fn nearest(
+        &self,
+        scans: &[PlannedScan],
+        nearby: impl Fn(&PlannedScan) -> Vec<PlannedScan>,
+        limits: &PlanLimits,
+    ) -> Option<NearestScan> {
         let error_mm = |scan: &PlannedScan| self.errors.budget(&self.lidar, &scan.sweeps).total;
         let least_mm = scans.iter().map(error_mm).fold(f64::INFINITY, f64::min);
         if limits.error_mm.is_some_and(|limit| least_mm > limit) {
@@ -172,14 +190,12 @@ impl ScanPredictor {
                 row: self.row(scan),
             });
         }
-        let scans = self.accurate(scans, limits);
         // Without a limit of time the choice would have found it.
         let fastest = limits.time_s.and_then(|_| match limits.gap_deg {
-            Some(gap_deg) => self
-                .fastest_within(&scans, gap_deg)
-                .map(|scan| self.row(scan)),
-            None => self.densest_of_fastest(scans.clone()),
+            Some(gap_deg) => self.fastest_nearby(scans, nearby, limits, gap_deg),
+            None => self.densest_of_fastest(self.accurate(scans, limits)),
         });
+        let scans = self.accurate(scans, limits);
         if let Some(row) = fastest {
             return Some(NearestScan {
                 limit: LimitKind::Time,
@@ -188,7 +204,14 @@ impl ScanPredictor {
             });
         }
         let densest = self.densest(scans.clone(), f64::INFINITY)?;
-        let cheaper = self.fastest_within(&scans, NEARLY_LEAST * densest.gap_deg.p99);
+        let least_deg = densest.gap_deg.p99;
+        let nearly_deg = NEARLY_LEAST * least_deg;
+        // The least gap may be within the limit by less than a choice keeps.
+        let most_deg = match limits.gap_deg {
+            Some(gap_deg) if least_deg <= gap_deg => nearly_deg.min(gap_deg / KEPT),
+            _ => nearly_deg,
+        };
+        let cheaper = self.fastest_within(&scans, most_deg);
         Some(NearestScan {
             limit: LimitKind::Gap,
             with_others: limits.error_mm.is_some(),
@@ -213,7 +236,9 @@ impl ScanPredictor {
         gap_deg: f64,
     ) -> Option<&'a PlannedScan> {
         let gap_deg = KEPT * gap_deg;
-        let out_of_reach = |place: &&PlannedPlace| place.least_chord() > gap_deg.to_radians();
+        // Ends of sweeps are whole counts of the encoder.
+        let reach_rad = (gap_deg + self.errors.count_deg).to_radians();
+        let out_of_reach = |place: &&PlannedPlace| place.least_chord() > reach_rad;
         if self.places.iter().filter(out_of_reach).count() > self.most_unseen() {
             return None;
         }
@@ -277,7 +302,7 @@ impl ScanPredictor {
         ranked.sort_by(|a, b| a.1.total_cmp(&b.1));
         let finalists = ranked.into_iter().take(roughly);
         let mut rows: Vec<(&PlannedScan, f64)> = finalists
-            .map(|(scan, _)| (scan, self.brief_row(scan).gap_deg.p99))
+            .map(|(scan, _)| (scan, self.brief_p99_deg(scan)))
             .collect();
         rows.sort_by(|a, b| a.1.total_cmp(&b.1));
         let rows = rows.into_iter().take(briefly);
@@ -391,7 +416,7 @@ mod tests {
                 }
                 None => {
                     assert_eq!(best_s, f64::INFINITY);
-                    let nearest = predictor(gap_deg).nearest(&scans(), &limits).unwrap();
+                    let nearest = predictor(gap_deg).nearest(&scans(), none, &limits).unwrap();
                     let value = |row: &PlanRow| match nearest.limit {
                         LimitKind::Error => row.error_mm.total,
                         LimitKind::Gap => row.gap_deg.p99,

@@ -42,12 +42,6 @@ impl TiltSweep {
         self.motion().angle_deg(t_s)
     }
 
-    /// Time from the start at which the tilt reaches an angle between its ends, seconds.
-    #[must_use]
-    pub fn time_s(&self, angle_deg: f64) -> f64 {
-        self.motion().time_s(angle_deg)
-    }
-
     /// The sweep, for many angles and times.
     pub(super) fn motion(&self) -> SweepMotion {
         let peak_deg_s = self.peak_deg_s();
@@ -91,7 +85,7 @@ impl SweepMotion {
         self.sweep.from_deg + gone.copysign(self.sweep.to_deg - self.sweep.from_deg)
     }
 
-    /// [`TiltSweep::time_s`].
+    /// Time from the start at which the tilt reaches an angle between its ends, seconds.
     pub(super) fn time_s(&self, angle_deg: f64) -> f64 {
         let gone = (angle_deg - self.sweep.from_deg).abs().min(self.way_deg);
         let rising = |gone: f64| {
@@ -165,7 +159,7 @@ mod tests {
                 let part = f64::from(i) / f64::from(steps);
                 let gone = (angle(part) - angle(f64::from(i + 1) / f64::from(steps))).abs();
                 prop_assert!(gone <= sweep.peak_deg_s() * whole / f64::from(steps) * (1.0 + 1e-6) + 1e-9);
-                let time_s = sweep.time_s(angle(part));
+                let time_s = sweep.motion().time_s(angle(part));
                 prop_assert!(close(sweep.angle_deg(time_s), angle(part), 1e-6 * way));
             }
         }

@@ -15,8 +15,7 @@ pub fn page(report: &StudyReport) -> String {
     let studies = report.studies.iter();
     let sections: Vec<Section> = studies.map(section).collect();
     let footer = format!(
-        "{}. Times: the median of repeated runs in turns, with the least and the greatest. Less is better everywhere. \
-         Marked rows are on the Pareto front of their figure (\u{25cf}, or its number). \
+        "{}. Less is better everywhere. Marked rows are on the Pareto front of their figure (\u{25cf}, or its number). \
          The same figures are in <a href=\"tradeoff.json\">tradeoff.json</a>.",
         escaped(&report.program)
     );

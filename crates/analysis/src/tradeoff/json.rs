@@ -26,7 +26,7 @@ pub struct TradeoffReport {
 #[derive(Clone, Debug, Serialize, ToSchema)]
 #[non_exhaustive]
 pub struct TradeoffStudy {
-    /// Name, as for `--only`.
+    /// Name, also of its figure.
     pub name: &'static str,
     /// Title.
     pub title: &'static str,

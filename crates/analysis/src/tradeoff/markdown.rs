@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Measurement, StudyFindings, StudyReport, svg};
+use super::{StudyFindings, StudyReport, svg};
 
 /// A page of the book that a command writes, with its figures in a folder of the page's name.
 #[derive(Clone, Copy, Debug)]
@@ -33,10 +33,7 @@ impl Book<'_> {
     /// The page alone.
     #[must_use]
     pub fn page(&self, report: &StudyReport) -> String {
-        let rows = report.studies.iter().flat_map(|study| &study.rows);
-        let mut values = rows.flat_map(|row| &row.values);
-        let is_timed = values.any(|value| matches!(value, Measurement::Timed(_)));
-        let (how, compared) = match is_timed {
+        let (how, compared) = match report.is_timed() {
             true => (
                 format!(
                     "Measured by `{}` on {}. Times are the median of repeated runs, with the \

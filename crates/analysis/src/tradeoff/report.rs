@@ -1,8 +1,8 @@
 //! All findings of one run.
 
-use super::{Bench, Effort, Machine, Study, StudyError, StudyFindings};
+use super::{Bench, Effort, Machine, Measurement, Study, StudyError, StudyFindings};
 #[cfg(test)]
-use super::{Measurement, Row, StudyRows, TimingSpread, Trade};
+use super::{Row, StudyRows, TimingSpread, Trade};
 
 /// All findings of one run.
 #[derive(Clone, Debug)]
@@ -52,14 +52,23 @@ impl StudyReport {
         })
     }
 
+    /// Whether any of the values are times.
+    #[must_use]
+    pub fn is_timed(&self) -> bool {
+        let rows = self.studies.iter().flat_map(|study| &study.rows);
+        let mut values = rows.flat_map(|row| &row.values);
+        values.any(|value| matches!(value, Measurement::Timed(_)))
+    }
+
     /// Reasons to distrust the figures, one sentence each.
     #[must_use]
     pub fn cautions(&self) -> Vec<&'static str> {
         let mut cautions = Vec::new();
         if self.effort == Effort::Quick {
-            cautions.push("A quick look: small workloads and few rounds. Leave --quick out for figures to rely on.");
+            cautions
+                .push("A quick look at less than all. Leave --quick out for figures to rely on.");
         }
-        if self.machine.build != "release" {
+        if self.is_timed() && self.machine.build != "release" {
             cautions
                 .push("Built without optimisation: the times say nothing about a release build.");
         }

@@ -55,7 +55,7 @@ const HOMING_S: f64 = 0.62;
 /// Time between two moves: at rest before and after, and the commands; seconds.
 const STEP_S: f64 = 0.15;
 /// Ratios of neighbouring speeds and of neighbouring ramps: of the search, and of the table.
-const FINE: [f64; 2] = [1.02, 1.25];
+const FINE: [f64; 2] = [1.02, 1.1];
 const COARSE: [f64; 2] = [1.2, 2.0];
 /// Ratios of a speed to slower ones that should see little more.
 const SLOWER: [f64; 2] = [0.95, 0.9];
@@ -173,7 +173,7 @@ impl ScanPlanner {
     #[must_use]
     pub fn row(&self, steps: &[Step]) -> PlanRow {
         let rpm = self.request.rpm.first().copied().unwrap_or_default();
-        self.predictor.brief_row(&self.scan(steps, rpm))
+        self.predictor.capture_row(&self.scan(steps, rpm))
     }
 
     /// Errors of a point after the moves of a capture.
@@ -231,28 +231,41 @@ impl ScanPlanner {
     /// to a multiple or a part of the spacing of the lasers, and lines coincide.
     #[must_use]
     pub fn resonance(&self, request: &CaptureRequest, row: &PlanRow) -> Option<String> {
-        let slower = SLOWER.into_iter().filter_map(|ratio| {
-            let slower = CaptureRequest {
+        let rpm = self.request.rpm.first().copied().unwrap_or_default();
+        let at = |ratio: f64| {
+            let request = CaptureRequest {
                 speed_deg_s: ratio * row.setting.speed_deg_s,
                 ..request.clone()
             };
-            self.of_request(&slower).ok()
-        });
-        let excess = |slower: &PlanRow| {
-            let speeds = row.setting.speed_deg_s / slower.setting.speed_deg_s;
-            row.gap_deg.p99 / slower.gap_deg.p99 / speeds
+            Some(self.scan(&self.steps(&request).ok()?, rpm))
         };
-        let slower = slower.max_by(|a, b| excess(a).total_cmp(&excess(b)))?;
-        (excess(&slower) > RESONANCE).then(|| {
+        // Beyond what the difference of the speeds explains, of this speed and a slower one.
+        let excess = |[here, slower]: [(&ScanSetting, f64); 2]| {
+            here.1 / slower.1 / (here.0.speed_deg_s / slower.0.speed_deg_s)
+        };
+        let here = at(1.0)?;
+        let here = (&here.setting, self.predictor.brief_p99_deg(&here));
+        let roughly = |scan: &PlannedScan| {
+            excess([here, (&scan.setting, self.predictor.brief_p99_deg(scan))])
+        };
+        let slower = SLOWER.into_iter().filter_map(at);
+        let slower = slower.map(|scan| (roughly(&scan), scan));
+        let (rough, slower) = slower.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        if rough <= RESONANCE {
+            return None;
+        }
+        let slower = self.predictor.capture_row(&slower);
+        let both = [row, &slower].map(|row| (&row.setting, row.gap_deg.p99));
+        (excess(both) > RESONANCE).then(|| {
             format!(
-                "at {} deg/s and {} rpm many scan lines coincide ({:.2} deg of tilt per revolution): 99 % of directions have a point within \
+            "at {} deg/s and {} rpm many scan lines coincide ({:.2} deg of tilt per revolution): 99 % of directions have a point within \
                  {:.2} deg, at {} deg/s within {:.2} deg",
-                trim(row.setting.speed_deg_s),
-                row.setting.rpm,
-                60.0 * row.setting.speed_deg_s / row.setting.rpm,
-                row.gap_deg.p99,
-                trim(slower.setting.speed_deg_s),
-                slower.gap_deg.p99,
+            trim(row.setting.speed_deg_s),
+            row.setting.rpm,
+            60.0 * row.setting.speed_deg_s / row.setting.rpm,
+            row.gap_deg.p99,
+            trim(slower.setting.speed_deg_s),
+            slower.gap_deg.p99,
             )
         })
     }
@@ -272,23 +285,31 @@ impl ScanPlanner {
         }
         // Ends that the axis refuses leave no setting.
         self.steps(&self.capture(self.axis.max_speed, 1.0, 1))?;
+        if !self.predictor.sees_enough() {
+            let message = "the sweep is too short: too few directions are in view to examine gaps";
+            return Err(
+                Failure::new(Kind::Usage, message).help("set --from and --to farther apart")
+            );
+        }
         let rows = self.predictor.table(&self.scans(COARSE));
         let has_limits = *limits != PlanLimits::default();
         let scans = if has_limits {
-            self.scans(FINE)
+            self.different_scans(FINE)
         } else {
             Vec::new()
         };
         let nearby = |scan: &PlannedScan| self.nearby(&scan.setting);
         let mut chosen = self.predictor.choose(&scans, nearby, limits);
         let mut nearest = match &chosen {
-            None if has_limits => self.predictor.nearest(&scans, limits),
+            None if has_limits => self.predictor.nearest(&scans, nearby, limits),
             _ => None,
         };
         // A choice stays a little within the gap; this row is at its limit.
         let is_within = |nearest: &NearestScan| {
             let gap_deg = limits.gap_deg.unwrap_or_default();
-            nearest.limit == LimitKind::Gap && nearest.row.gap_deg.p99 <= gap_deg
+            nearest.limit == LimitKind::Gap
+                && nearest.row.gap_deg.p99 <= gap_deg
+                && limits.time_s.is_none_or(|most| nearest.row.scan_s <= most)
         };
         if let Some(nearest) = nearest.take_if(|nearest| is_within(nearest)) {
             chosen = Some(nearest.row);

@@ -123,9 +123,12 @@ fn text(report: &PlanReport, written: Vec<String>) -> String {
         String::new(),
         table(&report.rows),
         String::new(),
-        "gap: angle to the nearest point, for that share of the directions in view;".to_owned(),
-        "error: 95 % of points are within it".to_owned(),
+        "gap: angle to the nearest point, deg, for that share of the directions in view".to_owned(),
+        "error: 95 % of points are within it; ways: sweeps, 2 with --both-ways".to_owned(),
     ];
+    if report.rows.iter().any(|row| !row.unmet.is_empty()) {
+        lines.push("!: beyond the limit".to_owned());
+    }
     match &report.chosen {
         Some(chosen) => lines.extend(choice(chosen, report.at_m)),
         None => lines.extend(report.unmet.is_none().then(|| {
@@ -152,14 +155,14 @@ const HEADINGS: [&str; 14] = [
     "\ndeg/s",
     "\ndeg/s2",
     "\nrpm",
-    "\nsweeps",
+    "\nways",
     "scan\ns",
-    "gap deg\n50 %",
+    "gap\n50 %",
     "\n95 %",
     "\n99 %",
     "\nworst",
     "error\nmm",
-    "million\npoints",
+    "points\nM",
     "replay\ns",
     "log\nMB",
     "cloud\nMB",
@@ -167,37 +170,33 @@ const HEADINGS: [&str; 14] = [
 
 fn table(rows: &[CommandRow]) -> String {
     let mut table = Table::new();
-    // Without unmet limits their column is empty.
-    let has_unmet = rows.iter().any(|row| !row.unmet.is_empty());
     let cells = rows.iter().map(|CommandRow { row, unmet, .. }| {
         let (setting, gap) = (&row.setting, &row.gap_deg);
-        let unmet: Vec<&str> = unmet.iter().map(|unmet| unmet.limit).collect();
-        let cells = [
+        let marked = |limit: &str, value: String| match unmet.iter().any(|it| it.limit == limit) {
+            true => value + "!",
+            false => value,
+        };
+        [
             format!("{:.2}", setting.speed_deg_s),
             format!("{:.0}", setting.accel_deg_s2),
             format!("{:.0}", setting.rpm),
             setting.sweeps.to_string(),
-            format!("{:.1}", row.scan_s),
+            marked("time", format!("{:.1}", row.scan_s)),
             format!("{:.2}", gap.p50),
             format!("{:.2}", gap.p95),
-            format!("{:.2}", gap.p99),
+            marked("gap", format!("{:.2}", gap.p99)),
             format!("{:.2}", gap.worst),
-            format!("{:.1}", row.error_mm.total),
+            marked("error", format!("{:.1}", row.error_mm.total)),
             format!("{:.2}", row.points as f64 * 1e-6),
             row.replay_s.map_or("-".to_owned(), |s| format!("{s:.1}")),
             row.log_bytes
-                .map_or("-".to_owned(), |bytes| format!("{:.1}", megabytes(bytes))),
-            format!("{:.1}", megabytes(row.cloud_bytes)),
-        ];
-        let cells = cells.into_iter();
-        cells
-            .chain(has_unmet.then(|| unmet.join(", ")))
-            .collect::<Vec<String>>()
+                .map_or("-".to_owned(), |bytes| format!("{:.0}", megabytes(bytes))),
+            format!("{:.0}", megabytes(row.cloud_bytes)),
+        ]
     });
-    let headings = HEADINGS.into_iter().chain(has_unmet.then_some("\nunmet"));
     table
         .load_style(NOTHING)
-        .set_header(headings)
+        .set_header(HEADINGS)
         .add_rows(cells);
     for column in table.column_iter_mut() {
         column
@@ -351,7 +350,12 @@ mod tests {
                 assert_eq!(names.contains(&"time"), row.scan_s > 4.0, "{row:?}");
                 assert!(unmet.iter().all(|unmet| !unmet.cause.is_empty()));
             }
-            assert!(text(&report, Vec::new()).contains("unmet"));
+            let text = text(&report, Vec::new());
+            assert!(text.contains("beyond the limit"), "{text}");
+            assert!(
+                text.lines().all(|line| line.chars().count() <= 80),
+                "{text}"
+            );
         }
     }
 

@@ -20,8 +20,8 @@ use crate::cli::{self, Common, TiltVerb};
 use crate::signals;
 use crate::tables::table;
 
-/// How long the program that uses the bus may take to answer after the drive has: the command would
-/// else end before the request is sent where the bus fails at once.
+/// Longest wait for the answer of the program that uses the bus, after that of the drive. Without
+/// it, where the bus fails at once, the command ended before the request was sent.
 const USER_WAIT: Duration = Duration::from_secs(1);
 
 /// Runs the command.

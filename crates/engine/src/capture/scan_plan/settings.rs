@@ -1,9 +1,12 @@
 //! The settings among which a plan chooses.
 
+use std::collections::HashMap;
+
 use analysis::plan::{PlannedScan, ScanSetting, TiltSweep};
 use units::Rpm;
 
 use super::ScanPlanner;
+use crate::capture::moves::Step;
 use crate::capture_request::CaptureRequest;
 
 /// Gentlest ramp to choose from, as a part of the device's: a gentler one loads no head more.
@@ -12,7 +15,9 @@ const GENTLEST: f64 = 0.03;
 const SWEEPS: [u32; 2] = [1, 2];
 /// Ratios of a chosen speed, and of its ramps, to those between it and the next of the search.
 const NEARBY_SPEEDS: [f64; 4] = [0.99, 1.0, 1.01, 1.02];
-const NEARBY_RAMPS: [f64; 6] = [0.95, 1.0, 1.05, 1.1, 1.15, 1.2];
+const NEARBY_RAMPS: [f64; 4] = [0.95, 1.0, 1.05, 1.1];
+/// Ratio of durations of a sweep below which ramps are alike.
+const ALIKE: f64 = 1.001;
 
 impl ScanPlanner {
     /// Every setting, with speeds and ramps in such ratios.
@@ -35,6 +40,26 @@ impl ScanPlanner {
         self.scans_of(&speeds, &ramps)
     }
 
+    /// The same without those of which the ramps make hardly a difference.
+    pub(super) fn different_scans(&self, ratios: [f64; 2]) -> Vec<PlannedScan> {
+        let mut scans = self.scans(ratios);
+        let mut last = HashMap::new();
+        scans.retain(|scan| {
+            let setting = &scan.setting;
+            let sweep_s: f64 = scan.sweeps.iter().map(TiltSweep::duration_s).sum();
+            let others = (setting.rpm.to_bits(), setting.sweeps);
+            // Ramps of one speed follow each other, the steepest first.
+            let is_alike = last.get(&others).is_some_and(|(speed, last_s)| {
+                *speed == setting.speed_deg_s && sweep_s < ALIKE * last_s
+            });
+            if !is_alike {
+                last.insert(others, (setting.speed_deg_s, sweep_s));
+            }
+            !is_alike
+        });
+        scans
+    }
+
     /// Settings between one and its neighbours in the search.
     pub(super) fn nearby(&self, setting: &ScanSetting) -> Vec<PlannedScan> {
         let gearing = self.axis.gearing;
@@ -55,9 +80,7 @@ impl ScanPlanner {
         let of_speed = |speed: &u32| {
             let settings = ramps.iter().flat_map(|ramp| SWEEPS.map(|n| (ramp, n)));
             // A ramp that the axis refuses is no setting.
-            let moves = settings.filter_map(|(ramp, sweeps)| {
-                self.steps(&self.capture(Rpm(*speed), *ramp, sweeps)).ok()
-            });
+            let moves = settings.filter_map(|(ramp, sweeps)| self.reached(*speed, *ramp, sweeps));
             let scans = moves.flat_map(|steps| {
                 let rates = self.request.rpm.iter();
                 rates.map(|rpm| self.scan(&steps, *rpm)).collect::<Vec<_>>()
@@ -70,6 +93,18 @@ impl ScanPlanner {
             differ.collect::<Vec<_>>()
         };
         speeds.iter().flat_map(of_speed).collect()
+    }
+
+    /// The moves at a speed, or at the lowest that gives the same where the axis does not reach it.
+    fn reached(&self, speed: u32, ramp: f64, sweeps: u32) -> Option<Vec<Step>> {
+        let steps = |rpm| self.steps(&self.capture(Rpm(rpm), ramp, sweeps)).ok();
+        let moves = steps(speed)?;
+        let peak_deg_s = self.scan(&moves, 0).sweeps.first()?.peak_deg_s();
+        let reached = (peak_deg_s / self.axis.gearing.rate(Rpm(1)).0).ceil() as u32;
+        match reached < speed {
+            true => steps(reached),
+            false => Some(moves),
+        }
     }
 
     /// A capture with a part of the device's ramps.

@@ -259,7 +259,7 @@ impl DeviceReport {
                 elevations(backwards_deg)
             ),
             format!(
-                "mean vertical resolution {} deg, tilt per turn {} deg",
+                "mean vertical resolution {} deg, tilt per revolution {} deg",
                 number(self.mean_vertical_resolution_deg, 7),
                 number(self.tilt_per_turn_deg, 7)
             ),
