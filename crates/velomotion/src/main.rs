@@ -124,9 +124,10 @@ fn print(
     });
     let gone = || std::io::ErrorKind::BrokenPipe.into();
     // After a signal the process ends even if no program reads its result.
-    match failure.map(|failure| failure.kind) {
-        Some(Kind::Interrupted) => printed.recv_timeout(LAST_WORDS).unwrap_or(Ok(())),
-        _ => printed.recv().unwrap_or_else(|_| Err(gone())),
+    let is_stopped = failure.is_some_and(|failure| failure.kind == Kind::Interrupted);
+    match is_stopped || signals::has_come() {
+        true => printed.recv_timeout(LAST_WORDS).unwrap_or(Ok(())),
+        false => printed.recv().unwrap_or_else(|_| Err(gone())),
     }
 }
 

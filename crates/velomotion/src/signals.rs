@@ -13,6 +13,15 @@ const INTERRUPTED: i32 = 130;
 /// Set once every device is closed.
 static DEVICES_CLOSED: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
 
+/// Set by every signal of a flag.
+static SIGNALLED: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
+
+/// Whether a signal has come, if only when the command had finished its work.
+#[must_use]
+pub fn has_come() -> bool {
+    SIGNALLED.load(Ordering::Relaxed)
+}
+
 /// From here on a signal ends the process at once: nothing moves, and a result that no program
 /// reads must not keep the process alive.
 pub fn end_process_on_signal() {
@@ -46,6 +55,7 @@ fn flag_of(signals: &[i32]) -> Result<Arc<AtomicBool>, Failure> {
             INTERRUPTED,
             Arc::clone(&DEVICES_CLOSED),
         )
+        .and_then(|_| signal_hook::flag::register(signal, Arc::clone(&SIGNALLED)))
         .and_then(|_| signal_hook::flag::register(signal, Arc::clone(&flag)));
         registered.map_err(|error| {
             Failure::new(Kind::NoDevice, format!("cannot watch for Ctrl-C: {error}"))

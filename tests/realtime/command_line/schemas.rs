@@ -50,7 +50,7 @@ fn what_commands_print_follows_the_schemas() {
         "analyze velomotion16:56.25 again.ply scan.pcapng --json".to_owned(),
         "analyze velomotion16 --sweep speed=50..90/3 --json".to_owned(),
         "plan --at 20m --gap 0.8deg --json".to_owned(),
-        "tradeoff --quick --only scan-speed --json".to_owned(),
+        "tradeoff --quick --json".to_owned(),
         "tilt status --json".to_owned(),
         "doctor --json".to_owned(),
         "help formats --json".to_owned(),

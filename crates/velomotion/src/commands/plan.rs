@@ -130,7 +130,10 @@ fn text(report: &PlanReport, written: Vec<String>) -> String {
         lines.push("!: beyond the limit".to_owned());
     }
     match &report.chosen {
-        Some(chosen) => lines.extend(choice(chosen, report.at_m)),
+        Some(chosen) => {
+            lines.push("rows are from fewer directions and azimuths than the choice".to_owned());
+            lines.extend(choice(chosen, report.at_m));
+        }
         None => lines.extend(report.unmet.is_none().then(|| {
             "\n--error, --gap or --time choose a setting and print its command".to_owned()
         })),

@@ -173,7 +173,7 @@ impl ScanPlanner {
         match nearest.limit {
             LimitKind::Error => format!(
                 "no setting has an error of {} mm at {at_m} m: the fastest within 4 % of the least has {:.2} mm, of which {:.2} mm by the ranges (95 %), in {:.1} s \
-                 ({by}); only more accurate ranges, --range-sd, lessen the latter",
+                 ({by}); only a lidar with more accurate ranges lessens the latter",
                 limits.error_mm.unwrap_or_default(),
                 row.error_mm.total,
                 row.error_mm.of_ranges(),
@@ -188,7 +188,7 @@ impl ScanPlanner {
                 6.0 * setting.rpm * self.predictor.lidar.firing_period_s,
             ),
             LimitKind::Time => format!(
-                "no scan{others} takes {} s with homing: the shortest takes {:.1} s ({by})",
+                "no scan{others} takes at most {} s with homing: the shortest takes {:.1} s ({by})",
                 limits.time_s.unwrap_or_default(),
                 row.scan_s,
             ),
