@@ -320,7 +320,7 @@ impl ScanPredictor {
             .reduce(|| widest, f64::max)
     }
 
-    /// The 99 % gap of [`Self::brief_row`].
+    /// The 99 % gap of a sixth of the directions, with few azimuths at the start.
     #[must_use]
     pub fn brief_p99_deg(&self, scan: &PlannedScan) -> f64 {
         let at_start = |start| self.gaps_deg(scan, GapEffort::ROW, start);
