@@ -134,6 +134,38 @@ fn a_recording_with_missing_packets_is_incomplete() {
     }
 }
 
+/// A lidar that is plugged in late, or whose cable comes out, leaves no gap between two packets.
+#[test]
+fn a_lidar_that_is_silent_at_an_end_of_the_sweep_is_incomplete() {
+    let place = Place::new();
+    let made = place.run("simulate room -o room.pcapng");
+    assert!(made.status.success());
+    let log = std::fs::read(place.path("room.pcapng")).unwrap();
+    let word = |at: usize| u32::from_le_bytes(log[at..at + 4].try_into().unwrap()) as usize;
+    let mut blocks = vec![0];
+    while let Some(at) = blocks.last().copied().filter(|at| *at < log.len()) {
+        blocks.push(at + word(at + 4));
+    }
+    // An enhanced packet block holds a data packet of 1206 bytes after headers of 42.
+    let is_data = |at: usize| word(at) == 6 && word(at + 20) == 1_248;
+    let data = blocks.windows(2).filter(|ends| is_data(ends[0])).count();
+    for (first, kept, part) in [(200, data, "first"), (0, data - 200, "last")] {
+        let (mut seen, mut cut) = (0, Vec::new());
+        for ends in blocks.windows(2) {
+            seen += usize::from(is_data(ends[0]));
+            if !is_data(ends[0]) || (first < seen && seen <= kept) {
+                cut.extend_from_slice(&log[ends[0]..ends[1]]);
+            }
+        }
+        std::fs::write(place.path("cut.pcapng"), cut).unwrap();
+        let silent = format!("no lidar packet arrived in the {part} 0.");
+        let output = place.run("replay cut.pcapng -o cut.ply --force -q");
+        let printed = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(6), "{printed}");
+        assert!(printed.contains(&silent), "{printed}");
+    }
+}
+
 #[test]
 fn info_names_file_start_sensor_sweeps_configuration_and_position() {
     let place = Place::new();

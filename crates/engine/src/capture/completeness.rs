@@ -12,8 +12,9 @@ use crate::reconstruct::report::{Contents, ScanReport};
 pub const LIDAR_SILENCE: Duration = Duration::from_secs(1);
 /// A longer time between two looks is a suspension of this program.
 const LONGEST_PAUSE: Duration = Duration::from_millis(500);
-/// Longest time without packets at the end of the last sweep, seconds. Sweeps end with a sample of
-/// the drive, some milliseconds after the one before, and a packet takes 1.3 ms to fill.
+/// Longest time without packets at the start of the first sweep and at the end of the last,
+/// seconds. Sweeps end with a sample of the drive, some milliseconds after the one before, and a
+/// packet takes 1.3 ms to fill.
 pub const MAX_LIDAR_GAP_S: f64 = 0.05;
 
 /// Watches for silence of the lidar while the axis moves.
@@ -76,11 +77,12 @@ pub fn missing(scan: &ScanReport) -> Option<Failure> {
     }
     gaps.extend(scan.incomplete_sweeps.iter().cloned());
     gaps.extend(missing_packets(&scan.contents));
-    if scan.lidar_gap_s > MAX_LIDAR_GAP_S {
-        gaps.push(format!(
-            "no lidar packet arrived in the last {:.2} s of the sweep",
-            scan.lidar_gap_s
-        ));
+    for (gap_s, part) in scan.lidar_gaps_s.into_iter().zip(["first", "last"]) {
+        if gap_s > MAX_LIDAR_GAP_S {
+            gaps.push(format!(
+                "no lidar packet arrived in the {part} {gap_s:.2} s of the sweep"
+            ));
+        }
     }
     if scan.points == 0 {
         gaps.push(match &scan.left_out_because {

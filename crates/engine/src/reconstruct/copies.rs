@@ -12,6 +12,10 @@ use protocol::vlp16::{DATA_LEN, DataPacket};
 pub(super) struct RecordCopies {
     packets: Recent,
     frames: Recent,
+    /// The latest stamp of a record of the drive.
+    latest_frame_ns: Option<i64>,
+    /// Whether the newest record to the drive is a copy.
+    request_is_copy: bool,
     /// Data packets of a lidar that came again.
     pub doubled_packets: u64,
     /// Records of the drive that came again.
@@ -22,7 +26,8 @@ impl RecordCopies {
     /// Whether a record is a copy of one of these; else it becomes one.
     ///
     /// A lidar's data packets differ at least by their times, whatever stamp the recorder gives to
-    /// a copy. Polls of a drive at rest are alike but for their stamps.
+    /// a copy. Polls of a drive at rest are alike but for their stamps. Answers that have the same
+    /// stamp, too, were late and were read at once, unless their requests are copies.
     pub fn has(&mut self, record: &Record<'_>) -> bool {
         let mut hasher = DefaultHasher::new();
         match record.wire {
@@ -49,8 +54,15 @@ impl RecordCopies {
                 direction, frame, ..
             } => {
                 let is_to_device = direction == protocol::record::Direction::ToDevice;
-                (record.host.as_nanos(), is_to_device, frame).hash(&mut hasher);
-                let is_copy = self.frames.has(hasher.finish());
+                let ns = record.host.as_nanos();
+                (ns, is_to_device, frame).hash(&mut hasher);
+                let is_again = self.frames.has(hasher.finish());
+                let is_earlier = self.latest_frame_ns.is_some_and(|latest| ns < latest);
+                self.latest_frame_ns = self.latest_frame_ns.max(Some(ns));
+                let is_copy = is_again && (is_to_device || is_earlier || self.request_is_copy);
+                if is_to_device {
+                    self.request_is_copy = is_copy;
+                }
                 self.doubled_frames += u64::from(is_copy);
                 is_copy
             }
@@ -166,5 +178,28 @@ mod tests {
             assert_eq!(all(2_500_000 * i), [true; 2], "{i}");
         }
         assert_eq!(copies.doubled_frames, 800);
+    }
+
+    /// A drive that has stalled answers the polls of that time at once, with the same bytes.
+    #[test]
+    fn late_answers_that_are_read_at_once_are_no_copies() {
+        let mut copies = RecordCopies::default();
+        for i in 0..5 {
+            assert!(!copies.has(&drive(2_500_000 * i, Direction::ToDevice, &[1])));
+        }
+        for _ in 0..5 {
+            assert!(!copies.has(&drive(900_000_000, Direction::FromDevice, &[2])));
+        }
+        assert_eq!(copies.doubled_frames, 0);
+        // Of two recordings of the same traffic, joined in the order of time, half are copies.
+        for i in 400..500 {
+            for (direction, frame) in [(Direction::ToDevice, 1), (Direction::FromDevice, 2)] {
+                let frame = [frame];
+                let record = drive(2_500_000 * i, direction, &frame);
+                let ways = [copies.has(&record), copies.has(&record)];
+                assert_eq!(ways, [false, true], "{i} {direction:?}");
+            }
+        }
+        assert_eq!(copies.doubled_frames, 200);
     }
 }

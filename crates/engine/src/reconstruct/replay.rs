@@ -139,8 +139,8 @@ struct FirstPass {
     drive: Option<(DriveLink, u64)>,
     pass: PassSummary,
     alignment: Alignment,
-    /// Receive time of the last data packet.
-    last_data: Option<Stamp<Host>>,
+    /// Receive times of the first and the last data packet.
+    data_span: Option<[Stamp<Host>; 2]>,
     /// Whether a pulse has two returns, by the first packet.
     dual_return: bool,
     /// UTC clock of the lidar's receiver, if requested.
@@ -158,14 +158,15 @@ fn survey(request: &Reconstruction<'_>) -> Result<FirstPass, Failure> {
     let mut survey = Survey::new(&config, request.options.clone()).map_err(cannot_scan(None))?;
     let mut utc =
         (request.time == TimeReference::Utc).then(|| UtcSurvey::new(request.options.clone()));
-    let mut last_data = None;
+    let mut data_span: Option<[Stamp<Host>; 2]> = None;
     let mut dual_return = None;
     let pass = source.read(|record| {
         survey.observe(record);
         if let Wire::Lidar { payload, .. } = record.wire
             && payload.len() == DATA_LEN
         {
-            last_data = Some(record.host);
+            let first = data_span.map_or(record.host, |[first, _]| first);
+            data_span = Some([first, record.host]);
             dual_return.get_or_insert_with(|| {
                 DataPacket::new(payload).is_ok_and(|packet| is_dual(&packet))
             });
@@ -195,7 +196,7 @@ fn survey(request: &Reconstruction<'_>) -> Result<FirstPass, Failure> {
         drive,
         pass,
         alignment,
-        last_data,
+        data_span,
         dual_return: dual_return == Some(true),
         utc: utc.map(|utc| utc.clock),
     })
@@ -421,7 +422,7 @@ fn report(
         output: output.display().to_string(),
         log: path.display().to_string(),
         lost_records: request.lost_records,
-        lidar_gap_s: lidar_gap_s(first_pass),
+        lidar_gaps_s: lidar_gaps_s(first_pass),
         incomplete_sweeps: incomplete,
         reception: None,
         truth: None,
@@ -429,19 +430,22 @@ fn report(
     })
 }
 
-/// Seconds without lidar packets at the end of the last sweep.
-fn lidar_gap_s(first_pass: &FirstPass) -> f64 {
+/// Seconds without lidar packets at the start of the first sweep and at the end of the last.
+fn lidar_gaps_s(first_pass: &FirstPass) -> [f64; 2] {
     let alignment = &first_pass.alignment;
     // Sweep times refer to the host clock before its step.
     let host_was_set = alignment
         .steps
         .iter()
         .any(|step| step.clock == SetClock::Host);
-    match (first_pass.last_data, alignment.sweeps.last()) {
-        (Some(last_data), Some(sweep)) if !host_was_set => {
-            sweep.end.saturating_since(last_data).as_secs_f64().max(0.0)
-        }
-        _ => 0.0,
+    let sweeps = (alignment.sweeps.first(), alignment.sweeps.last());
+    match (first_pass.data_span, sweeps) {
+        (Some([first_data, last_data]), (Some(first), Some(last))) if !host_was_set => [
+            first_data.saturating_since(first.start),
+            last.end.saturating_since(last_data),
+        ]
+        .map(|gap| gap.as_secs_f64().max(0.0)),
+        _ => [0.0; 2],
     }
 }
 

@@ -341,9 +341,10 @@ pub struct ScanReport {
     pub log: String,
     /// Records lost during the capture, by the kernel or the disk.
     pub lost_records: u64,
-    /// Seconds from the last lidar packet to the end of the last sweep; 0 if unknown or negative.
+    /// Seconds from the start of the first sweep to the first lidar packet, and from the last
+    /// packet to the end of the last sweep; 0 if unknown or negative.
     #[serde(skip)]
-    pub lidar_gap_s: f64,
+    pub lidar_gaps_s: [f64; 2],
     /// Planned sweeps that are incomplete; also in the warnings.
     #[serde(skip)]
     pub incomplete_sweeps: Vec<String>,

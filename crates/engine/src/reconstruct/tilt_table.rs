@@ -23,7 +23,7 @@ pub fn tilt_source(text: &str) -> Result<TiltSource, Failure> {
 fn angle_table(path: &Path) -> Result<AngleTable, Failure> {
     let wrong = |what: String| {
         Failure::new(Kind::BadInput, format!("{}: {what}", path.display())).help(
-            "give a CSV of two columns, time_s,angle_deg: times in increasing order, either Unix seconds\n\
+            "give a CSV of two columns, time_s,angle_deg: times in increasing order, either Unix seconds \
              or seconds since the recording's first packet",
         )
     };
