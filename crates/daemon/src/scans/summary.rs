@@ -39,7 +39,7 @@ fn sentences(help: &str) -> Vec<String> {
     lines.iter().map(|line| sentence(line)).collect()
 }
 
-/// The line with a capital first letter and a full stop.
+/// The line with a full stop, and a capital first letter unless a file's name comes first.
 fn sentence(line: &str) -> String {
     let mut letters = line.chars();
     let Some(first) = letters.next() else {
@@ -49,7 +49,14 @@ fn sentence(line: &str) -> String {
         true => "",
         false => ".",
     };
-    format!("{}{}{stop}", first.to_uppercase(), letters.as_str())
+    let is_file = line.split(' ').next().is_some_and(|word| {
+        word.trim_end_matches(['.', ',', ':', ';'])
+            .contains(['.', '/'])
+    });
+    match is_file {
+        true => format!("{line}{stop}"),
+        false => format!("{}{}{stop}", first.to_uppercase(), letters.as_str()),
+    }
 }
 
 #[cfg(test)]
@@ -97,6 +104,15 @@ mod tests {
         record.set_failure(Some(failure));
         let summary = of(&record, Path::new(PLACE), true).unwrap();
         (summary, record.head.why.unwrap())
+    }
+
+    #[test]
+    fn names_of_files_keep_their_letters() {
+        assert_eq!(
+            sentence("scan.json cannot be read"),
+            "scan.json cannot be read."
+        );
+        assert_eq!(sentence("timeout: no answer"), "Timeout: no answer.");
     }
 
     #[test]

@@ -179,7 +179,7 @@ impl DaemonConfig {
             format!("{listen} accepts other machines without a token: anyone could move the axis"),
         )
         .help(
-            "set token_file = \"...\" under [daemon] of the configuration (umask 77; head -c 24 /dev/urandom | base64 | tr +/ -_ > FILE makes one),\n\
+            "set token_file = \"...\" under [daemon] of the configuration (umask 77; head -c 24 /dev/urandom | base64 | tr +/ -_ > FILE makes one), \
              or listen on 127.0.0.1",
         ))
     }

@@ -4,6 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
+use cloud::formats::Format;
 use engine::capture::completeness;
 use engine::config::{self, MountSettings};
 use engine::default_paths;
@@ -122,7 +123,13 @@ fn replay(
     let (scan, stdout) = match &plan {
         Some(plan) => (replay::frames(&request, plan)?, false),
         None => {
-            let target = Target::open(&cloud, arguments.output.fields(), arguments.output.force)?;
+            let target = Target::open(&cloud, arguments.output.fields(), arguments.output.force);
+            let target = target.map_err(|failure| match Format::from_path(&cloud) {
+                Err(_) if cloud != Path::new("-") => failure.help(
+                    "use one of those extensions, .pcap for the lidar's packets alone, or - for PLY on stdout",
+                ),
+                _ => failure,
+            })?;
             let stdout = target.is_stdout();
             (replay::make(&request, target)?, stdout)
         }
