@@ -120,18 +120,14 @@ pub(super) struct GapEffort {
 }
 
 impl GapEffort {
-    /// Ranks settings.
-    pub(super) const ROUGH: Self = Self {
-        stride: 31,
-        starts: 1,
-    };
-    /// A row of a table, or of the best of a ranking.
+    /// The best of a ranking.
     pub(super) const ROW: Self = Self {
         stride: 6,
         starts: 4,
     };
 
-    /// What a capture gives: as many directions as of the chosen row, fewer azimuths.
+    /// A row of a table, and what a capture gives: as many directions as of the chosen row, fewer
+    /// azimuths.
     const CAPTURE: Self = Self {
         stride: 1,
         starts: 4,
@@ -206,11 +202,6 @@ impl ScanPredictor {
     #[must_use]
     pub fn capture_row(&self, scan: &PlannedScan) -> PlanRow {
         self.row_with(scan, GapEffort::CAPTURE)
-    }
-
-    /// The same from a sixth of the directions, too.
-    pub(super) fn brief_row(&self, scan: &PlannedScan) -> PlanRow {
-        self.row_with(scan, GapEffort::ROW)
     }
 
     pub(super) fn row_with(&self, scan: &PlannedScan, effort: GapEffort) -> PlanRow {
@@ -330,9 +321,9 @@ impl ScanPredictor {
             .fold(0.0, f64::max)
     }
 
-    /// The 99 % gap from few directions.
-    pub(super) fn rough_p99_deg(&self, scan: &PlannedScan) -> f64 {
-        let gaps = self.gaps_deg(scan, GapEffort::ROUGH, 0);
+    /// The 99 % gap from one of so many directions.
+    pub(super) fn rough_p99_deg(&self, scan: &PlannedScan, stride: usize) -> f64 {
+        let gaps = self.gaps_deg(scan, GapEffort { stride, starts: 1 }, 0);
         quantile(&gaps, 0.99).unwrap_or(180.0)
     }
 }

@@ -41,6 +41,8 @@ pub struct NearestScan {
     pub limit: LimitKind,
     /// Whether it keeps others.
     pub with_others: bool,
+    /// The least value that there is: millimetres, degrees or seconds.
+    pub least: f64,
     /// What it gives.
     pub row: PlanRow,
 }
@@ -92,7 +94,7 @@ impl ScanPredictor {
             .par_iter()
             .map(|scan| {
                 let error = self.errors.budget(&self.lidar, &scan.sweeps).total;
-                vec![scan.scan_s, self.rough_p99_deg(scan), error]
+                vec![scan.scan_s, self.rough_p99_deg(scan, 12), error]
             })
             .collect();
         let kept = front(&costs);
@@ -118,7 +120,7 @@ impl ScanPredictor {
         }
         let mut fastest: Vec<&PlannedScan> = fastest.into_iter().flatten().collect();
         fastest.sort_by(|a, b| a.scan_s.total_cmp(&b.scan_s));
-        let rows = fastest.into_iter().map(|scan| self.brief_row(scan));
+        let rows = fastest.into_iter().map(|scan| self.capture_row(scan));
         let rows: Vec<PlanRow> = rows.collect();
         let costs = rows
             .iter()
@@ -180,14 +182,19 @@ impl ScanPredictor {
         let error_mm = |scan: &PlannedScan| self.errors.budget(&self.lidar, &scan.sweeps).total;
         let least_mm = scans.iter().map(error_mm).fold(f64::INFINITY, f64::min);
         if limits.error_mm.is_some_and(|limit| least_mm > limit) {
-            let near = scans
-                .iter()
-                .filter(|scan| error_mm(scan) <= NEARLY_LEAST * least_mm);
-            let scan = near.min_by(|a, b| a.scan_s.total_cmp(&b.scan_s))?;
+            let near = PlanLimits {
+                error_mm: Some(NEARLY_LEAST * least_mm),
+                ..*limits
+            };
+            let near = self.accurate(scans, &near);
+            let dense = limits
+                .gap_deg
+                .and_then(|gap_deg| self.fastest_within(&near, gap_deg));
             return Some(NearestScan {
                 limit: LimitKind::Error,
-                with_others: false,
-                row: self.row(scan),
+                with_others: dense.is_some(),
+                least: least_mm,
+                row: self.row(dense.or(near.first().copied())?),
             });
         }
         // Without a limit of time the choice would have found it.
@@ -200,6 +207,7 @@ impl ScanPredictor {
             return Some(NearestScan {
                 limit: LimitKind::Time,
                 with_others: limits.gap_deg.is_some() || limits.error_mm.is_some(),
+                least: row.scan_s,
                 row,
             });
         }
@@ -215,6 +223,7 @@ impl ScanPredictor {
         Some(NearestScan {
             limit: LimitKind::Gap,
             with_others: limits.error_mm.is_some(),
+            least: least_deg,
             row: cheaper.map_or(densest, |scan| self.row(scan)),
         })
     }
@@ -296,7 +305,7 @@ impl ScanPredictor {
         let (roughly, briefly) = FINALISTS;
         let longest_s = scans.last()?.scan_s.min(time_s);
         scans.retain(|scan| scan.scan_s >= SHORT * longest_s);
-        let rough = scans.par_iter().map(|scan| self.rough_p99_deg(scan));
+        let rough = scans.par_iter().map(|scan| self.rough_p99_deg(scan, 31));
         let rough: Vec<f64> = rough.collect();
         let mut ranked: Vec<(&PlannedScan, f64)> = scans.into_iter().zip(rough).collect();
         ranked.sort_by(|a, b| a.1.total_cmp(&b.1));

@@ -323,7 +323,7 @@ impl ScanPlanner {
             unmet: nearest.as_ref().map(|nearest| self.unmet(nearest)),
             nearest: nearest.map(|nearest| self.with_command(nearest.row)),
             chosen: chosen.map(|row| self.with_command(row)),
-            no_command: self.no_command(),
+            no_command: self.no_command(&self.request.rpm),
             assumptions: self.assumptions(),
         })
     }
@@ -377,10 +377,10 @@ impl ScanPlanner {
 /// The simulator's lidar.
 const SIMULATED: &LidarSheet = &lidars::VLP_16;
 
-/// Whether a request is for the simulator's lidar at its rate.
-fn is_simulated(request: &PlanRequest) -> bool {
-    let rpm = RigLidar::default().rpm;
-    request.lidar == SIMULATED && request.rpm.iter().all(|rate| *rate == rpm)
+/// Whether a lidar at these rates is the simulator's.
+fn is_simulated(lidar: &LidarSheet, rpm: &[u32]) -> bool {
+    let simulated = RigLidar::default().rpm;
+    lidar == SIMULATED && rpm.iter().all(|rate| *rate == simulated)
 }
 
 /// Where the standard deviation of a range is from.
@@ -397,7 +397,7 @@ impl RangeSource {
         let is_configured = request.lidar == config.lidar.model.sheet();
         if request.range_sd_m.is_some() {
             Self::Request
-        } else if profile::simulated(device) && is_simulated(request) {
+        } else if profile::simulated(device) && is_simulated(request.lidar, &request.rpm) {
             Self::Simulator
         } else if is_configured && config.lidar.range_sd_m.is_some() {
             Self::Configuration

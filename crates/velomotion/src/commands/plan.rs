@@ -46,7 +46,7 @@ pub fn run(arguments: &cli::Plan, common: &Common) -> Result<CommandOutput, Fail
         let chosen = report.chosen.as_ref().map(|chosen| &chosen.row);
         write_text(
             drawing,
-            &figure(&rows, chosen, report.at_m),
+            &figure(&rows, chosen, (&subject(&report), report.at_m)),
             arguments.force,
         )?;
         let object = format!("{:#}\n", report.to_json());
@@ -110,35 +110,44 @@ fn written(files: &[Option<PathBuf>]) -> Vec<String> {
         .collect()
 }
 
+/// The lidar and the device.
+fn subject(report: &PlanReport) -> String {
+    let simulated = if report.simulated { " (SIMULATED)" } else { "" };
+    format!("{} on {}{simulated}", report.lidar, report.device)
+}
+
 /// Table, choice and assumptions.
 fn text(report: &PlanReport, written: Vec<String>) -> String {
     let mut lines = vec![
         format!(
-            "{} on {}{}: gaps and errors at {} m, times with homing",
-            report.lidar,
-            report.device,
-            if report.simulated { " (SIMULATED)" } else { "" },
+            "{}: gaps and errors at {} m, times with homing",
+            subject(report),
             report.at_m
         ),
         String::new(),
-        table(&report.rows),
+        table(report),
         String::new(),
         "gap: angle to the nearest point, deg, for that share of the directions in view".to_owned(),
-        "error: 95 % of points are within it; ways: sweeps, 2 with --both-ways".to_owned(),
+        "error: 95 % of points are within it; n: sweeps, 2 with --both-ways".to_owned(),
+        "cloud: millions of points, and MB".to_owned(),
     ];
     if report.rows.iter().any(|row| !row.unmet.is_empty()) {
         lines.push("!: beyond the limit".to_owned());
     }
     match &report.chosen {
         Some(chosen) => {
-            lines.push("rows are from fewer directions and azimuths than the choice".to_owned());
+            lines.push(
+                ">: the choice; the other rows are from fewer directions and azimuths".to_owned(),
+            );
             lines.extend(choice(chosen, report.at_m));
         }
         None => lines.extend(report.unmet.is_none().then(|| {
             "\n--error, --gap or --time choose a setting and print its command".to_owned()
         })),
     }
+    let found = report.chosen.as_ref().or(report.nearest.as_ref());
     let no_command = report.no_command.iter();
+    let no_command = no_command.filter(|_| found.is_none_or(|found| found.command.is_none()));
     lines.extend(
         no_command.map(|why| format!("\n{}", wrapped(&format!("no capture command: {why}")))),
     );
@@ -158,39 +167,47 @@ const HEADINGS: [&str; 14] = [
     "\ndeg/s",
     "\ndeg/s2",
     "\nrpm",
-    "\nways",
+    "\nn",
     "scan\ns",
     "gap\n50 %",
     "\n95 %",
     "\n99 %",
     "\nworst",
     "error\nmm",
-    "points\nM",
+    "cloud\nM",
     "replay\ns",
     "log\nMB",
     "cloud\nMB",
 ];
 
-fn table(rows: &[CommandRow]) -> String {
+/// The rows and the choice in the order of time.
+fn table(report: &PlanReport) -> String {
     let mut table = Table::new();
-    let cells = rows.iter().map(|CommandRow { row, unmet, .. }| {
+    let chosen = report.chosen.as_ref();
+    let is_other =
+        |row: &&CommandRow| chosen.is_none_or(|chosen| chosen.row.setting != row.row.setting);
+    let mut rows: Vec<&CommandRow> = report.rows.iter().filter(is_other).chain(chosen).collect();
+    rows.sort_by(|a, b| a.row.scan_s.total_cmp(&b.row.scan_s));
+    let cells = rows.into_iter().map(|found| {
+        let CommandRow { row, unmet, .. } = found;
         let (setting, gap) = (&row.setting, &row.gap_deg);
+        let mark = if is_other(&found) { "" } else { ">" };
         let marked = |limit: &str, value: String| match unmet.iter().any(|it| it.limit == limit) {
             true => value + "!",
             false => value,
         };
         [
-            format!("{:.2}", setting.speed_deg_s),
+            format!("{mark}{:.2}", setting.speed_deg_s),
             format!("{:.0}", setting.accel_deg_s2),
             format!("{:.0}", setting.rpm),
             setting.sweeps.to_string(),
-            marked("time", format!("{:.1}", row.scan_s)),
+            marked("time", short(row.scan_s, 100.0, 1)),
             format!("{:.2}", gap.p50),
             format!("{:.2}", gap.p95),
             marked("gap", format!("{:.2}", gap.p99)),
             format!("{:.2}", gap.worst),
             marked("error", format!("{:.1}", row.error_mm.total)),
-            format!("{:.2}", row.points as f64 * 1e-6),
+            short(row.points as f64 * 1e-6, 10.0, 2),
             row.replay_s.map_or("-".to_owned(), |s| format!("{s:.1}")),
             row.log_bytes
                 .map_or("-".to_owned(), |bytes| format!("{:.0}", megabytes(bytes))),
@@ -207,6 +224,11 @@ fn table(rows: &[CommandRow]) -> String {
             .set_cell_alignment(CellAlignment::Right);
     }
     table.trim_fmt()
+}
+
+/// A number with so many decimals, one fewer from a value on.
+fn short(value: f64, from: f64, decimals: usize) -> String {
+    format!("{value:.*}", decimals - usize::from(value >= from))
 }
 
 fn megabytes(bytes: u64) -> f64 {
@@ -226,7 +248,7 @@ fn choice(chosen: &CommandRow, at_m: f64) -> Vec<String> {
     });
     let paragraphs = [
         format!(
-            "{:.1} s with homing; at most {} points; {}cloud {:.1} MB; mean resolution {:.3} deg",
+            "{:.1} s with homing; at most {} points; {}cloud {:.1} MB; mean resolution {:.3} deg (lines of sweeps, on average)",
             row.scan_s,
             row.points,
             log,
@@ -450,7 +472,23 @@ mod tests {
                     error_mm: Some(0.5),
                     ..PlanLimits::default()
                 },
-                "the fastest within 4 % of the least has",
+                "the fastest within 4 % of it has",
+            ),
+            (
+                PlanLimits {
+                    error_mm: Some(0.5),
+                    gap_deg: Some(0.5),
+                    ..PlanLimits::default()
+                },
+                "of it that keeps the gap has",
+            ),
+            (
+                PlanLimits {
+                    error_mm: Some(0.5),
+                    gap_deg: Some(0.01),
+                    ..PlanLimits::default()
+                },
+                "of it, none of which keeps the gap, has",
             ),
             (
                 PlanLimits {

@@ -43,7 +43,7 @@ pub struct PlanReport {
     pub unmet: Option<String>,
     /// That setting: the fastest that comes nearest to the limit which none meets.
     pub nearest: Option<CommandRow>,
-    /// Why rows have no command.
+    /// Why some rows have no command.
     pub no_command: Option<String>,
     /// What the figures assume.
     pub assumptions: Vec<String>,
@@ -63,23 +63,23 @@ pub struct UnmetLimit {
 
 impl ScanPlanner {
     pub(super) fn with_command(&self, row: PlanRow) -> CommandRow {
-        let has_command = self.no_command().is_none();
         CommandRow {
-            command: has_command.then(|| self.command(&row.setting)),
+            command: (self.no_command(&[row.setting.rpm as u32]).is_none())
+                .then(|| self.command(&row.setting)),
             unmet: self.unmet_of(&row),
             row,
         }
     }
 
-    /// Why rows have no command.
-    pub(super) fn no_command(&self) -> Option<String> {
+    /// Why settings of these speeds of the lidar have no command.
+    pub(super) fn no_command(&self, rpm: &[u32]) -> Option<String> {
         let lidar = self.request.lidar;
         match lidar.model {
             None => Some(format!(
                 "velomotion does not capture the {}: its packets are not those of a VLP-16's family",
                 lidar.title
             )),
-            Some(_) if profile::simulated(&self.device) && !is_simulated(&self.request) => Some(
+            Some(_) if profile::simulated(&self.device) && !is_simulated(lidar, rpm) => Some(
                 "the simulated lidar is a VLP-16 at 600 rpm; name a device with --device"
                     .to_owned(),
             ),
@@ -172,9 +172,15 @@ impl ScanPlanner {
         };
         match nearest.limit {
             LimitKind::Error => format!(
-                "no setting has an error of {} mm at {at_m} m: the fastest within 4 % of the least has {:.2} mm, of which {:.2} mm by the ranges (95 %), in {:.1} s \
-                 ({by}); only a lidar with more accurate ranges lessens the latter",
+                "no setting has an error of {} mm at {at_m} m: the least is {:.2} mm; the fastest within 4 % of it{} has {:.2} mm, of which {:.2} mm by the ranges \
+                 (95 %), in {:.1} s ({by}); only a lidar with more accurate ranges lessens the latter",
                 limits.error_mm.unwrap_or_default(),
+                nearest.least,
+                match (limits.gap_deg, nearest.with_others) {
+                    (Some(_), true) => " that keeps the gap",
+                    (Some(_), false) => ", none of which keeps the gap,",
+                    (None, _) => "",
+                },
                 row.error_mm.total,
                 row.error_mm.of_ranges(),
                 row.scan_s,

@@ -2,10 +2,13 @@
 
 use analysis::tradeoff::{StudyFindings, StudyReport};
 use comfy_table::presets::NOTHING;
-use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table};
+use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Table};
 
 /// Width of a line.
 const WIDTH: usize = 80;
+
+/// Width of names that stay on one line.
+const NAME_WIDTH: usize = 24;
 
 /// The machine, cautions, and each study with its table and fronts.
 #[must_use]
@@ -33,17 +36,22 @@ fn findings(findings: &StudyFindings) -> String {
 
 /// The table: names on the left, values on the right, marks of the fronts last.
 fn table(findings: &StudyFindings) -> String {
+    let cells = findings.cells();
+    let names = cells.iter().filter_map(|row| row.first());
+    let is_short = names.map(|name| name.chars().count()).max() <= Some(NAME_WIDTH);
     let mut table = Table::new();
     table
         .load_style(NOTHING.header_separator(LineStyle::none().fill('-').junction('-')))
         .set_width(WIDTH as u16)
         .set_content_arrangement(ContentArrangement::Dynamic)
         .set_header(findings.headings())
-        .add_rows(findings.cells());
+        .add_rows(cells);
     for column in table.column_iter_mut() {
         column.set_padding((0, 1));
         if column.index > 0 {
             column.set_cell_alignment(CellAlignment::Right);
+        } else if is_short {
+            column.set_constraint(ColumnConstraint::ContentWidth);
         }
     }
     table.trim_fmt()
