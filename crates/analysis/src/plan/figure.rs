@@ -17,10 +17,10 @@ const STUDY: Study = Study {
     measure: |_| Ok(StudyRows::default()),
 };
 
-/// The rows of a table, with the chosen one in a colour of its own. Its title is the finding, `of`
-/// a lidar and a device.
+/// The rows of a table, with the chosen one in a colour of its own. Its title is the finding, of
+/// a subject such as a lidar and a device.
 #[must_use]
-pub fn figure(rows: &[PlanRow], chosen: Option<&PlanRow>, (of, at_m): (&str, f64)) -> String {
+pub fn figure(rows: &[PlanRow], chosen: Option<&PlanRow>, (subject, at_m): (&str, f64)) -> String {
     let row = |row: &PlanRow, group: &'static str| {
         let setting = &row.setting;
         let label = format!("{:.1} deg/s", setting.speed_deg_s);
@@ -40,11 +40,11 @@ pub fn figure(rows: &[PlanRow], chosen: Option<&PlanRow>, (of, at_m): (&str, f64
     };
     let title = match (chosen, rows.first(), rows.last()) {
         (Some(found), ..) => format!(
-            "{of}: {:.1} s give gaps of {:.2} deg, errors of {:.1} mm at {at_m} m",
+            "{subject}: {:.1} s give gaps of {:.2} deg, errors of {:.1} mm at {at_m} m",
             found.scan_s, found.gap_deg.p99, found.error_mm.total
         ),
         (None, Some(fast), Some(slow)) => format!(
-            "{of}: {:.1} to {:.0} s, gaps of {:.2} to {:.2} deg, errors of {:.0} to {:.1} mm at {at_m} m",
+            "{subject}: {:.1} to {:.0} s, gaps of {:.2} to {:.2} deg, errors of {:.0} to {:.1} mm at {at_m} m",
             fast.scan_s,
             slow.scan_s,
             fast.gap_deg.p99,

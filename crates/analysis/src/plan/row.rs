@@ -120,8 +120,8 @@ pub(super) struct GapEffort {
 }
 
 impl GapEffort {
-    /// The best of a ranking.
-    pub(super) const ROW: Self = Self {
+    /// The first of many settings that a rougher look has ranked.
+    pub(super) const BRIEF: Self = Self {
         stride: 6,
         starts: 4,
     };
@@ -314,14 +314,14 @@ impl ScanPredictor {
     /// The 99 % gap of a sixth of the directions, with few azimuths at the start.
     #[must_use]
     pub fn brief_p99_deg(&self, scan: &PlannedScan) -> f64 {
-        let at_start = |start| self.gaps_deg(scan, GapEffort::ROW, start);
+        let at_start = |start| self.gaps_deg(scan, GapEffort::BRIEF, start);
         let p99 = |gaps: Vec<f64>| quantile(&gaps, 0.99).unwrap_or(180.0);
-        (0..GapEffort::ROW.starts)
+        (0..GapEffort::BRIEF.starts)
             .map(|start| p99(at_start(start)))
             .fold(0.0, f64::max)
     }
 
-    /// The 99 % gap from one of so many directions.
+    /// The 99 % gap from every so many directions, at one azimuth.
     pub(super) fn rough_p99_deg(&self, scan: &PlannedScan, stride: usize) -> f64 {
         let gaps = self.gaps_deg(scan, GapEffort { stride, starts: 1 }, 0);
         quantile(&gaps, 0.99).unwrap_or(180.0)

@@ -49,6 +49,10 @@ pub struct NearestScan {
 
 /// Rows of a table, at most.
 const ROWS: usize = 12;
+/// Of so many directions one ranks the settings of a table: of fewer, slow settings look alike.
+const TABLE_STRIDE: usize = 12;
+/// Of so many directions one ranks settings of which the best are compared anew.
+const RANKING_STRIDE: usize = 31;
 /// Ratio of a gap to the least one that counts as reaching it.
 const NEARLY_LEAST: f64 = 1.04;
 /// Part of the requested gap that a choice keeps: at azimuths of the start between those examined
@@ -94,7 +98,7 @@ impl ScanPredictor {
             .par_iter()
             .map(|scan| {
                 let error = self.errors.budget(&self.lidar, &scan.sweeps).total;
-                vec![scan.scan_s, self.rough_p99_deg(scan, 12), error]
+                vec![scan.scan_s, self.rough_p99_deg(scan, TABLE_STRIDE), error]
             })
             .collect();
         let kept = front(&costs);
@@ -187,14 +191,21 @@ impl ScanPredictor {
                 ..*limits
             };
             let near = self.accurate(scans, &near);
-            let dense = limits
-                .gap_deg
-                .and_then(|gap_deg| self.fastest_within(&near, gap_deg));
+            let fastest = *near.first()?;
+            let row = match limits.gap_deg {
+                None => self.row(fastest),
+                Some(gap_deg) => match self.fastest_within(&near, gap_deg) {
+                    Some(found) => self.row(found),
+                    None => self.densest(near, f64::INFINITY)?,
+                },
+            };
             return Some(NearestScan {
                 limit: LimitKind::Error,
-                with_others: dense.is_some(),
+                with_others: limits
+                    .gap_deg
+                    .is_some_and(|gap_deg| row.gap_deg.p99 <= gap_deg),
                 least: least_mm,
-                row: self.row(dense.or(near.first().copied())?),
+                row,
             });
         }
         // Without a limit of time the choice would have found it.
@@ -305,7 +316,9 @@ impl ScanPredictor {
         let (roughly, briefly) = FINALISTS;
         let longest_s = scans.last()?.scan_s.min(time_s);
         scans.retain(|scan| scan.scan_s >= SHORT * longest_s);
-        let rough = scans.par_iter().map(|scan| self.rough_p99_deg(scan, 31));
+        let rough = scans
+            .par_iter()
+            .map(|scan| self.rough_p99_deg(scan, RANKING_STRIDE));
         let rough: Vec<f64> = rough.collect();
         let mut ranked: Vec<(&PlannedScan, f64)> = scans.into_iter().zip(rough).collect();
         ranked.sort_by(|a, b| a.1.total_cmp(&b.1));

@@ -52,16 +52,23 @@ fn refusal(meaning: &str, kind: Kind, example: &str) -> Answer {
     let body = RefOr::<Schema>::Ref(Ref::from_schema_name("ErrorReport"));
     let failure = Failure::new(kind, example).help("what to do next");
     let example = ErrorReport { error: failure }.to_json();
-    ResponseBuilder::new()
+    let content = ContentBuilder::new()
+        .schema(Some(body))
+        .example(Some(example));
+    let answer = ResponseBuilder::new()
         .description(meaning)
-        .content(
-            "application/json",
-            ContentBuilder::new()
-                .schema(Some(body))
-                .example(Some(example))
+        .content("application/json", content.build());
+    match kind {
+        Kind::Busy | Kind::Limit => answer.header(
+            "Retry-After",
+            HeaderBuilder::new()
+                .schema(Some(Object::with_type(Type::Integer)))
+                .description(Some("Seconds until another try may succeed, where known"))
                 .build(),
-        )
-        .build()
+        ),
+        _ => answer,
+    }
+    .build()
 }
 
 /// Responses of a request for a file that is stored.
@@ -169,11 +176,12 @@ struct Description;
 struct SharedParts;
 
 /// Responses of every request.
-const EVERY: [(&str, &str); 5] = [
+const EVERY: [(&str, &str); 6] = [
     ("403", "Denied"),
     ("408", "Limit"),
     ("413", "Limit"),
     ("414", "Limit"),
+    ("429", "Limit"),
     ("431", "Limit"),
 ];
 /// Responses of every request that needs a token.
@@ -370,6 +378,27 @@ mod tests {
         });
         let bodies: BTreeSet<&str> = bodies.collect();
         assert_eq!(bodies, REQUESTS.into());
+        for name in bodies {
+            assert!(schemas[name]["example"].is_object(), "{name}");
+        }
+    }
+
+    /// Too many clients or wrong tokens refuse any request, with a time to wait.
+    #[test]
+    fn every_request_may_be_one_too_many() {
+        let described: Value = serde_json::from_str(&JSON).unwrap();
+        let paths = described["paths"].as_object().unwrap().values();
+        let operations = paths.flat_map(|path| path.as_object().unwrap());
+        for (method, operation) in operations.filter(|(method, _)| *method != "parameters") {
+            assert!(
+                operation["responses"]["429"].is_object(),
+                "{method} {operation}"
+            );
+        }
+        for name in ["Limit", "NotNow"] {
+            let answer = &described["components"]["responses"][name];
+            assert!(answer["headers"]["Retry-After"].is_object(), "{answer}");
+        }
     }
 
     #[test]

@@ -194,6 +194,7 @@ fn sign_in_again() -> Response {
 /// Body of `POST /login`.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
+#[schema(example = json!({"token": "the text of the token's file"}))]
 struct Login {
     /// The daemon's token.
     token: String,

@@ -80,7 +80,7 @@ pub fn missing(scan: &ScanReport) -> Option<Failure> {
     for (gap_s, part) in scan.lidar_gaps_s.into_iter().zip(["first", "last"]) {
         if gap_s > MAX_LIDAR_GAP_S {
             gaps.push(format!(
-                "no lidar packet arrived in the {part} {gap_s:.2} s of the sweep"
+                "no lidar packet arrived in the {part} {gap_s:.2} s of the {part} sweep"
             ));
         }
     }

@@ -12,8 +12,8 @@ use protocol::vlp16::{DATA_LEN, DataPacket};
 pub(super) struct RecordCopies {
     packets: Recent,
     frames: Recent,
-    /// The latest stamp of a record of the drive.
-    latest_frame_ns: Option<i64>,
+    /// The stamp of the newest record of the drive that is no copy.
+    newest_frame_ns: Option<i64>,
     /// Whether the newest record to the drive is a copy.
     request_is_copy: bool,
     /// Data packets of a lidar that came again.
@@ -57,8 +57,10 @@ impl RecordCopies {
                 let ns = record.host.as_nanos();
                 (ns, is_to_device, frame).hash(&mut hasher);
                 let is_again = self.frames.has(hasher.finish());
-                let is_earlier = self.latest_frame_ns.is_some_and(|latest| ns < latest);
-                self.latest_frame_ns = self.latest_frame_ns.max(Some(ns));
+                let is_earlier = self.newest_frame_ns.is_some_and(|newest| ns < newest);
+                if !is_again {
+                    self.newest_frame_ns = Some(ns);
+                }
                 let is_copy = is_again && (is_to_device || is_earlier || self.request_is_copy);
                 if is_to_device {
                     self.request_is_copy = is_copy;

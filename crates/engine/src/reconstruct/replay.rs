@@ -165,8 +165,8 @@ fn survey(request: &Reconstruction<'_>) -> Result<FirstPass, Failure> {
         if let Wire::Lidar { payload, .. } = record.wire
             && payload.len() == DATA_LEN
         {
-            let first = data_span.map_or(record.host, |[first, _]| first);
-            data_span = Some([first, record.host]);
+            let [first, last] = data_span.unwrap_or([record.host; 2]);
+            data_span = Some([first.min(record.host), last.max(record.host)]);
             dual_return.get_or_insert_with(|| {
                 DataPacket::new(payload).is_ok_and(|packet| is_dual(&packet))
             });
@@ -441,10 +441,13 @@ fn lidar_gaps_s(first_pass: &FirstPass) -> [f64; 2] {
     let sweeps = (alignment.sweeps.first(), alignment.sweeps.last());
     match (first_pass.data_span, sweeps) {
         (Some([first_data, last_data]), (Some(first), Some(last))) if !host_was_set => [
-            first_data.saturating_since(first.start),
-            last.end.saturating_since(last_data),
+            (first_data.saturating_since(first.start), first),
+            (last.end.saturating_since(last_data), last),
         ]
-        .map(|gap| gap.as_secs_f64().max(0.0)),
+        .map(|(gap, sweep)| {
+            let sweep_s = sweep.end.saturating_since(sweep.start).as_secs_f64();
+            gap.as_secs_f64().min(sweep_s).max(0.0)
+        }),
         _ => [0.0; 2],
     }
 }

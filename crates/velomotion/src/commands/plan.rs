@@ -137,7 +137,7 @@ fn text(report: &PlanReport, written: Vec<String>) -> String {
     match &report.chosen {
         Some(chosen) => {
             lines.push(
-                ">: the choice; the other rows are from fewer directions and azimuths".to_owned(),
+                ">: the choice; the other rows are from fewer azimuths at the start".to_owned(),
             );
             lines.extend(choice(chosen, report.at_m));
         }
@@ -147,7 +147,10 @@ fn text(report: &PlanReport, written: Vec<String>) -> String {
     }
     let found = report.chosen.as_ref().or(report.nearest.as_ref());
     let no_command = report.no_command.iter();
-    let no_command = no_command.filter(|_| found.is_none_or(|found| found.command.is_none()));
+    let no_command = no_command.filter(|_| match found {
+        Some(found) => found.command.is_none(),
+        None => report.rows.iter().all(|row| row.command.is_none()),
+    });
     lines.extend(
         no_command.map(|why| format!("\n{}", wrapped(&format!("no capture command: {why}")))),
     );
@@ -228,7 +231,9 @@ fn table(report: &PlanReport) -> String {
 
 /// A number with so many decimals, one fewer from a value on.
 fn short(value: f64, from: f64, decimals: usize) -> String {
-    format!("{value:.*}", decimals - usize::from(value >= from))
+    let scale = 10_f64.powi(decimals as i32);
+    let is_large = (value * scale).round() >= from * scale;
+    format!("{value:.*}", decimals - usize::from(is_large))
 }
 
 fn megabytes(bytes: u64) -> f64 {
@@ -248,7 +253,7 @@ fn choice(chosen: &CommandRow, at_m: f64) -> Vec<String> {
     });
     let paragraphs = [
         format!(
-            "{:.1} s with homing; at most {} points; {}cloud {:.1} MB; mean resolution {:.3} deg (lines of sweeps, on average)",
+            "{:.1} s with homing; at most {} points; {}cloud {:.1} MB; mean resolution {:.3} deg (mean angle between scan lines)",
             row.scan_s,
             row.points,
             log,
@@ -376,6 +381,15 @@ mod tests {
                 assert!(unmet.iter().all(|unmet| !unmet.cause.is_empty()));
             }
             let text = text(&report, Vec::new());
+            let chosen = text.lines().filter(|line| {
+                let rest = line.trim_start().strip_prefix('>');
+                rest.is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit()))
+            });
+            assert_eq!(
+                chosen.count(),
+                usize::from(report.chosen.is_some()),
+                "{text}"
+            );
             assert!(text.contains("beyond the limit"), "{text}");
             assert!(
                 text.lines().all(|line| line.chars().count() <= 80),
@@ -464,6 +478,31 @@ mod tests {
         }
     }
 
+    /// The simulator's lidar has one rate.
+    #[test]
+    fn a_choice_at_the_rate_of_the_simulator_has_a_command() {
+        for gap_deg in [None, Some(0.8)] {
+            let request = PlanRequest {
+                limits: PlanLimits {
+                    gap_deg,
+                    ..PlanLimits::default()
+                },
+                rpm: vec![300, 600],
+                ..PlanRequest::new(20.0, &lidars::VLP_16, 0)
+            };
+            let device = Device::simulator();
+            let planner = ScanPlanner::new(&Config::default(), ("sim", &device), request);
+            let report = planner.unwrap().plan().unwrap();
+            for CommandRow { command, row, .. } in report.rows.iter().chain(&report.chosen) {
+                assert_eq!(command.is_some(), row.setting.rpm == 600.0, "{row:?}");
+            }
+            let found = report.chosen.as_ref().or(report.rows.first());
+            let has_command = found.is_some_and(|found| found.command.is_some());
+            let says_why = text(&report, Vec::new()).contains("no capture command");
+            assert!(gap_deg.is_none() || says_why != has_command, "{report:?}");
+        }
+    }
+
     #[test]
     fn limits_that_no_setting_meets_are_explained() {
         for (limits, words) in [
@@ -488,7 +527,7 @@ mod tests {
                     gap_deg: Some(0.01),
                     ..PlanLimits::default()
                 },
-                "of it, none of which keeps the gap, has",
+                "none within 4 % of it keeps the gap; the densest has",
             ),
             (
                 PlanLimits {

@@ -172,23 +172,26 @@ impl ScanPlanner {
         };
         match nearest.limit {
             LimitKind::Error => format!(
-                "no setting has an error of {} mm at {at_m} m: the least is {:.2} mm; the fastest within 4 % of it{} has {:.2} mm, of which {:.2} mm by the ranges \
+                "no setting has an error of {} mm at {at_m} m: the least is {:.2} mm; {} has {:.2} mm, of which {:.2} mm by the ranges \
                  (95 %), in {:.1} s ({by}); only a lidar with more accurate ranges lessens the latter",
                 limits.error_mm.unwrap_or_default(),
                 nearest.least,
                 match (limits.gap_deg, nearest.with_others) {
-                    (Some(_), true) => " that keeps the gap",
-                    (Some(_), false) => ", none of which keeps the gap,",
-                    (None, _) => "",
+                    (Some(_), true) => "the fastest within 4 % of it that keeps the gap",
+                    (Some(_), false) => {
+                        "none within 4 % of it keeps the gap; the densest"
+                    }
+                    (None, _) => "the fastest within 4 % of it",
                 },
                 row.error_mm.total,
                 row.error_mm.of_ranges(),
                 row.scan_s,
             ),
             LimitKind::Gap => format!(
-                "no setting{others} has a gap of {} deg: the fastest near the least has {:.3} deg, in {:.1} s ({by}); firings are {:.2} deg apart in azimuth, and \
+                "no setting{others} has a gap of {} deg: the least is {:.3} deg; the fastest near it has {:.3} deg, in {:.1} s ({by}); firings are {:.2} deg apart in azimuth, and \
                  lines never reach the poles of the tilt axis",
                 limits.gap_deg.unwrap_or_default(),
+                nearest.least,
                 row.gap_deg.p99,
                 row.scan_s,
                 6.0 * setting.rpm * self.predictor.lidar.firing_period_s,
