@@ -291,7 +291,8 @@ impl ScanPlanner {
                 Failure::new(Kind::Usage, message).help("set --from and --to farther apart")
             );
         }
-        let rows = self.predictor.table(&self.scans(COARSE));
+        let coarse = self.scans(COARSE);
+        let mut rows = self.predictor.table(&coarse);
         let has_limits = *limits != PlanLimits::default();
         let scans = if has_limits {
             self.different_scans(FINE)
@@ -313,6 +314,15 @@ impl ScanPlanner {
         };
         if let Some(nearest) = nearest.take_if(|nearest| is_within(nearest)) {
             chosen = Some(nearest.row);
+        }
+        // Rows that seem to beat the choice are examined at as many azimuths.
+        if let (Some(chosen), Some(_)) = (&chosen, limits.gap_deg) {
+            let seem_better =
+                |row: &&mut PlanRow| row.scan_s < chosen.scan_s && self.unmet_of(row).is_empty();
+            for row in rows.iter_mut().filter(seem_better) {
+                let scan = coarse.iter().find(|scan| scan.setting == row.setting);
+                *row = scan.map_or_else(|| row.clone(), |scan| self.predictor.row(scan));
+            }
         }
         Ok(PlanReport {
             device: self.name.clone(),

@@ -481,7 +481,7 @@ mod tests {
     /// The simulator's lidar has one rate.
     #[test]
     fn a_choice_at_the_rate_of_the_simulator_has_a_command() {
-        for gap_deg in [None, Some(0.8)] {
+        for gap_deg in [None, Some(0.3)] {
             let request = PlanRequest {
                 limits: PlanLimits {
                     gap_deg,
@@ -495,6 +495,12 @@ mod tests {
             let report = planner.unwrap().plan().unwrap();
             for CommandRow { command, row, .. } in report.rows.iter().chain(&report.chosen) {
                 assert_eq!(command.is_some(), row.setting.rpm == 600.0, "{row:?}");
+            }
+            // No row within the limits is faster than the choice.
+            let within = report.rows.iter().filter(|row| row.unmet.is_empty());
+            for CommandRow { row, .. } in within {
+                let chosen = report.chosen.as_ref();
+                assert!(chosen.is_none_or(|chosen| chosen.row.scan_s <= row.scan_s));
             }
             let found = report.chosen.as_ref().or(report.rows.first());
             let has_command = found.is_some_and(|found| found.command.is_some());

@@ -110,7 +110,7 @@ impl ScanPlanner {
     }
 
     /// The limits that a row does not keep.
-    fn unmet_of(&self, row: &PlanRow) -> Vec<UnmetLimit> {
+    pub(super) fn unmet_of(&self, row: &PlanRow) -> Vec<UnmetLimit> {
         let limits = &self.request.limits;
         let (setting, error) = (&row.setting, &row.error_mm);
         let terms = [
