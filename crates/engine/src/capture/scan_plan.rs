@@ -320,8 +320,9 @@ impl ScanPlanner {
             let seem_better =
                 |row: &&mut PlanRow| row.scan_s < chosen.scan_s && self.unmet_of(row).is_empty();
             for row in rows.iter_mut().filter(seem_better) {
-                let scan = coarse.iter().find(|scan| scan.setting == row.setting);
-                *row = scan.map_or_else(|| row.clone(), |scan| self.predictor.row(scan));
+                if let Some(scan) = coarse.iter().find(|scan| scan.setting == row.setting) {
+                    *row = self.predictor.row(scan);
+                }
             }
         }
         Ok(PlanReport {
