@@ -141,8 +141,9 @@ fn tilt_commands_show_home_and_move_the_axis_and_explain_faults() {
     );
 
     // Before homing no angle is known.
-    let lost = bench.run("tilt goto -20");
-    assert_eq!(lost.status.code(), Some(5));
+    for lost in ["tilt goto -20", "tilt jog -20"] {
+        assert_eq!(bench.run(lost).status.code(), Some(5), "{lost}");
+    }
     let homed = bench.json("tilt home");
     assert_eq!(homed["referenced"], true);
     assert_eq!(homed["angle_deg"], 0.0);
@@ -156,8 +157,14 @@ fn tilt_commands_show_home_and_move_the_axis_and_explain_faults() {
         "the power stage is left on"
     );
 
-    let outside = bench.run("tilt goto -46");
-    assert_eq!(outside.status.code(), Some(2));
+    let jogged = bench.json("tilt jog 5 --speed 40");
+    assert!(
+        (jogged["angle_deg"].as_f64().unwrap() + 15.0).abs() < 0.002,
+        "{jogged}"
+    );
+    for outside in ["tilt goto -46", "tilt jog -31"] {
+        assert_eq!(bench.run(outside).status.code(), Some(2), "{outside}");
+    }
 }
 
 #[test]

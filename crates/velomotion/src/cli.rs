@@ -548,18 +548,18 @@ pub enum TiltVerb {
         /// Target angle
         #[arg(value_name = "DEG", allow_negative_numbers = true, value_parser = number)]
         to: f64,
-        /// Speed
-        #[arg(
-            long,
-            value_name = "DEG_PER_S",
-            default_value_t = 10.0,
-            allow_negative_numbers = true,
-            value_parser = number
-        )]
-        speed: f64,
-        /// Acceleration [default: the device's]
-        #[arg(long, value_name = "DEG_PER_S2", allow_negative_numbers = true, value_parser = number)]
-        accel: Option<f64>,
+        /// Motion.
+        #[command(flatten)]
+        motion: MotionArguments,
+    },
+    /// Move it by an angle from where it is
+    Jog {
+        /// Angle; negative ones tilt towards the lower limit
+        #[arg(value_name = "DEG", allow_negative_numbers = true, value_parser = number)]
+        by: f64,
+        /// Motion.
+        #[command(flatten)]
+        motion: MotionArguments,
     },
     /// Stop it now and set the brake, also during a capture
     Stop,
@@ -569,6 +569,23 @@ pub enum TiltVerb {
         #[arg(long)]
         clear: bool,
     },
+}
+
+/// Speed and acceleration of a move by hand.
+#[derive(Clone, Copy, Debug, Args)]
+pub struct MotionArguments {
+    /// Speed
+    #[arg(
+        long,
+        value_name = "DEG_PER_S",
+        default_value_t = 10.0,
+        allow_negative_numbers = true,
+        value_parser = number
+    )]
+    pub speed: f64,
+    /// Acceleration [default: the device's]
+    #[arg(long, value_name = "DEG_PER_S2", allow_negative_numbers = true, value_parser = number)]
+    pub accel: Option<f64>,
 }
 
 /// `firmware-sim`.

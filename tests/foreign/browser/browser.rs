@@ -1,6 +1,5 @@
 //! Debian's Chromium through its WebDriver: one `chromedriver`, and one window per test.
 
-use std::collections::BTreeSet;
 use std::future::Future;
 use std::io::{BufRead, BufReader, Cursor};
 use std::path::PathBuf;
@@ -230,12 +229,6 @@ impl Page {
             .await;
     }
 
-    /// Number of colours in the picture of an element: an empty drawing has few.
-    pub async fn colours_of(&self, css: &str) -> usize {
-        let pixels = self.pixels_of(css).await;
-        pixels.into_iter().collect::<BTreeSet<_>>().len()
-    }
-
     /// The pixels in the picture of an element.
     pub async fn pixels_of(&self, css: &str) -> Vec<[u8; 3]> {
         let element = self.client.find(Locator::Css(css)).await.unwrap();
@@ -249,20 +242,25 @@ impl Page {
             .collect()
     }
 
-    /// Waits until this share of the pixels of an element differs from an earlier picture of it.
-    pub async fn until_changed(&self, css: &str, before: &[[u8; 3]], share: f64) {
+    /// Waits until the pixels of an element are as they should be: a page shows a new text before a
+    /// new picture.
+    pub async fn until_pixels(&self, css: &str, what: &str, good: impl Fn(&[[u8; 3]]) -> bool) {
         let begin = Instant::now();
-        loop {
-            let now = self.pixels_of(css).await;
-            let changed = now.iter().zip(before).filter(|(a, b)| a != b).count();
-            if changed as f64 > share * now.len() as f64 {
-                return;
+        while !good(&self.pixels_of(css).await) {
+            if begin.elapsed() > TIME_LIMIT {
+                let place = self.picture("failed").await;
+                panic!("{css} never has {what}; {}", place.display());
             }
-            assert!(
-                begin.elapsed() < TIME_LIMIT,
-                "only {changed} pixels of {css} changed"
-            );
         }
+    }
+
+    /// Waits until a tenth of the pixels of an element differ from an earlier picture of it.
+    pub async fn until_changed(&self, css: &str, before: &[[u8; 3]]) {
+        self.until_pixels(css, "another picture", |now| {
+            let changed = now.iter().zip(before).filter(|(a, b)| a != b).count();
+            changed * 10 > now.len()
+        })
+        .await;
     }
 
     /// Clicks an element once it rests where a mouse or finger reaches it: a picture that loads
@@ -319,13 +317,6 @@ impl Page {
         self.screen.width < 600
     }
 
-    /// Whether a pixel in the picture of an element has about this colour.
-    pub async fn has_colour(&self, css: &str, rgb: [u8; 3]) -> bool {
-        let pixels = self.pixels_of(css).await;
-        let near = |pixel: &[u8]| pixel.iter().zip(rgb).all(|(a, b)| a.abs_diff(b) <= 3);
-        pixels.iter().any(|pixel| near(pixel))
-    }
-
     /// Types into a field and replaces its text.
     pub async fn fill(&self, css: &str, text: &str) {
         let begin = Instant::now();
@@ -367,8 +358,23 @@ impl Page {
         self.client.delete_all_cookies().await.unwrap();
     }
 
-    /// Fails if `audit.js` reports a problem.
+    /// Fails if axe or `audit.js` reports a problem.
     pub async fn audit(&self, what: &str) {
+        let path = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../crates/daemon/web/node_modules/axe-core/axe.min.js"
+        );
+        let axe = std::fs::read_to_string(path)
+            .unwrap_or_else(|error| panic!("{path}: {error}; run crates/daemon/web/build"));
+        self.run(&axe).await;
+        let script = "const [done] = arguments;
+            const said = ({ id, nodes }) => nodes.map((node) => `${id}: ${node.target} ${node.failureSummary}`);
+            axe.run({ resultTypes: ['violations'] }).then(
+                ({ violations }) => done(violations.flatMap(said)),
+                (error) => done([String(error)]),
+            );";
+        let found = self.client.execute_async(script, Vec::new()).await.unwrap();
+        assert_eq!(found, json!([]), "axe, {what} on {:?}", self.screen);
         let complaints = self.run(include_str!("audit.js")).await;
         assert_eq!(complaints, json!([]), "{what} on {:?}", self.screen);
     }

@@ -10,6 +10,7 @@ mod refusals;
 mod scans;
 mod view;
 
+use std::collections::BTreeSet;
 use std::net::SocketAddr;
 use std::path::Path;
 
@@ -177,8 +178,10 @@ fn a_scan_is_started_displayed_and_counted() {
             .await;
         page.run(TO_THE_TOP).await;
         page.picture("idle").await;
-        let colours = page.colours_of("#canvas").await;
-        assert!(colours > 200, "{colours} colours: nothing is drawn");
+        page.until_pixels("#canvas", "200 colours, of a cloud", |pixels| {
+            pixels.iter().collect::<BTreeSet<_>>().len() > 200
+        })
+        .await;
         page.audit("a scan in view").await;
     });
     for screen in [DESKTOP.light(), PHONE, PHONE.light(), NARROW] {

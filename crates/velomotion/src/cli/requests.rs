@@ -4,14 +4,15 @@ use cloud::Fields;
 use engine::capture::jog::{GotoRequest, JogRequest};
 use engine::capture_request::CaptureRequest;
 use engine::config::LidarName;
+use engine::failure::Failure;
 use engine::reconstruct::decoder_options::DecoderRequest;
 use engine::reconstruct::replay;
 use lidar::Duplicates;
 use protocol::vlp16::Model;
 
 use super::{
-    AccuracyArguments, Capture, EqualReturns, LidarArguments, ModelName, Output, TiltVerb,
-    TimeArgument,
+    AccuracyArguments, Capture, EqualReturns, LidarArguments, ModelName, MotionArguments, Output,
+    TiltVerb, TimeArgument,
 };
 
 impl AccuracyArguments {
@@ -48,19 +49,30 @@ impl LidarArguments {
     }
 }
 
-impl From<TiltVerb> for JogRequest {
-    fn from(verb: TiltVerb) -> Self {
-        match verb {
-            TiltVerb::Status | TiltVerb::Faults { clear: false } => Self::Status,
-            TiltVerb::Faults { clear: true } => Self::ClearFaults,
-            TiltVerb::Stop => Self::Stop,
-            TiltVerb::Home => Self::Home,
-            TiltVerb::Goto { to, speed, accel } => Self::Goto(GotoRequest {
-                to_deg: to,
-                speed_deg_s: speed,
-                accel_deg_s2: accel,
-            }),
-        }
+impl TiltVerb {
+    /// The request to the engine. A jog is a move to `end_of_jog` of its way.
+    ///
+    /// # Errors
+    /// Those of `end_of_jog`.
+    pub fn request(
+        self,
+        end_of_jog: impl FnOnce(f64) -> Result<f64, Failure>,
+    ) -> Result<JogRequest, Failure> {
+        let goto = |to_deg: f64, motion: MotionArguments| {
+            JogRequest::Goto(GotoRequest {
+                to_deg,
+                speed_deg_s: motion.speed,
+                accel_deg_s2: motion.accel,
+            })
+        };
+        Ok(match self {
+            Self::Status | Self::Faults { clear: false } => JogRequest::Status,
+            Self::Faults { clear: true } => JogRequest::ClearFaults,
+            Self::Stop => JogRequest::Stop,
+            Self::Home => JogRequest::Home,
+            Self::Goto { to, motion } => goto(to, motion),
+            Self::Jog { by, motion } => goto(end_of_jog(by)?, motion),
+        })
     }
 }
 

@@ -1,14 +1,14 @@
 //! `velomotion tilt`: jogs of the axis.
 
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver};
 use std::time::Duration;
 
 use daemon::client::Client;
 use daemon::local::LocalTask;
 use engine::capture::jog::{self, JogRequest};
-use engine::config::{self, Device, DeviceKind, WithoutBrake};
+use engine::config::{self, Config, Device, DeviceKind, WithoutBrake};
 use engine::devices::profile;
 use engine::failure::{Failure, Kind};
 use engine::service::axis_report::{AxisReport, StopAnswer};
@@ -24,6 +24,10 @@ use crate::tables::table;
 /// it, where the bus fails at once, the command ended before the request was sent.
 const USER_WAIT: Duration = Duration::from_secs(1);
 
+/// How far beyond a limit an axis may rest that was moved there, degrees: a count of a coarse
+/// encoder, as in the page.
+const AT_LIMIT_DEG: f64 = 0.02;
+
 /// Runs the command.
 ///
 /// # Errors
@@ -31,51 +35,17 @@ const USER_WAIT: Duration = Duration::from_secs(1);
 pub fn run(arguments: &cli::TiltArguments, common: &Common) -> Result<CommandOutput, Failure> {
     let verb = arguments.verb;
     let config = config::load(common.config.as_deref())?;
-    let (name, device) = profile::choose(&config, arguments.device.name.as_deref())?;
-    // Refused before a device is opened.
-    let request: JogRequest = verb.into();
-    jog::commands(request, &config, &device)?;
+    let device = profile::choose(&config, arguments.device.name.as_deref())?;
     let interrupt = signals::motion_interrupt_flag()?;
-    let device = (name, device);
-    let task = match request {
-        JogRequest::Status => LocalTask::Read,
-        _ => LocalTask::Jog,
+    let axis = Axis {
+        config: &config,
+        device: &device,
+        interrupt: &interrupt,
     };
-    let jog = || {
-        let mut daemon = client_of(verb, &device);
-        let device = (device.0.as_str(), &device.1);
-        // Any program may use a bus, so its answer proves nothing: the stop goes to the drive, too.
-        let is_bus = device.1.kind == DeviceKind::Can && matches!(verb, TiltVerb::Stop);
-        let user = daemon.take_if(|_| is_bus).map(|client| {
-            let interrupt = Arc::clone(&interrupt);
-            let (sender, answer) = mpsc::channel();
-            std::thread::spawn(move || {
-                let _ = sender.send(DeviceBackend::Daemon(client).jog(request, &interrupt));
-            });
-            answer
-        });
-        let backend = DeviceBackend::open(daemon, &config, device, task, &interrupt);
-        let stopped = backend.and_then(|backend| {
-            let simulated = backend.simulated_drive();
-            Ok((backend.jog(request, &interrupt)?, simulated))
-        });
-        if let Some(user) = user {
-            warn_of_user(user);
-        }
-        stopped
-    };
-    // A program may take or release the drive in the meantime.
-    let changed = |failure: &Failure| match failure.kind {
-        Kind::Busy => client_of(verb, &device).is_some(),
-        Kind::Interrupted | Kind::Incomplete => {
-            task == LocalTask::Read && !interrupt.load(Ordering::Relaxed)
-        }
-        _ => false,
-    };
-    let (answer, simulated) = match jog() {
-        Err(failure) if changed(&failure) => jog()?,
-        answer => answer?,
-    };
+    let request = verb.request(|by_deg| axis.end_of_jog(by_deg))?;
+    // Refused before a device is opened.
+    jog::commands(request, &config, &device.1)?;
+    let (answer, simulated) = axis.run(request)?;
     Ok(match answer {
         StopAnswer::Report(report) => {
             let holds = config.axis.without_brake == WithoutBrake::Hold;
@@ -99,6 +69,81 @@ pub fn run(arguments: &cli::TiltArguments, common: &Common) -> Result<CommandOut
     })
 }
 
+/// The axis of a device.
+struct Axis<'a> {
+    config: &'a Config,
+    device: &'a (String, Device),
+    interrupt: &'a Arc<AtomicBool>,
+}
+
+impl Axis<'_> {
+    /// Runs a request, and names the simulator if it is software.
+    fn run(&self, request: JogRequest) -> Result<(StopAnswer, &'static str), Failure> {
+        // A program may take or release the drive in the meantime.
+        let changed = |failure: &Failure| match failure.kind {
+            Kind::Busy => client_of(request, self.device).is_some(),
+            Kind::Interrupted | Kind::Incomplete => {
+                request == JogRequest::Status && !self.interrupt.load(Ordering::Relaxed)
+            }
+            _ => false,
+        };
+        match self.run_once(request) {
+            Err(failure) if changed(&failure) => self.run_once(request),
+            answer => answer,
+        }
+    }
+
+    fn run_once(&self, request: JogRequest) -> Result<(StopAnswer, &'static str), Failure> {
+        let mut daemon = client_of(request, self.device);
+        let device = (self.device.0.as_str(), &self.device.1);
+        // Any program may use a bus, so its answer proves nothing: the stop goes to the drive, too.
+        let is_bus = device.1.kind == DeviceKind::Can && request == JogRequest::Stop;
+        let user = daemon.take_if(|_| is_bus).map(|client| {
+            let interrupt = Arc::clone(self.interrupt);
+            let (sender, answer) = mpsc::channel();
+            std::thread::spawn(move || {
+                let _ = sender.send(DeviceBackend::Daemon(client).jog(request, &interrupt));
+            });
+            answer
+        });
+        let task = match request {
+            JogRequest::Status => LocalTask::Read,
+            _ => LocalTask::Jog,
+        };
+        let backend = DeviceBackend::open(daemon, self.config, device, task, self.interrupt);
+        let answer = backend.and_then(|backend| {
+            let simulated = backend.simulated_drive();
+            Ok((backend.jog(request, self.interrupt)?, simulated))
+        });
+        if let Some(user) = user {
+            warn_of_user(user);
+        }
+        answer
+    }
+
+    /// The angle of the axis after a jog. One at rest may be a little beyond its limit.
+    fn end_of_jog(&self, by_deg: f64) -> Result<f64, Failure> {
+        let limits = &self.config.axis;
+        let angle_deg = match self.run(JogRequest::Status)?.0 {
+            StopAnswer::Report(report) => report.angle_deg,
+            StopAnswer::Command(_) => None,
+        };
+        // A simulated drive that is not homed is homed by its first move.
+        let homed = || profile::simulated(&self.device.1).then_some(limits.homing.to_deg);
+        let Some(from_deg) = angle_deg.or_else(homed) else {
+            let message = "the angle is not known: the axis has not been homed since power-on";
+            return Err(Failure::new(Kind::DeviceFault, message)
+                .help("home it first: velomotion tilt home"));
+        };
+        let end_deg = from_deg + by_deg;
+        let limit_deg = end_deg.clamp(limits.min_deg, limits.max_deg);
+        Ok(match (end_deg - limit_deg).abs() < AT_LIMIT_DEG {
+            true => limit_deg,
+            false => end_deg,
+        })
+    }
+}
+
 /// Warns where the program that uses the bus has not stopped its own motion.
 fn warn_of_user(answer: Receiver<Result<StopAnswer, Failure>>) {
     let problem = match answer.recv_timeout(USER_WAIT) {
@@ -111,10 +156,9 @@ fn warn_of_user(answer: Receiver<Result<StopAnswer, Failure>>) {
 
 /// The program that has the drive. A stop is confirmed only by one that has its port; else it goes
 /// to the drive itself.
-fn client_of(verb: TiltVerb, (name, device): &(String, Device)) -> Option<Client> {
-    Client::find(name, device).filter(|client| {
-        !matches!(verb, TiltVerb::Stop) || client.holds_port(device) != Some(false)
-    })
+fn client_of(request: JogRequest, (name, device): &(String, Device)) -> Option<Client> {
+    Client::find(name, device)
+        .filter(|client| request != JogRequest::Stop || client.holds_port(device) != Some(false))
 }
 
 /// The report as the verb shows it.
@@ -133,7 +177,7 @@ fn output(verb: &TiltVerb, report: &AxisReport, simulated: &str, holds: bool) ->
     };
     match verb {
         TiltVerb::Status | TiltVerb::Faults { .. } => CommandOutput::result(report, text),
-        TiltVerb::Home | TiltVerb::Goto { .. } | TiltVerb::Stop => {
+        TiltVerb::Home | TiltVerb::Goto { .. } | TiltVerb::Jog { .. } | TiltVerb::Stop => {
             CommandOutput::report(report, text)
         }
     }
