@@ -1,6 +1,6 @@
 #!/usr/bin/env node
 // Serves the page and an API with artificial data, for work on the page without a daemon.
-// node dev/server.mjs PORT [CLOUD.ply] ; /dev/MODE selects a mode: idle, live, fault, absent, gone, token, stuck (no stop is
+// node dev/server.mjs PORT [CLOUD.ply] ; without a cloud all scans have an artificial room, whose box differs by scan. /dev/MODE selects a mode: idle, live, fault, absent, gone, token, stuck (no stop is
 // answered, and everything else is refused).
 import { createHash } from "node:crypto";
 import { readFileSync, statSync } from "node:fs";
@@ -10,7 +10,7 @@ import { fileURLToPath } from "node:url";
 const [port, cloud] = [Number(process.argv[2] ?? 8017), process.argv[3]];
 const dist = fileURLToPath(new URL("../dist/", import.meta.url));
 const TYPES = { html: "text/html; charset=utf-8", js: "text/javascript", css: "text/css", svg: "image/svg+xml", txt: "text/plain" };
-const ply = cloud ? readFileSync(cloud) : null;
+const ply = cloud ? readFileSync(cloud) : room([2, 1, -0.8]);
 let mode = "idle";
 let angle = 0;
 let packets = 120_000;
@@ -56,6 +56,26 @@ const status = () => ({
   clients: { events: sockets.size, dropped: 0 },
 });
 
+/** A cloud in a room with a box of 0.8 m, in the daemon's format. */
+function room(box, count = Number(process.env.POINTS ?? 243_311)) {
+  const head = Buffer.from(`ply\nformat binary_little_endian 1.0\ncomment SIMULATED\nelement vertex ${count}\n${["float x", "float y", "float z", "float intensity", "uchar ring", "double time", "float tilt"].map((column) => `property ${column}\n`).join("")}end_header\n`);
+  const rows = Buffer.alloc(29 * count);
+  for (let i = 0; i < count; i += 1) {
+    const [turn, elevation] = [0.618034 * 2 * Math.PI * i, Math.asin(Math.min(1, (1.9 * i) / count - 0.9))];
+    const way = [Math.cos(elevation) * Math.cos(turn), Math.cos(elevation) * Math.sin(turn), Math.sin(elevation)];
+    const sides = way.map((part, axis) => [(box[axis] - 0.4) / part, (box[axis] + 0.4) / part].sort((a, b) => a - b));
+    const [near, far] = [Math.max(...sides.map(([side]) => side)), Math.min(...sides.map(([, side]) => side))];
+    const wall = Math.min(...way.map((part, axis) => [6, 4, 1.3][axis] / Math.abs(part)));
+    const range = (near > 0 && near < far ? Math.min(near, wall) : wall) + 0.01 * (Math.random() + Math.random() - 1);
+    way.forEach((part, axis) => rows.writeFloatLE(range * part, 29 * i + 4 * axis));
+    rows.writeFloatLE(near > 0 && near < far ? 90 : 30, 29 * i + 12);
+    rows[29 * i + 16] = i % 16;
+    rows.writeDoubleLE(1.76e9 + (4.9 * i) / count, 29 * i + 17);
+    rows.writeFloatLE((-45 * i) / count, 29 * i + 25);
+  }
+  return Buffer.concat([head, rows]);
+}
+
 /** A frame of a WebSocket: text or binary, unmasked as servers send. */
 function frame(data) {
   const body = Buffer.from(data);
@@ -67,7 +87,7 @@ function frame(data) {
 }
 const tell = (event) => sockets.forEach((socket) => socket.write(frame(typeof event === "object" && !Buffer.isBuffer(event) ? JSON.stringify(event) : event)));
 
-const rows = ply === null ? null : parse();
+const rows = parse();
 function parse() {
   const end = ply.indexOf("end_header\n") + 11;
   const count = Number(/element vertex (\d+)/.exec(ply.subarray(0, end).toString("latin1"))[1]);
@@ -75,7 +95,7 @@ function parse() {
 }
 let sent = 0;
 function points() {
-  if (rows === null || sent >= rows.count) return;
+  if (sent >= rows.count) return;
   const count = Math.min(1_500, rows.count - sent);
   const out = Buffer.alloc(32 + 22 * count);
   const row = (i) => rows.at + (sent + i) * rows.bytes;
@@ -145,7 +165,7 @@ function answer(request, response) {
     if (found === undefined) return reply(404, { error: { message: "no such scan", help: "GET /api/v1/scans lists them", kind: "not-found" } });
     if (mode === "stuck" && one[2] !== undefined) return reply(429, { error: { message: "too many downloads at once", help: "try again when others have ended", kind: "limit" } });
     if (one[2] === "statistics") return setTimeout(() => reply(200, statistics), 1_000);
-    if (one[2] === "cloud" && ply !== null) return response.writeHead(200, { "content-type": "application/octet-stream" }).end(ply);
+    if (one[2] === "cloud") return response.writeHead(200, { "content-type": "application/octet-stream" }).end(cloud || found.state !== "partial" ? ply : room([2.4, 0.2, -0.8]));
     if (request.method === "DELETE") {
       scans = scans.filter((each) => each !== found);
       deleted.set(found.id, found);

@@ -198,10 +198,11 @@ export function start(view: Viewer | null): void {
   axis.wire();
   sweep.wire();
   quality.wire();
-  scans.wire((scan) => {
-    viewer?.open(source(scan));
+  const open = (scan: Scan, other: Scan | null) => {
+    viewer?.open(source(scan), other === null ? null : source(other));
     id("canvas").scrollIntoView({ block: "nearest" });
-  });
+  };
+  scans.wire((scan) => open(scan, null), open);
   signin.wire(() => {
     events.open();
     void formats();

@@ -3,7 +3,7 @@
 import { h, id, show, text } from "./dom.ts";
 import { compact } from "./format.ts";
 import { alarm, announce } from "./panels/messages.ts";
-import type { Viewer } from "./viewer.ts";
+import type { CloudSource, Viewer } from "./viewer.ts";
 
 /** A file, as the program describes it. */
 interface ViewFile {
@@ -46,8 +46,11 @@ export function start(view: Viewer | null): void {
 export function setCurrent(shown: string | null): void {
   current = shown;
   for (const entry of list.children) {
-    if ((entry as HTMLElement).dataset["id"] === shown) entry.setAttribute("aria-current", "true");
+    const { id } = (entry as HTMLElement).dataset;
+    if (id === shown) entry.setAttribute("aria-current", "true");
     else entry.removeAttribute("aria-current");
+    const compare = entry.querySelector<HTMLElement>("[data-role=compare]");
+    if (compare !== null) show(compare, shown !== null && id !== shown);
   }
 }
 
@@ -90,12 +93,17 @@ function waiting(file: ViewFile | undefined): void {
   id("view-empty").replaceChildren(h("p", {}, words));
 }
 
-function open(place: number): void {
+function source(place: number): CloudSource | null {
   const file = files[place];
-  if (file === undefined || viewer === null) return;
+  if (file === undefined) return null;
   const { simulated, scanner, log } = file;
   const title = file.error ? `${file.name}: ${file.error}` : file.name;
-  viewer.open({ id: key(place), title, simulated, url: () => `clouds/${place}.ply`, certain: false, scanner, plays: log });
+  return { id: key(place), title, simulated, url: () => `clouds/${place}.ply`, certain: false, scanner, plays: log };
+}
+
+function open(place: number, other: CloudSource | null = null): void {
+  const opened = source(place);
+  if (opened !== null) viewer?.open(opened, other);
 }
 
 function card(file: ViewFile, place: number): HTMLElement {
@@ -105,5 +113,7 @@ function card(file: ViewFile, place: number): HTMLElement {
       h("h3", { title: file.name }, file.name),
       h("p", {}, state, " ", file.simulated ? h("span", { class: "badge", "data-state": "simulated" }, "SIMULATED") : null)),
     file.error ? h("p", { class: "wrong" }, [file.error, file.help].filter(Boolean).join("\n")) : null,
-    file.state === "ready" ? h("button", { type: "button", "aria-label": `Open ${file.name} in the view`, click: () => open(place) }, "Open") : null);
+    file.state === "ready" ? h("div", { class: "row" },
+      h("button", { type: "button", "aria-label": `Open ${file.name} in the view`, click: () => open(place) }, "Open"),
+      h("button", { type: "button", "data-role": "compare", "aria-label": `Compare the file in view with ${file.name}`, hidden: true, click: () => open(Number(current), source(place)) }, "Compare")) : null);
 }

@@ -19,6 +19,11 @@ export function digits(n: number, significant = 3): string {
   return String(Number(n.toPrecision(significant))).replace("-", "\u2212");
 }
 
+export const mm = (m: number) => `${digits(1_000 * m, 2)} mm`;
+
+/** In millimetres below 0.1 m. */
+export const length = (m: number) => (m < 0.1 ? mm(m) : `${digits(m, 2)} m`);
+
 export function bytes(n: number): string {
   const units = ["B", "kB", "MB", "GB", "TB"];
   let [size, unit] = [n, 0];

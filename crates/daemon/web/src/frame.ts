@@ -23,10 +23,18 @@ export interface Columns {
   lasers: Uint8Array;
   /** Which returns of their pulses, as docs/src/formats.md numbers them. */
   echoes: Uint8Array;
+  /** Distances to the nearest points of the cloud with which this one is compared, metres. */
+  distances: Float32Array;
 }
 
 /** The columns other than the positions. */
-export const COLUMNS = ["times", "sds", "tilts", "intensities", "rings", "lasers", "echoes"] as const;
+export const COLUMNS = ["times", "sds", "tilts", "intensities", "rings", "lasers", "echoes", "distances"] as const;
+
+/** Points with nothing but positions. */
+export function placed(positions: Float32Array): Columns {
+  const [floats, bytes] = [new Float32Array(0), new Uint8Array(0)];
+  return { count: positions.length / 3, positions, times: floats, sds: floats, tilts: floats, intensities: bytes, rings: bytes, lasers: bytes, echoes: bytes, distances: floats };
+}
 
 export interface Frame extends Columns {
   /** Unix seconds of the first point. */
@@ -60,5 +68,6 @@ export function parseFrame(bytes: ArrayBuffer): Frame | null {
     rings: new Uint8Array(bytes, at(21), count),
     lasers: new Uint8Array(0),
     echoes: new Uint8Array(0),
+    distances: new Float32Array(0),
   };
 }

@@ -166,6 +166,7 @@ export class PlyReader {
       rings: filled("ring", bytes),
       lasers: filled("laser", bytes),
       echoes: filled("echo", bytes),
+      distances: floats(0),
     };
   }
 }

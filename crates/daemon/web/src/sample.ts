@@ -8,12 +8,14 @@ export interface Range {
 }
 
 /** A value by which points are coloured. */
-export type Field = "height" | "range" | "intensity" | "ring" | "time" | "sd";
+export type Field = "height" | "range" | "intensity" | "ring" | "time" | "sd" | "distance";
 
 /** The range of each field; null if the cloud lacks it. */
 export interface Ranges extends Record<Field, Range | null> {
   height: Range;
   range: Range;
+  /** Distances within which half and 95 % of the points have one of the other cloud, metres; null without a comparison. */
+  within_m: { p50: number; p95: number } | null;
   /** Height of the ceiling's lower edge above the tilt axis, metres; null without a ceiling. */
   ceiling_m: number | null;
   /** Centre of the view: the scanner, or the middle of a cloud that is not around its origin. */
@@ -29,7 +31,7 @@ export interface Ranges extends Record<Field, Range | null> {
 const MOST = 8_192;
 
 /** A row of the sample. */
-type Row = { x: number; y: number; z: number; range: number; intensity: number; sd: number; time: number; tilt: number };
+type Row = { x: number; y: number; z: number; range: number; intensity: number; sd: number; time: number; tilt: number; distance: number };
 
 /** A sample of bounded size: every `stride`th point; the stride doubles when the sample is full. */
 export class Sample {
@@ -38,12 +40,13 @@ export class Sample {
   private end_s = 0;
   private stride = 1;
   private skip = 0;
-  private has = { intensity: false, ring: false, time: false, sd: false, tilt: false };
+  private has = { intensity: false, ring: false, time: false, sd: false, tilt: false, distance: false };
 
   add(points: Columns, time_offset_s = 0): void {
     const { positions: p, count } = points;
     this.has = {
       intensity: points.intensities.length > 0, ring: points.rings.length > 0, time: points.times.length > 0, sd: points.sds.length > 0, tilt: points.tilts.length > 0,
+      distance: points.distances.length > 0,
     };
     if (count > 0) this.end_s = Math.max(this.end_s, (points.times[count - 1] ?? 0) + time_offset_s);
     let i = this.skip;
@@ -51,7 +54,7 @@ export class Sample {
       const [x, y, z] = [p[3 * i] ?? 0, p[3 * i + 1] ?? 0, p[3 * i + 2] ?? 0];
       this.rows.push({
         x, y, z, range: Math.hypot(x, y, z), intensity: points.intensities[i] ?? 0, sd: points.sds[i] ?? 0,
-        time: (points.times[i] ?? 0) + time_offset_s, tilt: points.tilts[i] ?? 0,
+        time: (points.times[i] ?? 0) + time_offset_s, tilt: points.tilts[i] ?? 0, distance: points.distances[i] ?? 0,
       });
       this.highest_ring = Math.max(this.highest_ring, points.rings[i] ?? 0);
       if (this.rows.length >= MOST) this.halve();
@@ -64,6 +67,7 @@ export class Sample {
     const column = (name: keyof Row) => this.rows.map((row) => row[name]);
     const [x, y, z] = [ascending(column("x")), ascending(column("y")), ascending(column("z"))];
     const centre: [number, number, number] = around(x) && around(y) ? [0, 0, 0] : [quantile(x, 0.5), quantile(y, 0.5), quantile(z, 0.5)];
+    const distances = ascending(column("distance"));
     const away = this.rows.map((row) => Math.hypot(row.x - centre[0], row.y - centre[1], row.z - centre[2]));
     const timed = this.has.time && this.end_s > 0;
     const track = timed && this.has.tilt ? [...this.rows].sort((a, b) => a.time - b.time) : [];
@@ -74,6 +78,8 @@ export class Sample {
       ring: this.has.ring ? { low: 0, high: Math.max(this.highest_ring, 1) } : null,
       time: timed ? { low: 0, high: Math.max(this.end_s, 1e-3) } : null,
       sd: this.has.sd ? between(ascending(column("sd")), 0.01, 0.97) : null,
+      distance: this.has.distance ? { low: 0, high: Math.max(quantile(distances, 0.97), 1e-3) } : null,
+      within_m: this.has.distance ? { p50: quantile(distances, 0.5), p95: quantile(distances, 0.95) } : null,
       ceiling_m: ceiling(z),
       centre,
       reach_m: quantile(ascending(away), 0.97),

@@ -1,7 +1,8 @@
 // The view: its cloud, colours, tools and legend. view/ draws it.
 
 import { attribute, id, show, text } from "./dom.ts";
-import { count, digits, fixed } from "./format.ts";
+import { MOST_M } from "./distance.ts";
+import { count, digits, fixed, length, mm } from "./format.ts";
 import { COLUMNS, type Columns, type Frame } from "./frame.ts";
 import * as clip from "./panels/clip.ts";
 import { announce } from "./panels/messages.ts";
@@ -17,9 +18,9 @@ import { Overlay } from "./view/overlay.ts";
 import { type Picked, type Preset, RING_STEP_M, Stage } from "./view/stage.ts";
 import type { LoadRequest, LoadEvent } from "./worker.ts";
 
-const FIELDS: Field[] = ["height", "range", "intensity", "ring", "time", "sd"];
+const FIELDS: Field[] = ["height", "range", "intensity", "ring", "time", "sd", "distance"];
 const NOTES: Record<Field, string> = {
-  height: "z", range: "from the origin", intensity: "as stored", ring: "0 is the lowest", time: "since the first point", sd: "expected error, RMS",
+  height: "z", range: "from the origin", intensity: "as stored", ring: "0 is the lowest", time: "since the first point", sd: "expected error, RMS", distance: "to the nearest point",
 };
 /** Phones have less memory on the graphics card. */
 const small = matchMedia("(max-width: 899px)");
@@ -55,7 +56,12 @@ export class Viewer {
   private loaded: Loaded | null = null;
   private worker: Worker | null = null;
   private opened: CloudSource | null = null;
+  /** The cloud with which the opened one is compared. */
+  private other: CloudSource | null = null;
+  private other_points: Loaded | null = null;
   private field: Field = "height";
+  /** The field before the comparison. */
+  private field_before: Field = "height";
   private map: MapName = "viridis";
   private ranges: Ranges | null = null;
   private origin: [number, number, number] = [0, 0, 0];
@@ -71,7 +77,10 @@ export class Viewer {
     const linked = fromHash(location.hash);
     this.linked = Object.keys(linked).length > 0 ? linked : null;
     this.stage = new Stage(canvas);
-    this.stage.share = (share) => this.loaded?.share(share);
+    this.stage.share = (share) => {
+      this.loaded?.share(share);
+      this.other_points?.share(share);
+    };
     this.stage.drawn = () => this.overlay.draw(this.stage, this.picks);
     this.stage.orbit.tapped = (event) => {
       const { left, top } = canvas.getBoundingClientRect();
@@ -79,7 +88,7 @@ export class Viewer {
     };
     this.player = new Player((until_s) => this.until(until_s));
     canvas.addEventListener("webglcontextrestored", () => {
-      if (this.opened !== null) this.open(this.opened);
+      if (this.opened !== null) this.open(this.opened, this.other);
     });
     canvas.addEventListener("keydown", (event) => {
       if (event.key === "0" || event.key === "Home") this.fit();
@@ -137,28 +146,38 @@ export class Viewer {
     this.stage.setTilt(tilt_deg);
   }
 
-  /** Shows a finished cloud. Live points of the same scan stay in view until the cloud is loaded. */
-  open(source: CloudSource): void {
-    const follows = this.live !== null && this.shown === source.id;
+  /**
+   * Shows a finished cloud; with another one, coloured by the distance from that. Live points of the same scan stay in
+   * view until the cloud is loaded.
+   */
+  open(source: CloudSource, other: CloudSource | null = null): void {
+    const follows = this.live !== null && this.shown === source.id && other === null;
     const again = this.shown === source.id;
+    const field = other !== null && other.id === this.other?.id ? this.field : "distance";
     if (follows) this.worker?.terminate();
     else this.clear();
+    if (other !== null) this.compare(other, field);
     this.shown = source.id;
     this.opened = source;
     if (!again) this.fitted = false;
     this.stage.setScanner(source.scanner);
     this.stage.uniform("cutaway", source.scanner && id<HTMLInputElement>("cutaway").checked);
-    this.head(source.title, source.simulated);
-    text(id("view-note"), follows ? "live points; the cloud is loading" : "");
+    this.head(this.title, source.simulated || other?.simulated === true);
+    if (other !== null) {
+      text(id("view-points"), "");
+      this.colour();
+    }
+    text(id("view-note"), follows ? "live points; the cloud is loading" : other !== null ? `loading ${other.title}` : "");
     this.download(source, this.field === "sd" && source.certain, follows);
     this.changed(source.id);
   }
 
   /** Shows the new name of the scan in view. */
   rename(scan: string, title: string): void {
-    if (this.opened?.id !== scan) return;
-    this.opened.title = title;
-    text(id("view-title"), title);
+    const renamed = [this.opened, this.other].find((source) => source?.id === scan) ?? null;
+    if (renamed === null) return;
+    renamed.title = title;
+    text(id("view-title"), this.title);
   }
 
   /** Removes a deleted scan from the view. */
@@ -177,6 +196,28 @@ export class Viewer {
     this.stage.draw();
   }
 
+  private get title(): string {
+    return [this.opened, this.other].flatMap((source) => source?.title ?? []).join(" compared with ");
+  }
+
+  /** Begins or ends a comparison. */
+  private compare(other: CloudSource | null, field: Field): void {
+    this.other = other;
+    const option = document.querySelector("#field [value=distance]") as HTMLOptionElement;
+    option.hidden = option.disabled = other === null;
+    show(id("both-clouds-row"), other !== null);
+    if (field === "distance" && this.field !== "distance") this.field_before = this.field;
+    if (field === this.field) return;
+    this.field = id<HTMLSelectElement>("field").value = field;
+    for (const limit of ["limit-low", "limit-high"]) id<HTMLInputElement>(limit).value = "";
+  }
+
+  private show_both(): void {
+    if (this.other_points === null) return;
+    this.other_points.group.visible = id<HTMLInputElement>("both-clouds").checked;
+    this.stage.draw();
+  }
+
   private download(source: CloudSource, uncertainty: boolean, follows: boolean): void {
     const worker = new Worker("worker.js", { type: "module" });
     const cloud = new Loaded(this.stage.points);
@@ -185,12 +226,19 @@ export class Viewer {
     progress.removeAttribute("value");
     show(progress, true);
     if (!follows) this.swap(cloud);
+    const { other } = this;
+    const other_points = other === null ? null : new Loaded(this.stage.plain);
+    this.other_points = other_points;
     worker.onmessage = ({ data }: MessageEvent<LoadEvent>) => {
       if (worker !== this.worker) return;
-      if (data.kind === "points") {
+      if (data.kind === "other") {
+        other_points?.add(data.columns, null);
+        attribute(progress, "value", String(data.read / Math.max(1, 2 * data.total)));
+      } else if (data.kind === "points") {
         this.learn(data.columns);
         cloud.add(data.columns, data.ranges);
-        attribute(progress, "value", String(data.read / Math.max(1, data.total)));
+        const share = data.read / Math.max(1, data.total);
+        attribute(progress, "value", String(other === null ? share : (1 + share) / 2));
         if (this.loaded !== cloud) return;
         this.describe(data.read, `of ${count(data.total)}`);
         this.range(data.ranges);
@@ -203,16 +251,34 @@ export class Viewer {
         this.origin = data.origin;
         if (data.simulated) show(id("view-simulated"), true);
         this.range(cloud.ranges);
-        this.describe(data.total, data.every > 1 ? `every ${data.every}th drawn` : "");
+        this.describe(data.total, [this.distance_note(data), data.every > 1 ? `every ${data.every}th drawn` : ""].filter(Boolean).join("; "));
+        if (data.other !== null && other_points !== null) {
+          const from = data.other.origin;
+          other_points.group.position.fromArray(from.map((m, axis) => m - (data.origin[axis] ?? 0)));
+          this.stage.other.add(other_points.group);
+          this.show_both();
+          announce(`${this.title}: ${id("view-note").textContent ?? ""}`);
+        }
         this.player.setEnd(this.ranges?.end_s ?? 0);
         this.follow_link();
         this.stage.draw();
-        if (source.plays && !still.matches && this.player.until_s === null) this.player.play();
+        if (source.plays && other === null && !still.matches && this.player.until_s === null) this.player.play();
       }
     };
     worker.onerror = () => this.failed("the cloud cannot be read");
     const order: LoadRequest = { url: new URL(source.url(uncertainty), location.href).href, most: small.matches ? 3_000_000 : 12_000_000 };
+    if (other !== null) order.other = new URL(other.url(false), location.href).href;
     worker.postMessage(order);
+  }
+
+  /** How far the points are from the other cloud; empty without a comparison. */
+  private distance_note({ other, beyond, total }: LoadEvent & { kind: "done" }): string {
+    const within_m = this.ranges?.within_m ?? null;
+    if (this.other === null || other === null || within_m === null) return "";
+    const { title } = this.other;
+    const parts = ([["50", within_m.p50], ["95", within_m.p95]] as const).filter(([, m]) => m < MOST_M).map(([share, m]) => `${share} % within ${length(m)}`);
+    const none = beyond > 0 ? `${digits((100 * beyond) / total, 2)} % without a point of ${title} within ${length(MOST_M)}` : "";
+    return [parts.length > 0 ? `${parts.join(", ")} of ${title}` : "", none, other.every > 1 ? `every ${other.every}th point of ${title}` : ""].filter(Boolean).join("; ");
   }
 
   private swap(cloud: Loaded): void {
@@ -227,6 +293,7 @@ export class Viewer {
   private failed(error: string): void {
     show(id("view-progress"), false);
     if (this.live !== null) return text(id("view-note"), error);
+    if (this.other !== null) text(id("view-note"), "");
     text(id("view-failed"), error);
     show(id("view-failed"), true);
   }
@@ -238,6 +305,9 @@ export class Viewer {
     this.live = null;
     this.loaded?.dispose();
     this.loaded = null;
+    this.other_points?.dispose();
+    this.other_points = null;
+    this.compare(null, this.field === "distance" ? this.field_before : this.field);
     this.opened = null;
     this.ranges = null;
     this.origin = [0, 0, 0];
@@ -324,14 +394,14 @@ export class Viewer {
     show(legend, this.ranges !== null);
     if (this.ranges === null) return;
     const [low, high] = this.limits;
-    const scale = this.field === "sd" ? 1e-3 : 1;
+    const scale = this.field === "sd" || this.field === "distance" ? 1e-3 : 1;
     // Heights that people read and type are the cloud's own.
     const shift = this.field === "height" ? this.origin[2] : 0;
     const automatic: Range = range ?? { low: 0, high: 1 };
     const of = { low: low === null ? automatic.low : scale * low - shift, high: high === null ? automatic.high : scale * high - shift };
     this.stage.setField(FIELDS.indexOf(this.field), of.high > of.low ? of : { low: of.low, high: of.low + 1e-6 });
     this.stage.setMarks([low === null ? null : MARKS[0], high === null ? null : MARKS[1]]);
-    const note = this.field === "range" && this.origin.some((m) => m !== 0) ? `from ${this.origin.join(", ")} m` : NOTES[this.field];
+    const note = this.field === "distance" ? `to the nearest point of ${this.other?.title ?? ""}` : this.field === "range" && this.origin.some((m) => m !== 0) ? `from ${this.origin.join(", ")} m` : NOTES[this.field];
     text(id("legend-note"), `${note} \u00b7 rings ${RING_STEP_M} m apart`);
     this.stage.uniform("ceiling_m", this.ranges.ceiling_m ?? 1e6);
     const words = (value: number) => {
@@ -341,10 +411,11 @@ export class Viewer {
         case "intensity": return digits(value);
         case "ring": return Number.isInteger(value) ? fixed(value, 0) : "";
         case "time": return `${digits(value)} s`;
-        case "sd": return `${digits(1e3 * value, 2)} mm`;
+        case "sd": return mm(value);
+        case "distance": return of.high < 0.1 ? mm(value) : `${digits(value, 2)} m`;
       }
     };
-    text(id("limits-unit"), { height: "m", range: "m", intensity: "", ring: "", time: "s", sd: "mm" }[this.field]);
+    text(id("limits-unit"), { height: "m", range: "m", intensity: "", ring: "", time: "s", sd: "mm", distance: "mm" }[this.field]);
     text(id("legend-low"), range === null ? "not in this cloud" : words(of.low));
     text(id("legend-middle"), words((of.low + of.high) / 2));
     text(id("legend-high"), words(of.high));
@@ -373,18 +444,19 @@ export class Viewer {
   private choose_field(field: Field): void {
     this.field = field;
     // Stored clouds mostly lack that column; the daemon adds it on request.
-    if (field === "sd" && this.ranges !== null && this.ranges.sd === null && this.opened?.certain === true) this.open(this.opened);
+    if (field === "sd" && this.ranges !== null && this.ranges.sd === null && this.opened?.certain === true) this.open(this.opened, this.other);
     this.colour();
   }
 
-  /** The view as it is now. */
+  /** The view as it is now, without a comparison. */
   private state(): ViewState {
     const { azimuth, elevation, distance_m } = this.stage.orbit.pose;
     const [x, y, z] = this.stage.orbit.target.toArray();
     const until_s = this.player.until_s;
+    const colours = this.field === "distance" ? {} : { field: this.field, limits: this.limits };
     return {
-      ...(this.shown === null ? {} : { scan: this.shown }), camera: [azimuth, elevation, distance_m, x, y, z], parallel: this.stage.orbit.parallel, field: this.field,
-      map: this.map, limits: this.limits, ...clip.state(), ...(until_s === null ? {} : { until_s }),
+      ...(this.shown === null ? {} : { scan: this.shown }), camera: [azimuth, elevation, distance_m, x, y, z], parallel: this.stage.orbit.parallel, ...colours,
+      map: this.map, ...clip.state(), ...(until_s === null ? {} : { until_s }),
     };
   }
 
@@ -439,6 +511,7 @@ export class Viewer {
     };
     check("cutaway", (on) => this.stage.uniform("cutaway", on));
     check("shading", (on) => this.stage.setShading(on));
+    check("both-clouds", () => this.show_both());
     check("parallel", (on) => this.stage.orbit.setParallel(on));
     id("fit").addEventListener("click", () => this.fit());
     for (const preset of ["top", "front", "side", "scanner"] as const) id(preset).addEventListener("click", () => this.fit(preset));

@@ -3,7 +3,8 @@
 // Each batch is shuffled, so that its first points are an even sample, which the moving view draws.
 
 import type { Problem } from "./api.ts";
-import { COLUMNS, type Columns } from "./frame.ts";
+import { MOST_M, PointTree } from "./distance.ts";
+import { COLUMNS, type Columns, placed } from "./frame.ts";
 import { PlyReader } from "./ply.ts";
 import { type Ranges, Sample } from "./sample.ts";
 
@@ -11,14 +12,26 @@ export interface LoadRequest {
   url: string;
   /** Maximum number of points to keep; larger clouds are thinned evenly. */
   most: number;
+  /** Address of a cloud from which the distances of the points are measured. */
+  other?: string;
+}
+
+/** The other cloud of a comparison. */
+export interface Other {
+  origin: [number, number, number];
+  /** Every how manyth of its points is compared. */
+  every: number;
 }
 
 export type LoadEvent =
+  | { kind: "other"; columns: Columns; read: number; total: number }
   | { kind: "points"; columns: Columns; ranges: Ranges; read: number; total: number; every: number }
-  | { kind: "done"; read: number; total: number; every: number; origin: [number, number, number]; simulated: boolean }
-  | { kind: "failed"; error: string; status: number };
+  | { kind: "done"; read: number; total: number; every: number; origin: [number, number, number]; simulated: boolean; other: Other | null; beyond: number }
+  | { kind: "failed"; error: string };
 
 const BATCH = 65_536;
+/** Maximum number of points of the other cloud: their search takes 3 s to prepare. */
+const MOST_OTHER = 3_000_000;
 
 /** The worker's global scope, which the DOM types do not cover. */
 const here = self as unknown as {
@@ -28,40 +41,71 @@ const here = self as unknown as {
 
 here.onmessage = (event) => {
   void load(event.data).catch((error: unknown) => {
-    here.postMessage({ kind: "failed", error: error instanceof Error ? error.message : String(error), status: 0 });
+    here.postMessage({ kind: "failed", error: error instanceof Error ? error.message : String(error) });
   });
 };
 
 async function load(order: LoadRequest): Promise<void> {
-  const answer = await fetch(order.url, { credentials: "same-origin" });
-  if (!answer.ok || answer.body === null) {
-    const body = (await answer.json().catch(() => null)) as { error?: Problem } | null;
-    const problem = body?.error;
-    const error = [problem?.message ?? `the daemon answers ${answer.status}`, problem?.help].filter(Boolean).join(": ");
-    here.postMessage({ kind: "failed", error, status: answer.status });
-    return;
-  }
-  const ply = new PlyReader(BATCH);
+  const other = order.other === undefined ? null : await readOther(order.other);
   const sample = new Sample();
-  const reader = answer.body.getReader();
-  const deliver = (columns: Columns) => {
-    const total = ply.count ?? 0;
-    const every = Math.max(1, Math.ceil(total / order.most));
+  let beyond = 0;
+  const ply = await download(order.url, (columns, { count, done, origin }) => {
+    const every = stride(count, order.most);
+    if (other !== null) {
+      const [x, y, z] = origin.map((m, axis) => m - (other.origin[axis] ?? 0)) as Other["origin"];
+      columns.distances = other.tree.distances(columns.positions, [x, y, z]);
+      for (const distance of columns.distances) if (distance >= MOST_M) beyond += 1;
+    }
     const kept = shuffled(columns, Math.ceil(columns.count / every));
     sample.add(columns);
     const ranges = sample.ranges();
     if (ranges === null) return;
     const transfer = [kept.positions, ...COLUMNS.map((name) => kept[name])].map((array) => array.buffer);
-    here.postMessage({ kind: "points", columns: kept, ranges, read: ply.done + columns.count, total, every }, transfer);
-  };
+    here.postMessage({ kind: "points", columns: kept, ranges, read: done + columns.count, total: count ?? 0, every }, transfer);
+  });
+  here.postMessage({
+    kind: "done", read: ply.done, total: ply.count ?? 0, every: stride(ply.count, order.most), origin: ply.origin, simulated: ply.simulated, beyond,
+    other: other === null ? null : { origin: other.origin, every: other.every },
+  });
+}
+
+/** Downloads the other cloud of a comparison and prepares the search in it. */
+async function readOther(url: string): Promise<Other & { tree: PointTree }> {
+  const parts: Float32Array[] = [];
+  const ply = await download(url, (columns, { count, done }) => {
+    const { positions } = shuffled(columns, Math.ceil(columns.count / stride(count, MOST_OTHER)));
+    parts.push(positions);
+    here.postMessage({ kind: "other", columns: placed(positions), read: done + columns.count, total: count ?? 0 });
+  });
+  const all = new Float32Array(parts.reduce((sum, part) => sum + part.length, 0));
+  let end = 0;
+  for (const part of parts) {
+    all.set(part, end);
+    end += part.length;
+  }
+  return { tree: new PointTree(all), origin: ply.origin, every: stride(ply.count, MOST_OTHER) };
+}
+
+/** Every how manyth point is kept. */
+const stride = (count: number | null, most: number) => Math.max(1, Math.ceil((count ?? 0) / most));
+
+/** Downloads and parses a cloud, and passes its batches on. */
+async function download(url: string, take: (columns: Columns, ply: PlyReader) => void): Promise<PlyReader> {
+  const answer = await fetch(url, { credentials: "same-origin" });
+  if (!answer.ok || answer.body === null) {
+    const body = (await answer.json().catch(() => null)) as { error?: Problem } | null;
+    const problem = body?.error;
+    throw new Error([problem?.message ?? `the daemon answers ${answer.status}`, problem?.help].filter(Boolean).join(": "));
+  }
+  const ply = new PlyReader(BATCH);
+  const reader = answer.body.getReader();
   for (;;) {
     const { done, value } = await reader.read();
     if (done) break;
-    for (const columns of ply.push(value)) deliver(columns);
+    for (const columns of ply.push(value)) take(columns, ply);
   }
-  for (const columns of ply.end()) deliver(columns);
-  const total = ply.count ?? 0;
-  here.postMessage({ kind: "done", read: ply.done, total, every: Math.max(1, Math.ceil(total / order.most)), origin: ply.origin, simulated: ply.simulated });
+  for (const columns of ply.end()) take(columns, ply);
+  return ply;
 }
 
 /** `keep` of the points in a random order, with a fixed seed. */
@@ -88,8 +132,9 @@ function shuffled(columns: Columns, keep: number): Columns {
     const from = 3 * (order[i] ?? 0);
     positions.set(columns.positions.subarray(from, from + 3), 3 * i);
   }
-  const { times, sds, tilts, intensities, rings, lasers, echoes } = columns;
+  const { times, sds, tilts, intensities, rings, lasers, echoes, distances } = columns;
   return {
     count: keep, positions, times: pick(times), sds: pick(sds), tilts: pick(tilts), intensities: pick(intensities), rings: pick(rings), lasers: pick(lasers), echoes: pick(echoes),
+    distances: pick(distances),
   };
 }

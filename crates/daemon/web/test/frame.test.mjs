@@ -47,7 +47,7 @@ test("ranges ignore single outliers and stay small", () => {
   const count = 50_000;
   const columns = {
     count, positions: new Float32Array(3 * count), times: new Float32Array(count).fill(2), sds: new Float32Array(count).fill(0.003),
-    intensities: new Uint8Array(count).fill(50), rings: new Uint8Array(count).fill(15), tilts: [], lasers: [], echoes: [],
+    intensities: new Uint8Array(count).fill(50), rings: new Uint8Array(count).fill(15), tilts: [], lasers: [], echoes: [], distances: [],
   };
   for (let i = 0; i < count; i += 1) columns.positions[3 * i + 2] = i === 0 ? 1e6 : (i % 1000) / 100;
   for (let batch = 0; batch < 4; batch += 1) sample.add(columns, batch);

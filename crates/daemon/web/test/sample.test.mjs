@@ -3,7 +3,7 @@ import { test } from "node:test";
 import { load } from "./bundle.mjs";
 
 const { Sample, tiltAt } = await load("sample.ts");
-const none = { times: [], sds: [], tilts: [], intensities: [], rings: [], lasers: [], echoes: [] };
+const none = { times: [], sds: [], tilts: [], intensities: [], rings: [], lasers: [], echoes: [], distances: [] };
 
 /** A grid of points around a place. */
 function grid(x0, y0, z0) {
@@ -29,6 +29,13 @@ test("columns that a cloud lacks have no range", () => {
   const { ring, time, intensity, sd, end_s, range } = sample.ranges();
   assert.deepEqual([ring, time, intensity, sd, end_s], [null, null, null, null, 0]);
   assert.ok(range.low > 0 && range.high < 15);
+});
+
+test("distances have a range from 0, and the shares that the note states", () => {
+  const sample = new Sample();
+  sample.add({ ...grid(0, 0, 0), distances: Float32Array.from({ length: 400 }, (_, i) => 0.001 * i) });
+  const { distance, within_m } = sample.ranges();
+  assert.deepEqual([distance.low, ...[distance.high, within_m.p50, within_m.p95].map((m) => m.toFixed(3))], [0, "0.388", "0.200", "0.380"]);
 });
 
 test("the tilt at a time is that of the latest point before", () => {

@@ -1,7 +1,8 @@
 // The values of picked points, and the distance of two.
 
+import { MOST_M } from "../distance.ts";
 import { h, id, show } from "../dom.ts";
-import { count, digits, fixed } from "../format.ts";
+import { count, digits, fixed, length, mm } from "../format.ts";
 import type { Columns } from "../frame.ts";
 import { distance } from "../view/measure.ts";
 import type { Picked } from "../view/stage.ts";
@@ -11,8 +12,6 @@ export type Known = { [key in keyof Omit<Columns, "count" | "positions">]: boole
 
 const box = id("picked");
 const ECHOES: Record<number, string> = { 1: "strongest", 2: "last", 3: "strongest and last", 4: "second return" };
-
-export const mm = (m: number) => `${digits(1_000 * m, 2)} mm`;
 
 /** Shows up to two points; `origin` was subtracted from their positions. */
 export function draw(picks: Picked[], known: Known, origin: [number, number, number], clear: () => void): void {
@@ -48,6 +47,7 @@ function table(picks: Picked[], known: Known, origin: [number, number, number]):
     ["Laser", known.lasers, ({ laser }) => count(laser)],
     ["Intensity", known.intensities, ({ intensity }) => digits(intensity)],
     ["Return", known.echoes, ({ echo }) => ECHOES[echo] ?? "not known"],
+    ["Distance", known.distances, ({ distance_m }) => (distance_m < MOST_M ? length(distance_m) : `over ${length(MOST_M)}`)],
   ];
   const head = h("tr", {}, h("td"), ...picks.map((_, i) => h("th", { scope: "col" }, `Point ${"AB"[i] ?? ""}`)));
   const body = rows.filter(([, shown]) => shown).map(([name, , value]) => h("tr", {}, h("th", { scope: "row" }, name), ...picks.map((pick) => h("td", {}, value(pick)))));

@@ -30,6 +30,7 @@ let last_chosen: string | null = null;
 let editing: { id: string; place: Place } | null = null;
 let loads = 0;
 let opened: (scan: Scan) => void = () => {};
+let compared: (newer: Scan, older: Scan) => void = () => {};
 
 type Place = "card" | "row";
 
@@ -73,8 +74,8 @@ function rows(list: string, place: Place, of: { scroller: string; across: () => 
 const strip = rows("scans", "card", { scroller: "strip", across: () => !narrow.matches, usual_px: 330, gap_px: 12 });
 const table = rows("scan-rows", "row", { scroller: "scan-rows-scroller", across: () => false, usual_px: 40, gap_px: 0 });
 
-export function wire(open: (scan: Scan) => void): void {
-  opened = open;
+export function wire(open: (scan: Scan) => void, compare: (newer: Scan, older: Scan) => void): void {
+  [opened, compared] = [open, compare];
   search.addEventListener("input", draw);
   sorting.addEventListener("change", () => {
     const [by, down] = sorting.value.split(" ");
@@ -88,6 +89,10 @@ export function wire(open: (scan: Scan) => void): void {
     chosen.clear();
     if (choose_all.checked) for (const scan of shown) if (!parts.isBusy(scan)) chosen.add(scan.id);
     draw();
+  });
+  id("compare").addEventListener("click", () => {
+    const [newer, older] = pair();
+    if (newer !== undefined && older !== undefined) compared(newer, older);
   });
   id("delete-chosen").addEventListener("click", () => void remove_all(shown.filter((scan) => chosen.has(scan.id))));
   narrow.addEventListener("change", draw);
@@ -178,6 +183,13 @@ function draw(): void {
   text(id("chosen"), chosen.size === 0 ? "Select all" : `${count(chosen.size)} selected`);
   text(id("delete-chosen"), `Delete ${count(chosen.size)}`);
   show(id("delete-chosen"), chosen.size > 0);
+  show(id("compare"), pair().length === 2);
+}
+
+/** The selected scans, the newer first, if they are two with clouds. */
+function pair(): Scan[] {
+  const list = chosen.size === 2 ? shown.filter((scan) => chosen.has(scan.id) && parts.hasCloud(scan)) : [];
+  return list.length === 2 ? list.sort((a, b) => b.started_s - a.started_s) : [];
 }
 
 /** Selects a scan, or with the shift key all from the last one to it. */

@@ -10,7 +10,7 @@ const CHUNK = 65_536;
 const FAR = new Sphere(new Vector3(), 1e4);
 
 /** The shader's name of a column. */
-const ATTRIBUTES: Record<(typeof COLUMNS)[number], string> = { times: "time", sds: "sd", tilts: "tilt", intensities: "intensity", rings: "ring", lasers: "laser", echoes: "echo" };
+const ATTRIBUTES: Record<(typeof COLUMNS)[number], string> = { times: "time", sds: "sd", tilts: "tilt", intensities: "intensity", rings: "ring", lasers: "laser", echoes: "echo", distances: "distance_m" };
 
 function chunk(columns: Columns, material: RawShaderMaterial): Points {
   const geometry = new BufferGeometry();
@@ -30,7 +30,7 @@ export class Loaded {
 
   constructor(private readonly material: RawShaderMaterial) {}
 
-  add(columns: Columns, ranges: Ranges): void {
+  add(columns: Columns, ranges: Ranges | null): void {
     const points = chunk(columns, this.material);
     points.geometry.computeBoundingSphere();
     for (const attribute of Object.values(points.geometry.attributes)) {
@@ -134,6 +134,7 @@ export class Live {
       rings: new Uint8Array(CHUNK),
       lasers: new Uint8Array(0),
       echoes: new Uint8Array(0),
+      distances: new Float32Array(0),
     };
     const points = chunk(columns, this.material);
     points.geometry.boundingSphere = FAR;

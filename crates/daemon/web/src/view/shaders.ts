@@ -3,6 +3,7 @@
 /** Which points are drawn, and how large. */
 const POINT_HEAD = /* glsl */ `
 precision highp float;
+uniform mat4 modelMatrix;
 uniform mat4 modelViewMatrix;
 uniform mat4 projectionMatrix;
 uniform vec3 eye;
@@ -21,6 +22,7 @@ in float intensity;
 in float ring;
 in float time;
 in float sd;
+in float distance_m;
 
 void place() {
   vec4 seen = modelViewMatrix * vec4(position, 1.0);
@@ -28,15 +30,17 @@ void place() {
   // Points grow towards the camera, so that near surfaces look closed; in a parallel view by its width.
   float away = parallel_m > 0.0 ? parallel_m : -seen.z;
   gl_PointSize = clamp(size * height_px * 0.012 / away, size, 4.0 * size);
+  // The other cloud of a comparison may have another origin.
+  vec3 world = (modelMatrix * vec4(position, 1.0)).xyz;
   // Every surface faces the scanner at the origin: a surface whose back faces the camera hides the interior.
-  bool hidden = cutaway && position.z > -0.5 && dot(normalize(-position), normalize(eye - position)) < -0.1;
-  hidden = hidden || (cutaway && position.z > ceiling_m && eye.z > ceiling_m);
-  hidden = hidden || any(lessThan(position, box_low)) || any(greaterThan(position, box_high));
-  hidden = hidden || abs(dot(section.xyz, position) - section.w) > section_half_m || time > until_s;
+  bool hidden = cutaway && world.z > -0.5 && dot(normalize(-world), normalize(eye - world)) < -0.1;
+  hidden = hidden || (cutaway && world.z > ceiling_m && eye.z > ceiling_m);
+  hidden = hidden || any(lessThan(world, box_low)) || any(greaterThan(world, box_high));
+  hidden = hidden || abs(dot(section.xyz, world) - section.w) > section_half_m || time > until_s;
   if (hidden) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
 }`;
 
-/** `field`: 0 height, 1 range, 2 intensity, 3 ring, 4 time, 5 uncertainty. */
+/** `field`: 0 height, 1 range, 2 intensity, 3 ring, 4 time, 5 uncertainty, 6 distance from another cloud. */
 export const POINT_VERTEX = `${POINT_HEAD}
 uniform int field;
 uniform vec2 limits;
@@ -47,7 +51,7 @@ flat out vec3 colour;
 
 void main() {
   place();
-  float value = field == 0 ? position.z : field == 1 ? length(position) : field == 2 ? intensity : field == 3 ? ring : field == 4 ? time : sd;
+  float value = field == 0 ? position.z : field == 1 ? length(position) : field == 2 ? intensity : field == 3 ? ring : field == 4 ? time : field == 5 ? sd : distance_m;
   float share = (value - limits.x) / (limits.y - limits.x);
   colour = texture(colours, vec2((clamp(share, 0.0, 1.0) * 255.0 + 0.5) / 256.0, 0.5)).rgb;
   // The fourth number says whether there is such a colour.
@@ -55,19 +59,31 @@ void main() {
   if (share > 1.0) colour = mix(colour, above.rgb, above.a);
 }`;
 
-/** Writes the values of points instead of colours: position and time; uncertainty, tilt and the whole numbers. */
+/** All points in one colour. */
+export const PLAIN_VERTEX = `${POINT_HEAD}
+uniform vec3 ink;
+flat out vec3 colour;
+
+void main() {
+  place();
+  colour = ink;
+}`;
+
+/** Writes the values of points instead of colours: position and time; uncertainty, tilt and the whole numbers; distance. */
 export const PICK_VERTEX = `${POINT_HEAD}
 in float tilt;
 in float laser;
 in float echo;
 flat out uvec4 place_time;
 flat out uvec4 others;
+flat out uvec4 distances;
 
 void main() {
   place();
   place_time = floatBitsToUint(vec4(position, time));
   // The highest bit marks a hit.
   others = uvec4(floatBitsToUint(vec3(sd, tilt, intensity)), 0x80000000u | (uint(laser) << 16) | (uint(echo) << 8) | uint(ring));
+  distances = uvec4(floatBitsToUint(distance_m), 0u, 0u, 0u);
 }`;
 
 export const PICK_FRAGMENT = /* glsl */ `
@@ -75,14 +91,17 @@ precision highp float;
 precision highp int;
 flat in uvec4 place_time;
 flat in uvec4 others;
+flat in uvec4 distances;
 layout(location = 0) out uvec4 first;
 layout(location = 1) out uvec4 second;
+layout(location = 2) out uvec4 third;
 
 void main() {
   vec2 off = gl_PointCoord - 0.5;
   if (dot(off, off) > 0.27) discard;
   first = place_time;
   second = others;
+  third = distances;
 }`;
 
 export const POINT_FRAGMENT = /* glsl */ `

@@ -32,6 +32,8 @@ export interface Picked {
   ring: number;
   laser: number;
   echo: number;
+  /** From the nearest point of the cloud with which this one is compared, metres. */
+  distance_m: number;
 }
 
 /** Radius in which a pick takes the nearest point, pixels of the page: a finger is less precise. */
@@ -40,7 +42,11 @@ const PICK_PX = { mouse: 6, touch: 16 };
 export class Stage {
   readonly orbit: Orbit;
   readonly points: RawShaderMaterial;
+  /** The material of the cloud with which another is compared. */
+  readonly plain: RawShaderMaterial;
   readonly scene = new Scene();
+  /** The cloud with which another is compared; its points are not picked. */
+  readonly other = new Group();
   /** Called with the share of the points to draw. */
   share: (share: number) => void = () => {};
   /** Called after each picture. */
@@ -81,6 +87,10 @@ export class Stage {
         section_half_m: { value: 1e6 }, until_s: { value: 1e6 }, cutaway: { value: true }, ceiling_m: { value: 1e6 }, colours: { value: this.colours },
       },
     });
+    // The same values, so that both clouds are cut alike.
+    this.plain = new RawShaderMaterial({
+      glslVersion: GLSL3, vertexShader: shaders.PLAIN_VERTEX, fragmentShader: shaders.POINT_FRAGMENT, uniforms: { ...this.points.uniforms, ink: { value: new Vector3() } },
+    });
     this.pick = new RawShaderMaterial({
       glslVersion: GLSL3, vertexShader: shaders.PICK_VERTEX, fragmentShader: shaders.PICK_FRAGMENT, uniforms: this.points.uniforms, blending: NoBlending,
     });
@@ -100,7 +110,7 @@ export class Stage {
     cover.frustumCulled = false;
     this.screen.add(cover);
     this.furniture.add(rings(this.ink.grid), tripod(this.ink.scanner), this.head);
-    this.scene.add(this.furniture);
+    this.scene.add(this.furniture, this.other);
     this.head.add(scanner(this.ink.beam));
     this.orbit = new Orbit(this.camera, canvas, () => this.moved());
     new ResizeObserver(() => this.resize()).observe(canvas);
@@ -130,7 +140,7 @@ export class Stage {
     const size = this.renderer.getDrawingBufferSize(new Vector2());
     const scale = size.y / Math.max(1, this.canvas.clientHeight);
     const side = 2 * Math.round(PICK_PX[touch ? "touch" : "mouse"] * scale) + 1;
-    const integers = { count: 2, format: RGBAIntegerFormat, type: UnsignedIntType, internalFormat: "RGBA32UI", minFilter: NearestFilter, magFilter: NearestFilter } as const;
+    const integers = { count: 3, format: RGBAIntegerFormat, type: UnsignedIntType, internalFormat: "RGBA32UI", minFilter: NearestFilter, magFilter: NearestFilter } as const;
     const target = new WebGLRenderTarget(side, side, integers);
     // Enlarges the square around the place to the whole target.
     const [right, up] = [(2 * x) / this.canvas.clientWidth - 1, 1 - (2 * y) / this.canvas.clientHeight];
@@ -138,25 +148,26 @@ export class Stage {
     const projection = this.camera.projectionMatrix.clone();
     const context = this.renderer.getContext() as WebGL2RenderingContext;
     const shown = this.furniture.visible;
-    const read = new Uint32Array(8 * side * side);
+    const read = new Uint32Array(12 * side * side);
     try {
       this.share(1);
       this.prepare();
       this.camera.projectionMatrix.premultiply(enlarge);
-      this.furniture.visible = false;
+      this.furniture.visible = this.other.visible = false;
       this.scene.overrideMaterial = this.pick;
       this.renderer.setRenderTarget(target);
       this.renderer.state.buffers.depth.setMask(true);
-      for (const buffer of [0, 1]) context.clearBufferuiv(context.COLOR, buffer, new Uint32Array(4));
+      for (const buffer of [0, 1, 2]) context.clearBufferuiv(context.COLOR, buffer, new Uint32Array(4));
       context.clear(context.DEPTH_BUFFER_BIT);
       this.renderer.render(this.scene, this.camera);
-      for (const buffer of [0, 1]) {
+      for (const buffer of [0, 1, 2]) {
         context.readBuffer(context.COLOR_ATTACHMENT0 + buffer);
         context.readPixels(0, 0, side, side, context.RGBA_INTEGER, context.UNSIGNED_INT, read, 4 * side * side * buffer);
       }
     } finally {
       this.scene.overrideMaterial = null;
       this.furniture.visible = shown;
+      this.other.visible = true;
       this.camera.projectionMatrix.copy(projection);
       this.renderer.setRenderTarget(null);
       target.dispose();
@@ -220,6 +231,7 @@ export class Stage {
     this.background = background;
     (this.ink.grid.uniforms["ink"] as { value: Vector3 }).value.set(...grid);
     (this.ink.scanner.uniforms["ink"] as { value: Vector3 }).value.set(...scanner);
+    (this.plain.uniforms["ink"] as { value: Vector3 }).value.set(...scanner);
     (this.ink.beam.uniforms["ink"] as { value: Vector3 }).value.set(...beam);
     this.draw();
   }
@@ -342,6 +354,7 @@ function nearest(read: Uint32Array, side: number): Picked | null {
   return {
     position: [float(first), float(first + 1), float(first + 2)], time_s: float(first + 3), sd_m: float(second + first), tilt_deg: float(second + first + 1),
     intensity: float(second + first + 2), ring: whole & 255, laser: (whole >> 16) & 255, echo: (whole >> 8) & 255,
+    distance_m: float(2 * second + first),
   };
 }
 
