@@ -153,7 +153,8 @@ export class Viewer {
   open(source: CloudSource, other: CloudSource | null = null): void {
     const follows = this.live !== null && this.shown === source.id && other === null;
     const again = this.shown === source.id;
-    const field = other !== null && other.id === this.other?.id ? this.field : "distance";
+    // A comparison that is loaded again keeps its colours.
+    const field = other !== null && other === this.other ? this.field : "distance";
     if (follows) this.worker?.terminate();
     else this.clear();
     if (other !== null) this.compare(other, field);
@@ -277,8 +278,8 @@ export class Viewer {
     if (this.other === null || other === null || within_m === null) return "";
     const { title } = this.other;
     const parts = ([["50", within_m.p50], ["95", within_m.p95]] as const).filter(([, m]) => m < MOST_M).map(([share, m]) => `${share} % within ${length(m)}`);
-    const none = beyond > 0 ? `${digits((100 * beyond) / total, 2)} % without a point of ${title} within ${length(MOST_M)}` : "";
-    return [parts.length > 0 ? `${parts.join(", ")} of ${title}` : "", none, other.every > 1 ? `every ${other.every}th point of ${title}` : ""].filter(Boolean).join("; ");
+    const none = beyond > 0 ? `${digits((100 * beyond) / total, 2)} % without a point ${parts.length > 0 ? "" : `of ${title} `}within ${length(MOST_M)}` : "";
+    return [parts.length > 0 ? `${parts.join(", ")} of ${title}` : "", none, other.every > 1 ? `compared with every ${other.every}th point` : ""].filter(Boolean).join("; ");
   }
 
   private swap(cloud: Loaded): void {
@@ -401,7 +402,7 @@ export class Viewer {
     const of = { low: low === null ? automatic.low : scale * low - shift, high: high === null ? automatic.high : scale * high - shift };
     this.stage.setField(FIELDS.indexOf(this.field), of.high > of.low ? of : { low: of.low, high: of.low + 1e-6 });
     this.stage.setMarks([low === null ? null : MARKS[0], high === null ? null : MARKS[1]]);
-    const note = this.field === "distance" ? `to the nearest point of ${this.other?.title ?? ""}` : this.field === "range" && this.origin.some((m) => m !== 0) ? `from ${this.origin.join(", ")} m` : NOTES[this.field];
+    const note = this.field === "distance" ? `${NOTES.distance} of ${this.other?.title ?? ""}` : this.field === "range" && this.origin.some((m) => m !== 0) ? `from ${this.origin.join(", ")} m` : NOTES[this.field];
     text(id("legend-note"), `${note} \u00b7 rings ${RING_STEP_M} m apart`);
     this.stage.uniform("ceiling_m", this.ranges.ceiling_m ?? 1e6);
     const words = (value: number) => {
