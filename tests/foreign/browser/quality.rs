@@ -1,7 +1,10 @@
 //! The scan in view: losses and residuals, and on request density, gaps, ranges and errors.
 
 use super::browser::{DESKTOP, NARROW, PHONE};
-use super::{TOO_MANY, browser_and_simulator, ready, start, until_in_sight};
+use super::{TO_THE_TOP, TOO_MANY, browser_and_simulator, ready, start, until_in_sight};
+
+/// What the points are coloured by.
+const FIELD: &str = "return document.querySelector('#field').value";
 
 #[test]
 #[ignore = "needs chromium and chromedriver"]
@@ -41,6 +44,68 @@ fn the_scan_in_view_is_measured_on_request() {
                 .await;
             page.audit("a measured scan").await;
             page.picture("quality").await;
+        });
+    }
+    daemon.stop(|| true).unwrap();
+}
+
+#[test]
+#[ignore = "needs chromium and chromedriver"]
+fn two_scans_are_compared_and_shown_together() {
+    let (driver, _folder, daemon, url) = browser_and_simulator();
+    driver.test(DESKTOP, async |page| {
+        ready(&page, &url).await;
+        for (scans, name) in [(1, "before"), (2, "after")] {
+            start(&page, name, "56.25", "-45").await;
+            page.until_true(&format!(
+                "[...document.querySelectorAll('.scan .badge[data-state]')].filter(({{ textContent }}) => textContent === 'complete').length === {scans}"
+            ))
+            .await;
+        }
+    });
+    for screen in [DESKTOP, PHONE.light(), NARROW] {
+        driver.test(screen, async |page| {
+            ready(&page, &url).await;
+            page.until_has("#view-title", "after").await;
+            page.until_loaded().await;
+            page.run("document.querySelector('#scans').scrollIntoView()")
+                .await;
+            page.click("#scans .scan:nth-child(1) [data-role=choose]")
+                .await;
+            assert_eq!(page.text("#compare").await, "", "one scan is selected");
+            page.click("#scans .scan:nth-child(2) [data-role=choose]")
+                .await;
+            page.click("#compare").await;
+            page.until_has("#view-title", "after compared with before")
+                .await;
+            // Both scans are of one scene, seen at other azimuths of the lidar.
+            let note = page.until_has("#view-note", "of before").await;
+            let median = note.strip_prefix("50 % within ").unwrap();
+            let median_mm: f64 = median.split(' ').next().unwrap().parse().unwrap();
+            assert!((0.5..100.0).contains(&median_mm), "{note}");
+            assert_eq!(page.run(FIELD).await, "distance");
+            page.until_has("#announce", "50 % within").await;
+            page.audit("a comparison").await;
+            page.run(TO_THE_TOP).await;
+            page.picture("compared").await;
+
+            let one = page.pixels_of("#canvas").await;
+            page.click("#tools > summary").await;
+            page.click("#both-clouds").await;
+            page.click("#tools > summary").await;
+            page.until_pixels("#canvas", "the other cloud", |now| {
+                let changed = now.iter().zip(&one).filter(|(a, b)| a != b).count();
+                changed * 100 > now.len()
+            })
+            .await;
+
+            page.click("#scans .scan:nth-child(1) [data-role=open]")
+                .await;
+            page.until("#view-title", "one scan", |text| text == "after")
+                .await;
+            page.until_loaded().await;
+            assert_eq!(page.run(FIELD).await, "height");
+            page.until_gone("#both-clouds-row").await;
         });
     }
     daemon.stop(|| true).unwrap();

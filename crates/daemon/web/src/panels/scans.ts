@@ -38,7 +38,10 @@ type Place = "card" | "row";
 function content(scan: Scan, place: Place): Node[] {
   try {
     const actions = { open: opened, edit: () => edit(scan, place), choose, remove: (one: Scan) => void remove_all([one]), refused: show_error };
-    if (editing?.id === scan.id && editing.place === place) return [parts.editor(scan, (changed) => edited(scan, changed), actions)];
+    if (editing?.id === scan.id && editing.place === place) {
+      const editor = parts.editor(scan, (changed) => edited(scan, changed), actions);
+      return [place === "card" ? editor : h("div", { role: "cell", class: "edit-cell" }, editor)];
+    }
     const marked = chosen.has(scan.id);
     return place === "card" ? parts.card(scan, marked, error_of(scan), actions) : parts.cells(scan, marked, actions);
   } catch (error) {
