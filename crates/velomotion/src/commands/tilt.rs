@@ -125,6 +125,12 @@ impl Axis<'_> {
     fn end_of_jog(&self, by_deg: f64) -> Result<f64, Failure> {
         let limits = &self.config.axis;
         let angle_deg = match self.run(JogRequest::Status)?.0 {
+            // From an angle on the way of another motion the end would be elsewhere.
+            StopAnswer::Report(report) if report.activity != AxisTask::Idle => {
+                let message = format!("the axis is in use: {}", report.activity.description());
+                return Err(Failure::new(Kind::Busy, message)
+                    .help("wait for its end, or stop it (tilt stop)"));
+            }
             StopAnswer::Report(report) => report.angle_deg,
             StopAnswer::Command(_) => None,
         };
