@@ -72,6 +72,16 @@ pub struct Driver {
 
 impl Driver {
     pub fn start() -> Self {
+        // `--port=0` chooses a port that is free in IPv6 and ends when IPv4 has it in use, as by a
+        // connection of another test.
+        std::iter::repeat_with(Self::started)
+            .flatten()
+            .next()
+            .unwrap()
+    }
+
+    /// `None`: the chosen port is in use.
+    fn started() -> Option<Self> {
         let mut process = Command::new("chromedriver")
             .arg("--port=0")
             .stdin(Stdio::null())
@@ -79,18 +89,21 @@ impl Driver {
             .stderr(Stdio::null())
             .spawn()
             .expect("chromedriver, of the Debian package chromium-driver");
-        let mut printed = BufReader::new(process.stdout.take().unwrap()).lines();
-        let port = printed.find_map(|line| {
-            let line = line.unwrap();
-            let (_, port) = line.split_once("started successfully on port ")?;
-            Some(port.trim_end_matches('.').to_owned())
-        });
+        let mut printed = BufReader::new(process.stdout.take().unwrap())
+            .lines()
+            .map(Result::unwrap);
+        let result = printed
+            .find(|line| line.contains("started successfully") || line.contains("Exiting"))
+            .expect("chromedriver reports its port");
+        let Some((_, port)) = result.split_once("started successfully on port ") else {
+            assert!(result.contains("port not available"), "{result}");
+            process.wait().unwrap();
+            return None;
+        };
+        let url = format!("http://127.0.0.1:{}", port.trim_end_matches('.'));
         // A process that writes into an unread pipe blocks.
         std::thread::spawn(move || printed.for_each(drop));
-        Self {
-            process,
-            url: format!("http://127.0.0.1:{}", port.unwrap()),
-        }
+        Some(Self { process, url })
     }
 
     /// Runs a test in its own window and closes the window even if the test panics.
