@@ -26,11 +26,12 @@ pub fn gaps(directions: &[DVec3], places: &[DVec3]) -> Result<Vec<f64>, DensityE
 /// numbers.
 #[must_use]
 pub fn quantile(numbers: &[f64], share: f64) -> Option<f64> {
-    let mut sorted = numbers.to_vec();
-    sorted.sort_unstable_by(f64::total_cmp);
-    let place = (share * sorted.len() as f64).ceil() as usize;
-    let place = place.min(sorted.len()).saturating_sub(1);
-    sorted.get(place).copied()
+    let place = (share * numbers.len() as f64).ceil() as usize;
+    let place = place.min(numbers.len()).saturating_sub(1);
+    let mut numbers = numbers.to_vec();
+    let found =
+        (!numbers.is_empty()).then(|| numbers.select_nth_unstable_by(place, f64::total_cmp));
+    found.map(|(_, found, _)| *found)
 }
 
 #[cfg(test)]

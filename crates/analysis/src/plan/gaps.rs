@@ -6,7 +6,7 @@
 //! them the elevation is monotonic. Of such a revolution the firing nearest in azimuth counts. A
 //! ray of another revolution may be nearer by a part of a step of azimuth.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
 use glam::DVec3;
 
@@ -22,11 +22,12 @@ pub struct StartedSweep {
 }
 
 impl StartedSweep {
-    /// A sweep with the lidar at an azimuth of 0..1 revolutions at its start.
+    /// A sweep with the lidar at an azimuth of 0..1 revolutions at its start, without the rays
+    /// within an angle of its ends.
     #[must_use]
-    pub fn new(sweep: &TiltSweep, start: f64) -> Self {
+    pub fn new(sweep: &TiltSweep, start: f64, unseen_deg: f64) -> Self {
         Self {
-            motion: sweep.motion(),
+            motion: sweep.motion(unseen_deg),
             start,
         }
     }
@@ -198,6 +199,17 @@ struct SweepPass<'a> {
 
 /// Part of a linear estimate of an elevation that is certain.
 const CERTAIN: f64 = 0.97;
+/// Squared chord of 5 deg: within it, linear estimates bound an angle from above, too.
+const SHORT_CHORD2: f64 = 0.0076;
+/// Part of the cosine of an elevation below 45 deg that is certain within a short chord.
+const STEEP: f64 = 0.9;
+
+/// The nearest whole number, of numbers below 2^51, without the call that `round` is on processors
+/// that may lack SSE 4.1.
+const fn nearest_whole(number: f64) -> f64 {
+    const WHOLE: f64 = 6_755_399_441_055_744.0; // 1.5 * 2^52: numbers as large are whole.
+    (number + WHOLE) - WHOLE
+}
 
 impl SweepPass<'_> {
     fn compare(&self, enough: f64, nearest: &mut f64) {
@@ -210,16 +222,14 @@ impl SweepPass<'_> {
             if laser.tilt_deg < low || laser.tilt_deg > high {
                 continue;
             }
-            let crosses_s = motion.time_s(laser.tilt_deg);
+            let crosses_s = motion.seen_time_s(laser.tilt_deg);
             let turned = self.start + crosses_s * rays.revolutions_per_s - laser.azimuth;
             let after = turned - turned.floor();
             for (next, outwards) in [(-after, -1.0), (1.0 - after, 1.0)] {
                 for line in 0..=self.more {
                     let t = crosses_s + (next + outwards * f64::from(line)) * revolution_s;
                     // Lines farther out are farther away.
-                    if !(0.0..=motion.whole_s).contains(&t)
-                        || !self.compare_laser(laser, t, nearest)
-                    {
+                    if !motion.is_seen(t) || !self.compare_laser(laser, t, enough, nearest) {
                         break;
                     }
                 }
@@ -230,7 +240,7 @@ impl SweepPass<'_> {
         }
         let more = i64::from(self.more);
         for end in self.place.ends() {
-            let turned = self.start + motion.time_s(end.tilt_deg) * rays.revolutions_per_s;
+            let turned = self.start + motion.seen_time_s(end.tilt_deg) * rays.revolutions_per_s;
             let before = (turned - end.azimuth).floor() as i64;
             for number in before - more..=before + 1 + more {
                 self.compare_lasers(end, number, nearest);
@@ -243,11 +253,12 @@ impl SweepPass<'_> {
 
     /// Compares the firing of a laser in a revolution that passes near the time, unless it is too
     /// far in elevation.
-    fn compare_laser(&self, laser: &LaserPass, t: f64, nearest: &mut f64) -> bool {
+    fn compare_laser(&self, laser: &LaserPass, t: f64, enough: f64, nearest: &mut f64) -> bool {
         let (rays, motion) = (self.rays, self.motion);
         let past_deg = motion.angle_deg(t) - laser.tilt_deg;
         // The azimuth changes with the tilt, and the time of the pass with the azimuth.
-        let certain = CERTAIN * (1.0 - laser.azimuth_per_deg.abs() * self.lines_deg);
+        let turns = laser.azimuth_per_deg.abs() * self.lines_deg;
+        let certain = CERTAIN * (1.0 - turns);
         let past_rad = past_deg.to_radians();
         let bend = 0.6 * self.place.across() * past_rad * past_rad;
         let apart = certain * (laser.up_per_rad * past_rad).abs() - bend - self.moved_rad;
@@ -260,9 +271,25 @@ impl SweepPass<'_> {
         let t = t + laser.azimuth_per_deg * past_deg / rays.revolutions_per_s;
         // The firing nearest to the pass is off in azimuth, too.
         let firings = (t - ray.delay_s) / rays.period_s;
-        let off = (firings - firings.round()) * rays.period_s * rays.revolutions_per_s;
-        let aside = (CERTAIN * TAU * off.abs() * ray.cos - past_rad * past_rad).max(0.0);
+        let off = (firings - nearest_whole(firings)) * rays.period_s * rays.revolutions_per_s;
+        let off = TAU * off.abs() * ray.cos;
+        let aside = (CERTAIN * off - past_rad * past_rad).max(0.0);
         if apart.max(0.0).powi(2) + aside * aside > *nearest {
+            return true;
+        }
+        let most =
+            (1.0 + turns) / CERTAIN * (laser.up_per_rad * past_rad).abs() + bend + self.moved_rad;
+        let (most, most_aside) = (
+            most / (STEEP * ray.cos),
+            off / CERTAIN + past_rad * past_rad,
+        );
+        let most = most * most + most_aside * most_aside;
+        let is_level = ray.cos >= FRAC_1_SQRT_2;
+        let is_inside = motion.is_seen(t - rays.period_s)
+            && motion.is_seen(t + rays.period_s)
+            && rays.aperture.is_none();
+        if most <= enough.min(SHORT_CHORD2) && is_level && is_inside {
+            *nearest = most.min(*nearest);
             return true;
         }
         let turned = self.start + t * rays.revolutions_per_s + ray.offset;
@@ -297,7 +324,7 @@ impl SweepPass<'_> {
             .lasers
             .partition_point(|laser| laser.elevation_rad < elevation);
         // Before the start and after the end a laser that is ahead in azimuth may be the nearest.
-        let (first, count) = match (0.0..=motion.whole_s).contains(&t) {
+        let (first, count) = match motion.is_seen(t) {
             true => (above.saturating_sub(1), 2),
             false => (0, rays.lasers.len()),
         };
@@ -318,19 +345,23 @@ impl SweepPass<'_> {
     fn compare_ray(&self, laser: &AxisRay, t: f64, nearest: &mut f64) {
         let (rays, motion) = (self.rays, self.motion);
         // Before the start and after the end the first and the last firing are the nearest.
-        let firings = ((motion.whole_s - laser.delay_s) / rays.period_s).floor();
+        let (from_s, until_s) = motion.seen_s;
+        let first = ((from_s - laser.delay_s) / rays.period_s).ceil().max(0.0);
+        let last = ((until_s - laser.delay_s) / rays.period_s)
+            .floor()
+            .max(first);
         let azimuth_of = |firing: f64| {
             let t = firing * rays.period_s + laser.delay_s;
             self.start + t * rays.revolutions_per_s + laser.offset
         };
-        let mut firing = ((t - laser.delay_s) / rays.period_s).round();
+        let mut firing = nearest_whole((t - laser.delay_s) / rays.period_s);
         if let Some(aperture) = &rays.aperture {
             let inwards = aperture.inwards(azimuth_of(firing));
             let steps = inwards / (rays.revolutions_per_s * rays.period_s);
             // Onto a firing inside.
             firing += steps.abs().ceil().copysign(steps);
         }
-        let firing = firing.clamp(0.0, firings.max(0.0));
+        let firing = firing.clamp(first, last);
         let turned = azimuth_of(firing);
         if let Some(aperture) = &rays.aperture
             && aperture.off(turned).abs() > aperture.half * (1.0 + 1e-9)

@@ -5,6 +5,7 @@
 //! motion with its ramps ([`PlannedRays`]), errors a budget ([`ErrorBudget`]).
 
 mod budget;
+mod deciding;
 mod figure;
 mod gaps;
 mod lidar;

@@ -30,6 +30,15 @@ pub(super) fn random() -> impl Iterator<Item = DVec3> {
         .take(MOST_DRAWN)
 }
 
+/// A random direction in each cell of a grid of so many cells along the tilt axis and about it, all
+/// of equal areas.
+pub(super) fn one_per_cell(cells: u32, seed: u64) -> impl Iterator<Item = DVec3> {
+    let mut noise = SeededNoise(seed);
+    let mut inside = move |cell: u32| (f64::from(cell) + noise.uniform()) / f64::from(cells);
+    let grid = (0..cells).flat_map(move |along| (0..cells).map(move |turned| (along, turned)));
+    grid.map(move |(along, turned)| about_axis(2.0 * inside(along) - 1.0, inside(turned)))
+}
+
 /// The direction at a distance along the tilt axis and an angle about it, in revolutions.
 fn about_axis(along: f64, turned: f64) -> DVec3 {
     let across = (1.0 - along * along).max(0.0).sqrt();

@@ -1,6 +1,7 @@
 //! A planned scan and what it gives.
 
 use std::f64::consts::PI;
+use std::sync::OnceLock;
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -99,6 +100,10 @@ pub const ROW_BYTES: f64 = 29.0;
 const REPLAY_POINTS_S: f64 = 6.5e6;
 const REPLAY_S: f64 = 0.02;
 
+/// Counts of the encoder that the axis moves at the start before a cloud has points, and at the end
+/// without them: with slow ramps for some milliseconds, a part of a revolution of the lidar.
+const UNSEEN_COUNTS: f64 = 2.0;
+
 /// Sweeps whose gaps are computed; of more, gaps are at most as wide.
 const MOST_SWEEPS: usize = 8;
 
@@ -134,13 +139,14 @@ impl GapEffort {
     };
 
     /// The chosen row. The gaps of sweeps of few revolutions depend on the azimuth at the start: at
-    /// 10 revolutions by a tenth within 15 degrees of it, so that 64 azimuths are examined.
+    /// 10 revolutions that of 99 % by a tenth within 15 degrees of it, and by less than 1 % within
+    /// half of a step of 40 azimuths.
     pub(super) fn full(scan: &PlannedScan) -> Self {
         let shortest_s = scan.sweeps.iter().map(TiltSweep::duration_s);
         let revolutions = shortest_s.fold(f64::INFINITY, f64::min) * scan.setting.rpm / 60.0;
         Self {
             stride: 1,
-            starts: (640.0 / revolutions).clamp(12.0, 64.0) as u32,
+            starts: (400.0 / revolutions).clamp(12.0, 40.0) as u32,
         }
     }
 }
@@ -155,11 +161,13 @@ pub struct ScanPredictor {
     /// Requested gap, degrees.
     pub gap_deg: Option<f64>,
     /// Tilts at the ends.
-    tilts_deg: [f64; 2],
+    pub(super) tilts_deg: [f64; 2],
     /// Directions in view of the tilts.
     pub(super) places: Vec<PlannedPlace>,
     /// Random ones.
     random_places: Vec<PlannedPlace>,
+    /// Those that decide a choice, made when one needs them.
+    pub(super) deciding: OnceLock<Vec<PlannedPlace>>,
 }
 
 impl ScanPredictor {
@@ -179,6 +187,7 @@ impl ScanPredictor {
         Self {
             places: places.collect(),
             random_places: random_places.collect(),
+            deciding: OnceLock::new(),
             lidar,
             errors,
             gap_deg,
@@ -195,17 +204,34 @@ impl ScanPredictor {
     /// What a scan gives.
     #[must_use]
     pub fn row(&self, scan: &PlannedScan) -> PlanRow {
-        self.row_with(scan, GapEffort::full(scan))
+        let (mut row, p99_deg) = self.row_with(scan, GapEffort::full(scan));
+        let decided = self.deciding_gaps(scan, &p99_deg, self.limit_deg());
+        row.gap_deg.p99 = decided.p99_deg;
+        row.gap_mm.p99 = self.gap_mm(decided.p99_deg);
+        row.best_start_p99_deg = decided.best_p99_deg;
+        row.share_without_point = decided.unseen;
+        row
     }
 
     /// The same with few azimuths at the start, several times as fast.
     #[must_use]
     pub fn capture_row(&self, scan: &PlannedScan) -> PlanRow {
-        self.row_with(scan, GapEffort::CAPTURE)
+        self.row_with(scan, GapEffort::CAPTURE).0
     }
 
-    pub(super) fn row_with(&self, scan: &PlannedScan, effort: GapEffort) -> PlanRow {
-        let limit_deg = self.gap_deg.unwrap_or(UNSEEN_DEG);
+    /// Gap beyond which a direction counts as unseen, degrees.
+    fn limit_deg(&self) -> f64 {
+        self.gap_deg.unwrap_or(UNSEEN_DEG)
+    }
+
+    /// A gap at the range, millimetres.
+    fn gap_mm(&self, deg: f64) -> f64 {
+        1e3 * self.errors.range_m * deg.to_radians()
+    }
+
+    /// What a scan gives, and its gap of 99 % with each azimuth at the start, degrees.
+    fn row_with(&self, scan: &PlannedScan, effort: GapEffort) -> (PlanRow, Vec<f64>) {
+        let limit_deg = self.limit_deg();
         let mut worst = GapQuantiles {
             p50: 0.0,
             p95: 0.0,
@@ -214,6 +240,7 @@ impl ScanPredictor {
         };
         // A share of no directions is no number.
         let (mut best_p99, mut best_start_deg, mut without) = (f64::INFINITY, 0.0, f64::NAN);
+        let mut all_p99 = Vec::new();
         for start in 0..effort.starts {
             let gaps = self.gaps_deg(scan, effort, start);
             let of = |share| quantile(&gaps, share).unwrap_or(180.0);
@@ -224,6 +251,7 @@ impl ScanPredictor {
                 worst: worst.worst,
             };
             worst.worst = self.widest_deg(scan, (start, effort), &gaps, worst.worst);
+            all_p99.push(of(0.99));
             if of(0.99) < best_p99 {
                 best_p99 = of(0.99);
                 best_start_deg = 360.0 * f64::from(start) / f64::from(effort.starts);
@@ -231,14 +259,14 @@ impl ScanPredictor {
             let unseen = gaps.iter().filter(|gap| **gap > limit_deg).count();
             without = without.max(unseen as f64 / gaps.len() as f64);
         }
-        let mm = |deg: f64| 1e3 * self.errors.range_m * deg.to_radians();
+        let mm = |deg: f64| self.gap_mm(deg);
         let points = self.lidar.rays(&scan.sweeps);
         let period_s = self.lidar.packet_period_s;
         let log_bytes = period_s.map(|s| scan.scan_s * (PACKET_BYTES / s + DRIVE_BYTES_S));
         let resolution_deg = scan.sweeps.first().map_or(f64::INFINITY, |sweep| {
             self.lidar.mean_resolution_deg(sweep, scan.setting.rpm)
         });
-        PlanRow {
+        let row = PlanRow {
             setting: scan.setting,
             scan_s: scan.scan_s,
             points: points as u64,
@@ -257,16 +285,21 @@ impl ScanPredictor {
             replay_s: period_s.map(|_| REPLAY_S + points / REPLAY_POINTS_S),
             log_bytes: log_bytes.map(|bytes| bytes as u64),
             cloud_bytes: (points * ROW_BYTES) as u64,
-        }
+        };
+        (row, all_p99)
     }
 
     pub(super) fn rays(&self, scan: &PlannedScan) -> PlannedRays {
-        PlannedRays::new(&self.lidar, scan.setting.rpm, self.errors.range_m)
+        self.rays_at(scan.setting.rpm)
+    }
+
+    pub(super) fn rays_at(&self, rpm: f64) -> PlannedRays {
+        PlannedRays::new(&self.lidar, rpm, self.errors.range_m)
     }
 
     /// Gaps of directions with one of the azimuths at the start.
     fn gaps_deg(&self, scan: &PlannedScan, effort: GapEffort, start: u32) -> Vec<f64> {
-        let (rays, sweeps) = (self.rays(scan), started(scan, start, effort.starts));
+        let (rays, sweeps) = (self.rays(scan), self.started(scan, start, effort.starts));
         let places = self.places.par_iter().step_by(effort.stride);
         places.map(|place| rays.gap_deg(&sweeps, place)).collect()
     }
@@ -279,7 +312,7 @@ impl ScanPredictor {
         gaps: &[f64],
         found_deg: f64,
     ) -> f64 {
-        let (rays, sweeps) = (self.rays(scan), started(scan, start, effort.starts));
+        let (rays, sweeps) = (self.rays(scan), self.started(scan, start, effort.starts));
         let gap = |place: DVec3| {
             let place = rays.place(place, self.tilts_deg);
             rays.gap_deg(&sweeps, &place)
@@ -291,7 +324,9 @@ impl ScanPredictor {
             .copied()
             .zip(examined.map(PlannedPlace::direction))
             .collect();
-        ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
+        if ranked.len() > CLIMBS {
+            ranked.select_nth_unstable_by(CLIMBS, |a, b| b.0.total_cmp(&a.0));
+        }
         // No laser points along the tilt axis.
         let poles = [DVec3::Y, DVec3::NEG_Y].into_iter().filter(in_view);
         let from: Vec<DVec3> = ranked
@@ -326,19 +361,21 @@ impl ScanPredictor {
         let gaps = self.gaps_deg(scan, GapEffort { stride, starts: 1 }, 0);
         quantile(&gaps, 0.99).unwrap_or(180.0)
     }
-}
 
-/// Sweeps of a scan with one of so many azimuths at the start: evenly spaced for the first sweep,
-/// and by the golden ratio for later ones, since the time between sweeps is not controlled.
-pub(super) fn started(scan: &PlannedScan, start: u32, starts: u32) -> Vec<StartedSweep> {
-    const GOLDEN: f64 = 0.618_033_988_749_895;
-    let first = f64::from(start) / f64::from(starts);
-    let begin = |(number, sweep): (usize, &TiltSweep)| {
-        let start = first + number as f64 * GOLDEN * (1.0 + f64::from(start));
-        StartedSweep::new(sweep, start.fract())
-    };
-    let sweeps = scan.sweeps.iter().take(MOST_SWEEPS);
-    sweeps.enumerate().map(begin).collect()
+    /// Sweeps of a scan with one of so many azimuths at the start: evenly spaced for the first
+    /// sweep, and by the golden ratio for later ones, since the time between sweeps is not
+    /// controlled.
+    pub(super) fn started(&self, scan: &PlannedScan, start: u32, starts: u32) -> Vec<StartedSweep> {
+        const GOLDEN: f64 = 0.618_033_988_749_895;
+        let first = f64::from(start) / f64::from(starts);
+        let unseen_deg = UNSEEN_COUNTS * self.errors.count_deg;
+        let begin = |(number, sweep): (usize, &TiltSweep)| {
+            let start = first + number as f64 * GOLDEN * (1.0 + f64::from(start));
+            StartedSweep::new(sweep, start.fract(), unseen_deg)
+        };
+        let sweeps = scan.sweeps.iter().take(MOST_SWEEPS);
+        sweeps.enumerate().map(begin).collect()
+    }
 }
 
 #[cfg(test)]
@@ -392,7 +429,7 @@ mod tests {
             };
             let row = predictor.row(&scan);
             let rays = predictor.rays(&scan);
-            let started = started(&scan, 1, GapEffort::full(&scan).starts);
+            let started = predictor.started(&scan, 1, GapEffort::full(&scan).starts);
             let gaps = |others: &[DVec3]| -> Vec<f64> {
                 let others = others.par_iter().map(|place| place.normalize());
                 let seen = others.filter(|place| rays.is_in_view(*place, tilts_deg));

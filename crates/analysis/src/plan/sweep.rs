@@ -39,19 +39,25 @@ impl TiltSweep {
     /// and after.
     #[must_use]
     pub fn angle_deg(&self, t_s: f64) -> f64 {
-        self.motion().angle_deg(t_s)
+        self.motion(0.0).angle_deg(t_s)
     }
 
-    /// The sweep, for many angles and times.
-    pub(super) fn motion(&self) -> SweepMotion {
+    /// The sweep, for many angles and times, without the rays within an angle of its ends.
+    pub(super) fn motion(&self, unseen_deg: f64) -> SweepMotion {
         let peak_deg_s = self.peak_deg_s();
-        SweepMotion {
+        let whole_s = self.duration_s();
+        let mut motion = SweepMotion {
             sweep: *self,
             way_deg: self.way_deg(),
             peak_deg_s,
             ramp_s: peak_deg_s / self.accel_deg_s2,
-            whole_s: self.duration_s(),
-        }
+            whole_s,
+            seen_s: (0.0, whole_s),
+        };
+        let left_deg = unseen_deg.copysign(self.to_deg - self.from_deg);
+        let from_s = motion.time_s(self.from_deg + left_deg);
+        motion.seen_s = (from_s, whole_s - from_s);
+        motion
     }
 }
 
@@ -63,10 +69,23 @@ pub(super) struct SweepMotion {
     pub peak_deg_s: f64,
     ramp_s: f64,
     /// Duration.
-    pub whole_s: f64,
+    whole_s: f64,
+    /// From when until when the sweep has rays.
+    pub seen_s: (f64, f64),
 }
 
 impl SweepMotion {
+    /// [`Self::time_s`], or the nearest time with rays.
+    pub(super) fn seen_time_s(&self, angle_deg: f64) -> f64 {
+        let (from_s, until_s) = self.seen_s;
+        self.time_s(angle_deg).max(from_s).min(until_s)
+    }
+
+    pub(super) fn is_seen(&self, t_s: f64) -> bool {
+        let (from_s, until_s) = self.seen_s;
+        (from_s..=until_s).contains(&t_s)
+    }
+
     /// [`TiltSweep::angle_deg`].
     pub(super) fn angle_deg(&self, t_s: f64) -> f64 {
         let t = t_s.clamp(0.0, self.whole_s);
@@ -159,7 +178,7 @@ mod tests {
                 let part = f64::from(i) / f64::from(steps);
                 let gone = (angle(part) - angle(f64::from(i + 1) / f64::from(steps))).abs();
                 prop_assert!(gone <= sweep.peak_deg_s() * whole / f64::from(steps) * (1.0 + 1e-6) + 1e-9);
-                let time_s = sweep.motion().time_s(angle(part));
+                let time_s = sweep.motion(0.0).time_s(angle(part));
                 prop_assert!(close(sweep.angle_deg(time_s), angle(part), 1e-6 * way));
             }
         }

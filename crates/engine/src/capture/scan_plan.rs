@@ -315,15 +315,9 @@ impl ScanPlanner {
         if let Some(nearest) = nearest.take_if(|nearest| is_within(nearest)) {
             chosen = Some(nearest.row);
         }
-        // Rows that seem to beat the choice are examined at as many azimuths.
+        // At other azimuths of the start, rows that seem to beat the choice break the limit.
         if let (Some(chosen), Some(_)) = (&chosen, limits.gap_deg) {
-            let seem_better =
-                |row: &&mut PlanRow| row.scan_s < chosen.scan_s && self.unmet_of(row).is_empty();
-            for row in rows.iter_mut().filter(seem_better) {
-                if let Some(scan) = coarse.iter().find(|scan| scan.setting == row.setting) {
-                    *row = self.predictor.row(scan);
-                }
-            }
+            rows.retain(|row| row.scan_s >= chosen.scan_s || !self.unmet_of(row).is_empty());
         }
         Ok(PlanReport {
             device: self.name.clone(),

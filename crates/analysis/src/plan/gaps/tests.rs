@@ -13,6 +13,7 @@ fn rays(lidar: &PlanLidar, rpm: f64, range_m: f64, sweeps: &[StartedSweep]) -> V
     let mut found = Vec::new();
     for StartedSweep { motion, start } in sweeps {
         let sweep = motion.sweep;
+        let (from_s, until_s) = motion.seen_s;
         for firing in 0.. {
             let begin_s = f64::from(firing) * lidar.firing_period_s;
             if begin_s > sweep.duration_s() {
@@ -20,7 +21,7 @@ fn rays(lidar: &PlanLidar, rpm: f64, range_m: f64, sweeps: &[StartedSweep]) -> V
             }
             for laser in &lidar.lasers {
                 let t = begin_s + laser.delay_s;
-                if t > sweep.duration_s() {
+                if t < from_s || t > until_s {
                     continue;
                 }
                 let a = (start + t * rpm / 60.0) * TAU + laser.azimuth_deg.to_radians();
@@ -71,6 +72,7 @@ proptest! {
         rpm in prop_oneof![Just(300.0), Just(600.0), Just(1_200.0)],
         starts in [0.0..1.0_f64, 0.0..1.0_f64],
         both_ways: bool,
+        unseen_deg in prop_oneof![Just(0.0), Just(0.003), Just(0.02)],
     ) {
         let to_deg = part * to_deg;
         let mut lidar = vlp_16();
@@ -80,7 +82,7 @@ proptest! {
         let sweep = TiltSweep { from_deg: 0.0, to_deg, speed_deg_s, accel_deg_s2 };
         let back = TiltSweep { from_deg: to_deg, to_deg: 0.0, ..sweep };
         let sweeps = [sweep, back].into_iter().zip(starts);
-        let sweeps: Vec<_> = sweeps.map(|(sweep, start)| StartedSweep::new(&sweep, start)).collect();
+        let sweeps: Vec<_> = sweeps.map(|(sweep, start)| StartedSweep::new(&sweep, start, unseen_deg)).collect();
         let sweeps = if both_ways { &sweeps[..] } else { &sweeps[..1] };
         let planned = PlannedRays::new(&lidar, rpm, 10.0);
         let places: Vec<DVec3> = places().into_iter().filter(|p| planned.is_in_view(*p, [0.0, to_deg])).collect();
@@ -128,7 +130,7 @@ fn gaps_of_planar_scanners_agree_with_the_analysis_of_all_rays() {
             speed_deg_s,
             accel_deg_s2,
         };
-        let sweeps = [StartedSweep::new(&sweep, start)];
+        let sweeps = [StartedSweep::new(&sweep, start, 0.003)];
         let planned = PlannedRays::new(&lidar, 2_400.0, 10.0);
         let in_view = |place: &DVec3| planned.is_in_view(*place, [0.0, -45.0]);
         let (seen, unseen): (Vec<DVec3>, Vec<DVec3>) = places().into_iter().partition(in_view);
@@ -168,7 +170,7 @@ fn the_view_ends_at_the_outermost_rays() {
         speed_deg_s: 56.25,
         accel_deg_s2: 500.0,
     };
-    let started = StartedSweep::new(&sweep, 0.3);
+    let started = StartedSweep::new(&sweep, 0.3, 0.0);
     for ray in rays(&lidar, 600.0, 10.0, &[started]).iter().step_by(97) {
         let inwards = (*ray * (1.0 - 1e-9)).normalize();
         assert!(rays_at_10_m.is_in_view(inwards, [0.0, -45.0]) || ray.z.abs() > 0.2);
