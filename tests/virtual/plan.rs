@@ -80,7 +80,7 @@ fn directions(planner: &ScanPlanner, count: usize, seed: u64) -> Vec<DVec3> {
 /// Part of the limit of the gap that a choice keeps.
 const KEPT: f64 = 0.99;
 
-/// Directions of a measurement: where few have wide gaps, 99 % of 30,000 random ones are off by 4 %.
+/// Directions of a measurement: where few have wide gaps, 99 % of 30,000 random ones vary by 4 %.
 const DIRECTIONS: usize = 300_000;
 
 /// What a capture measured.
