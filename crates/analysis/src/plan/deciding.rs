@@ -14,8 +14,8 @@ use super::{PlannedPlace, PlannedScan, ScanPredictor};
 use crate::density::quantile;
 
 /// Cells of the sphere along the tilt axis and about it with one random direction in each. Of the
-/// half of them that a VLP-16 sees over 45 deg, a share of 1 % is exact to 4 % (standard deviation
-/// of random ones).
+/// half of them that a VLP-16 sees over 45 deg, a share of 1 % is exact to 4.5 % (standard
+/// deviation of random ones).
 const CELLS: u32 = 320;
 /// Their seed.
 const SEED: u64 = 18;
@@ -29,14 +29,17 @@ const CERTAIN: f64 = 0.9;
 pub(super) struct DecidingGaps {
     /// The widest gap of 99 %, degrees.
     pub p99_deg: f64,
-    /// The narrowest one.
-    pub best_p99_deg: f64,
+    /// The narrowest one, and at which azimuth.
+    pub best_p99_deg: (f64, u32),
+    /// The widest gap of all.
+    pub worst_deg: f64,
     /// The greatest share of directions without a point within the limit.
     pub unseen: f64,
 }
 
 impl ScanPredictor {
-    /// The directions that decide, in view of the tilts.
+    /// The directions that decide, in view of the tilts. The first call is not one of many in
+    /// parallel, which would wait for each other.
     fn deciding(&self) -> &[PlannedPlace] {
         self.deciding.get_or_init(|| {
             let rays = self.rays_at(600.0);
@@ -82,8 +85,10 @@ impl ScanPredictor {
         let least_deg = limit_deg.min(CERTAIN * narrowest);
         let mut found = DecidingGaps {
             p99_deg: 0.0,
-            best_p99_deg: f64::INFINITY,
-            unseen: 0.0,
+            best_p99_deg: (f64::INFINITY, 0),
+            worst_deg: 0.0,
+            // A share of no directions is no number.
+            unseen: f64::NAN,
         };
         for (_, number) in starts {
             let sweeps = self.started(scan, *number, of);
@@ -96,7 +101,11 @@ impl ScanPredictor {
             let unseen = gaps.iter().filter(|gap| **gap > limit_deg).count();
             found = DecidingGaps {
                 p99_deg: found.p99_deg.max(p99),
-                best_p99_deg: found.best_p99_deg.min(p99),
+                best_p99_deg: match p99 < found.best_p99_deg.0 {
+                    true => (p99, *number),
+                    false => found.best_p99_deg,
+                },
+                worst_deg: gaps.iter().copied().fold(found.worst_deg, f64::max),
                 unseen: found.unseen.max(unseen as f64 / gaps.len() as f64),
             };
         }

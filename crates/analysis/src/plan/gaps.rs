@@ -277,12 +277,14 @@ impl SweepPass<'_> {
         if apart.max(0.0).powi(2) + aside * aside > *nearest {
             return true;
         }
-        let most =
-            (1.0 + turns) / CERTAIN * (laser.up_per_rad * past_rad).abs() + bend + self.moved_rad;
-        let (most, most_aside) = (
-            most / (STEEP * ray.cos),
-            off / CERTAIN + past_rad * past_rad,
-        );
+        // Until the firing the tilt may move on by a part of the turn.
+        let past_most = (1.0 + turns) * past_rad.abs();
+        let square = past_most * past_most;
+        let most = laser.up_per_rad.abs() * past_most / CERTAIN
+            + 0.6 * self.place.across() * square
+            + self.moved_rad;
+        let turned = turns * TAU * (laser.azimuth_per_deg * past_deg).abs() * ray.cos;
+        let (most, most_aside) = (most / (STEEP * ray.cos), (off + turned) / CERTAIN + square);
         let most = most * most + most_aside * most_aside;
         let is_level = ray.cos >= FRAC_1_SQRT_2;
         let is_inside = motion.is_seen(t - rays.period_s)
@@ -347,9 +349,7 @@ impl SweepPass<'_> {
         // Before the start and after the end the first and the last firing are the nearest.
         let (from_s, until_s) = motion.seen_s;
         let first = ((from_s - laser.delay_s) / rays.period_s).ceil().max(0.0);
-        let last = ((until_s - laser.delay_s) / rays.period_s)
-            .floor()
-            .max(first);
+        let last = ((until_s - laser.delay_s) / rays.period_s).floor();
         let azimuth_of = |firing: f64| {
             let t = firing * rays.period_s + laser.delay_s;
             self.start + t * rays.revolutions_per_s + laser.offset
@@ -360,6 +360,9 @@ impl SweepPass<'_> {
             let steps = inwards / (rays.revolutions_per_s * rays.period_s);
             // Onto a firing inside.
             firing += steps.abs().ceil().copysign(steps);
+        }
+        if last < first {
+            return;
         }
         let firing = firing.clamp(first, last);
         let turned = azimuth_of(firing);

@@ -131,8 +131,7 @@ impl GapEffort {
         starts: 4,
     };
 
-    /// A row of a table, and what a capture gives: as many directions as of the chosen row, fewer
-    /// azimuths.
+    /// A row of a table, and what a capture gives: fewer azimuths than of the chosen row.
     const CAPTURE: Self = Self {
         stride: 1,
         starts: 4,
@@ -208,7 +207,11 @@ impl ScanPredictor {
         let decided = self.deciding_gaps(scan, &p99_deg, self.limit_deg());
         row.gap_deg.p99 = decided.p99_deg;
         row.gap_mm.p99 = self.gap_mm(decided.p99_deg);
-        row.best_start_p99_deg = decided.best_p99_deg;
+        let (best_p99_deg, best_start) = decided.best_p99_deg;
+        row.best_start_p99_deg = best_p99_deg;
+        row.best_start_deg = 360.0 * f64::from(best_start) / p99_deg.len() as f64;
+        row.gap_deg.worst = row.gap_deg.worst.max(decided.worst_deg);
+        row.gap_mm.worst = self.gap_mm(row.gap_deg.worst);
         row.share_without_point = decided.unseen;
         row
     }

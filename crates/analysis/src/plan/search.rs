@@ -84,7 +84,7 @@ struct Examiner<'a> {
     unseen: Vec<AtomicU32>,
     /// Of so many without a point more than 1 % of all directions have none.
     most: usize,
-    /// Of so few fewer than 1 % of all.
+    /// Of fewer without a point fewer than 1 % of all have none.
     least: usize,
 }
 
@@ -97,7 +97,7 @@ impl<'a> Examiner<'a> {
             unseen: places.iter().map(|_| AtomicU32::new(0)).collect(),
             places,
             most: (mean + doubt) as usize,
-            least: (mean - doubt).max(0.0) as usize,
+            least: (mean - doubt).max(0.0).ceil() as usize,
         }
     }
 
@@ -291,11 +291,11 @@ impl ScanPredictor {
         // Ends of sweeps are whole counts of the encoder.
         let reach_rad = (gap_deg + self.errors.count_deg).to_radians();
         let out_of_reach = |place: &&PlannedPlace| place.least_chord() > reach_rad;
-        if 100 * self.places.iter().filter(out_of_reach).count() > self.places.len() {
-            return None;
-        }
         let mut few = Examiner::new(self.places.iter().step_by(FEWEST_STRIDE).collect());
         let mut more = Examiner::new(self.places.iter().collect());
+        if self.places.iter().filter(out_of_reach).count() > more.most {
+            return None;
+        }
         for block in scans.chunks(BLOCK) {
             let at_first = |scan: &&&PlannedScan| {
                 let (rays, sweeps) = (self.rays(scan), self.started(scan, 0, 1));
@@ -340,7 +340,7 @@ impl ScanPredictor {
             return false;
         };
         if let Some((unseen, number)) = worst.first()
-            && *unseen > more.least
+            && *unseen >= more.least
             && self.is_refused(scan, gap_deg, (*number, of))
         {
             return false;
@@ -348,7 +348,7 @@ impl ScanPredictor {
         let Some(mut in_doubt) = examine((0..of).collect(), more) else {
             return false;
         };
-        in_doubt.retain(|(unseen, _)| *unseen > more.least);
+        in_doubt.retain(|(unseen, _)| *unseen >= more.least);
         let is_refused = |number: &u32| self.is_refused(scan, gap_deg, (*number, of));
         !in_doubt.iter().any(|(_, number)| is_refused(number))
     }

@@ -315,7 +315,8 @@ impl ScanPlanner {
         if let Some(nearest) = nearest.take_if(|nearest| is_within(nearest)) {
             chosen = Some(nearest.row);
         }
-        // At other azimuths of the start, rows that seem to beat the choice break the limit.
+        // Rows that seem to beat the choice, by few azimuths, break the limit at others or come
+        // closer to it than a choice.
         if let (Some(chosen), Some(_)) = (&chosen, limits.gap_deg) {
             rows.retain(|row| row.scan_s >= chosen.scan_s || !self.unmet_of(row).is_empty());
         }
