@@ -100,7 +100,7 @@ struct Truth {
 /// Captures a setting in a sphere, and measures. `late` is the share of the least round trip, 0.6
 /// ms, that the answers of the drive take: unless it is half, all positions are late or early
 /// alike, which no scan reveals.
-fn measure(row: &PlanRow, at_m: f64, places: &[DVec3], seed: u64, late: f64) -> Truth {
+fn measure(row: &PlanRow, planner: &ScanPlanner, seed: u64, late: f64) -> Truth {
     let mut setting = Setting::default();
     setting.links.seed = 1_000 * seed + 7;
     let links = &mut setting.links;
@@ -110,7 +110,7 @@ fn measure(row: &PlanRow, at_m: f64, places: &[DVec3], seed: u64, late: f64) -> 
     }
     // Other phases of polls and rotor.
     setting.start += Span::from_micros(137_731 * seed as i64);
-    setting.sphere_m = Some(at_m);
+    setting.sphere_m = Some(planner.predictor().errors.range_m);
     setting.sweep_request.speed = DegPerS(row.setting.speed_deg_s);
     setting.sweep_request.acceleration = DegPerS2(row.setting.accel_deg_s2);
     setting.sweep_request.sweeps = row.setting.sweeps;
@@ -132,7 +132,8 @@ fn measure(row: &PlanRow, at_m: f64, places: &[DVec3], seed: u64, late: f64) -> 
         .positions()
         .map(|at| DVec3::from_array(at).normalize())
         .collect();
-    let gaps = gaps(&directions, places).unwrap();
+    let places = self::directions(planner, DIRECTIONS, seed);
+    let gaps = gaps(&directions, &places).unwrap();
     let gap = |share: f64| quantile(&gaps, share).unwrap().to_degrees();
     Truth {
         scan_s: (end - start).as_secs_f64(),
@@ -179,13 +180,7 @@ fn chosen_settings_keep_their_limits_when_measured() {
             .unwrap_or_else(|| panic!("{limits:?}: {:?}", report.unmet));
         let row = &chosen.row;
         let planner = planner(at_m, limits);
-        let truth = measure(
-            row,
-            at_m,
-            &directions(&planner, DIRECTIONS, seed),
-            seed,
-            0.5,
-        );
+        let truth = measure(row, &planner, seed, 0.5);
         let command = chosen.command.as_deref().unwrap();
         let command = command.trim_start_matches("velomotion capture ");
         let (error, gap) = (&row.error_mm, &row.gap_deg);
@@ -254,7 +249,7 @@ fn tight_limits_are_kept_when_measured() {
             .unwrap_or_else(|| panic!("{drawn:?}"));
         let row = &chosen.row;
         let late = random.below(11) as f64 / 10.0;
-        let truth = measure(row, at_m, &directions(&free, DIRECTIONS, seed), seed, late);
+        let truth = measure(row, &free, seed, late);
         println!(
             "|{at_m:.1}|{:.2}|{:.3}|{}, {}, {}|{:.2}|{}, {}, {}|{:.2}|{late}|{:.2}|{:.2}|{:.2}|{:.3}|{:.3}|",
             drawn.error_mm.total,
@@ -425,13 +420,7 @@ fn choices_are_within_five_percent_of_the_best_by_brute_force() {
         };
         let best = &scans[tried];
         let row = &chosen.row;
-        let truth = measure(
-            row,
-            at_m,
-            &directions(&planner, DIRECTIONS, seed),
-            seed,
-            0.5,
-        );
+        let truth = measure(row, &planner, seed, 0.5);
         let command = chosen.command.as_deref().unwrap();
         println!(
             "|{at_m:.1}|{error_mm:.1}|{gap_deg:.3}|`{}`|{:.2}|{:.2}, {:.1}, {}|{:.2}|{:.3}|{}|{:.1}|{:.3}|",

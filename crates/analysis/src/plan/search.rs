@@ -1,14 +1,10 @@
 //! The search for a setting: a coarse grid for the table, and every setting in the order of its
 //! scan time for the choice.
 
-use std::cmp::Reverse;
-use std::sync::atomic::AtomicU32;
-use std::sync::atomic::Ordering::Relaxed;
-
 use rayon::prelude::*;
 
-use super::row::GapEffort;
-use super::{PlanRow, PlannedPlace, PlannedRays, PlannedScan, ScanPredictor, StartedSweep};
+use super::deciding::Examiner;
+use super::{PlanRow, PlannedPlace, PlannedScan, ScanPredictor};
 use crate::tradeoff::front::front;
 
 /// Requested limits.
@@ -64,62 +60,10 @@ const NEARLY_FASTEST: f64 = 1.03;
 const BLOCK: usize = 64;
 /// Of so many directions one rules out scans first.
 const FEWEST_STRIDE: usize = 8;
-/// Azimuths at the start of which the worst refuses most scans.
-const SOME_STARTS: u32 = 8;
-/// So many of them are examined by more directions first.
-const WORST_STARTS: usize = 2;
-/// What a number of directions without a point may be off by chance, in standard deviations of
-/// random ones; that of evenly spread ones varies less.
-const DOUBT_SD: f64 = 2.8;
 /// Settings of which the densest is chosen by some of the directions, and of these by all.
 const FINALISTS: (usize, usize) = (12, 2);
 /// Part of the given time below which scans are not compared for their density.
 const SHORT: f64 = 0.6;
-
-/// Directions that rule out scans, first those that most scans left without a point: they do it
-/// soonest. Their order changes no answer.
-struct Examiner<'a> {
-    places: Vec<&'a PlannedPlace>,
-    order: Vec<usize>,
-    unseen: Vec<AtomicU32>,
-    /// Of so many without a point more than 1 % of all directions have none.
-    most: usize,
-    /// Of fewer without a point fewer than 1 % of all have none.
-    least: usize,
-}
-
-impl<'a> Examiner<'a> {
-    fn new(places: Vec<&'a PlannedPlace>) -> Self {
-        let mean = 0.01 * places.len() as f64;
-        let doubt = DOUBT_SD * mean.sqrt();
-        Self {
-            order: (0..places.len()).collect(),
-            unseen: places.iter().map(|_| AtomicU32::new(0)).collect(),
-            places,
-            most: (mean + doubt) as usize,
-            least: (mean - doubt).max(0.0).ceil() as usize,
-        }
-    }
-
-    /// How many of the directions have no point within a gap, up to one too many.
-    fn unseen(&self, rays: &PlannedRays, sweeps: &[StartedSweep], gap_deg: f64) -> usize {
-        let unseen = self.order.iter().filter(|number| {
-            let place = self.places.get(**number);
-            let is_unseen = place.is_some_and(|place| !rays.is_within(sweeps, place, gap_deg));
-            if let (true, Some(count)) = (is_unseen, self.unseen.get(**number)) {
-                count.fetch_add(1, Relaxed);
-            }
-            is_unseen
-        });
-        unseen.take(self.most + 1).count()
-    }
-
-    fn sort(&mut self) {
-        let Self { order, unseen, .. } = self;
-        let count = |number: &usize| unseen.get(*number).map(|count| count.load(Relaxed));
-        order.sort_by_key(|number| Reverse(count(number)));
-    }
-}
 
 impl ScanPredictor {
     /// Rows that no other scan beats in time, 99 % gap and error at once: the fastest of each of at
@@ -311,46 +255,6 @@ impl ScanPredictor {
             more.sort();
         }
         None
-    }
-
-    /// Whether the gaps of a scan are within the limit at all azimuths of the lidar at the start.
-    fn keeps(&self, scan: &PlannedScan, gap_deg: f64, [few, more]: [&Examiner; 2]) -> bool {
-        let rays = self.rays(scan);
-        let of = GapEffort::full(scan).starts;
-        // With the number of directions without a point, the worst azimuth first.
-        let examine = |numbers: Vec<u32>, places: &Examiner| {
-            let unseen = numbers.into_par_iter().map(|number| {
-                let sweeps = self.started(scan, number, of);
-                (places.unseen(&rays, &sweeps, gap_deg), number)
-            });
-            let mut unseen: Vec<(usize, u32)> = unseen.collect();
-            unseen.sort_unstable_by_key(|(unseen, _)| Reverse(*unseen));
-            let is_within = |(unseen, _): &(usize, u32)| *unseen <= places.most;
-            unseen.iter().all(is_within).then_some(unseen)
-        };
-        // The worst of some azimuths refuses most scans.
-        let some = (0..of)
-            .step_by((of / SOME_STARTS).max(1) as usize)
-            .collect();
-        let Some(some) = examine(some, few) else {
-            return false;
-        };
-        let worst = some.iter().take(WORST_STARTS).map(|(_, number)| *number);
-        let Some(worst) = examine(worst.collect(), more) else {
-            return false;
-        };
-        if let Some((unseen, number)) = worst.first()
-            && *unseen >= more.least
-            && self.is_refused(scan, gap_deg, (*number, of))
-        {
-            return false;
-        }
-        let Some(mut in_doubt) = examine((0..of).collect(), more) else {
-            return false;
-        };
-        in_doubt.retain(|(unseen, _)| *unseen >= more.least);
-        let is_refused = |number: &u32| self.is_refused(scan, gap_deg, (*number, of));
-        !in_doubt.iter().any(|(_, number)| is_refused(number))
     }
 
     /// Of the fastest scans, which take nearly the same time, the densest.
