@@ -4,15 +4,15 @@
 //! give the figures of the chosen row, too.
 
 use std::cmp::Reverse;
+use std::sync::atomic::AtomicU32;
 use std::sync::atomic::Ordering::Relaxed;
-use std::sync::atomic::{AtomicU32, AtomicUsize};
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::places::one_per_cell;
-use super::row::GapEffort;
-use super::{PlannedPlace, PlannedRays, PlannedScan, ScanPredictor, StartedSweep};
+use super::row::{GapEffort, StartedScan};
+use super::{PlannedPlace, PlannedScan, ScanPredictor};
 use crate::density::quantile;
 
 /// Cells of the sphere along the tilt axis and about it with one random direction in each. Of the
@@ -28,8 +28,13 @@ const CERTAIN: f64 = 0.9;
 
 /// Azimuths at the start of which the worst refuses most scans.
 const SOME_STARTS: u32 = 8;
-/// So many of them are examined by more directions first.
-const WORST_STARTS: usize = 2;
+/// Azimuths examined by more directions at a time, the worst of few directions first: they alone
+/// refuse most scans.
+const GROUPS: [usize; 3] = [2, 4, usize::MAX];
+/// Of so many directions one rules out scans first.
+const FEWEST_STRIDE: usize = 8;
+/// Directions examined by all cores at a time.
+const AT_A_TIME: usize = 2_048;
 /// What a number of directions without a point may be off by chance, in standard deviations of
 /// random ones; that of evenly spread ones varies less.
 const DOUBT_SD: f64 = 2.8;
@@ -49,20 +54,28 @@ pub(super) struct DecidingGaps {
 
 /// Directions that rule out scans, first those that most scans left without a point: they do it
 /// soonest. Their order changes no answer.
-pub(super) struct Examiner<'a> {
+struct Examiner<'a> {
     places: Vec<&'a PlannedPlace>,
     order: Vec<usize>,
     unseen: Vec<AtomicU32>,
     /// Of so many without a point more than 1 % of all directions have none.
-    pub most: usize,
+    most: usize,
     /// Of fewer without a point fewer than 1 % of all have none.
     least: usize,
 }
 
+/// Few directions, more, and those that decide.
+pub(super) struct Examiners<'a> {
+    few: Examiner<'a>,
+    more: Examiner<'a>,
+    deciding: Examiner<'a>,
+}
+
 impl<'a> Examiner<'a> {
-    pub(super) fn new(places: Vec<&'a PlannedPlace>) -> Self {
+    fn new(places: impl Iterator<Item = &'a PlannedPlace>, doubt_sd: f64) -> Self {
+        let places: Vec<&PlannedPlace> = places.collect();
         let mean = 0.01 * places.len() as f64;
-        let doubt = DOUBT_SD * mean.sqrt();
+        let doubt = doubt_sd * mean.sqrt();
         Self {
             order: (0..places.len()).collect(),
             unseen: places.iter().map(|_| AtomicU32::new(0)).collect(),
@@ -72,75 +85,112 @@ impl<'a> Examiner<'a> {
         }
     }
 
+    /// Whether a direction has no point within a gap.
+    fn is_unseen(&self, number: usize, of: &StartedScan, gap_deg: f64) -> bool {
+        let place = self.places.get(number);
+        let is_unseen = place.is_some_and(|place| !of.is_within(place, gap_deg));
+        if let (true, Some(count)) = (is_unseen, self.unseen.get(number)) {
+            count.fetch_add(1, Relaxed);
+        }
+        is_unseen
+    }
+
     /// How many of the directions have no point within a gap, up to one too many.
-    pub(super) fn unseen(
-        &self,
-        rays: &PlannedRays,
-        sweeps: &[StartedSweep],
-        gap_deg: f64,
-    ) -> usize {
-        let unseen = self.order.iter().filter(|number| {
-            let place = self.places.get(**number);
-            let is_unseen = place.is_some_and(|place| !rays.is_within(sweeps, place, gap_deg));
-            if let (true, Some(count)) = (is_unseen, self.unseen.get(**number)) {
-                count.fetch_add(1, Relaxed);
-            }
-            is_unseen
-        });
+    fn unseen(&self, of: &StartedScan, gap_deg: f64) -> usize {
+        let unseen = self
+            .order
+            .iter()
+            .filter(|number| self.is_unseen(**number, of, gap_deg));
         unseen.take(self.most + 1).count()
     }
 
-    pub(super) fn sort(&mut self) {
+    /// Whether too many have none; on all cores.
+    fn refuses(&self, of: &StartedScan, gap_deg: f64) -> bool {
+        let mut unseen = 0;
+        self.order.chunks(AT_A_TIME).any(|numbers| {
+            let numbers = numbers.par_iter();
+            unseen += numbers
+                .filter(|number| self.is_unseen(**number, of, gap_deg))
+                .count();
+            unseen > self.most
+        })
+    }
+
+    fn sort(&mut self) {
         let Self { order, unseen, .. } = self;
         let count = |number: &usize| unseen.get(*number).map(|count| count.load(Relaxed));
         order.sort_by_key(|number| Reverse(count(number)));
     }
 }
 
+impl Examiners<'_> {
+    /// Whether so many directions are out of reach of any scan that none keeps the gap.
+    pub(super) fn refuse_all(&self, reach_rad: f64) -> bool {
+        let out_of_reach = |place: &&&PlannedPlace| place.least_chord() > reach_rad;
+        self.more.places.iter().filter(out_of_reach).count() > self.more.most
+    }
+
+    /// Whether few and more directions let a scan pass with the first azimuth at the start.
+    pub(super) fn let_pass(&self, of: &StartedScan, gap_deg: f64) -> bool {
+        let mut both = [&self.few, &self.more].into_iter();
+        both.all(|places| places.unseen(of, gap_deg) <= places.most)
+    }
+
+    pub(super) fn sort(&mut self) {
+        self.few.sort();
+        self.more.sort();
+    }
+}
+
 impl ScanPredictor {
+    pub(super) fn examiners(&self) -> Examiners<'_> {
+        Examiners {
+            few: Examiner::new(self.places.iter().step_by(FEWEST_STRIDE), DOUBT_SD),
+            more: Examiner::new(self.places.iter(), DOUBT_SD),
+            deciding: Examiner::new(self.deciding().iter(), 0.0),
+        }
+    }
+
     /// Whether the gaps of a scan are within the limit at all azimuths of the lidar at the start.
-    pub(super) fn keeps(
-        &self,
-        scan: &PlannedScan,
-        gap_deg: f64,
-        [few, more]: [&Examiner; 2],
-    ) -> bool {
-        let rays = self.rays(scan);
+    pub(super) fn keeps(&self, scan: &PlannedScan, gap_deg: f64, by: &Examiners) -> bool {
         let of = GapEffort::full(scan).starts;
         // With the number of directions without a point, the worst azimuth first.
         let examine = |numbers: Vec<u32>, places: &Examiner| {
             let unseen = numbers.into_par_iter().map(|number| {
-                let sweeps = self.started(scan, number, of);
-                (places.unseen(&rays, &sweeps, gap_deg), number)
+                let unseen = places.unseen(&self.started(scan, number, of), gap_deg);
+                (unseen <= places.most).then_some((unseen, number))
             });
-            let mut unseen: Vec<(usize, u32)> = unseen.collect();
+            let mut unseen: Vec<(usize, u32)> = unseen.collect::<Option<_>>()?;
             unseen.sort_unstable_by_key(|(unseen, _)| Reverse(*unseen));
-            let is_within = |(unseen, _): &(usize, u32)| *unseen <= places.most;
-            unseen.iter().all(is_within).then_some(unseen)
+            Some(unseen)
         };
         // The worst of some azimuths refuses most scans.
-        let some = (0..of)
-            .step_by((of / SOME_STARTS).max(1) as usize)
-            .collect();
-        let Some(some) = examine(some, few) else {
+        let every = (of / SOME_STARTS).max(1);
+        let (some, others) = (0..of).partition(|number| number % every == 0);
+        let Some(mut all) = examine(some, &by.few) else {
             return false;
         };
-        let worst = some.iter().take(WORST_STARTS).map(|(_, number)| *number);
-        let Some(worst) = examine(worst.collect(), more) else {
+        let Some(others) = examine(others, &by.few) else {
             return false;
         };
-        if let Some((unseen, number)) = worst.first()
-            && *unseen >= more.least
-            && self.is_refused(scan, gap_deg, (*number, of))
-        {
-            return false;
+        all.extend(others);
+        all.sort_unstable_by_key(|(unseen, _)| Reverse(*unseen));
+        let mut numbers = all.into_iter().map(|(_, number)| number);
+        for count in GROUPS {
+            let worst = numbers.by_ref().take(count).collect();
+            let Some(mut in_doubt) = examine(worst, &by.more) else {
+                return false;
+            };
+            in_doubt.retain(|(unseen, _)| *unseen >= by.more.least);
+            let refuses = |number: u32| {
+                by.deciding
+                    .refuses(&self.started(scan, number, of), gap_deg)
+            };
+            if in_doubt.iter().any(|(_, number)| refuses(*number)) {
+                return false;
+            }
         }
-        let Some(mut in_doubt) = examine((0..of).collect(), more) else {
-            return false;
-        };
-        in_doubt.retain(|(unseen, _)| *unseen >= more.least);
-        let is_refused = |number: &u32| self.is_refused(scan, gap_deg, (*number, of));
-        !in_doubt.iter().any(|(_, number)| is_refused(number))
+        true
     }
 
     /// The directions that decide, in view of the tilts. The first call is not one of many in
@@ -153,18 +203,6 @@ impl ScanPredictor {
             let in_view = in_view.filter(|place| rays.is_in_view(*place, self.tilts_deg));
             let places = in_view.map(|place| rays.place(place, self.tilts_deg));
             places.collect()
-        })
-    }
-
-    /// Whether more than 1 % of the directions that decide have no point within the gap, with one
-    /// of so many azimuths at the start.
-    fn is_refused(&self, scan: &PlannedScan, gap_deg: f64, (start, of): (u32, u32)) -> bool {
-        let (rays, sweeps) = (self.rays(scan), self.started(scan, start, of));
-        let places = self.deciding();
-        let most = places.len() / 100;
-        let unseen = AtomicUsize::new(0);
-        places.par_iter().any(|place| {
-            !rays.is_within(&sweeps, place, gap_deg) && unseen.fetch_add(1, Relaxed) >= most
         })
     }
 
@@ -181,7 +219,6 @@ impl ScanPredictor {
         let narrowest = ranked.last().map_or(0.0, |(gap, _)| *gap);
         let widest = ranked.iter().take(WIDEST_STARTS);
         let starts = widest.chain(ranked.iter().skip(WIDEST_STARTS).last());
-        let rays = self.rays(scan);
         let least_deg = limit_deg.min(CERTAIN * narrowest);
         let mut found = DecidingGaps {
             p99_deg: 0.0,
@@ -191,11 +228,8 @@ impl ScanPredictor {
             unseen: f64::NAN,
         };
         for (_, number) in starts {
-            let sweeps = self.started(scan, *number, of);
-            let gap = |place: &PlannedPlace| match rays.is_within(&sweeps, place, least_deg) {
-                true => least_deg,
-                false => rays.gap_deg(&sweeps, place),
-            };
+            let started = self.started(scan, *number, of);
+            let gap = |place| started.gap_beyond_deg(place, least_deg);
             let gaps: Vec<f64> = self.deciding().par_iter().map(gap).collect();
             let p99 = quantile(&gaps, 0.99).unwrap_or(180.0);
             let unseen = gaps.iter().filter(|gap| **gap > limit_deg).count();

@@ -142,6 +142,22 @@ impl PlannedRays {
         }
     }
 
+    /// The same where it is wider than an angle. Else some angle that is not wider than that one,
+    /// several times as fast.
+    #[must_use]
+    pub fn gap_beyond_deg(
+        &self,
+        sweeps: &[StartedSweep],
+        place: &PlannedPlace,
+        least_deg: f64,
+    ) -> f64 {
+        // Rays that are not near enough for this are not looked at in full.
+        match self.is_within(sweeps, place, least_deg) {
+            true => least_deg,
+            false => self.gap_deg(sweeps, place),
+        }
+    }
+
     /// Whether a direction has a ray of any of the sweeps within an angle; several times as fast as
     /// the angle itself.
     #[must_use]

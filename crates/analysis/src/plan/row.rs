@@ -137,7 +137,14 @@ impl GapEffort {
         starts: 4,
     };
 
-    /// The chosen row. The gaps of sweeps of few revolutions depend on the azimuth at the start: at
+    /// Of the chosen row the median, the gap of 95 % and the widest, which depend less on the
+    /// azimuth at the start than that of 99 %.
+    const CHOSEN: Self = Self {
+        stride: 1,
+        starts: 12,
+    };
+
+    /// Of the chosen row the gap of 99 %. The gaps of sweeps of few revolutions depend on the azimuth at the start: at
     /// 10 revolutions that of 99 % by a tenth within 15 degrees of it, and by less than 1 % within
     /// half of a step of 40 azimuths.
     pub(super) fn full(scan: &PlannedScan) -> Self {
@@ -147,6 +154,26 @@ impl GapEffort {
             stride: 1,
             starts: (400.0 / revolutions).clamp(12.0, 40.0) as u32,
         }
+    }
+}
+
+/// The rays of a scan with one of the azimuths of the lidar at the start.
+pub(super) struct StartedScan {
+    rays: PlannedRays,
+    sweeps: Vec<StartedSweep>,
+}
+
+impl StartedScan {
+    pub(super) fn gap_deg(&self, place: &PlannedPlace) -> f64 {
+        self.rays.gap_deg(&self.sweeps, place)
+    }
+
+    pub(super) fn gap_beyond_deg(&self, place: &PlannedPlace, least_deg: f64) -> f64 {
+        self.rays.gap_beyond_deg(&self.sweeps, place, least_deg)
+    }
+
+    pub(super) fn is_within(&self, place: &PlannedPlace, gap_deg: f64) -> bool {
+        self.rays.is_within(&self.sweeps, place, gap_deg)
     }
 }
 
@@ -203,7 +230,11 @@ impl ScanPredictor {
     /// What a scan gives.
     #[must_use]
     pub fn row(&self, scan: &PlannedScan) -> PlanRow {
-        let (mut row, p99_deg) = self.row_with(scan, GapEffort::full(scan));
+        let mut row = self.row_with(scan, GapEffort::CHOSEN);
+        let effort = GapEffort::full(scan);
+        let starts = (0..effort.starts).into_par_iter();
+        let p99_deg = starts.map(|start| self.p99_deg(scan, effort, start));
+        let p99_deg: Vec<f64> = p99_deg.collect();
         let decided = self.deciding_gaps(scan, &p99_deg, self.limit_deg());
         row.gap_deg.p99 = decided.p99_deg;
         row.gap_mm.p99 = self.gap_mm(decided.p99_deg);
@@ -219,7 +250,7 @@ impl ScanPredictor {
     /// The same with few azimuths at the start, several times as fast.
     #[must_use]
     pub fn capture_row(&self, scan: &PlannedScan) -> PlanRow {
-        self.row_with(scan, GapEffort::CAPTURE).0
+        self.row_with(scan, GapEffort::CAPTURE)
     }
 
     /// Gap beyond which a direction counts as unseen, degrees.
@@ -232,8 +263,7 @@ impl ScanPredictor {
         1e3 * self.errors.range_m * deg.to_radians()
     }
 
-    /// What a scan gives, and its gap of 99 % with each azimuth at the start, degrees.
-    fn row_with(&self, scan: &PlannedScan, effort: GapEffort) -> (PlanRow, Vec<f64>) {
+    fn row_with(&self, scan: &PlannedScan, effort: GapEffort) -> PlanRow {
         let limit_deg = self.limit_deg();
         let mut worst = GapQuantiles {
             p50: 0.0,
@@ -243,9 +273,9 @@ impl ScanPredictor {
         };
         // A share of no directions is no number.
         let (mut best_p99, mut best_start_deg, mut without) = (f64::INFINITY, 0.0, f64::NAN);
-        let mut all_p99 = Vec::new();
         for start in 0..effort.starts {
-            let gaps = self.gaps_deg(scan, effort, start);
+            // No quantile shown is of narrower ones than the widest median.
+            let gaps = self.gaps_deg(scan, effort, start, worst.p50.min(limit_deg));
             let of = |share| quantile(&gaps, share).unwrap_or(180.0);
             worst = GapQuantiles {
                 p50: worst.p50.max(of(0.5)),
@@ -254,7 +284,6 @@ impl ScanPredictor {
                 worst: worst.worst,
             };
             worst.worst = self.widest_deg(scan, (start, effort), &gaps, worst.worst);
-            all_p99.push(of(0.99));
             if of(0.99) < best_p99 {
                 best_p99 = of(0.99);
                 best_start_deg = 360.0 * f64::from(start) / f64::from(effort.starts);
@@ -269,7 +298,7 @@ impl ScanPredictor {
         let resolution_deg = scan.sweeps.first().map_or(f64::INFINITY, |sweep| {
             self.lidar.mean_resolution_deg(sweep, scan.setting.rpm)
         });
-        let row = PlanRow {
+        PlanRow {
             setting: scan.setting,
             scan_s: scan.scan_s,
             points: points as u64,
@@ -288,23 +317,46 @@ impl ScanPredictor {
             replay_s: period_s.map(|_| REPLAY_S + points / REPLAY_POINTS_S),
             log_bytes: log_bytes.map(|bytes| bytes as u64),
             cloud_bytes: (points * ROW_BYTES) as u64,
-        };
-        (row, all_p99)
-    }
-
-    pub(super) fn rays(&self, scan: &PlannedScan) -> PlannedRays {
-        self.rays_at(scan.setting.rpm)
+        }
     }
 
     pub(super) fn rays_at(&self, rpm: f64) -> PlannedRays {
         PlannedRays::new(&self.lidar, rpm, self.errors.range_m)
     }
 
-    /// Gaps of directions with one of the azimuths at the start.
-    fn gaps_deg(&self, scan: &PlannedScan, effort: GapEffort, start: u32) -> Vec<f64> {
-        let (rays, sweeps) = (self.rays(scan), self.started(scan, start, effort.starts));
+    /// Gaps of directions with one of the azimuths at the start; of narrow ones that they are not
+    /// wider than an angle.
+    fn gaps_deg(
+        &self,
+        scan: &PlannedScan,
+        effort: GapEffort,
+        start: u32,
+        least_deg: f64,
+    ) -> Vec<f64> {
+        let started = self.started(scan, start, effort.starts);
         let places = self.places.par_iter().step_by(effort.stride);
-        places.map(|place| rays.gap_deg(&sweeps, place)).collect()
+        let gap = |place| started.gap_beyond_deg(place, least_deg);
+        places.map(gap).collect()
+    }
+
+    /// The gap of 99 % of some of the directions with one of the azimuths at the start.
+    fn p99_deg(&self, scan: &PlannedScan, effort: GapEffort, start: u32) -> f64 {
+        let started = self.started(scan, start, effort.starts);
+        let places = self.places.iter().step_by(effort.stride);
+        let count = places.len();
+        // One more than 1 % of them, in order.
+        let wanted = count - (0.99 * count as f64).ceil() as usize + 1;
+        let mut widest: Vec<f64> = Vec::with_capacity(wanted + 1);
+        for place in places {
+            let is_full = widest.len() == wanted;
+            let least_deg = widest.first().copied().filter(|_| is_full).unwrap_or(0.0);
+            let gap_deg = started.gap_beyond_deg(place, least_deg);
+            if !is_full || gap_deg > least_deg {
+                widest.insert(widest.partition_point(|gap| *gap < gap_deg), gap_deg);
+                widest.drain(..usize::from(is_full));
+            }
+        }
+        widest.first().copied().unwrap_or(180.0)
     }
 
     /// The widest gap with one of the azimuths at the start, or a wider one already found.
@@ -315,11 +367,9 @@ impl ScanPredictor {
         gaps: &[f64],
         found_deg: f64,
     ) -> f64 {
-        let (rays, sweeps) = (self.rays(scan), self.started(scan, start, effort.starts));
-        let gap = |place: DVec3| {
-            let place = rays.place(place, self.tilts_deg);
-            rays.gap_deg(&sweeps, &place)
-        };
+        let started = self.started(scan, start, effort.starts);
+        let rays = &started.rays;
+        let gap = |place: DVec3| started.gap_deg(&rays.place(place, self.tilts_deg));
         let in_view = |place: &DVec3| rays.is_in_view(*place, self.tilts_deg);
         let examined = self.places.iter().step_by(effort.stride);
         let mut ranked: Vec<(f64, DVec3)> = gaps
@@ -343,32 +393,27 @@ impl ScanPredictor {
         let widest = widest.map(|place| climb(place, apart_rad, in_view, gap));
         let widest = widest.reduce(|| found_deg, f64::max);
         let wider = self.random_places.par_iter();
-        let wider = wider.filter(|place| !rays.is_within(&sweeps, place, widest));
-        wider
-            .map(|place| rays.gap_deg(&sweeps, place))
-            .reduce(|| widest, f64::max)
+        let wider = wider.map(|place| started.gap_beyond_deg(place, widest));
+        wider.reduce(|| widest, f64::max)
     }
 
     /// The 99 % gap of a sixth of the directions, with few azimuths at the start.
     #[must_use]
     pub fn brief_p99_deg(&self, scan: &PlannedScan) -> f64 {
-        let at_start = |start| self.gaps_deg(scan, GapEffort::BRIEF, start);
-        let p99 = |gaps: Vec<f64>| quantile(&gaps, 0.99).unwrap_or(180.0);
-        (0..GapEffort::BRIEF.starts)
-            .map(|start| p99(at_start(start)))
-            .fold(0.0, f64::max)
+        let starts = (0..GapEffort::BRIEF.starts).into_par_iter();
+        let p99_deg = starts.map(|start| self.p99_deg(scan, GapEffort::BRIEF, start));
+        p99_deg.reduce(|| 0.0, f64::max)
     }
 
     /// The 99 % gap from every so many directions, at one azimuth.
     pub(super) fn rough_p99_deg(&self, scan: &PlannedScan, stride: usize) -> f64 {
-        let gaps = self.gaps_deg(scan, GapEffort { stride, starts: 1 }, 0);
-        quantile(&gaps, 0.99).unwrap_or(180.0)
+        self.p99_deg(scan, GapEffort { stride, starts: 1 }, 0)
     }
 
     /// Sweeps of a scan with one of so many azimuths at the start: evenly spaced for the first
     /// sweep, and by the golden ratio for later ones, since the time between sweeps is not
     /// controlled.
-    pub(super) fn started(&self, scan: &PlannedScan, start: u32, starts: u32) -> Vec<StartedSweep> {
+    pub(super) fn started(&self, scan: &PlannedScan, start: u32, starts: u32) -> StartedScan {
         const GOLDEN: f64 = 0.618_033_988_749_895;
         let first = f64::from(start) / f64::from(starts);
         let unseen_deg = UNSEEN_COUNTS * self.errors.count_deg;
@@ -377,7 +422,10 @@ impl ScanPredictor {
             StartedSweep::new(sweep, start.fract(), unseen_deg)
         };
         let sweeps = scan.sweeps.iter().take(MOST_SWEEPS);
-        sweeps.enumerate().map(begin).collect()
+        StartedScan {
+            rays: self.rays_at(scan.setting.rpm),
+            sweeps: sweeps.enumerate().map(begin).collect(),
+        }
     }
 }
 
@@ -431,13 +479,13 @@ mod tests {
                 scan_s: 1.0,
             };
             let row = predictor.row(&scan);
-            let rays = predictor.rays(&scan);
             let started = predictor.started(&scan, 1, GapEffort::full(&scan).starts);
+            let rays = &started.rays;
             let gaps = |others: &[DVec3]| -> Vec<f64> {
                 let others = others.par_iter().map(|place| place.normalize());
                 let seen = others.filter(|place| rays.is_in_view(*place, tilts_deg));
                 let place = |place| rays.place(place, tilts_deg);
-                seen.map(|direction| rays.gap_deg(&started, &place(direction)))
+                seen.map(|direction| started.gap_deg(&place(direction)))
                     .collect()
             };
             let widest = gaps(&others).into_iter().fold(0.0, f64::max);

@@ -3,8 +3,7 @@
 
 use rayon::prelude::*;
 
-use super::deciding::Examiner;
-use super::{PlanRow, PlannedPlace, PlannedScan, ScanPredictor};
+use super::{PlanRow, PlannedScan, ScanPredictor};
 use crate::tradeoff::front::front;
 
 /// Requested limits.
@@ -58,8 +57,6 @@ const KEPT: f64 = 0.99;
 const NEARLY_FASTEST: f64 = 1.03;
 /// Settings examined at a time.
 const BLOCK: usize = 64;
-/// Of so many directions one rules out scans first.
-const FEWEST_STRIDE: usize = 8;
 /// Settings of which the densest is chosen by some of the directions, and of these by all.
 const FINALISTS: (usize, usize) = (12, 2);
 /// Part of the given time below which scans are not compared for their density.
@@ -234,25 +231,19 @@ impl ScanPredictor {
         let gap_deg = KEPT * gap_deg;
         // Ends of sweeps are whole counts of the encoder.
         let reach_rad = (gap_deg + self.errors.count_deg).to_radians();
-        let out_of_reach = |place: &&PlannedPlace| place.least_chord() > reach_rad;
-        let mut few = Examiner::new(self.places.iter().step_by(FEWEST_STRIDE).collect());
-        let mut more = Examiner::new(self.places.iter().collect());
-        if self.places.iter().filter(out_of_reach).count() > more.most {
+        let mut examiners = self.examiners();
+        if examiners.refuse_all(reach_rad) {
             return None;
         }
         for block in scans.chunks(BLOCK) {
-            let at_first = |scan: &&&PlannedScan| {
-                let (rays, sweeps) = (self.rays(scan), self.started(scan, 0, 1));
-                let mut both = [&few, &more].into_iter();
-                both.all(|places| places.unseen(&rays, &sweeps, gap_deg) <= places.most)
-            };
+            let at_first =
+                |scan: &&&PlannedScan| examiners.let_pass(&self.started(scan, 0, 1), gap_deg);
             let hopeful: Vec<&&'a PlannedScan> = block.par_iter().filter(at_first).collect();
             let mut hopeful = hopeful.into_iter();
-            if let Some(scan) = hopeful.find(|scan| self.keeps(scan, gap_deg, [&few, &more])) {
+            if let Some(scan) = hopeful.find(|scan| self.keeps(scan, gap_deg, &examiners)) {
                 return Some(scan);
             }
-            few.sort();
-            more.sort();
+            examiners.sort();
         }
         None
     }

@@ -98,6 +98,8 @@ proptest! {
             prop_assert!(place.least_chord() <= slow.to_radians() + 1e-9);
             for (share, within) in [(0.999, false), (1.001, true)] {
                 prop_assert_eq!(planned.is_within(sweeps, &place, share * fast), within);
+                let beyond = planned.gap_beyond_deg(sweeps, &place, share * fast);
+                prop_assert_eq!(beyond, if within { share * fast } else { fast });
             }
             prop_assert!(fast >= slow - 1e-6 && fast <= 1.01 * slow + 0.25 * step_deg, "{}: {fast} {slow}", place.direction());
             sum += (fast - slow) / (slow + step_deg) / places.len() as f64;
