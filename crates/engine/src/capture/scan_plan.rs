@@ -55,7 +55,7 @@ const HOMING_S: f64 = 0.62;
 /// Time between two moves: at rest before and after, and the commands; seconds.
 const STEP_S: f64 = 0.15;
 /// Ratios of neighbouring speeds and of neighbouring ramps: of the search, and of the table.
-const FINE: [f64; 2] = [1.03, 1.15];
+const FINE: [f64; 2] = [1.02, 1.2];
 const COARSE: [f64; 2] = [1.2, 2.0];
 /// Ratios of a speed to slower ones that should see little more.
 const SLOWER: [f64; 2] = [0.95, 0.9];

@@ -15,7 +15,7 @@ const GENTLEST: f64 = 0.03;
 const SWEEPS: [u32; 2] = [1, 2];
 /// Ratios of a chosen speed, and of its ramps, to those between it and the next of the search.
 const NEARBY_SPEEDS: [f64; 4] = [0.99, 1.0, 1.01, 1.02];
-const NEARBY_RAMPS: [f64; 4] = [0.95, 1.0, 1.05, 1.1];
+const NEARBY_RAMPS: [f64; 4] = [0.94, 1.0, 1.06, 1.13];
 /// Ratio of durations of a sweep below which ramps are alike.
 const ALIKE: f64 = 1.001;
 
@@ -35,7 +35,8 @@ impl ScanPlanner {
             next = (next / speed_ratio).min(f64::from(rpm) - 0.5);
         }
         let ramps: Vec<f64> = std::iter::successors(Some(1.0), |ramp| Some(ramp / ramp_ratio))
-            .take_while(|ramp| *ramp >= GENTLEST)
+            .take_while(|ramp| *ramp > GENTLEST)
+            .chain([GENTLEST])
             .collect();
         self.scans_of(&speeds, &ramps)
     }
