@@ -78,7 +78,7 @@ fn directions(planner: &ScanPlanner, count: usize, seed: u64) -> Vec<DVec3> {
 }
 
 /// Part of the limit of the gap that a choice keeps.
-const KEPT: f64 = 0.99;
+const KEPT: f64 = 0.998;
 
 /// Directions of a measurement: where few have wide gaps, 99 % of 30,000 random ones vary by 4 %.
 const DIRECTIONS: usize = 300_000;
@@ -272,7 +272,7 @@ fn tight_limits_are_kept_when_measured() {
             truth.error_mm <= drawn.error_mm.total && truth.p99_deg <= drawn.gap_deg.p99 / KEPT,
             "{chosen:?} {truth:?}"
         );
-        // The search tries every 1 % of speed and 5 % of the ramps.
+        // The search tries every 1 % of speed and 6 % of the ramps near the first that it finds.
         assert!(
             row.scan_s <= 1.05 * drawn.scan_s && truth.scan_s <= 1.05 * row.scan_s,
             "{drawn:?} {chosen:?} {truth:?}"
@@ -373,7 +373,7 @@ fn first_of(scans: &[PlannedScan], is_good: impl Fn(&PlannedScan) -> bool + Sync
 /// in view one of them is near, and the worst of 48 azimuths at the start of one sweep, which
 /// nothing controls, or of 144 pairs at the starts of two. The choice is captured and measured.
 #[test]
-#[ignore = "takes an hour"]
+#[ignore = "takes two hours"]
 fn choices_are_within_five_percent_of_the_best_by_brute_force() {
     println!(
         "|at m|error mm|gap deg|capture|scan s|best by brute force|scan s|99 % gap of it|settings tried|error mm|99 % gap|"

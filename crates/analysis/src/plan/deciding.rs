@@ -26,10 +26,10 @@ const WIDEST_STARTS: usize = 12;
 /// Part of the gap of 99 % of few directions that more directions do not go below.
 const CERTAIN: f64 = 0.9;
 
-/// Azimuths at the start of which the worst refuses most scans.
+/// Azimuths at the start that few directions examine first, or up to twice as many.
 const SOME_STARTS: u32 = 8;
-/// Azimuths examined by more directions at a time, the worst of few directions first: they alone
-/// refuse most scans.
+/// Numbers of azimuths that more directions examine at a time, the worst by few directions first:
+/// the first refuse most scans. The last are all others.
 const GROUPS: [usize; 3] = [2, 4, usize::MAX];
 /// Of so many directions one rules out scans first.
 const FEWEST_STRIDE: usize = 8;
@@ -58,24 +58,23 @@ struct Examiner<'a> {
     places: Vec<&'a PlannedPlace>,
     order: Vec<usize>,
     unseen: Vec<AtomicU32>,
-    /// Of so many without a point more than 1 % of all directions have none.
+    /// With more than so many without a point more than 1 % of all directions have none.
     most: usize,
-    /// Of fewer without a point fewer than 1 % of all have none.
+    /// With fewer than so many without a point fewer than 1 % of all have none.
     least: usize,
 }
 
-/// Few directions, more, and those that decide.
+/// Few directions, and more.
 pub(super) struct Examiners<'a> {
     few: Examiner<'a>,
     more: Examiner<'a>,
-    deciding: Examiner<'a>,
 }
 
 impl<'a> Examiner<'a> {
-    fn new(places: impl Iterator<Item = &'a PlannedPlace>, doubt_sd: f64) -> Self {
+    fn new(places: impl Iterator<Item = &'a PlannedPlace>) -> Self {
         let places: Vec<&PlannedPlace> = places.collect();
         let mean = 0.01 * places.len() as f64;
-        let doubt = doubt_sd * mean.sqrt();
+        let doubt = DOUBT_SD * mean.sqrt();
         Self {
             order: (0..places.len()).collect(),
             unseen: places.iter().map(|_| AtomicU32::new(0)).collect(),
@@ -85,35 +84,17 @@ impl<'a> Examiner<'a> {
         }
     }
 
-    /// Whether a direction has no point within a gap.
-    fn is_unseen(&self, number: usize, of: &StartedScan, gap_deg: f64) -> bool {
-        let place = self.places.get(number);
-        let is_unseen = place.is_some_and(|place| !of.is_within(place, gap_deg));
-        if let (true, Some(count)) = (is_unseen, self.unseen.get(number)) {
-            count.fetch_add(1, Relaxed);
-        }
-        is_unseen
-    }
-
     /// How many of the directions have no point within a gap, up to one too many.
-    fn unseen(&self, of: &StartedScan, gap_deg: f64) -> usize {
-        let unseen = self
-            .order
-            .iter()
-            .filter(|number| self.is_unseen(**number, of, gap_deg));
+    fn unseen(&self, scan: &StartedScan, gap_deg: f64) -> usize {
+        let unseen = self.order.iter().filter(|number| {
+            let place = self.places.get(**number);
+            let is_unseen = place.is_some_and(|place| !scan.is_within(place, gap_deg));
+            if let (true, Some(count)) = (is_unseen, self.unseen.get(**number)) {
+                count.fetch_add(1, Relaxed);
+            }
+            is_unseen
+        });
         unseen.take(self.most + 1).count()
-    }
-
-    /// Whether too many have none; on all cores.
-    fn refuses(&self, of: &StartedScan, gap_deg: f64) -> bool {
-        let mut unseen = 0;
-        self.order.chunks(AT_A_TIME).any(|numbers| {
-            let numbers = numbers.par_iter();
-            unseen += numbers
-                .filter(|number| self.is_unseen(**number, of, gap_deg))
-                .count();
-            unseen > self.most
-        })
     }
 
     fn sort(&mut self) {
@@ -131,9 +112,9 @@ impl Examiners<'_> {
     }
 
     /// Whether few and more directions let a scan pass with the first azimuth at the start.
-    pub(super) fn let_pass(&self, of: &StartedScan, gap_deg: f64) -> bool {
+    pub(super) fn let_pass(&self, scan: &StartedScan, gap_deg: f64) -> bool {
         let mut both = [&self.few, &self.more].into_iter();
-        both.all(|places| places.unseen(of, gap_deg) <= places.most)
+        both.all(|places| places.unseen(scan, gap_deg) <= places.most)
     }
 
     pub(super) fn sort(&mut self) {
@@ -145,52 +126,58 @@ impl Examiners<'_> {
 impl ScanPredictor {
     pub(super) fn examiners(&self) -> Examiners<'_> {
         Examiners {
-            few: Examiner::new(self.places.iter().step_by(FEWEST_STRIDE), DOUBT_SD),
-            more: Examiner::new(self.places.iter(), DOUBT_SD),
-            deciding: Examiner::new(self.deciding().iter(), 0.0),
+            few: Examiner::new(self.places.iter().step_by(FEWEST_STRIDE)),
+            more: Examiner::new(self.places.iter()),
         }
     }
 
     /// Whether the gaps of a scan are within the limit at all azimuths of the lidar at the start.
-    pub(super) fn keeps(&self, scan: &PlannedScan, gap_deg: f64, by: &Examiners) -> bool {
-        let of = GapEffort::full(scan).starts;
+    pub(super) fn keeps(&self, scan: &PlannedScan, gap_deg: f64, examiners: &Examiners) -> bool {
+        let Examiners { few, more } = examiners;
+        let starts = GapEffort::full(scan).starts;
         // With the number of directions without a point, the worst azimuth first.
         let examine = |numbers: Vec<u32>, places: &Examiner| {
             let unseen = numbers.into_par_iter().map(|number| {
-                let unseen = places.unseen(&self.started(scan, number, of), gap_deg);
+                let unseen = places.unseen(&self.started(scan, number, starts), gap_deg);
                 (unseen <= places.most).then_some((unseen, number))
             });
             let mut unseen: Vec<(usize, u32)> = unseen.collect::<Option<_>>()?;
             unseen.sort_unstable_by_key(|(unseen, _)| Reverse(*unseen));
             Some(unseen)
         };
-        // The worst of some azimuths refuses most scans.
-        let every = (of / SOME_STARTS).max(1);
-        let (some, others) = (0..of).partition(|number| number % every == 0);
-        let Some(mut all) = examine(some, &by.few) else {
+        // A few azimuths apart refuse most scans.
+        let apart = (starts / SOME_STARTS).max(1);
+        let (some, others) = (0..starts).partition(|number| number % apart == 0);
+        let Some(mut ranked) = examine(some, few) else {
             return false;
         };
-        let Some(others) = examine(others, &by.few) else {
+        let Some(others) = examine(others, few) else {
             return false;
         };
-        all.extend(others);
-        all.sort_unstable_by_key(|(unseen, _)| Reverse(*unseen));
-        let mut numbers = all.into_iter().map(|(_, number)| number);
-        for count in GROUPS {
-            let worst = numbers.by_ref().take(count).collect();
-            let Some(mut in_doubt) = examine(worst, &by.more) else {
+        ranked.extend(others);
+        ranked.sort_unstable_by_key(|(unseen, _)| Reverse(*unseen));
+        let mut numbers = ranked.into_iter().map(|(_, number)| number);
+        GROUPS.into_iter().all(|count| {
+            let Some(unseen) = examine(numbers.by_ref().take(count).collect(), more) else {
                 return false;
             };
-            in_doubt.retain(|(unseen, _)| *unseen >= by.more.least);
-            let refuses = |number: u32| {
-                by.deciding
-                    .refuses(&self.started(scan, number, of), gap_deg)
-            };
-            if in_doubt.iter().any(|(_, number)| refuses(*number)) {
-                return false;
-            }
-        }
-        true
+            let mut in_doubt = unseen.iter().filter(|(unseen, _)| *unseen >= more.least);
+            in_doubt.all(|(_, number)| !self.refuses(&self.started(scan, *number, starts), gap_deg))
+        })
+    }
+
+    /// Whether more than 1 % of the directions that decide have no point within a gap.
+    fn refuses(&self, scan: &StartedScan, gap_deg: f64) -> bool {
+        let places = self.deciding();
+        let most = places.len() / 100;
+        let mut unseen = 0;
+        places.chunks(AT_A_TIME).any(|places| {
+            let places = places.par_iter();
+            unseen += places
+                .filter(|place| !scan.is_within(place, gap_deg))
+                .count();
+            unseen > most
+        })
     }
 
     /// The directions that decide, in view of the tilts. The first call is not one of many in

@@ -142,8 +142,8 @@ impl PlannedRays {
         }
     }
 
-    /// The same where it is wider than an angle. Else some angle that is not wider than that one,
-    /// several times as fast.
+    /// The gap where it is wider than `least_deg`, else `least_deg`: several times as fast where
+    /// most gaps are narrower.
     #[must_use]
     pub fn gap_beyond_deg(
         &self,
@@ -151,7 +151,6 @@ impl PlannedRays {
         place: &PlannedPlace,
         least_deg: f64,
     ) -> f64 {
-        // Rays that are not near enough for this are not looked at in full.
         match self.is_within(sweeps, place, least_deg) {
             true => least_deg,
             false => self.gap_deg(sweeps, place),

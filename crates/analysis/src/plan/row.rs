@@ -137,16 +137,15 @@ impl GapEffort {
         starts: 4,
     };
 
-    /// Of the chosen row the median, the gap of 95 % and the widest, which depend less on the
-    /// azimuth at the start than that of 99 %.
+    /// For the median, the 95 % gap and the widest of the chosen row.
     const CHOSEN: Self = Self {
         stride: 1,
         starts: 12,
     };
 
-    /// Of the chosen row the gap of 99 %. The gaps of sweeps of few revolutions depend on the azimuth at the start: at
-    /// 10 revolutions that of 99 % by a tenth within 15 degrees of it, and by less than 1 % within
-    /// half of a step of 40 azimuths.
+    /// For the 99 % gap of the chosen row. The gaps of sweeps of few revolutions depend on the
+    /// azimuth at the start: at 10 revolutions that of 99 % by a tenth within 15 degrees of it, and
+    /// by less than 1 % within half of a step of 40 azimuths.
     pub(super) fn full(scan: &PlannedScan) -> Self {
         let shortest_s = scan.sweeps.iter().map(TiltSweep::duration_s);
         let revolutions = shortest_s.fold(f64::INFINITY, f64::min) * scan.setting.rpm / 60.0;
@@ -274,8 +273,9 @@ impl ScanPredictor {
         // A share of no directions is no number.
         let (mut best_p99, mut best_start_deg, mut without) = (f64::INFINITY, 0.0, f64::NAN);
         for start in 0..effort.starts {
-            // No quantile shown is of narrower ones than the widest median.
-            let gaps = self.gaps_deg(scan, effort, start, worst.p50.min(limit_deg));
+            // Narrower gaps change no figure of the row.
+            let least_deg = worst.p50.min(best_p99).min(limit_deg);
+            let gaps = self.gaps_deg(scan, effort, start, least_deg);
             let of = |share| quantile(&gaps, share).unwrap_or(180.0);
             worst = GapQuantiles {
                 p50: worst.p50.max(of(0.5)),
@@ -324,8 +324,8 @@ impl ScanPredictor {
         PlannedRays::new(&self.lidar, rpm, self.errors.range_m)
     }
 
-    /// Gaps of directions with one of the azimuths at the start; of narrow ones that they are not
-    /// wider than an angle.
+    /// Gaps of directions with one of the azimuths at the start. Gaps narrower than `least_deg`
+    /// count as `least_deg`.
     fn gaps_deg(
         &self,
         scan: &PlannedScan,

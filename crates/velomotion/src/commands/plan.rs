@@ -137,7 +137,7 @@ fn text(report: &PlanReport, written: Vec<String>) -> String {
     match &report.chosen {
         Some(chosen) => {
             lines.push(
-                ">: the choice; the other rows are from fewer azimuths at the start".to_owned(),
+                ">: the choice; the other rows are from fewer azimuths and directions".to_owned(),
             );
             lines.extend(choice(chosen, report.at_m));
         }

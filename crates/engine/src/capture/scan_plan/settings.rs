@@ -72,7 +72,9 @@ impl ScanPlanner {
             .collect();
         speeds.dedup();
         let ramp = setting.accel_deg_s2 / self.device.accel_deg_s2;
-        let mut ramps = NEARBY_RAMPS.map(|ratio| (ratio * ramp).min(1.0)).to_vec();
+        let mut ramps = NEARBY_RAMPS
+            .map(|ratio| (ratio * ramp).clamp(GENTLEST, 1.0))
+            .to_vec();
         ramps.dedup();
         self.scans_of(&speeds, &ramps)
     }

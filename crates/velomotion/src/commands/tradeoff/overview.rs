@@ -144,8 +144,8 @@ fn about(recommended: usize) -> Result<Vec<String>, StudyError> {
         ),
         format!(
             "45 degrees, one sweep, a VLP-16 at {RPM} rpm, USB, homing included. The gap is the angle from a direction in view to \
-             the nearest ray, for 99 % of directions, and the widest found; it is the worst of four azimuths of the lidar at the start, of \
-             12 to 64 for the commands above. Gentle ramps are part of the sweep, with lines closer together. At 20 deg/s the tilt per revolution is the spacing of the lasers, so that \
+             the nearest ray, for 99 % of directions, and the widest found; it is the worst of four azimuths of the lidar at the start, and of \
+             12 to 40 for the commands above. Gentle ramps are part of the sweep, with lines closer together. At 20 deg/s the tilt per revolution is the spacing of the lasers, so that \
              lines coincide: 19 deg/s sees more."
         ),
         "Errors hold for 95 % of points, across the tilt axis, once with and once without the ranges: azimuth, tilt angle, clock, and the \
