@@ -39,7 +39,11 @@ pub struct PlannedRays {
     /// By elevation.
     lasers: Vec<AxisRay>,
     period_s: f64,
+    /// Its reciprocal.
+    firings_per_s: f64,
     revolutions_per_s: f64,
+    /// Its reciprocal.
+    revolution_s: f64,
     /// Greatest of the lasers' offsets, revolutions.
     most_offset: f64,
     /// Azimuths that the lidar sees; `None` for all around.
@@ -92,7 +96,9 @@ impl PlannedRays {
             most_offset: offsets.fold(0.0, f64::max),
             lasers,
             period_s: lidar.firing_period_s,
+            firings_per_s: lidar.firing_period_s.recip(),
             revolutions_per_s: rpm / 60.0,
+            revolution_s: 60.0 / rpm,
             aperture: lidar.azimuths_deg.map(|[first, last]| Aperture {
                 middle: 0.5 * (first + last) / 360.0,
                 half: 0.5 * (last - first) / 360.0,
@@ -182,7 +188,7 @@ impl PlannedRays {
         nearest: &mut f64,
     ) {
         let motion = &started.motion;
-        let lines_deg = motion.peak_deg_s / self.revolutions_per_s;
+        let lines_deg = motion.peak_deg_s * self.revolution_s;
         let firings_deg = 360.0 * self.period_s * self.revolutions_per_s;
         let pass = SweepPass {
             rays: self,
@@ -214,6 +220,8 @@ struct SweepPass<'a> {
 
 /// Part of a linear estimate of an elevation that is certain.
 const CERTAIN: f64 = 0.97;
+/// Ratio that is possible.
+const POSSIBLE: f64 = 1.0 / CERTAIN;
 /// Squared chord of 5 deg: within it, linear estimates bound an angle from above, too.
 const SHORT_CHORD2: f64 = 0.0076;
 /// Part of the cosine of an elevation below 45 deg that is certain within a short chord.
@@ -226,20 +234,29 @@ const fn nearest_whole(number: f64) -> f64 {
     (number + WHOLE) - WHOLE
 }
 
+/// The whole number below a number, of those below 2^51.
+const fn whole_below(number: f64) -> f64 {
+    let nearest = nearest_whole(number);
+    match nearest > number {
+        true => nearest - 1.0,
+        false => nearest,
+    }
+}
+
 impl SweepPass<'_> {
     fn compare(&self, enough: f64, nearest: &mut f64) {
         let (rays, motion) = (self.rays, self.motion);
         let sweep = &motion.sweep;
         let low = sweep.from_deg.min(sweep.to_deg);
         let high = sweep.from_deg.max(sweep.to_deg);
-        let revolution_s = rays.revolutions_per_s.recip();
+        let revolution_s = rays.revolution_s;
         for laser in self.place.passes() {
             if laser.tilt_deg < low || laser.tilt_deg > high {
                 continue;
             }
             let crosses_s = motion.seen_time_s(laser.tilt_deg);
             let turned = self.start + crosses_s * rays.revolutions_per_s - laser.azimuth;
-            let after = turned - turned.floor();
+            let after = turned - whole_below(turned);
             for (next, outwards) in [(-after, -1.0), (1.0 - after, 1.0)] {
                 for line in 0..=self.more {
                     let t = crosses_s + (next + outwards * f64::from(line)) * revolution_s;
@@ -283,9 +300,9 @@ impl SweepPass<'_> {
         let Some(ray) = rays.lasers.get(laser.number) else {
             return false;
         };
-        let t = t + laser.azimuth_per_deg * past_deg / rays.revolutions_per_s;
+        let t = t + laser.azimuth_per_deg * past_deg * rays.revolution_s;
         // The firing nearest to the pass is off in azimuth, too.
-        let firings = (t - ray.delay_s) / rays.period_s;
+        let firings = (t - ray.delay_s) * rays.firings_per_s;
         let off = (firings - nearest_whole(firings)) * rays.period_s * rays.revolutions_per_s;
         let off = TAU * off.abs() * ray.cos;
         let aside = (CERTAIN * off - past_rad * past_rad).max(0.0);
@@ -295,11 +312,11 @@ impl SweepPass<'_> {
         // Until the firing the tilt may move on by a part of the turn.
         let past_most = (1.0 + turns) * past_rad.abs();
         let square = past_most * past_most;
-        let most = laser.up_per_rad.abs() * past_most / CERTAIN
+        let most = laser.up_per_rad.abs() * past_most * POSSIBLE
             + 0.6 * self.place.across() * square
             + self.moved_rad;
         let turned = turns * TAU * (laser.azimuth_per_deg * past_deg).abs() * ray.cos;
-        let (most, most_aside) = (most / (STEEP * ray.cos), (off + turned) / CERTAIN + square);
+        let (most, most_aside) = (most / (STEEP * ray.cos), (off + turned) * POSSIBLE + square);
         let most = most * most + most_aside * most_aside;
         let is_level = ray.cos >= FRAC_1_SQRT_2;
         let is_inside = motion.is_seen(t - rays.period_s)
@@ -312,7 +329,7 @@ impl SweepPass<'_> {
         let turned = self.start + t * rays.revolutions_per_s + ray.offset;
         let seen = local(self.place.direction(), motion.angle_deg(t));
         let ahead = azimuth(seen, turned) - turned;
-        self.compare_ray(ray, t + ahead / rays.revolutions_per_s, nearest);
+        self.compare_ray(ray, t + ahead * rays.revolution_s, nearest);
         true
     }
 
@@ -369,7 +386,7 @@ impl SweepPass<'_> {
             let t = firing * rays.period_s + laser.delay_s;
             self.start + t * rays.revolutions_per_s + laser.offset
         };
-        let mut firing = nearest_whole((t - laser.delay_s) / rays.period_s);
+        let mut firing = nearest_whole((t - laser.delay_s) * rays.firings_per_s);
         if let Some(aperture) = &rays.aperture {
             let inwards = aperture.inwards(azimuth_of(firing));
             let steps = inwards / (rays.revolutions_per_s * rays.period_s);

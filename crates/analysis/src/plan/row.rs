@@ -229,17 +229,17 @@ impl ScanPredictor {
     /// What a scan gives.
     #[must_use]
     pub fn row(&self, scan: &PlannedScan) -> PlanRow {
+        self.row_near(scan, self.p99_deg(scan, GapEffort::full(scan), 0))
+    }
+
+    /// What a scan gives whose 99 % gap is near a known one.
+    pub(super) fn row_near(&self, scan: &PlannedScan, gap_deg: f64) -> PlanRow {
         let mut row = self.row_with(scan, GapEffort::CHOSEN);
-        let effort = GapEffort::full(scan);
-        let starts = (0..effort.starts).into_par_iter();
-        let p99_deg = starts.map(|start| self.p99_deg(scan, effort, start));
-        let p99_deg: Vec<f64> = p99_deg.collect();
-        let decided = self.deciding_gaps(scan, &p99_deg, self.limit_deg());
+        let decided = self.deciding_gaps(scan, gap_deg, self.limit_deg());
         row.gap_deg.p99 = decided.p99_deg;
         row.gap_mm.p99 = self.gap_mm(decided.p99_deg);
-        let (best_p99_deg, best_start) = decided.best_p99_deg;
-        row.best_start_p99_deg = best_p99_deg;
-        row.best_start_deg = 360.0 * f64::from(best_start) / p99_deg.len() as f64;
+        row.best_start_p99_deg = decided.best_p99_deg;
+        row.best_start_deg = decided.best_start_deg;
         row.gap_deg.worst = row.gap_deg.worst.max(decided.worst_deg);
         row.gap_mm.worst = self.gap_mm(row.gap_deg.worst);
         row.share_without_point = decided.unseen;
@@ -340,7 +340,7 @@ impl ScanPredictor {
     }
 
     /// The gap of 99 % of some of the directions with one of the azimuths at the start.
-    fn p99_deg(&self, scan: &PlannedScan, effort: GapEffort, start: u32) -> f64 {
+    pub(super) fn p99_deg(&self, scan: &PlannedScan, effort: GapEffort, start: u32) -> f64 {
         let started = self.started(scan, start, effort.starts);
         let places = self.places.iter().step_by(effort.stride);
         let count = places.len();
@@ -410,23 +410,34 @@ impl ScanPredictor {
         self.p99_deg(scan, GapEffort { stride, starts: 1 }, 0)
     }
 
-    /// Sweeps of a scan with one of so many azimuths at the start: evenly spaced for the first
-    /// sweep, and by the golden ratio for later ones, since the time between sweeps is not
-    /// controlled.
+    /// Sweeps of a scan with one of so many azimuths at the start.
     pub(super) fn started(&self, scan: &PlannedScan, start: u32, starts: u32) -> StartedScan {
-        const GOLDEN: f64 = 0.618_033_988_749_895;
-        let first = f64::from(start) / f64::from(starts);
+        self.started_at(scan, &azimuths_at_starts(scan, start, starts))
+    }
+
+    /// Sweeps of a scan with azimuths of the lidar at their starts, revolutions.
+    pub(super) fn started_at(&self, scan: &PlannedScan, starts: &[f64]) -> StartedScan {
         let unseen_deg = UNSEEN_COUNTS * self.errors.count_deg;
-        let begin = |(number, sweep): (usize, &TiltSweep)| {
-            let start = first + number as f64 * GOLDEN * (1.0 + f64::from(start));
-            StartedSweep::new(sweep, start.fract(), unseen_deg)
+        let begin = |(sweep, start): (&TiltSweep, &f64)| {
+            StartedSweep::new(sweep, start.rem_euclid(1.0), unseen_deg)
         };
-        let sweeps = scan.sweeps.iter().take(MOST_SWEEPS);
         StartedScan {
             rays: self.rays_at(scan.setting.rpm),
-            sweeps: sweeps.enumerate().map(begin).collect(),
+            sweeps: scan.sweeps.iter().zip(starts).map(begin).collect(),
         }
     }
+}
+
+/// One of so many choices of the azimuths at the starts of sweeps, revolutions: evenly spaced for
+/// the first sweep, and by the golden ratio for later ones, since the time between sweeps is not
+/// controlled.
+pub(super) fn azimuths_at_starts(scan: &PlannedScan, start: u32, starts: u32) -> Vec<f64> {
+    const GOLDEN: f64 = 0.618_033_988_749_895;
+    let first = f64::from(start) / f64::from(starts);
+    let sweeps = 0..scan.sweeps.len().min(MOST_SWEEPS);
+    sweeps
+        .map(|number| first + number as f64 * GOLDEN * (1.0 + f64::from(start)))
+        .collect()
 }
 
 #[cfg(test)]

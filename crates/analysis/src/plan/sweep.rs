@@ -46,11 +46,22 @@ impl TiltSweep {
     pub(super) fn motion(&self, unseen_deg: f64) -> SweepMotion {
         let peak_deg_s = self.peak_deg_s();
         let whole_s = self.duration_s();
+        let ramp_s = peak_deg_s / self.accel_deg_s2;
         let mut motion = SweepMotion {
             sweep: *self,
             way_deg: self.way_deg(),
+            sign: 1.0_f64.copysign(self.to_deg - self.from_deg),
             peak_deg_s,
-            ramp_s: peak_deg_s / self.accel_deg_s2,
+            s_per_deg: peak_deg_s.recip(),
+            ramp_s,
+            ramp_deg: 0.5 * peak_deg_s * ramp_s,
+            s2_per_deg: 2.0 / self.accel_deg_s2,
+            // No ramp lacks nothing.
+            ramp_deg_s2: if ramp_s > 0.0 {
+                0.5 * self.accel_deg_s2
+            } else {
+                0.0
+            },
             whole_s,
             seen_s: (0.0, whole_s),
         };
@@ -66,8 +77,16 @@ impl TiltSweep {
 pub(super) struct SweepMotion {
     pub sweep: TiltSweep,
     way_deg: f64,
+    /// Of its tilts: 1 or -1.
+    sign: f64,
     pub peak_deg_s: f64,
+    s_per_deg: f64,
     ramp_s: f64,
+    ramp_deg: f64,
+    /// Square of the time on a ramp by the way.
+    s2_per_deg: f64,
+    /// The way on a ramp by the square of the time.
+    ramp_deg_s2: f64,
     /// Duration.
     whole_s: f64,
     /// From when until when the sweep has rays.
@@ -89,35 +108,26 @@ impl SweepMotion {
     /// [`TiltSweep::angle_deg`].
     pub(super) fn angle_deg(&self, t_s: f64) -> f64 {
         let t = t_s.clamp(0.0, self.whole_s);
-        let rising = |t: f64| {
-            if t < self.ramp_s {
-                0.5 * self.sweep.accel_deg_s2 * t * t
-            } else {
-                self.peak_deg_s * (t - 0.5 * self.ramp_s)
-            }
-        };
-        let gone = if t <= self.whole_s / 2.0 {
-            rising(t)
-        } else {
-            self.way_deg - rising(self.whole_s - t)
-        };
-        self.sweep.from_deg + gone.copysign(self.sweep.to_deg - self.sweep.from_deg)
+        // What the ramps lack of the motion at the peak speed.
+        let starts_s = (self.ramp_s - t).max(0.0);
+        let stops_s = (t - (self.whole_s - self.ramp_s)).max(0.0);
+        let lacks_deg = self.ramp_deg_s2 * (starts_s - stops_s) * (starts_s + stops_s);
+        let gone = self.peak_deg_s * (t - 0.5 * self.ramp_s) + lacks_deg;
+        self.sweep.from_deg + self.sign * gone
     }
 
     /// Time from the start at which the tilt reaches an angle between its ends, seconds.
     pub(super) fn time_s(&self, angle_deg: f64) -> f64 {
         let gone = (angle_deg - self.sweep.from_deg).abs().min(self.way_deg);
-        let rising = |gone: f64| {
-            if gone < 0.5 * self.peak_deg_s * self.ramp_s {
-                (2.0 * gone / self.sweep.accel_deg_s2).sqrt()
-            } else {
-                gone / self.peak_deg_s + 0.5 * self.ramp_s
-            }
+        let left = self.way_deg - gone;
+        let nearest = gone.min(left);
+        let time_s = match nearest < self.ramp_deg {
+            true => (nearest * self.s2_per_deg).sqrt(),
+            false => nearest * self.s_per_deg + 0.5 * self.ramp_s,
         };
-        if gone <= self.way_deg / 2.0 {
-            rising(gone)
-        } else {
-            self.whole_s - rising(self.way_deg - gone)
+        match gone <= left {
+            true => time_s,
+            false => self.whole_s - time_s,
         }
     }
 }
@@ -149,7 +159,8 @@ mod tests {
         assert!(close(fast.duration_s(), 0.9125, 1e-12));
         assert!(close(fast.angle_deg(0.1125), -0.5 * 56.25 * 0.1125, 1e-12));
         assert!(close(fast.angle_deg(0.45625), -22.5, 1e-12));
-        assert_eq!((fast.angle_deg(-1.0), fast.angle_deg(2.0)), (0.0, -45.0));
+        assert!(close(fast.angle_deg(-1.0), 0.0, 1e-12));
+        assert!(close(fast.angle_deg(2.0), -45.0, 1e-12));
         let short = TiltSweep {
             to_deg: -1.0,
             ..fast
