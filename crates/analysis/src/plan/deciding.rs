@@ -1,7 +1,7 @@
 //! Gaps in so many directions that they decide whether a scan keeps a limit.
 //!
-//! Few directions rule out most scans and azimuths of the lidar at the start. Those that decide
-//! give the figures of the chosen row, too.
+//! Rough and evenly spread directions, which are fewer, rule out most scans and azimuths of the
+//! lidar at the start. The deciding ones give the figures of a row, too.
 
 use std::cmp::Reverse;
 use std::collections::BTreeSet;
@@ -22,37 +22,39 @@ use crate::density::quantile;
 const CELLS: u32 = 320;
 /// Their seed.
 const SEED: u64 = 18;
-/// Azimuths with the widest gaps of few directions, of which more directions find the widest.
-const WIDEST_STARTS: usize = 6;
-/// Part of the gap of 99 % of few directions that more directions do not go below.
+/// Part of the 99 % gap of the evenly spread directions that the deciding ones do not go below.
 const CERTAIN: f64 = 0.9;
-/// Azimuths with the widest gaps of few directions, near which wider ones are sought: forty pairs
-/// of azimuths of two sweeps are a sixth of a revolution apart, and between them the 99 % gap was
-/// 8 % wider.
-const CLIMBS: usize = 3;
+/// Worst azimuths by the evenly spread directions, near which worse ones are sought: forty pairs of
+/// azimuths of two sweeps are a sixth of a revolution apart, and between them the 99 % gap was 8 %
+/// wider.
+const START_CLIMBS: usize = 3;
 /// Steps of the search for a worse azimuth, revolutions.
 const CLIMB_STEPS: [f64; 4] = [1.0 / 12.0, 1.0 / 24.0, 1.0 / 48.0, 1.0 / 96.0];
 
-/// Azimuths at the start that few directions examine first, or up to twice as many.
+/// Azimuths at the start that rough directions examine first, or up to twice as many.
 const SOME_STARTS: u32 = 8;
-/// The worst of them, which more directions examine before the others.
+/// The worst of them, which all examine before the others.
 const FIRST_STARTS: usize = 2;
-/// Of so many directions one rules out scans first.
-const FEWEST_STRIDE: usize = 8;
-/// So many of the worst azimuths of each group are in doubt.
-const MOST_IN_DOUBT: usize = 6;
-/// So many standard deviations less than 1 % of the directions that decide may have no point: by
-/// chance these have more points than others. Of 50 choices with 40 random azimuths or 120 pairs of
-/// them each, three broke the limit in 200,000 other directions: at most 1.024 % of them had no
-/// point, which is exact to 0.022 %.
-const DECIDING_SD: f64 = -1.0;
+/// One of so many evenly spread directions is a rough one.
+const ROUGH_STRIDE: usize = 8;
+/// At most so many of the worst azimuths by the evenly spread directions are decided, and give the
+/// figures of a row.
+const MOST_DECIDED: usize = 6;
+/// Of fewer evenly spread directions, numbers without a point rank no azimuths: 1 % of them is
+/// within the doubt.
+const FEW_PLACES: usize = 784;
 /// Directions examined by all cores at a time.
 const AT_A_TIME: usize = 2_048;
 /// What a number of directions without a point may be off by chance, in standard deviations of
 /// random ones; that of evenly spread ones varies less.
 const DOUBT_SD: f64 = 2.8;
+/// So many standard deviations below 1 % of the deciding directions may have no point: by chance
+/// these have more points than others. Of 50 choices with 40 random azimuths or 120 pairs of them
+/// each, three broke the limit in 200,000 other directions: at most 1.024 % of them had no point,
+/// and the standard deviation of such a share is 0.022 %.
+const MARGIN_SD: f64 = 1.0;
 
-/// What more directions give with several azimuths of the lidar at the start.
+/// What the deciding directions give with several azimuths of the lidar at the start.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DecidingGaps {
     /// The widest gap of 99 %, degrees.
@@ -73,10 +75,8 @@ struct Examiner<'a> {
     places: Vec<&'a PlannedPlace>,
     order: Vec<usize>,
     unseen: Vec<AtomicU32>,
-    /// With more than so many without a point more than 1 % of all directions have none.
+    /// More than so many without a point refuse a scan.
     most: usize,
-    /// With fewer than so many without a point fewer than 1 % of all have none.
-    least: usize,
 }
 
 /// An azimuth at the start, and the directions that it leaves without a point within a gap.
@@ -92,26 +92,23 @@ impl ExaminedStart {
     }
 }
 
-/// Few directions, more, and those that decide.
+/// One in eight of the evenly spread directions, all of them, and the deciding ones.
 pub(super) struct Examiners<'a> {
-    few: Examiner<'a>,
-    more: Examiner<'a>,
+    rough: Examiner<'a>,
+    even: Examiner<'a>,
     /// Made when a scan passes the others.
     deciding: Option<Examiner<'a>>,
 }
 
 impl<'a> Examiner<'a> {
-    /// Directions whose numbers are in doubt by so many standard deviations of random ones.
-    fn new(places: impl Iterator<Item = &'a PlannedPlace>, doubt_sd: f64) -> Self {
+    /// Of these directions 1 % may have no point, and so many standard deviations more.
+    fn new(places: impl Iterator<Item = &'a PlannedPlace>, more_sd: f64) -> Self {
         let places: Vec<&PlannedPlace> = places.collect();
-        let mean = 0.01 * places.len() as f64;
-        let doubt = doubt_sd * mean.sqrt();
         Self {
             order: (0..places.len()).collect(),
             unseen: places.iter().map(|_| AtomicU32::new(0)).collect(),
+            most: one_percent(places.len(), more_sd),
             places,
-            most: (mean + doubt).max(0.0) as usize,
-            least: (mean - doubt).max(0.0).ceil() as usize,
         }
     }
 
@@ -154,98 +151,104 @@ impl<'a> Examiner<'a> {
     }
 }
 
+/// One percent of so many directions, and so many standard deviations more.
+fn one_percent(count: usize, more_sd: f64) -> usize {
+    let mean = 0.01 * count as f64;
+    (mean + more_sd * mean.sqrt()).max(0.0) as usize
+}
+
 impl Examiners<'_> {
     /// Whether so many directions are out of reach of any scan that none keeps the gap.
     pub(super) fn refuse_all(&self, reach_rad: f64) -> bool {
         let out_of_reach = |place: &&&PlannedPlace| place.least_chord() > reach_rad;
-        self.more.places.iter().filter(out_of_reach).count() > self.more.most
+        self.even.places.iter().filter(out_of_reach).count() > self.even.most
     }
 
-    /// How many of more directions have no point with the first azimuth at the start, unless few or
-    /// these are too many.
+    /// How many evenly spread directions have no point with the first azimuth at the start, unless
+    /// they are too many.
     pub(super) fn unseen_at_first(&self, scan: &StartedScan, gap_deg: f64) -> Option<usize> {
         let unseen = |places: &Examiner| {
             let unseen = places.unseen(scan, gap_deg).len();
             (unseen <= places.most).then_some(unseen)
         };
-        unseen(&self.few)?;
-        unseen(&self.more)
+        unseen(&self.rough)?;
+        unseen(&self.even)
     }
 
     pub(super) fn sort(&mut self) {
-        self.few.sort();
-        self.more.sort();
+        self.rough.sort();
+        self.even.sort();
     }
 }
 
 impl ScanPredictor {
     pub(super) fn examiners(&self) -> Examiners<'_> {
-        let few = self.places.iter().step_by(FEWEST_STRIDE);
+        let rough = self.places.iter().step_by(ROUGH_STRIDE);
         Examiners {
-            few: Examiner::new(few, DOUBT_SD),
-            more: Examiner::new(self.places.iter(), DOUBT_SD),
+            rough: Examiner::new(rough, DOUBT_SD),
+            even: Examiner::new(self.places.iter(), DOUBT_SD),
             deciding: None,
         }
     }
 
-    /// Whether the gaps of a scan are within the limit at all azimuths of the lidar at the start.
+    /// How many of the worst azimuths at the start are decided.
+    const fn most_decided(&self) -> usize {
+        match self.places.len() < FEW_PLACES {
+            true => usize::MAX,
+            false => MOST_DECIDED,
+        }
+    }
+
+    /// `Some` if the gaps of a scan are within the limit at all azimuths of the lidar at the start.
     pub(super) fn keeps<'a>(
         &'a self,
         scan: &PlannedScan,
         gap_deg: f64,
         examiners: &mut Examiners<'a>,
-    ) -> bool {
-        self.examine(scan, gap_deg, examiners).is_some()
-    }
-
-    /// Nothing when an azimuth breaks the limit.
-    fn examine<'a>(
-        &'a self,
-        scan: &PlannedScan,
-        gap_deg: f64,
-        Examiners {
-            few,
-            more,
-            deciding,
-        }: &mut Examiners<'a>,
     ) -> Option<()> {
-        let starts = GapEffort::full(scan).starts;
+        let Examiners {
+            rough,
+            even,
+            deciding,
+        } = examiners;
+        let count = GapEffort::full(scan).starts;
         // The worst azimuth first.
         let rank = |numbers: Vec<u32>, places: &Examiner<'_>| {
             let examined = numbers.into_par_iter().map(|number| {
-                let unseen = places.unseen(&self.started(scan, number, starts), gap_deg);
+                let unseen = places.unseen(&self.started(scan, number, count), gap_deg);
                 (unseen.len() <= places.most).then_some(ExaminedStart { number, unseen })
             });
             let mut examined: Vec<ExaminedStart> = examined.collect::<Option<_>>()?;
             examined.sort_unstable_by_key(ExaminedStart::order);
             Some(examined)
         };
-        let mut keeps = |starts: &[f64]| {
+        let mut decide = |azimuths: &[f64]| {
             let deciding =
-                deciding.get_or_insert_with(|| Examiner::new(self.deciding().iter(), DECIDING_SD));
-            let is_refused = deciding.refuses(&self.started_at(scan, starts), gap_deg);
+                deciding.get_or_insert_with(|| Examiner::new(self.deciding().iter(), -MARGIN_SD));
+            let is_refused = deciding.refuses(&self.started_at(scan, azimuths), gap_deg);
             (!is_refused).then_some(())
         };
-        let mut decide = |numbers: Vec<u32>| {
-            let examined = rank(numbers, more)?;
-            for worst in examined.iter().take(MOST_IN_DOUBT) {
-                if worst.unseen.len() >= more.least {
-                    keeps(&azimuths_at_starts(scan, worst.number, starts))?;
+        let in_doubt = one_percent(even.places.len(), -DOUBT_SD);
+        let mut decide_worst = |numbers: Vec<u32>| {
+            let examined = rank(numbers, even)?;
+            for worst in examined.iter().take(self.most_decided()) {
+                if worst.unseen.len() > in_doubt {
+                    decide(&azimuths_at_starts(scan, worst.number, count))?;
                 }
             }
             Some(examined)
         };
         // A few azimuths apart refuse most scans.
-        let apart = (starts / SOME_STARTS).max(1);
-        let (some, others) = (0..starts).partition(|number| number % apart == 0);
+        let apart = (count / SOME_STARTS).max(1);
+        let (some, others) = (0..count).partition(|number| number % apart == 0);
         let numbers = |examined: Vec<ExaminedStart>| examined.into_iter().map(|start| start.number);
-        let mut few_starts = numbers(rank(some, few)?);
-        let mut ranked = decide(few_starts.by_ref().take(FIRST_STARTS).collect())?;
-        let few_starts = few_starts.chain(numbers(rank(others, few)?));
-        ranked.extend(decide(few_starts.collect())?);
+        let mut passed = numbers(rank(some, rough)?);
+        let mut ranked = decide_worst(passed.by_ref().take(FIRST_STARTS).collect())?;
+        let passed = passed.chain(numbers(rank(others, rough)?));
+        ranked.extend(decide_worst(passed.collect())?);
         ranked.sort_unstable_by_key(ExaminedStart::order);
-        for worse in self.worse_starts(scan, &ranked, gap_deg) {
-            keeps(&worse)?;
+        for azimuths in self.worse_starts(scan, &ranked, gap_deg) {
+            decide(&azimuths)?;
         }
         Some(())
     }
@@ -274,30 +277,35 @@ impl ScanPredictor {
                 .filter(|place| !scan.is_within(place, gap_deg));
             unseen.count()
         };
-        ranked.iter().take(CLIMBS).map(move |examined| {
-            let mut worst = azimuths_at_starts(scan, examined.number, of);
-            let mut most = examined.unseen.len();
-            for step in CLIMB_STEPS {
-                loop {
-                    let moves = (0..2 * worst.len()).into_par_iter().map(|number| {
-                        let mut starts = worst.clone();
-                        if let Some(start) = starts.get_mut(number / 2) {
-                            *start += if number % 2 == 0 { step } else { -step };
+        ranked
+            .iter()
+            .take(START_CLIMBS)
+            .filter_map(move |examined| {
+                let mut worst = azimuths_at_starts(scan, examined.number, of);
+                let mut most = examined.unseen.len();
+                for step in CLIMB_STEPS {
+                    loop {
+                        let moves = (0..2 * worst.len()).into_par_iter().map(|number| {
+                            let mut starts = worst.clone();
+                            if let Some(start) = starts.get_mut(number / 2) {
+                                *start += if number % 2 == 0 { step } else { -step };
+                            }
+                            (unseen(&starts), starts)
+                        });
+                        let moves: Vec<(usize, Vec<f64>)> = moves.collect();
+                        match moves.into_iter().max_by_key(|(unseen, _)| *unseen) {
+                            Some((unseen, starts)) if unseen > most => {
+                                (most, worst) = (unseen, starts)
+                            }
+                            _ => break,
                         }
-                        (unseen(&starts), starts)
-                    });
-                    let moves: Vec<(usize, Vec<f64>)> = moves.collect();
-                    match moves.into_iter().max_by_key(|(unseen, _)| *unseen) {
-                        Some((unseen, starts)) if unseen > most => (most, worst) = (unseen, starts),
-                        _ => break,
                     }
                 }
-            }
-            worst
-        })
+                (most > examined.unseen.len()).then_some(worst)
+            })
     }
 
-    /// The directions that decide, in view of the tilts. The first call is not one of many in
+    /// The deciding directions, in view of the tilts. The first call is not one of many in
     /// parallel, which would wait for each other.
     fn deciding(&self) -> &[PlannedPlace] {
         self.deciding.get_or_init(|| {
@@ -310,7 +318,7 @@ impl ScanPredictor {
         })
     }
 
-    /// The gaps of the directions that decide, of a scan whose 99 % gap is near a known one.
+    /// The gaps of the deciding directions, of a scan whose 99 % gap is near a known one.
     pub(super) fn deciding_gaps(
         &self,
         scan: &PlannedScan,
@@ -331,7 +339,7 @@ impl ScanPredictor {
         let narrowest = ranked.last().map_or(0, |examined| examined.number);
         let narrowest_deg = self.p99_deg(scan, effort, narrowest);
         let least_deg = limit_deg.min(CERTAIN * narrowest_deg);
-        let widest = ranked.iter().take(WIDEST_STARTS);
+        let widest = ranked.iter().take(self.most_decided());
         let numbers = widest.map(|examined| examined.number).chain([narrowest]);
         let starts = numbers.map(|number| azimuths_at_starts(scan, number, of));
         let starts = starts.chain(self.worse_starts(scan, &ranked, near_deg));

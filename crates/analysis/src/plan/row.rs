@@ -1,6 +1,7 @@
 //! A planned scan and what it gives.
 
 use std::f64::consts::PI;
+use std::ops::RangeInclusive;
 use std::sync::OnceLock;
 
 use glam::DVec3;
@@ -114,6 +115,10 @@ const DIRECTIONS: u32 = 10_000;
 const RANDOM_DIRECTIONS: usize = 6_905;
 /// Directions from which a wider gap is sought nearby.
 const CLIMBS: usize = 6;
+
+/// Ratios of the 99 % gap at one azimuth to the requested one that are near it: at others it may be
+/// wider by more than a tenth.
+const NEAR: RangeInclusive<f64> = 0.8..=1.1;
 
 /// How finely gaps are looked for.
 #[derive(Clone, Copy, Debug)]
@@ -229,13 +234,12 @@ impl ScanPredictor {
     /// What a scan gives.
     #[must_use]
     pub fn row(&self, scan: &PlannedScan) -> PlanRow {
-        self.row_near(scan, self.p99_deg(scan, GapEffort::full(scan), 0))
-    }
-
-    /// What a scan gives whose 99 % gap is near a known one.
-    pub(super) fn row_near(&self, scan: &PlannedScan, gap_deg: f64) -> PlanRow {
+        let first_deg = self.p99_deg(scan, GapEffort::full(scan), 0);
+        // Near the requested gap the azimuths are those that a choice was examined at.
+        let is_near = |limit_deg: &f64| NEAR.contains(&(first_deg / limit_deg));
+        let gap_deg = self.gap_deg.filter(is_near).unwrap_or(first_deg);
         let mut row = self.row_with(scan, GapEffort::CHOSEN);
-        let decided = self.deciding_gaps(scan, gap_deg, self.limit_deg());
+        let decided = self.deciding_gaps(scan, gap_deg, self.unseen_beyond_deg());
         row.gap_deg.p99 = decided.p99_deg;
         row.gap_mm.p99 = self.gap_mm(decided.p99_deg);
         row.best_start_p99_deg = decided.best_p99_deg;
@@ -252,8 +256,10 @@ impl ScanPredictor {
         self.row_with(scan, GapEffort::CAPTURE)
     }
 
-    /// Gap beyond which a direction counts as unseen, degrees.
-    fn limit_deg(&self) -> f64 {
+    /// Gap beyond which a direction counts as one without a point, degrees: the requested one, or
+    /// 0.5.
+    #[must_use]
+    pub fn unseen_beyond_deg(&self) -> f64 {
         self.gap_deg.unwrap_or(UNSEEN_DEG)
     }
 
@@ -263,7 +269,7 @@ impl ScanPredictor {
     }
 
     fn row_with(&self, scan: &PlannedScan, effort: GapEffort) -> PlanRow {
-        let limit_deg = self.limit_deg();
+        let limit_deg = self.unseen_beyond_deg();
         let mut worst = GapQuantiles {
             p50: 0.0,
             p95: 0.0,

@@ -51,6 +51,8 @@ const TABLE_STRIDE: usize = 12;
 const RANKING_STRIDE: usize = 31;
 /// Ratio of a gap to the least one that counts as reaching it.
 const NEARLY_LEAST: f64 = 1.04;
+/// What a limit is widened by where a choice by its own margin finds none.
+const MARGIN: f64 = 1.01;
 /// Ratio of a time to the shortest one that counts as reaching it.
 const NEARLY_FASTEST: f64 = 1.03;
 /// Ratio of times that are alike.
@@ -108,9 +110,9 @@ impl ScanPredictor {
         kept.map(|(row, _)| row).collect()
     }
 
-    /// The fastest scan within the limits, or a faster one of those `nearby`; with a limit of time
-    /// only, the densest; with one of the error only, the densest of the fastest. `None` if there
-    /// is none, or no limit.
+    /// The fastest scan, to 1 %, within the limits, or a faster one of those `nearby`; with a limit
+    /// of time only, the densest; with one of the error only, the densest of the fastest. `None` if
+    /// there is none, or no limit.
     #[must_use]
     pub fn choose(
         &self,
@@ -118,13 +120,19 @@ impl ScanPredictor {
         nearby: impl Fn(&PlannedScan) -> Vec<PlannedScan>,
         limits: &PlanLimits,
     ) -> Option<PlanRow> {
-        let is_short = |scan_s: f64| limits.time_s.is_none_or(|most| scan_s <= most);
+        let most_s = limits.time_s.unwrap_or(f64::INFINITY);
         if let Some(gap_deg) = limits.gap_deg {
-            let row = self.fastest_nearby(scans, nearby, limits, gap_deg);
-            return row.filter(|row| is_short(row.scan_s));
+            let within = |most_s| self.fastest_nearby(scans, &nearby, limits, (gap_deg, most_s));
+            let row = within(f64::INFINITY)?;
+            return match row.scan_s {
+                scan_s if scan_s <= most_s => Some(row),
+                // Another of alike times may keep the time.
+                scan_s if scan_s <= ALIKE * most_s => within(most_s),
+                _ => None,
+            };
         }
         let mut scans = self.accurate(scans, limits);
-        scans.retain(|scan| is_short(scan.scan_s));
+        scans.retain(|scan| scan.scan_s <= most_s);
         match (limits.error_mm, limits.time_s) {
             (Some(_), _) => self.densest_of_fastest(scans),
             (None, Some(time_s)) => self.densest(scans, time_s),
@@ -132,21 +140,23 @@ impl ScanPredictor {
         }
     }
 
-    /// The fastest scan within a gap and the limit of the error, or a faster one of those `nearby`.
+    /// The fastest scan, to 1 %, within a gap, a time and the limit of the error, or a faster one
+    /// of those `nearby`.
     fn fastest_nearby(
         &self,
         scans: &[PlannedScan],
         nearby: impl Fn(&PlannedScan) -> Vec<PlannedScan>,
         limits: &PlanLimits,
-        gap_deg: f64,
+        (gap_deg, most_s): (f64, f64),
     ) -> Option<PlanRow> {
-        let scans = self.accurate(scans, limits);
+        let mut scans = self.accurate(scans, limits);
+        scans.retain(|scan| scan.scan_s <= most_s);
         let mut examiners = self.examiners();
         let found = self.fastest_within(&scans, gap_deg, &mut examiners)?;
         let mut faster = nearby(found);
         faster.retain(|scan| scan.scan_s < found.scan_s);
         let faster = self.fastest_within(&self.accurate(&faster, limits), gap_deg, &mut examiners);
-        Some(self.row_near(faster.unwrap_or(found), gap_deg))
+        Some(self.row(faster.unwrap_or(found)))
     }
 
     /// The fastest of the scans that come nearest to a limit which none keeps, if
@@ -185,7 +195,7 @@ impl ScanPredictor {
         }
         // Without a limit of time the choice would have found it.
         let fastest = limits.time_s.and_then(|_| match limits.gap_deg {
-            Some(gap_deg) => self.fastest_nearby(scans, nearby, limits, gap_deg),
+            Some(gap_deg) => self.fastest_nearby(scans, nearby, limits, (gap_deg, f64::INFINITY)),
             None => self.densest_of_fastest(self.accurate(scans, limits)),
         });
         let scans = self.accurate(scans, limits);
@@ -199,19 +209,18 @@ impl ScanPredictor {
         }
         let densest = self.densest(scans.clone(), f64::INFINITY)?;
         let least_deg = densest.gap_deg.p99;
+        let nearly_deg = NEARLY_LEAST * least_deg;
         // The least gap may be within the limit by less than a choice is.
-        let cheaper = match limits.gap_deg {
-            Some(gap_deg) if least_deg <= gap_deg => None,
-            _ => {
-                let most_deg = NEARLY_LEAST * least_deg;
-                self.fastest_within(&scans, most_deg, &mut self.examiners())
-            }
-        };
+        let limit_deg = limits.gap_deg.filter(|gap_deg| least_deg <= *gap_deg);
+        let most_deg = limit_deg.map_or(nearly_deg, |deg| nearly_deg.min(MARGIN * deg));
+        let cheaper = self.fastest_within(&scans, most_deg, &mut self.examiners());
+        let cheaper = cheaper.map(|scan| self.row(scan));
+        let cheaper = cheaper.filter(|row| limit_deg.is_none_or(|deg| row.gap_deg.p99 <= deg));
         Some(NearestScan {
             limit: LimitKind::Gap,
             with_others: limits.error_mm.is_some(),
             least: least_deg,
-            row: cheaper.map_or(densest, |scan| self.row(scan)),
+            row: cheaper.unwrap_or(densest),
         })
     }
 
@@ -249,7 +258,8 @@ impl ScanPredictor {
             let mut hopeful: Vec<(usize, &PlannedScan)> = hopeful.collect();
             hopeful.sort_by_key(|(unseen, _)| *unseen);
             let mut hopeful = hopeful.into_iter().take(HOPEFUL).map(|(_, scan)| scan);
-            if let Some(scan) = hopeful.find(|scan| self.keeps(scan, gap_deg, examiners)) {
+            if let Some(scan) = hopeful.find(|scan| self.keeps(scan, gap_deg, examiners).is_some())
+            {
                 return Some(scan);
             }
             examiners.sort();
@@ -388,9 +398,8 @@ mod tests {
                     };
                     for (scan, faster) in scans().iter().zip(&all) {
                         if fits(&faster) && longer * faster.scan_s < row.scan_s {
-                            let gap_deg = gap_deg.unwrap();
-                            let near = predictor(Some(gap_deg)).row_near(scan, gap_deg);
-                            assert!(near.share_without_point > 0.0095, "{near:?}");
+                            let share = predictor(gap_deg).row(scan).share_without_point;
+                            assert!(gap_deg.is_some() && share > 0.0095, "{share} {faster:?}");
                         }
                     }
                 }

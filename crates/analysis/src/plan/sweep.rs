@@ -56,7 +56,7 @@ impl TiltSweep {
             ramp_s,
             ramp_deg: 0.5 * peak_deg_s * ramp_s,
             s2_per_deg: 2.0 / self.accel_deg_s2,
-            // No ramp lacks nothing.
+            // Without ramps nothing is lacking: infinity times 0 is no number.
             ramp_deg_s2: if ramp_s > 0.0 {
                 0.5 * self.accel_deg_s2
             } else {
@@ -83,9 +83,9 @@ pub(super) struct SweepMotion {
     s_per_deg: f64,
     ramp_s: f64,
     ramp_deg: f64,
-    /// Square of the time on a ramp by the way.
+    /// Square of the time per way on a ramp.
     s2_per_deg: f64,
-    /// The way on a ramp by the square of the time.
+    /// Way per square of the time on a ramp.
     ramp_deg_s2: f64,
     /// Duration.
     whole_s: f64,

@@ -325,6 +325,7 @@ impl ScanPlanner {
             simulated: profile::simulated(&self.device),
             lidar: self.predictor.lidar.name.clone(),
             at_m: self.request.at_m,
+            unseen_beyond_deg: self.predictor.unseen_beyond_deg(),
             rows: rows.into_iter().map(|row| self.with_command(row)).collect(),
             unmet: nearest.as_ref().map(|nearest| self.unmet(nearest)),
             nearest: nearest.map(|nearest| self.with_command(nearest.row)),

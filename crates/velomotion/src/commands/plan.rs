@@ -139,7 +139,7 @@ fn text(report: &PlanReport, written: Vec<String>) -> String {
             lines.push(
                 ">: the choice; the other rows are from fewer azimuths and directions".to_owned(),
             );
-            lines.extend(choice(chosen, report.at_m));
+            lines.extend(choice(chosen, report));
         }
         None => lines.extend(report.unmet.is_none().then(|| {
             "\n--error, --gap or --time choose a setting and print its command".to_owned()
@@ -241,7 +241,8 @@ fn megabytes(bytes: u64) -> f64 {
 }
 
 /// The chosen row in words.
-fn choice(chosen: &CommandRow, at_m: f64) -> Vec<String> {
+fn choice(chosen: &CommandRow, report: &PlanReport) -> Vec<String> {
+    let at_m = report.at_m;
     let row = &chosen.row;
     let (gap, mm, error) = (&row.gap_deg, &row.gap_mm, &row.error_mm);
     let mount = error
@@ -262,7 +263,7 @@ fn choice(chosen: &CommandRow, at_m: f64) -> Vec<String> {
         ),
         format!(
             "gap at {at_m} m: 50 % of directions {:.2} deg ({:.0} mm), 95 % {:.2} deg ({:.0} mm), 99 % {:.2} deg ({:.0} mm), the widest found \
-             {:.2} deg ({:.0} mm); without a point within the limit: {:.2} %; with the lidar at {:.0} deg at the start, which a capture does not \
+             {:.2} deg ({:.0} mm); without a point within {} deg: {:.2} %; with the lidar at {:.0} deg at the start, which a capture does not \
              control, 99 % {:.2} deg",
             gap.p50,
             mm.p50,
@@ -272,6 +273,7 @@ fn choice(chosen: &CommandRow, at_m: f64) -> Vec<String> {
             mm.p99,
             gap.worst,
             mm.worst,
+            report.unseen_beyond_deg,
             100.0 * row.share_without_point,
             row.best_start_deg,
             row.best_start_p99_deg,
@@ -293,7 +295,7 @@ fn choice(chosen: &CommandRow, at_m: f64) -> Vec<String> {
         None => format!(
             "\n{} deg/s, {} deg/s2, {} rpm, {}",
             (setting.speed_deg_s * 1e6).round() / 1e6,
-            setting.accel_deg_s2,
+            (setting.accel_deg_s2 * 1e6).round() / 1e6,
             setting.rpm,
             counted(setting.sweeps, "sweep"),
         ),

@@ -33,6 +33,9 @@ pub struct PlanReport {
     pub lidar: String,
     /// Distance of gaps and errors, metres.
     pub at_m: f64,
+    /// Gap beyond which a direction counts as one without a point, degrees: the requested one, or
+    /// 0.5.
+    pub unseen_beyond_deg: f64,
     /// Settings that no other beats in time, 99 % gap and error at once, the fastest for each class
     /// of gap.
     pub rows: Vec<CommandRow>,
