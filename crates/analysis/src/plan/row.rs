@@ -116,7 +116,7 @@ const RANDOM_DIRECTIONS: usize = 6_905;
 /// Directions from which a wider gap is sought nearby.
 const CLIMBS: usize = 6;
 
-/// Ratios of the 99 % gap at one azimuth to the requested one that are near it: at others it may be
+/// Ratios of a brief 99 % gap to the requested one that are near it: at other azimuths it may be
 /// wider by more than a tenth.
 const NEAR: RangeInclusive<f64> = 0.8..=1.1;
 
@@ -234,10 +234,10 @@ impl ScanPredictor {
     /// What a scan gives.
     #[must_use]
     pub fn row(&self, scan: &PlannedScan) -> PlanRow {
-        let first_deg = self.p99_deg(scan, GapEffort::full(scan), 0);
+        let brief_deg = self.brief_p99_deg(scan);
         // Near the requested gap the azimuths are those that a choice was examined at.
-        let is_near = |limit_deg: &f64| NEAR.contains(&(first_deg / limit_deg));
-        let gap_deg = self.gap_deg.filter(is_near).unwrap_or(first_deg);
+        let is_near = |limit_deg: &f64| NEAR.contains(&(brief_deg / limit_deg));
+        let gap_deg = self.gap_deg.filter(is_near).unwrap_or(brief_deg);
         let mut row = self.row_with(scan, GapEffort::CHOSEN);
         let decided = self.deciding_gaps(scan, gap_deg, self.unseen_beyond_deg());
         row.gap_deg.p99 = decided.p99_deg;
