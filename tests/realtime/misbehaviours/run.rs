@@ -80,7 +80,8 @@ pub struct Outcome {
     pub kept: Kept,
     /// Longest pause of the drive's thread, a fifth of it at standstill.
     pub gap: f64,
-    /// Longest time without a request between the beginning and the first stop.
+    /// Longest time without a request between the beginning and the first stop, and from then on
+    /// while the axis moves under power.
     pub silence: f64,
 }
 
@@ -292,8 +293,9 @@ fn be_drive(
         if !bytes.is_empty() {
             received = now;
         }
+        let is_driven = drive.axis.powered && drive.axis.speed.abs() > 0.1;
         if let Some(began) = drive.record.began
-            && drive.record.first_stop(began).is_none()
+            && (drive.record.first_stop(began).is_none() || is_driven)
         {
             silence = silence.max(now - received);
         }
