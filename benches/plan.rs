@@ -8,25 +8,54 @@ use std::time::Instant;
 use analysis::plan::PlanLimits;
 use engine::capture::scan_plan::{PlanRequest, ScanPlanner};
 use engine::config::{Config, Device};
-use engine::lidars;
+use engine::lidars::{self, LidarSheet};
 
-/// Distance in metres, error in millimetres, gap in degrees.
-const REQUESTS: [(f64, f64, f64); 8] = [
-    (20.0, 25.0, 0.8),
-    (5.6, 11.2, 0.564),
-    (9.9, 7.0, 0.700),
-    (7.5, 3.6, 0.225),
-    (13.2, 4.9, 0.172),
-    (16.5, 16.0, 0.841),
-    (25.0, 25.4, 0.724),
-    (50.0, 13.0, 1.017),
+/// What is asked of a lidar: distance in metres, error in millimetres, gap in degrees.
+struct Request {
+    lidar: &'static LidarSheet,
+    rpm: &'static [u32],
+    limits: (f64, f64, f64),
+}
+
+const fn vlp_16(at_m: f64, error_mm: f64, gap_deg: f64) -> Request {
+    Request {
+        lidar: &lidars::VLP_16,
+        rpm: &[600],
+        limits: (at_m, error_mm, gap_deg),
+    }
+}
+
+const REQUESTS: [Request; 12] = [
+    vlp_16(20.0, 25.0, 0.8),
+    vlp_16(5.6, 11.2, 0.564),
+    vlp_16(9.9, 7.0, 0.700),
+    vlp_16(7.5, 3.6, 0.225),
+    vlp_16(13.2, 4.9, 0.172),
+    vlp_16(16.5, 16.0, 0.841),
+    vlp_16(25.0, 25.4, 0.724),
+    vlp_16(50.0, 13.0, 1.017),
+    // Three rates of the lidar, more lasers, others, and a gap that no scan keeps.
+    Request {
+        rpm: &[300, 600, 1200],
+        ..vlp_16(20.0, 25.0, 0.5)
+    },
+    Request {
+        lidar: &lidars::HDL_64E,
+        ..vlp_16(20.0, 60.0, 0.15)
+    },
+    Request {
+        lidar: &lidars::VLP_32C,
+        ..vlp_16(20.0, 60.0, 0.8)
+    },
+    vlp_16(20.0, 25.0, 0.01),
 ];
 const RUNS: usize = 5;
 
 fn main() {
-    println!("| at, m | error, mm | gap, deg | setting | scan, s | plan, s |");
-    println!("|--:|--:|--:|---|--:|---|");
-    for (at_m, error_mm, gap_deg) in REQUESTS {
+    println!("| lidar | rpm | at, m | error, mm | gap, deg | setting | scan, s | plan, s |");
+    println!("|---|---|--:|--:|--:|---|--:|---|");
+    for Request { lidar, rpm, limits } in REQUESTS {
+        let (at_m, error_mm, gap_deg) = limits;
         let limits = PlanLimits {
             error_mm: Some(error_mm),
             gap_deg: Some(gap_deg),
@@ -37,23 +66,31 @@ fn main() {
         for _ in 0..RUNS {
             let request = PlanRequest {
                 limits,
-                ..PlanRequest::new(at_m, &lidars::VLP_16, 600)
+                rpm: rpm.to_vec(),
+                ..PlanRequest::new(at_m, lidar, 600)
             };
             let begin = Instant::now();
             let device = ("sim", &Device::simulator());
             let planner = ScanPlanner::new(&Config::default(), device, request).unwrap();
-            let row = planner.plan().unwrap().chosen.unwrap().row;
+            let plan = planner.plan().unwrap();
             times_s.push(begin.elapsed().as_secs_f64());
-            let setting = row.setting;
-            chosen = format!(
-                "{:.2} deg/s, {:.0} deg/s2, {} sweeps | {:.2}",
-                setting.speed_deg_s, setting.accel_deg_s2, setting.sweeps, row.scan_s
-            );
+            chosen = plan.chosen.map_or("none | -".to_owned(), |chosen| {
+                let setting = chosen.row.setting;
+                format!(
+                    "{:.2} deg/s, {:.0} deg/s2, {:.0} rpm, {} sweeps | {:.2}",
+                    setting.speed_deg_s,
+                    setting.accel_deg_s2,
+                    setting.rpm,
+                    setting.sweeps,
+                    chosen.row.scan_s
+                )
+            });
         }
         times_s.sort_by(f64::total_cmp);
         let [least, middle, most] = [0, RUNS / 2, RUNS - 1].map(|place| times_s[place]);
         println!(
-            "| {at_m} | {error_mm} | {gap_deg} | {chosen} | {least:.2}, {middle:.2}, {most:.2} |"
+            "| {} | {rpm:?} | {at_m} | {error_mm} | {gap_deg} | {chosen} | {least:.2}, {middle:.2}, {most:.2} |",
+            lidar.name
         );
     }
 }

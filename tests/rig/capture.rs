@@ -33,7 +33,7 @@ use protocol::epos2::DeviceError;
 use protocol::epos2::message::WriteObject;
 use protocol::epos2::rs232;
 use protocol::record::{DriveLink, Record, Wire};
-use scanner::TiltSource;
+use scanner::{LidarConfig, TiltSource};
 use sim::cast::{Object, Sphere};
 
 use sim::{Attachment, Rig, Scene};
@@ -42,7 +42,7 @@ use units::{Degrees, Host, Span, Stamp};
 
 use crate::inject::{Fault, FaultInjector};
 use crate::port::VirtualPort;
-use log::{Owned, set_lidar, write_log};
+use log::{Owned, add_noise, set_lidar, write_log};
 use rejoin::rejoin;
 
 pub use rejoin::Rejoined;
@@ -114,6 +114,9 @@ impl Captured {
         );
         config.rs232_baud = (setting.links.attached == Attachment::Rs232).then_some(115_200);
         let mut rig = simulated::rig(&axis, &config, setting.start);
+        if let Some(range_sd_m) = setting.range_sd_m {
+            config.lidar = LidarConfig { range_sd_m };
+        }
         rig.lidar.clock_at_start_us = setting.lidar_clock_us;
         rig.lidar.rpm = setting.lidar_rpm;
         if let Some(radius_m) = setting.sphere_m {
@@ -184,6 +187,9 @@ impl Captured {
         let lost_packets = setting.packets_lost.map_or((0, 0), |loss| {
             loss.drop_packets(&mut packets, setting.start, setting.links.seed)
         });
+        if let Some(range_sd_m) = setting.range_sd_m {
+            add_noise(&mut packets, range_sd_m, setting.links.seed);
+        }
         if let Some((after, by)) = setting.lidar_set {
             set_lidar(&mut packets, setting.start + after, by);
         }

@@ -9,6 +9,7 @@ use analysis::plan::{
     PlanLimits, PlanRow, PlannedPlace, PlannedRays, PlannedScan, StartedSweep, TiltSweep,
 };
 use engine::capture::scan_plan::{PlanReport, PlanRequest, ScanPlanner};
+use engine::capture_request::CaptureRequest;
 use engine::config::{Config, Device};
 use engine::lidars;
 use glam::DVec3;
@@ -20,10 +21,16 @@ use velomotion_tests::random::Random;
 const REST_DEG: f64 = -11.25;
 
 fn planner(at_m: f64, limits: PlanLimits) -> ScanPlanner {
-    let request = PlanRequest {
+    planner_of(&PlanRequest {
         limits,
-        rest_deg: Some(REST_DEG),
         ..PlanRequest::new(at_m, &lidars::VLP_16, 600)
+    })
+}
+
+fn planner_of(request: &PlanRequest) -> ScanPlanner {
+    let request = PlanRequest {
+        rest_deg: Some(REST_DEG),
+        ..request.clone()
     };
     // A light head: ramps of which some hardly count.
     let device = Device {
@@ -62,6 +69,58 @@ fn choices_are_refined_also_within_a_time() {
     let late = plan(25.0, limits(gap_deg, Some(0.99 * row.scan_s)));
     assert!(late.chosen.is_none());
     assert_eq!(late.nearest.unwrap().row.setting, row.setting);
+}
+
+/// The last row reaches the least gap that there is: where few directions are in view, or where
+/// just 1 % of them are out of reach of any scan, as of a VLP-32C, some of them show no difference.
+#[test]
+fn tables_go_on_to_the_least_gap() {
+    for (lidar, to_deg) in [
+        (&lidars::VLP_16, -45.0),
+        (&lidars::VLP_16, -20.0),
+        (&lidars::VLP_32C, -45.0),
+    ] {
+        let planner = planner_of(&PlanRequest {
+            to_deg: Some(to_deg),
+            ..PlanRequest::new(20.0, lidar, 600)
+        });
+        let rows = planner.plan().unwrap().rows;
+        let last = rows.last().unwrap().row.gap_deg.p99;
+        let scans = planner.scans([1.2, 2.0]);
+        let gaps = scans
+            .iter()
+            .map(|scan| planner.predictor().brief_p99_deg(scan));
+        let least = gaps.fold(f64::INFINITY, f64::min);
+        println!(
+            "{} {to_deg}: {} rows, {last} {least}",
+            lidar.name,
+            rows.len()
+        );
+        assert!(last <= 1.1 * least, "{rows:?}");
+        assert!(rows.len() >= 8, "{rows:?}");
+    }
+}
+
+/// At 0.5, 1, 2 and 4 deg of tilt per revolution the lines of a VLP-16, 2 deg apart, coincide. At 4
+/// deg the widest gaps hide it.
+#[test]
+fn captures_whose_lines_coincide_are_warned_of() {
+    let planner = planner(20.0, PlanLimits::default());
+    let is_warned = |speed_deg_s: f64| {
+        let request = CaptureRequest {
+            speed_deg_s,
+            accel_deg_s2: Some(500.0),
+            ..CaptureRequest::default()
+        };
+        let row = planner.of_request(&request).unwrap();
+        planner.resonance(&request, &row).is_some()
+    };
+    for speed_deg_s in [5.0, 10.0, 20.0, 40.0] {
+        assert!(is_warned(speed_deg_s), "{speed_deg_s}");
+    }
+    for speed_deg_s in [8.0, 14.0, 30.0, 56.25, 75.0, 98.0] {
+        assert!(!is_warned(speed_deg_s), "{speed_deg_s}");
+    }
 }
 
 /// So many random directions in view of the whole sweep: others than the planner's.
@@ -110,7 +169,10 @@ fn measure(row: &PlanRow, planner: &ScanPlanner, seed: u64, late: f64) -> Truth 
     }
     // Other phases of polls and rotor.
     setting.start += Span::from_micros(137_731 * seed as i64);
-    setting.sphere_m = Some(planner.predictor().errors.range_m);
+    let errors = &planner.predictor().errors;
+    setting.sphere_m = Some(errors.range_m);
+    // The simulator's ranges have steps only.
+    setting.range_sd_m = Some(errors.range_sd_m).filter(|sd_m| *sd_m > 0.001);
     setting.sweep_request.speed = DegPerS(row.setting.speed_deg_s);
     setting.sweep_request.acceleration = DegPerS2(row.setting.accel_deg_s2);
     setting.sweep_request.sweeps = row.setting.sweeps;
@@ -166,26 +228,32 @@ fn requests(seed: u64) -> Vec<(f64, PlanLimits)> {
     (0..10).map(request).collect()
 }
 
-/// The chosen settings keep their limits, and the figures are those of the plan.
+/// The chosen settings keep their limits, and the figures are those of the plan. Of every other
+/// request the ranges have noise.
 #[test]
 fn chosen_settings_keep_their_limits_when_measured() {
     println!(
-        "|at m|error mm|gap deg|capture|scan s|measured|error mm|measured|sd mm|measured|50 % gap|measured|99 % gap|measured|worst|measured|"
+        "|at m|error mm|gap deg|ranges mm|capture|scan s|measured|error mm|measured|sd mm|measured|50 % gap|measured|99 % gap|measured|worst|measured|"
     );
     for (seed, (at_m, limits)) in (0..).zip(requests(20)) {
         let (error_mm, gap_deg) = (limits.error_mm.unwrap(), limits.gap_deg.unwrap());
-        let report = plan(at_m, limits);
+        let planner = planner_of(&PlanRequest {
+            limits,
+            range_sd_m: (seed % 2 == 1).then_some(error_mm / 3e3),
+            ..PlanRequest::new(at_m, &lidars::VLP_16, 600)
+        });
+        let report = planner.plan().unwrap();
         let chosen = report
             .chosen
             .unwrap_or_else(|| panic!("{limits:?}: {:?}", report.unmet));
         let row = &chosen.row;
-        let planner = planner(at_m, limits);
         let truth = measure(row, &planner, seed, 0.5);
         let command = chosen.command.as_deref().unwrap();
         let command = command.trim_start_matches("velomotion capture ");
         let (error, gap) = (&row.error_mm, &row.gap_deg);
         println!(
-            "|{at_m:.1}|{error_mm:.1}|{gap_deg:.2}|`{}`|{:.2}|{:.2}|{:.1}|{:.1}|{:.2}|{:.2}|{:.3}|{:.3}|{:.3}|{:.3}|{:.2}|{:.2}|",
+            "|{at_m:.1}|{error_mm:.1}|{gap_deg:.2}|{:.2}|`{}`|{:.2}|{:.2}|{:.1}|{:.1}|{:.2}|{:.2}|{:.3}|{:.3}|{:.3}|{:.3}|{:.2}|{:.2}|",
+            1e3 * planner.predictor().errors.range_sd_m,
             command.trim_end_matches(" --device sim"),
             row.scan_s,
             truth.scan_s,

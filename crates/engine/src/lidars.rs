@@ -53,7 +53,7 @@ pub static VLP_32C: LidarSheet = LidarSheet {
     ..of_model("vlp32c", &models::VLP_32C, PatternSensor::Vlp32c)
 };
 /// HDL-64E S2.
-static HDL_64E: LidarSheet = LidarSheet {
+pub static HDL_64E: LidarSheet = LidarSheet {
     name: "hdl64e",
     title: "HDL-64E",
     model: None,

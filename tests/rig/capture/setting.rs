@@ -45,6 +45,9 @@ pub struct Setting {
     pub lidar_rpm: u32,
     /// Radius in metres of a hollow sphere about the tilt axis; `None` is the hall.
     pub sphere_m: Option<f64>,
+    /// Standard deviation of ranges in metres, which the lidar's settings state; `None` has only
+    /// the steps of the packets.
+    pub range_sd_m: Option<f64>,
 }
 
 /// Packets that the network loses.
@@ -116,6 +119,7 @@ impl Default for Setting {
             poll_period: None,
             lidar_rpm: 600,
             sphere_m: None,
+            range_sd_m: None,
         }
     }
 }

@@ -52,6 +52,8 @@ pub(crate) fn width(text: &str) -> f64 {
 
 const HEIGHT: f64 = 12.0;
 const AWAY: f64 = 8.0;
+/// Free at both sides of a label: two in a row would read as one number.
+const BESIDE: f64 = 2.0;
 
 /// Position of the label for the mark at (`x`, `y`): the first place inside `room` that is free of
 /// `taken`.
@@ -83,8 +85,13 @@ pub(crate) fn place(
             right: left + wide,
             bottom: middle + HEIGHT / 2.0,
         };
-        let free = area.within(room) && !taken.iter().any(|other| area.meets(other));
-        free.then_some((area, (left, middle + 4.0)))
+        let apart = LabelBox {
+            left: area.left - BESIDE,
+            right: area.right + BESIDE,
+            ..area
+        };
+        let free = area.within(room) && !taken.iter().any(|other| apart.meets(other));
+        free.then_some((apart, (left, middle + 4.0)))
     })
 }
 

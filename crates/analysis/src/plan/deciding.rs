@@ -12,7 +12,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::places::one_per_cell;
-use super::row::{GapEffort, StartedScan, azimuths_at_starts};
+use super::row::GapEffort;
+use super::started::{StartedScan, azimuths_at_starts};
 use super::{PlannedPlace, PlannedScan, ScanPredictor};
 use crate::density::quantile;
 
@@ -30,6 +31,10 @@ const CERTAIN: f64 = 0.9;
 const START_CLIMBS: usize = 3;
 /// Steps of the search for a worse azimuth, revolutions.
 const CLIMB_STEPS: [f64; 4] = [1.0 / 12.0, 1.0 / 24.0, 1.0 / 48.0, 1.0 / 96.0];
+
+/// Part of the gap by which worse azimuths are sought as well: within it so many more directions
+/// have no point that their number rises towards the worst azimuth from farther away.
+const NARROWER: f64 = 0.8;
 
 /// Azimuths at the start that rough directions examine first, or up to twice as many.
 const SOME_STARTS: u32 = 8;
@@ -199,13 +204,14 @@ impl ScanPredictor {
         }
     }
 
-    /// `Some` if the gaps of a scan are within the limit at all azimuths of the lidar at the start.
+    /// The azimuths at the starts of the sweeps that were in doubt, if the gaps of a scan are
+    /// within the limit at all azimuths of the lidar at the start.
     pub(super) fn keeps<'a>(
         &'a self,
         scan: &PlannedScan,
         gap_deg: f64,
         examiners: &mut Examiners<'a>,
-    ) -> Option<()> {
+    ) -> Option<Vec<Vec<f64>>> {
         let Examiners {
             rough,
             even,
@@ -222,10 +228,12 @@ impl ScanPredictor {
             examined.sort_unstable_by_key(ExaminedStart::order);
             Some(examined)
         };
-        let mut decide = |azimuths: &[f64]| {
+        let mut decided = Vec::new();
+        let mut decide = |azimuths: Vec<f64>| {
             let deciding =
                 deciding.get_or_insert_with(|| Examiner::new(self.deciding().iter(), -MARGIN_SD));
-            let is_refused = deciding.refuses(&self.started_at(scan, azimuths), gap_deg);
+            let is_refused = deciding.refuses(&self.started_at(scan, &azimuths), gap_deg);
+            decided.push(azimuths);
             (!is_refused).then_some(())
         };
         let in_doubt = one_percent(even.places.len(), -DOUBT_SD);
@@ -233,7 +241,7 @@ impl ScanPredictor {
             let examined = rank(numbers, even)?;
             for worst in examined.iter().take(self.most_decided()) {
                 if worst.unseen.len() > in_doubt {
-                    decide(&azimuths_at_starts(scan, worst.number, count))?;
+                    decide(azimuths_at_starts(scan, worst.number, count))?;
                 }
             }
             Some(examined)
@@ -248,9 +256,30 @@ impl ScanPredictor {
         ranked.extend(decide_worst(passed.collect())?);
         ranked.sort_unstable_by_key(ExaminedStart::order);
         for azimuths in self.worse_starts(scan, &ranked, gap_deg) {
-            decide(&azimuths)?;
+            decide(azimuths)?;
         }
-        Some(())
+        let narrower_deg = NARROWER * gap_deg;
+        let ranked = self.ranked_starts(scan, narrower_deg);
+        for azimuths in self.worse_starts(scan, &ranked, narrower_deg) {
+            decide(azimuths)?;
+        }
+        Some(decided)
+    }
+
+    /// Azimuths at the start by the evenly spread directions that they leave without a point within
+    /// a gap, the worst first.
+    fn ranked_starts(&self, scan: &PlannedScan, gap_deg: f64) -> Vec<ExaminedStart> {
+        let of = GapEffort::full(scan).starts;
+        let examined = (0..of).into_par_iter().map(|number| {
+            let started = self.started(scan, number, of);
+            let unseen = self.places.iter().enumerate();
+            let unseen = unseen.filter(|(_, place)| !started.is_within(place, gap_deg));
+            let unseen = unseen.map(|(place, _)| place).collect();
+            ExaminedStart { number, unseen }
+        });
+        let mut ranked: Vec<ExaminedStart> = examined.collect();
+        ranked.sort_unstable_by_key(ExaminedStart::order);
+        ranked
     }
 
     /// Azimuths at the starts of the sweeps near the worst of those examined that leave more
@@ -318,31 +347,28 @@ impl ScanPredictor {
         })
     }
 
-    /// The gaps of the deciding directions, of a scan whose 99 % gap is near a known one.
+    /// The gaps of the deciding directions, of a scan whose 99 % gap is near a known one, at the
+    /// azimuths at which it was decided; without those, at the worst.
     pub(super) fn deciding_gaps(
         &self,
         scan: &PlannedScan,
         near_deg: f64,
         limit_deg: f64,
+        decided: &[Vec<f64>],
     ) -> DecidingGaps {
         let effort = GapEffort::full(scan);
         let of = effort.starts;
-        let examined = (0..of).into_par_iter().map(|number| {
-            let started = self.started(scan, number, of);
-            let unseen = self.places.iter().enumerate();
-            let unseen = unseen.filter(|(_, place)| !started.is_within(place, near_deg));
-            let unseen = unseen.map(|(place, _)| place).collect();
-            ExaminedStart { number, unseen }
-        });
-        let mut ranked: Vec<ExaminedStart> = examined.collect();
-        ranked.sort_unstable_by_key(ExaminedStart::order);
+        let ranked = self.ranked_starts(scan, near_deg);
         let narrowest = ranked.last().map_or(0, |examined| examined.number);
         let narrowest_deg = self.p99_deg(scan, effort, narrowest);
         let least_deg = limit_deg.min(CERTAIN * narrowest_deg);
-        let widest = ranked.iter().take(self.most_decided());
-        let numbers = widest.map(|examined| examined.number).chain([narrowest]);
-        let starts = numbers.map(|number| azimuths_at_starts(scan, number, of));
-        let starts = starts.chain(self.worse_starts(scan, &ranked, near_deg));
+        let mut starts = vec![azimuths_at_starts(scan, narrowest, of)];
+        if decided.is_empty() {
+            let widest = ranked.iter().take(self.most_decided());
+            starts.extend(widest.map(|worst| azimuths_at_starts(scan, worst.number, of)));
+            starts.extend(self.worse_starts(scan, &ranked, near_deg));
+        }
+        starts.extend_from_slice(decided);
         let mut found = DecidingGaps {
             p99_deg: 0.0,
             best_p99_deg: f64::INFINITY,

@@ -13,7 +13,9 @@ mod place;
 mod places;
 mod row;
 mod search;
+mod started;
 mod sweep;
+mod table;
 
 pub use budget::{ErrorBudget, ErrorModel, LinkTiming};
 pub use figure::figure;

@@ -1,7 +1,6 @@
 //! A planned scan and what it gives.
 
 use std::f64::consts::PI;
-use std::ops::RangeInclusive;
 use std::sync::OnceLock;
 
 use glam::DVec3;
@@ -10,9 +9,7 @@ use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::places::{climb, evenly_spread, random};
-use super::{
-    ErrorBudget, ErrorModel, PlanLidar, PlannedPlace, PlannedRays, StartedSweep, TiltSweep,
-};
+use super::{ErrorBudget, ErrorModel, PlanLidar, PlannedPlace, PlannedRays, TiltSweep};
 use crate::density::quantile;
 
 /// What a capture sets.
@@ -101,13 +98,6 @@ pub const ROW_BYTES: f64 = 29.0;
 const REPLAY_POINTS_S: f64 = 6.5e6;
 const REPLAY_S: f64 = 0.02;
 
-/// Counts of the encoder that the axis moves at the start before a cloud has points, and at the end
-/// without them: with slow ramps for some milliseconds, a part of a revolution of the lidar.
-const UNSEEN_COUNTS: f64 = 2.0;
-
-/// Sweeps whose gaps are computed; of more, gaps are at most as wide.
-const MOST_SWEEPS: usize = 8;
-
 /// Directions of the sphere, 2 deg apart; those in view are examined.
 const DIRECTIONS: u32 = 10_000;
 /// Random directions in view: if gaps are wider than all of theirs in 1 of 1000 directions, one so
@@ -116,9 +106,14 @@ const RANDOM_DIRECTIONS: usize = 6_905;
 /// Directions from which a wider gap is sought nearby.
 const CLIMBS: usize = 6;
 
-/// Ratios of a brief 99 % gap to the requested one that are near it: at other azimuths it may be
-/// wider by more than a tenth.
-const NEAR: RangeInclusive<f64> = 0.8..=1.1;
+/// Part of the requested gap from which on the 99 % gap of a choice binds it.
+const BINDING: f64 = 0.9;
+
+/// Revolutions of the lidar in the shortest sweep.
+fn revolutions(scan: &PlannedScan) -> f64 {
+    let shortest_s = scan.sweeps.iter().map(TiltSweep::duration_s);
+    shortest_s.fold(f64::INFINITY, f64::min) * scan.setting.rpm / 60.0
+}
 
 /// How finely gaps are looked for.
 #[derive(Clone, Copy, Debug)]
@@ -136,12 +131,6 @@ impl GapEffort {
         starts: 4,
     };
 
-    /// A row of a table, and what a capture gives: fewer azimuths than of the chosen row.
-    const CAPTURE: Self = Self {
-        stride: 1,
-        starts: 4,
-    };
-
     /// For the median, the 95 % gap and the widest of the chosen row.
     const CHOSEN: Self = Self {
         stride: 1,
@@ -152,32 +141,18 @@ impl GapEffort {
     /// azimuth at the start: at 10 revolutions that of 99 % by a tenth within 15 degrees of it, and
     /// by less than 1 % within half of a step of 40 azimuths.
     pub(super) fn full(scan: &PlannedScan) -> Self {
-        let shortest_s = scan.sweeps.iter().map(TiltSweep::duration_s);
-        let revolutions = shortest_s.fold(f64::INFINITY, f64::min) * scan.setting.rpm / 60.0;
         Self {
             stride: 1,
-            starts: (400.0 / revolutions).clamp(12.0, 40.0) as u32,
+            starts: (400.0 / revolutions(scan)).clamp(12.0, 40.0) as u32,
         }
     }
-}
 
-/// The rays of a scan with one of the azimuths of the lidar at the start.
-pub(super) struct StartedScan {
-    rays: PlannedRays,
-    sweeps: Vec<StartedSweep>,
-}
-
-impl StartedScan {
-    pub(super) fn gap_deg(&self, place: &PlannedPlace) -> f64 {
-        self.rays.gap_deg(&self.sweeps, place)
-    }
-
-    pub(super) fn gap_beyond_deg(&self, place: &PlannedPlace, least_deg: f64) -> f64 {
-        self.rays.gap_beyond_deg(&self.sweeps, place, least_deg)
-    }
-
-    pub(super) fn is_within(&self, place: &PlannedPlace, gap_deg: f64) -> bool {
-        self.rays.is_within(&self.sweeps, place, gap_deg)
+    /// A row of a table, and what a capture gives: fewer azimuths than of the chosen row.
+    fn capture(scan: &PlannedScan) -> Self {
+        Self {
+            stride: 1,
+            starts: if revolutions(scan) < 100.0 { 4 } else { 2 },
+        }
     }
 }
 
@@ -214,8 +189,12 @@ impl ScanPredictor {
         let place = |place| rays.place(place, tilts_deg);
         let places = evenly_spread(DIRECTIONS).filter(in_view).map(place);
         let random_places = random().filter(in_view).take(RANDOM_DIRECTIONS).map(place);
+        // One of so many then has its part of those that no scan comes near to. A VLP-32C does not
+        // for just 1 % of them.
+        let mut places: Vec<PlannedPlace> = places.collect();
+        places.sort_by(|a, b| a.least_chord().total_cmp(&b.least_chord()));
         Self {
-            places: places.collect(),
+            places,
             random_places: random_places.collect(),
             deciding: OnceLock::new(),
             lidar,
@@ -234,12 +213,21 @@ impl ScanPredictor {
     /// What a scan gives.
     #[must_use]
     pub fn row(&self, scan: &PlannedScan) -> PlanRow {
-        let brief_deg = self.brief_p99_deg(scan);
-        // Near the requested gap the azimuths are those that a choice was examined at.
-        let is_near = |limit_deg: &f64| NEAR.contains(&(brief_deg / limit_deg));
-        let gap_deg = self.gap_deg.filter(is_near).unwrap_or(brief_deg);
+        self.row_decided(scan, &[])
+    }
+
+    /// The same of a scan that keeps the requested gap, with the azimuths that decided on it.
+    pub(super) fn row_decided(&self, scan: &PlannedScan, decided: &[Vec<f64>]) -> PlanRow {
         let mut row = self.row_with(scan, GapEffort::CHOSEN);
-        let decided = self.deciding_gaps(scan, gap_deg, self.unseen_beyond_deg());
+        let beyond_deg = self.unseen_beyond_deg();
+        let at = |near_deg, azimuths| self.deciding_gaps(scan, near_deg, beyond_deg, azimuths);
+        let at_decided = self.gap_deg.filter(|_| !decided.is_empty());
+        let at_decided = at_decided.map(|gap_deg| (at(gap_deg, decided), BINDING * gap_deg));
+        // Azimuths that are worst for a much wider gap need not be for this one.
+        let decided = match at_decided {
+            Some((gaps, least_deg)) if gaps.p99_deg >= least_deg => gaps,
+            _ => at(self.brief_p99_deg(scan), &[]),
+        };
         row.gap_deg.p99 = decided.p99_deg;
         row.gap_mm.p99 = self.gap_mm(decided.p99_deg);
         row.best_start_p99_deg = decided.best_p99_deg;
@@ -253,7 +241,7 @@ impl ScanPredictor {
     /// The same with few azimuths at the start, several times as fast.
     #[must_use]
     pub fn capture_row(&self, scan: &PlannedScan) -> PlanRow {
-        self.row_with(scan, GapEffort::CAPTURE)
+        self.row_with(scan, GapEffort::capture(scan))
     }
 
     /// Gap beyond which a direction counts as one without a point, degrees: the requested one, or
@@ -347,11 +335,16 @@ impl ScanPredictor {
 
     /// The gap of 99 % of some of the directions with one of the azimuths at the start.
     pub(super) fn p99_deg(&self, scan: &PlannedScan, effort: GapEffort, start: u32) -> f64 {
+        self.quantile_deg(scan, effort, start, 0.99)
+    }
+
+    /// The same of another share.
+    fn quantile_deg(&self, scan: &PlannedScan, effort: GapEffort, start: u32, share: f64) -> f64 {
         let started = self.started(scan, start, effort.starts);
         let places = self.places.iter().step_by(effort.stride);
         let count = places.len();
-        // One more than 1 % of them, in order.
-        let wanted = count - (0.99 * count as f64).ceil() as usize + 1;
+        // One more than the others of them, in order.
+        let wanted = count - (share * count as f64).ceil() as usize + 1;
         let mut widest: Vec<f64> = Vec::with_capacity(wanted + 1);
         for place in places {
             let is_full = widest.len() == wanted;
@@ -406,44 +399,21 @@ impl ScanPredictor {
     /// The 99 % gap of a sixth of the directions, with few azimuths at the start.
     #[must_use]
     pub fn brief_p99_deg(&self, scan: &PlannedScan) -> f64 {
+        self.brief_gap_deg(scan, 0.99)
+    }
+
+    /// The same of another share.
+    #[must_use]
+    pub fn brief_gap_deg(&self, scan: &PlannedScan, share: f64) -> f64 {
         let starts = (0..GapEffort::BRIEF.starts).into_par_iter();
-        let p99_deg = starts.map(|start| self.p99_deg(scan, GapEffort::BRIEF, start));
-        p99_deg.reduce(|| 0.0, f64::max)
+        let gaps_deg = starts.map(|start| self.quantile_deg(scan, GapEffort::BRIEF, start, share));
+        gaps_deg.reduce(|| 0.0, f64::max)
     }
 
     /// The 99 % gap from every so many directions, at one azimuth.
     pub(super) fn rough_p99_deg(&self, scan: &PlannedScan, stride: usize) -> f64 {
         self.p99_deg(scan, GapEffort { stride, starts: 1 }, 0)
     }
-
-    /// Sweeps of a scan with one of so many azimuths at the start.
-    pub(super) fn started(&self, scan: &PlannedScan, start: u32, starts: u32) -> StartedScan {
-        self.started_at(scan, &azimuths_at_starts(scan, start, starts))
-    }
-
-    /// Sweeps of a scan with azimuths of the lidar at their starts, revolutions.
-    pub(super) fn started_at(&self, scan: &PlannedScan, starts: &[f64]) -> StartedScan {
-        let unseen_deg = UNSEEN_COUNTS * self.errors.count_deg;
-        let begin = |(sweep, start): (&TiltSweep, &f64)| {
-            StartedSweep::new(sweep, start.rem_euclid(1.0), unseen_deg)
-        };
-        StartedScan {
-            rays: self.rays_at(scan.setting.rpm),
-            sweeps: scan.sweeps.iter().zip(starts).map(begin).collect(),
-        }
-    }
-}
-
-/// One of so many choices of the azimuths at the starts of sweeps, revolutions: evenly spaced for
-/// the first sweep, and by the golden ratio for later ones, since the time between sweeps is not
-/// controlled.
-pub(super) fn azimuths_at_starts(scan: &PlannedScan, start: u32, starts: u32) -> Vec<f64> {
-    const GOLDEN: f64 = 0.618_033_988_749_895;
-    let first = f64::from(start) / f64::from(starts);
-    let sweeps = 0..scan.sweeps.len().min(MOST_SWEEPS);
-    sweeps
-        .map(|number| first + number as f64 * GOLDEN * (1.0 + f64::from(start)))
-        .collect()
 }
 
 #[cfg(test)]

@@ -1,11 +1,9 @@
-//! The search for a setting: a coarse grid for the table, and every setting in the order of its
-//! scan time for the choice.
+//! The search for a setting: every one in the order of its scan time.
 
 use rayon::prelude::*;
 
 use super::deciding::Examiners;
 use super::{PlanRow, PlannedScan, ScanPredictor};
-use crate::tradeoff::front::front;
 
 /// Requested limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -43,14 +41,10 @@ pub struct NearestScan {
     pub row: PlanRow,
 }
 
-/// Rows of a table, at most.
-const ROWS: usize = 12;
-/// Of so many directions one ranks the settings of a table: of fewer, slow settings look alike.
-const TABLE_STRIDE: usize = 12;
 /// Of so many directions one ranks settings of which the best are compared anew.
 const RANKING_STRIDE: usize = 31;
 /// Ratio of a gap to the least one that counts as reaching it.
-const NEARLY_LEAST: f64 = 1.04;
+pub(super) const NEARLY_LEAST: f64 = 1.04;
 /// What a limit is widened by where a choice by its own margin finds none.
 const MARGIN: f64 = 1.01;
 /// Ratio of a time to the shortest one that counts as reaching it.
@@ -65,51 +59,13 @@ const FINALISTS: (usize, usize) = (12, 2);
 /// Part of the given time below which scans are not compared for their density.
 const SHORT: f64 = 0.6;
 
-impl ScanPredictor {
-    /// Rows that no other scan beats in time, 99 % gap and error at once: the fastest of each of at
-    /// most 12 classes of gap, from the widest to the least that there is, in the order of time.
-    #[must_use]
-    pub fn table(&self, scans: &[PlannedScan]) -> Vec<PlanRow> {
-        let costs: Vec<Vec<f64>> = scans
-            .par_iter()
-            .map(|scan| {
-                let error = self.errors.budget(&self.lidar, &scan.sweeps).total;
-                vec![scan.scan_s, self.rough_p99_deg(scan, TABLE_STRIDE), error]
-            })
-            .collect();
-        let kept = front(&costs);
-        let mut best: Vec<(&PlannedScan, f64)> = scans
-            .iter()
-            .zip(&costs)
-            .zip(kept)
-            .filter_map(|((scan, costs), kept)| Some((scan, *costs.get(1)?)).filter(|_| kept))
-            .collect();
-        best.sort_by(|a, b| a.0.scan_s.total_cmp(&b.0.scan_s));
-        let gaps = || best.iter().map(|(_, gap)| *gap);
-        let widest = gaps().fold(0.0, f64::max);
-        let least = gaps().fold(f64::INFINITY, f64::min);
-        let class = |gap_deg: f64| {
-            let share = (widest / gap_deg).ln() / (widest / least).ln().max(1e-9);
-            (share * ROWS as f64).min(ROWS as f64 - 1.0) as usize
-        };
-        let mut fastest: [Option<&PlannedScan>; ROWS] = [None; ROWS];
-        for (scan, gap_deg) in best {
-            if let Some(place) = fastest.get_mut(class(gap_deg)) {
-                place.get_or_insert(scan);
-            }
-        }
-        let mut fastest: Vec<&PlannedScan> = fastest.into_iter().flatten().collect();
-        fastest.sort_by(|a, b| a.scan_s.total_cmp(&b.scan_s));
-        let rows = fastest.into_par_iter().map(|scan| self.capture_row(scan));
-        let rows: Vec<PlanRow> = rows.collect();
-        let costs = rows
-            .iter()
-            .map(|row| vec![row.scan_s, row.gap_deg.p99, row.error_mm.total]);
-        let kept = front(&costs.collect::<Vec<_>>());
-        let kept = rows.into_iter().zip(kept).filter(|(_, kept)| *kept);
-        kept.map(|(row, _)| row).collect()
-    }
+/// A scan that keeps a gap, and the azimuths at the starts of its sweeps that decided on it.
+struct DecidedScan<'a> {
+    scan: &'a PlannedScan,
+    azimuths: Vec<Vec<f64>>,
+}
 
+impl ScanPredictor {
     /// The fastest scan, to 1 %, within the limits, or a faster one of those `nearby`; with a limit
     /// of time only, the densest; with one of the error only, the densest of the fastest. `None` if
     /// there is none, or no limit.
@@ -153,10 +109,10 @@ impl ScanPredictor {
         scans.retain(|scan| scan.scan_s <= most_s);
         let mut examiners = self.examiners();
         let found = self.fastest_within(&scans, gap_deg, &mut examiners)?;
-        let mut faster = nearby(found);
-        faster.retain(|scan| scan.scan_s < found.scan_s);
+        let mut faster = nearby(found.scan);
+        faster.retain(|scan| scan.scan_s < found.scan.scan_s);
         let faster = self.fastest_within(&self.accurate(&faster, limits), gap_deg, &mut examiners);
-        Some(self.row(faster.unwrap_or(found)))
+        Some(self.row_of(faster.as_ref().unwrap_or(&found)))
     }
 
     /// The fastest of the scans that come nearest to a limit which none keeps, if
@@ -180,7 +136,7 @@ impl ScanPredictor {
             let row = match limits.gap_deg {
                 None => self.row(fastest),
                 Some(gap_deg) => match self.fastest_within(&near, gap_deg, &mut self.examiners()) {
-                    Some(found) => self.row(found),
+                    Some(found) => self.row_of(&found),
                     None => self.densest(near, f64::INFINITY)?,
                 },
             };
@@ -214,7 +170,7 @@ impl ScanPredictor {
         let limit_deg = limits.gap_deg.filter(|gap_deg| least_deg <= *gap_deg);
         let most_deg = limit_deg.map_or(nearly_deg, |deg| nearly_deg.min(MARGIN * deg));
         let cheaper = self.fastest_within(&scans, most_deg, &mut self.examiners());
-        let cheaper = cheaper.map(|scan| self.row(scan));
+        let cheaper = cheaper.map(|found| self.row_of(&found));
         let cheaper = cheaper.filter(|row| limit_deg.is_none_or(|deg| row.gap_deg.p99 <= deg));
         Some(NearestScan {
             limit: LimitKind::Gap,
@@ -241,7 +197,7 @@ impl ScanPredictor {
         scans: &[&'a PlannedScan],
         gap_deg: f64,
         examiners: &mut Examiners<'s>,
-    ) -> Option<&'a PlannedScan> {
+    ) -> Option<DecidedScan<'a>> {
         // Ends of sweeps are whole counts of the encoder.
         let reach_rad = (gap_deg + self.errors.count_deg).to_radians();
         if examiners.refuse_all(reach_rad) {
@@ -257,15 +213,22 @@ impl ScanPredictor {
             });
             let mut hopeful: Vec<(usize, &PlannedScan)> = hopeful.collect();
             hopeful.sort_by_key(|(unseen, _)| *unseen);
-            let mut hopeful = hopeful.into_iter().take(HOPEFUL).map(|(_, scan)| scan);
-            if let Some(scan) = hopeful.find(|scan| self.keeps(scan, gap_deg, examiners).is_some())
-            {
-                return Some(scan);
+            let mut hopeful = hopeful.into_iter().take(HOPEFUL);
+            let found = hopeful.find_map(|(_, scan)| {
+                let azimuths = self.keeps(scan, gap_deg, examiners)?;
+                Some(DecidedScan { scan, azimuths })
+            });
+            if found.is_some() {
+                return found;
             }
             examiners.sort();
             slower = others;
         }
         None
+    }
+
+    fn row_of(&self, found: &DecidedScan<'_>) -> PlanRow {
+        self.row_decided(found.scan, &found.azimuths)
     }
 
     /// Of the fastest scans, which take nearly the same time, the densest.
@@ -297,7 +260,7 @@ impl ScanPredictor {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::super::lidar::tests::vlp_16;
     use super::super::{ErrorModel, LinkTiming, ScanSetting, TiltSweep};
     use super::*;
@@ -325,7 +288,7 @@ mod tests {
         }
     }
 
-    fn scans() -> Vec<PlannedScan> {
+    pub fn scans() -> Vec<PlannedScan> {
         let speeds = (0..9).map(|step| 5.0 * 1.4_f64.powi(step));
         let settings = speeds.flat_map(|speed| {
             [500.0, 5_000.0].into_iter().flat_map(move |accel| {
@@ -337,7 +300,7 @@ mod tests {
         settings.collect()
     }
 
-    fn predictor(gap_deg: Option<f64>) -> ScanPredictor {
+    pub fn predictor(gap_deg: Option<f64>) -> ScanPredictor {
         let errors = ErrorModel {
             range_m: 20.0,
             range_sd_m: 0.6e-3,
@@ -441,20 +404,6 @@ mod tests {
         }
         let free = predictor(None).choose(&scans(), none, &PlanLimits::default());
         assert_eq!(free, None);
-    }
-
-    #[test]
-    fn tables_are_fronts_in_the_order_of_time() {
-        let rows = predictor(None).table(&scans());
-        assert!((4..=ROWS).contains(&rows.len()), "{rows:?}");
-        for pair in rows.windows(2) {
-            let (a, b) = (&pair[0], &pair[1]);
-            assert!(a.scan_s < b.scan_s, "{a:?} {b:?}");
-            assert!(
-                b.gap_deg.p99 < a.gap_deg.p99 || b.error_mm.total < a.error_mm.total,
-                "{a:?} {b:?}"
-            );
-        }
     }
 
     /// At 20 deg/s and 600 rpm the tilt per revolution is the spacing of the lasers: all lines

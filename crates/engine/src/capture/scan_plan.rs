@@ -231,6 +231,19 @@ impl ScanPlanner {
     /// to a multiple or a part of the spacing of the lasers, and lines coincide.
     #[must_use]
     pub fn resonance(&self, request: &CaptureRequest, row: &PlanRow) -> Option<String> {
+        let shares = [(0.99, "99 %"), (0.95, "95 %")];
+        shares
+            .into_iter()
+            .find_map(|share| self.resonance_of(request, row, share))
+    }
+
+    /// The same by the gap of a share of the directions.
+    fn resonance_of(
+        &self,
+        request: &CaptureRequest,
+        row: &PlanRow,
+        (share, percent): (f64, &str),
+    ) -> Option<String> {
         let rpm = self.request.rpm.first().copied().unwrap_or_default();
         let at = |ratio: f64| {
             let request = CaptureRequest {
@@ -243,11 +256,10 @@ impl ScanPlanner {
         let excess = |[here, slower]: [(&ScanSetting, f64); 2]| {
             here.1 / slower.1 / (here.0.speed_deg_s / slower.0.speed_deg_s)
         };
+        let brief_deg = |scan: &PlannedScan| self.predictor.brief_gap_deg(scan, share);
         let here = at(1.0)?;
-        let here = (&here.setting, self.predictor.brief_p99_deg(&here));
-        let roughly = |scan: &PlannedScan| {
-            excess([here, (&scan.setting, self.predictor.brief_p99_deg(scan))])
-        };
+        let here = (&here.setting, brief_deg(&here));
+        let roughly = |scan: &PlannedScan| excess([here, (&scan.setting, brief_deg(scan))]);
         let slower = SLOWER.into_iter().filter_map(at);
         let slower = slower.map(|scan| (roughly(&scan), scan));
         let (rough, slower) = slower.max_by(|a, b| a.0.total_cmp(&b.0))?;
@@ -255,17 +267,21 @@ impl ScanPlanner {
             return None;
         }
         let slower = self.predictor.capture_row(&slower);
-        let both = [row, &slower].map(|row| (&row.setting, row.gap_deg.p99));
+        let gap_deg = |row: &PlanRow| match share < 0.99 {
+            true => row.gap_deg.p95,
+            false => row.gap_deg.p99,
+        };
+        let both = [row, &slower].map(|row| (&row.setting, gap_deg(row)));
         (excess(both) > RESONANCE).then(|| {
             format!(
-            "at {} deg/s and {} rpm many scan lines coincide ({:.2} deg of tilt per revolution): 99 % of directions have a point within \
-                 {:.2} deg, at {} deg/s within {:.2} deg",
-            trim(row.setting.speed_deg_s),
-            row.setting.rpm,
-            60.0 * row.setting.speed_deg_s / row.setting.rpm,
-            row.gap_deg.p99,
-            trim(slower.setting.speed_deg_s),
-            slower.gap_deg.p99,
+                "at {} deg/s and {} rpm many scan lines coincide ({:.2} deg of tilt per revolution): {percent} of directions have a point \
+                 within {:.2} deg, at {} deg/s within {:.2} deg",
+                trim(row.setting.speed_deg_s),
+                row.setting.rpm,
+                60.0 * row.setting.speed_deg_s / row.setting.rpm,
+                gap_deg(row),
+                trim(slower.setting.speed_deg_s),
+                gap_deg(&slower),
             )
         })
     }
