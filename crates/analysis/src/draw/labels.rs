@@ -115,5 +115,8 @@ mod tests {
         let (other, _) = place("abc", (20.0, 50.0), &ROOM, &[area]).unwrap();
         assert!(!other.meets(&area));
         assert!(place("abc", (50.0, 50.0), &ROOM, &[ROOM]).is_none());
+        // Free, but so near that both would read as one.
+        let (_, (left, _)) = place("abc", (38.5, 50.0), &ROOM, &[area]).unwrap();
+        assert_ne!(left, 46.5);
     }
 }

@@ -109,12 +109,6 @@ const CLIMBS: usize = 6;
 /// Part of the requested gap from which on the 99 % gap of a choice binds it.
 const BINDING: f64 = 0.9;
 
-/// Revolutions of the lidar in the shortest sweep.
-fn revolutions(scan: &PlannedScan) -> f64 {
-    let shortest_s = scan.sweeps.iter().map(TiltSweep::duration_s);
-    shortest_s.fold(f64::INFINITY, f64::min) * scan.setting.rpm / 60.0
-}
-
 /// How finely gaps are looked for.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct GapEffort {
@@ -131,6 +125,12 @@ impl GapEffort {
         starts: 4,
     };
 
+    /// A row of a table, and what a capture gives: fewer azimuths than of the chosen row.
+    const CAPTURE: Self = Self {
+        stride: 1,
+        starts: 4,
+    };
+
     /// For the median, the 95 % gap and the widest of the chosen row.
     const CHOSEN: Self = Self {
         stride: 1,
@@ -141,17 +141,11 @@ impl GapEffort {
     /// azimuth at the start: at 10 revolutions that of 99 % by a tenth within 15 degrees of it, and
     /// by less than 1 % within half of a step of 40 azimuths.
     pub(super) fn full(scan: &PlannedScan) -> Self {
+        let shortest_s = scan.sweeps.iter().map(TiltSweep::duration_s);
+        let revolutions = shortest_s.fold(f64::INFINITY, f64::min) * scan.setting.rpm / 60.0;
         Self {
             stride: 1,
-            starts: (400.0 / revolutions(scan)).clamp(12.0, 40.0) as u32,
-        }
-    }
-
-    /// A row of a table, and what a capture gives: fewer azimuths than of the chosen row.
-    fn capture(scan: &PlannedScan) -> Self {
-        Self {
-            stride: 1,
-            starts: if revolutions(scan) < 100.0 { 4 } else { 2 },
+            starts: (400.0 / revolutions).clamp(12.0, 40.0) as u32,
         }
     }
 }
@@ -241,7 +235,7 @@ impl ScanPredictor {
     /// The same with few azimuths at the start, several times as fast.
     #[must_use]
     pub fn capture_row(&self, scan: &PlannedScan) -> PlanRow {
-        self.row_with(scan, GapEffort::capture(scan))
+        self.row_with(scan, GapEffort::CAPTURE)
     }
 
     /// Gap beyond which a direction counts as one without a point, degrees: the requested one, or

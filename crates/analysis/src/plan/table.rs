@@ -7,14 +7,13 @@ use super::{PlanRow, PlannedScan, ScanPredictor};
 use crate::tradeoff::front::front;
 
 /// Rows at most.
-const ROWS: usize = 14;
+const ROWS: usize = 12;
 /// Of so many directions one ranks scans of alike times.
 const RANKING_STRIDE: usize = 12;
 /// Classes of time from the fastest scan to the slowest, each a constant factor longer than the one
-/// before: 10 % for times of 2 to 600 s.
+/// before: 12 % for times of 2 to 1800 s. Of each the scan with the least gap is compared with
+/// others by all directions.
 const TIMES: usize = 60;
-/// Of each so many are compared with others by all directions.
-const OF_EACH_TIME: usize = 1;
 
 /// The class of a value, of so many classes between two values, each wider by the same factor.
 fn class(value: f64, (from, to): (f64, f64), count: usize) -> usize {
@@ -24,9 +23,19 @@ fn class(value: f64, (from, to): (f64, f64), count: usize) -> usize {
     (share * count as f64).clamp(0.0, count as f64 - 1.0) as usize
 }
 
+/// The first of each class, of so many.
+fn first_of_each<T>(values: Vec<T>, count: usize, class_of: impl Fn(&T) -> usize) -> Vec<T> {
+    let mut taken = vec![false; count];
+    let is_first = |value: &T| {
+        let taken = taken.get_mut(class_of(value));
+        taken.is_some_and(|taken| !std::mem::replace(taken, true))
+    };
+    values.into_iter().filter(is_first).collect()
+}
+
 impl ScanPredictor {
     /// Rows that no other row beats in time, 99 % gap and error at once: the fastest scan of each
-    /// of 13 classes of gap, and of those that reach the least that there is, in the order of time.
+    /// of 11 classes of gap, and of those that reach the least that there is, in the order of time.
     #[must_use]
     pub fn table(&self, scans: &[PlannedScan]) -> Vec<PlanRow> {
         let ranked = scans.par_iter();
@@ -41,15 +50,8 @@ impl ScanPredictor {
             times().fold(f64::INFINITY, f64::min),
             times().fold(0.0, f64::max),
         );
-        let mut found = [0; TIMES];
-        ranked.retain(|(scan, _)| {
-            let count = found.get_mut(class(scan.scan_s, ends_s, TIMES));
-            count.is_some_and(|count| {
-                *count += 1;
-                *count <= OF_EACH_TIME
-            })
-        });
-        let compared = ranked.into_par_iter();
+        let of_time = |(scan, _): &(&PlannedScan, f64)| class(scan.scan_s, ends_s, TIMES);
+        let compared = first_of_each(ranked, TIMES, of_time).into_par_iter();
         let compared = compared.map(|(scan, _)| (scan, self.rough_p99_deg(scan, 1)));
         let mut compared: Vec<(&PlannedScan, f64)> = compared.collect();
         compared.sort_by(|a, b| a.0.scan_s.total_cmp(&b.0.scan_s));
@@ -58,17 +60,12 @@ impl ScanPredictor {
             gaps().fold(0.0, f64::max),
             gaps().fold(f64::INFINITY, f64::min),
         );
-        let mut taken = [false; ROWS];
-        let fastest = compared.into_iter().filter(|(_, gap_deg)| {
-            let number = match *gap_deg <= NEARLY_LEAST * ends_deg.1 {
-                true => ROWS - 1,
-                false => class(*gap_deg, ends_deg, ROWS - 1),
-            };
-            let taken = taken.get_mut(number);
-            taken.is_some_and(|taken| !std::mem::replace(taken, true))
-        });
-        let fastest: Vec<&PlannedScan> = fastest.map(|(scan, _)| scan).collect();
-        let rows = fastest.into_par_iter().map(|scan| self.capture_row(scan));
+        let of_gap = |(_, gap_deg): &(&PlannedScan, f64)| match *gap_deg {
+            least if least <= NEARLY_LEAST * ends_deg.1 => ROWS - 1,
+            gap_deg => class(gap_deg, ends_deg, ROWS - 1),
+        };
+        let fastest = first_of_each(compared, ROWS, of_gap).into_par_iter();
+        let rows = fastest.map(|(scan, _)| self.capture_row(scan));
         let rows: Vec<PlanRow> = rows.collect();
         let costs = rows
             .iter()

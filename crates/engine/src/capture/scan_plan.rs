@@ -6,8 +6,8 @@ mod report;
 mod settings;
 
 use analysis::plan::{
-    ErrorBudget, ErrorModel, LimitKind, LinkTiming, NearestScan, PlanLimits, PlanRow, PlannedScan,
-    ScanPredictor, ScanSetting, TiltSweep,
+    ErrorBudget, ErrorModel, GapQuantiles, LimitKind, LinkTiming, NearestScan, PlanLimits, PlanRow,
+    PlannedScan, ScanPredictor, ScanSetting, TiltSweep,
 };
 use drive::AxisConfig;
 use protocol::vlp16::Model;
@@ -231,18 +231,17 @@ impl ScanPlanner {
     /// to a multiple or a part of the spacing of the lasers, and lines coincide.
     #[must_use]
     pub fn resonance(&self, request: &CaptureRequest, row: &PlanRow) -> Option<String> {
-        let shares = [(0.99, "99 %"), (0.95, "95 %")];
-        shares
-            .into_iter()
-            .find_map(|share| self.resonance_of(request, row, share))
+        let by_99 = self.resonance_of(request, row, 99, |gaps| gaps.p99);
+        by_99.or_else(|| self.resonance_of(request, row, 95, |gaps| gaps.p95))
     }
 
-    /// The same by the gap of a share of the directions.
+    /// The same by the gap of so many percent of the directions.
     fn resonance_of(
         &self,
         request: &CaptureRequest,
         row: &PlanRow,
-        (share, percent): (f64, &str),
+        percent: u8,
+        gap_of: impl Fn(&GapQuantiles) -> f64,
     ) -> Option<String> {
         let rpm = self.request.rpm.first().copied().unwrap_or_default();
         let at = |ratio: f64| {
@@ -256,6 +255,7 @@ impl ScanPlanner {
         let excess = |[here, slower]: [(&ScanSetting, f64); 2]| {
             here.1 / slower.1 / (here.0.speed_deg_s / slower.0.speed_deg_s)
         };
+        let share = f64::from(percent) / 100.0;
         let brief_deg = |scan: &PlannedScan| self.predictor.brief_gap_deg(scan, share);
         let here = at(1.0)?;
         let here = (&here.setting, brief_deg(&here));
@@ -267,14 +267,11 @@ impl ScanPlanner {
             return None;
         }
         let slower = self.predictor.capture_row(&slower);
-        let gap_deg = |row: &PlanRow| match share < 0.99 {
-            true => row.gap_deg.p95,
-            false => row.gap_deg.p99,
-        };
+        let gap_deg = |row: &PlanRow| gap_of(&row.gap_deg);
         let both = [row, &slower].map(|row| (&row.setting, gap_deg(row)));
         (excess(both) > RESONANCE).then(|| {
             format!(
-                "at {} deg/s and {} rpm many scan lines coincide ({:.2} deg of tilt per revolution): {percent} of directions have a point \
+                "at {} deg/s and {} rpm many scan lines coincide ({:.2} deg of tilt per revolution): {percent} % of directions have a point \
                  within {:.2} deg, at {} deg/s within {:.2} deg",
                 trim(row.setting.speed_deg_s),
                 row.setting.rpm,
