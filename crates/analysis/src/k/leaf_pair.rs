@@ -267,9 +267,9 @@ fn recheck_masked<L: SignMask>(
         words &= words - 1;
         let mut rows = which.get(word).copied().unwrap_or_default();
         while rows != 0 {
-            // Two bits per row from the top, of two rows in turn, four lanes each.
-            let row = rows.leading_zeros() as usize + word / 4 % 2;
-            let lane = word / 8 * 4 + word % 4;
+            // Two bits per row from the top, of two rows in turn.
+            let row = rows.leading_zeros() as usize + word % 2;
+            let lane = word / 2;
             rows &= !(0x8000_u16 >> rows.leading_zeros());
             exact_test.recheck(edge, place_a + row, place_b + lane, false);
         }
