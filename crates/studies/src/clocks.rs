@@ -20,9 +20,23 @@ pub(crate) const CLOCKS: Study = Study {
         ("worst_error_us", "worst error, us"),
     ],
     trades: &[Trade::new(0, 2).by_group()],
-    finding: StudyFindings::ends_of_front,
+    finding,
     measure,
 };
+
+/// The worst errors of the clocks on the quietest and the busiest link.
+fn finding(findings: &StudyFindings) -> String {
+    let of = |clock: &str| {
+        let worst = |link: &str| findings.text(&format!("{link}, {clock}"), 2);
+        format!("{} to {}", worst("quiet NIC"), worst("busy USB-Ethernet"))
+    };
+    format!(
+        "The lower envelope of all packets errs by {} us, Olson's online clock by {}, a line by {}",
+        of("of the whole: lower envelope"),
+        of("online: Olson's"),
+        of("a line by least squares"),
+    )
+}
 
 /// Host and lidar times at the start, a minute apart.
 const BEGIN: Stamp<Host> = Stamp::from_nanos(1_700_002_800_000_000_000);

@@ -5,8 +5,7 @@ use std::hint::black_box;
 
 use analysis::plan::TiltSweep;
 use analysis::tradeoff::{
-    Bench, Measurement, Row, SeededNoise, Study, StudyError, StudyFindings, StudyRows, TimedChoice,
-    Trade,
+    Bench, Row, SeededNoise, Study, StudyError, StudyFindings, StudyRows, TimedChoice, Trade,
 };
 use scanner::AngleSample;
 use scanner::clock::Moment;
@@ -164,12 +163,7 @@ fn measure(bench: &mut Bench<'_>) -> Result<StudyRows, StudyError> {
 /// The curve of the commanded motion and straight lines, at the middle rate.
 fn finding(findings: &StudyFindings) -> String {
     const JITTER: usize = 2;
-    let worst_deg = |method: Method| {
-        let name = format!("200 Hz, {}", method.name());
-        let row = findings.rows.iter().find(|row| row.name == name);
-        let value = row.and_then(|row| row.values.get(JITTER));
-        value.map_or(f64::NAN, Measurement::middle)
-    };
+    let worst_deg = |method: Method| findings.value(&format!("200 Hz, {}", method.name()), JITTER);
     format!(
         "From 200 polls a second, each 0.1 ms off, the commanded motion is fitted within {:.4} deg; straight lines err by {:.3} deg",
         worst_deg(Method::Profile),

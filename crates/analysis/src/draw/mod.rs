@@ -14,7 +14,7 @@ pub use axis::Scale;
 /// Style of an SVG figure, for light and dark colour schemes.
 pub(crate) const STYLE: &str = "\
 .tv{font:12px system-ui,-apple-system,'Segoe UI',Roboto,'DejaVu Sans',sans-serif}\
-.tv-page{fill:#ffffff}.tv-ink{fill:#1f2328}.tv-soft{fill:#57606a}.tv-small{font-size:11px}.tv-title{font-size:14px;font-weight:600}\
+.tv-page{fill:#ffffff}.tv-ink{fill:#1f2328}.tv-soft{fill:#57606a}.tv-small{font-size:11px}.tv-title{font-size:13px;font-weight:600}\
 .tv-grid{stroke:#e1e5ea;stroke-width:1}.tv-frame{stroke:#8b949e;stroke-width:1;fill:none}\
 .tv-front{stroke:#57606a;stroke-width:1.5;stroke-dasharray:5 4;fill:none}\
 .tv-line{stroke-width:1;stroke-opacity:.45;fill:none}.tv-bar{stroke-width:1.2;stroke-opacity:.7}.tv-mark{stroke-width:1.8}\

@@ -160,6 +160,19 @@ impl StudyFindings {
         ends.collect::<Vec<String>>().join("; ")
     }
 
+    /// The middle of a value, for the finding of a study; no number if there is none.
+    #[must_use]
+    pub fn value(&self, row: &str, column: usize) -> f64 {
+        let found = self.rows.iter().find(|found| found.name == row);
+        found.map_or(f64::NAN, |row| middle(row, column))
+    }
+
+    /// The same as text.
+    #[must_use]
+    pub fn text(&self, row: &str, column: usize) -> String {
+        short(self.value(row, column))
+    }
+
     /// Rows on the front of a trade, of one group or of all, in the order of cost.
     fn on_front(&self, trade: &Trade, group: Option<&str>) -> Vec<&Row> {
         let rows = self.rows.iter().zip(self.front(trade));

@@ -80,7 +80,7 @@ impl Default for Caster {
             objects: Vec::new(),
             each: Vec::new(),
             leaves: Vec::new(),
-            tree: Bvh::over(&[], Quality::default()).0,
+            tree: Bvh::over(&[], Quality::OBJECTS).0,
             middle_m: DVec3::ZERO,
             level: Level::new(),
         }
@@ -125,7 +125,7 @@ impl Caster {
             *low = (DVec3::from_array(*low) - middle).to_array();
             *high = (DVec3::from_array(*high) - middle).to_array();
         }
-        let (tree, order) = Bvh::over(&boxes, Quality::default());
+        let (tree, order) = Bvh::over(&boxes, Quality::OBJECTS);
         caster.tree = tree;
         let sorted = order
             .iter()

@@ -109,10 +109,10 @@ impl Mesh {
             vertices,
             faces: kept,
             places: vec![u32::MAX; triangles.len()],
-            bvh: Bvh::over(&[], Quality::default()).0,
+            bvh: Bvh::over(&[], Quality::MESH).0,
             bounds: BoundingBox::EMPTY,
         };
-        mesh.arrange(Quality::default());
+        mesh.arrange(Quality::MESH);
         Ok(mesh)
     }
 

@@ -39,7 +39,7 @@ fn rebuilding_a_tree_does_not_depend_on_the_previous_one() {
     let (vertices, triangles) = ball(8, 12, 4.0, 0.3);
     let mesh = Mesh::new(&vertices, &triangles).unwrap();
     let printed = |mesh: &Mesh| format!("{mesh:?}");
-    assert_eq!(printed(&mesh.rebuilt(Quality::default())), printed(&mesh));
+    assert_eq!(printed(&mesh.rebuilt(Quality::MESH)), printed(&mesh));
     for quality in qualities() {
         let once = mesh.rebuilt(quality);
         let again = mesh
@@ -57,18 +57,18 @@ fn build_quality_changes_the_size_of_the_tree() {
     let (vertices, triangles) = ball(40, 60, 4.0, 0.3);
     let mesh = Mesh::new(&vertices, &triangles).unwrap();
     let nodes = |bins, sharing| mesh.rebuilt(Quality { bins, sharing }).nodes();
-    assert_eq!(nodes(16, 1), mesh.nodes());
+    assert_eq!(nodes(16, 4), mesh.nodes());
     // Every node but the root and every triangle is a child: with eight children per node there is
     // at least one node per eight triangles.
-    assert!(mesh.nodes() > mesh.triangles() / 8);
-    assert!(nodes(16, 4) < mesh.nodes() && nodes(16, 8) < nodes(16, 4));
+    assert!(nodes(16, 1) > mesh.triangles() / 8);
+    assert!(nodes(16, 4) < nodes(16, 1) && nodes(16, 8) < nodes(16, 4));
     // Out of bounds counts as the bound.
     assert_eq!(nodes(16, 16), nodes(16, usize::MAX));
     assert_eq!(nodes(64, 1), nodes(usize::MAX, 1));
     assert_eq!(nodes(0, 1), nodes(1, 1));
     let middle = mesh.rebuilt(Quality {
         bins: 0,
-        sharing: 1,
+        ..Quality::MESH
     });
     assert_ne!(format!("{middle:?}"), format!("{mesh:?}"));
 }
