@@ -7,5 +7,6 @@ mod faults;
 mod fuzz_regressions;
 mod patterns;
 mod plan;
+mod robot_model;
 mod simulate;
 mod uncertainty;

@@ -37,6 +37,9 @@ mod at {
     pub const GPS_TIME: usize = 22;
     pub const EXTRA: usize = 30;
 }
+/// Rows of LAZ written at once: eight chunks of 50,000, which the library compresses in parallel.
+const ROWS_OF_LAZ: usize = 400_000;
+
 /// Return number, and number of returns in the upper half.
 const ONE_OF_ONE: u8 = 0x11;
 const ONE_OF_TWO: u8 = 0x21;
@@ -45,7 +48,7 @@ const TWO_OF_TWO: u8 = 0x22;
 const SYNTHETIC: u8 = 1;
 
 /// Writes LAS or LAZ batch by batch to an output that seeks. LAZ writes in small pieces: use a
-/// buffered output.
+/// buffered output. It is compressed on all cores.
 ///
 /// Unlike with PLY, a file whose output failed is lost: its header cannot be completed.
 pub(super) type LasWriter<W> = FileSink<LasEncoder<W>>;
@@ -59,7 +62,37 @@ pub(super) struct LasEncoder<W: Write + Seek + Send + Sync + 'static> {
     fault: WriteFault,
     /// Before begin, or after finish.
     output: Option<ErrorHidingOutput<W>>,
-    open: Option<(las::Writer<ErrorHidingOutput<W>>, PointData)>,
+    open: Option<OpenFile<W>>,
+}
+
+/// A file with its header written, and the rows that are not.
+struct OpenFile<W: Write + Seek + Send + Sync + 'static> {
+    writer: las::Writer<ErrorHidingOutput<W>>,
+    rows: PointData,
+}
+
+impl<W: Write + Seek + Send + Sync + 'static> OpenFile<W> {
+    /// Writes the first rows: all that there are, or so many.
+    fn write_rows(&mut self, most: usize) -> las::Result<()> {
+        let end = most.saturating_mul(self.rows.record_len());
+        let later = self.rows.raw_bytes().get(end..).unwrap_or_default();
+        let later = later.to_vec();
+        self.rows.resize_for(self.rows.len().min(most));
+        self.writer.write_points(&self.rows)?;
+        let kept = later.len() / self.rows.record_len();
+        self.rows.resize_for(kept).copy_from_slice(&later);
+        Ok(())
+    }
+}
+
+/// The library completes a file that is dropped: also with the rows that are not written yet.
+impl<W: Write + Seek + Send + Sync + 'static> Drop for LasEncoder<W> {
+    fn drop(&mut self) {
+        if let Some(open) = &mut self.open {
+            // Nothing can report a failure any more.
+            let _ = open.write_rows(usize::MAX);
+        }
+    }
 }
 
 impl<W: Write + Seek + Send + Sync + 'static> LasWriter<W> {
@@ -89,9 +122,10 @@ impl<W: Write + Seek + Send + Sync + 'static> LasWriter<W> {
 
     /// Returns the output at its start; `None` if writing the header failed.
     #[cfg(test)]
-    fn into_inner(self) -> Option<W> {
-        let open = self.encoder.open.map(|(writer, _)| writer.into_inner());
-        let output = self.encoder.output.or_else(|| open?.ok());
+    fn into_inner(mut self) -> Option<W> {
+        let open = self.encoder.open.take();
+        let open = open.map(|file| file.writer.into_inner());
+        let output = self.encoder.output.take().or_else(|| open?.ok());
         output.map(ErrorHidingOutput::into_inner)
     }
 }
@@ -217,33 +251,42 @@ impl<W: Write + Seek + Send + Sync + 'static> FormatEncoder for LasEncoder<W> {
         self.flags = if metadata.simulated { SYNTHETIC } else { 0 };
         self.dual_return = metadata.dual_return;
         let header = self.header(metadata).map_err(EncodeError::library)?;
-        let slab = PointDataBuilder::new().for_header(&header).build();
+        let rows = PointDataBuilder::new().for_header(&header).build();
         if let Some(output) = self.output.take() {
             let writer = self.fault.outcome(las::Writer::new(output, header))?;
-            self.open = Some((writer, slab));
+            self.open = Some(OpenFile { writer, rows });
         }
         Ok(())
     }
 
     fn points(&mut self, batch: &Points) -> Result<(), EncodeError> {
-        let Some((writer, slab)) = &mut self.open else {
+        let Some(open) = &mut self.open else {
             return Err(EncodeError::library("the file is not open"));
         };
-        let row_bytes = slab.record_len();
-        let rows = slab.resize_for(batch.len());
-        rows.fill(0);
+        let row_bytes = open.rows.record_len();
+        let before = open.rows.len();
+        let rows = open.rows.resize_for(before + batch.len());
+        let new = rows.get_mut(before * row_bytes..).unwrap_or_default();
         let points = (self.flags, self.dual_return);
-        encode(batch, points, &self.extras, rows, row_bytes);
-        self.fault.outcome(writer.write_points(slab))
+        encode(batch, points, &self.extras, new, row_bytes);
+        let at_once = match self.format {
+            "laz" => ROWS_OF_LAZ,
+            _ => open.rows.len(),
+        };
+        while open.rows.len() >= at_once.max(1) {
+            self.fault.outcome(open.write_rows(at_once))?;
+        }
+        Ok(())
     }
 
     fn finish(&mut self, _: &Summary) -> Result<(), EncodeError> {
-        if let Some((writer, _)) = self.open.take() {
-            let output = writer.into_inner().and_then(|mut output| {
+        if let Some(mut open) = self.open.take() {
+            let written = open.write_rows(usize::MAX).and_then(|()| {
+                let mut output = open.writer.into_inner()?;
                 output.flush()?;
                 Ok(output)
             });
-            self.output = Some(self.fault.outcome(output)?);
+            self.output = Some(self.fault.outcome(written)?);
         }
         Ok(())
     }

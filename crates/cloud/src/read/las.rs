@@ -4,7 +4,7 @@ mod promises;
 
 use std::io::Cursor;
 
-use las::Reader;
+use las::{LazParallelism, Reader, ReaderOptions};
 
 use super::source::{Positions, ReadError};
 use crate::formats::Format;
@@ -29,7 +29,9 @@ pub(super) fn positions(format: Format, bytes: Vec<u8>) -> Result<Positions, Rea
     promises::kept(&bytes, promised)
         .map_err(|(offset, expected, got)| wrong(offset.min(size), expected, got))?;
     let batch = (BATCH_BYTES / u64::from(raw.point_data_record_length).max(1)).max(1);
-    let mut reader = Reader::new(Cursor::new(bytes)).map_err(no_las)?;
+    // On several cores the library panics at damaged bytes.
+    let options = ReaderOptions::default().with_laz_parallelism(LazParallelism::No);
+    let mut reader = Reader::with_options(Cursor::new(bytes), options).map_err(no_las)?;
     let count = reader.header().number_of_points();
     let mut positions = Positions::new();
     while (positions.len() as u64) < count {

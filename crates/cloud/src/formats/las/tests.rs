@@ -310,6 +310,24 @@ fn a_dropped_writer_leaves_a_file_of_its_batches() {
     assert_eq!(points_of(&mut reader).count(), 12);
 }
 
+/// Rows that wait until eight chunks of LAZ are full are not lost, in whatever batches they come.
+#[test]
+fn rows_of_several_slabs_of_laz_are_all_there_in_order() {
+    let batches = [cloud(399_999), cloud(3), cloud(450_000), cloud(1)];
+    let x_m: Vec<f64> = batches
+        .iter()
+        .flat_map(|batch| batch.x_m().to_vec())
+        .collect();
+    for bytes in both(&batches) {
+        let mut reader = Reader::new(Cursor::new(bytes)).unwrap();
+        let mut read = points_of(&mut reader);
+        for x_m in &x_m {
+            assert!((read.next().unwrap().unwrap().x - x_m).abs() <= 0.5001e-4);
+        }
+        assert!(read.next().is_none());
+    }
+}
+
 #[test]
 fn times_of_2099_keep_a_quarter_microsecond() {
     let bytes = &both(&[cloud(2)])[0];
