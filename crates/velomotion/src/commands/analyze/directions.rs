@@ -7,8 +7,8 @@ use analysis::figures::{Planes, SpherePoints};
 use glam::DVec3;
 use sim::patterns::Pattern;
 
-/// Most points of a pattern in memory: 0.8 GB, and as much again for their search.
-const MOST_STORED: u64 = 32_000_000;
+/// Most points of a pattern in memory: 0.4 GB, and twice as much again for their search.
+const MOST_STORED: u64 = 16_000_000;
 /// Points made at a time; few in tests, where there are several parts.
 const PART: usize = if cfg!(test) { 40_000 } else { 4_000_000 };
 /// Most points among which holes are looked for if not all are in memory.

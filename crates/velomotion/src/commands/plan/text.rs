@@ -1,5 +1,6 @@
 //! A plan for people.
 
+use analysis::plan::PlanRow;
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, Table};
 use engine::capture::scan_plan::{CommandRow, PlanReport};
@@ -22,9 +23,17 @@ pub(super) fn text(report: &PlanReport, written: Vec<String>) -> String {
         String::new(),
         table(report),
         String::new(),
-        "gap: angle to the nearest point, deg, for that share of the directions in view".to_owned(),
+        details(report),
+        String::new(),
+        "gap: distance to the nearest point, for that share of the directions in view".to_owned(),
         "error: 95 % of points are within it; n: sweeps, 2 with --both-ways".to_owned(),
         "cloud: millions of points, and MB".to_owned(),
+        wrapped(&format!(
+            "mean deg: between neighbouring lines; none: share of directions without a point within \
+             {} deg; start: best azimuth of the lidar at the start, which a capture does not control",
+            report.unseen_beyond_deg
+        )),
+        "parts of the error: one standard deviation each".to_owned(),
     ];
     if report.rows.iter().any(|row| !row.unmet.is_empty()) {
         lines.push("!: beyond the limit".to_owned());
@@ -78,24 +87,34 @@ const HEADINGS: [&str; 14] = [
     "cloud\nMB",
 ];
 
-/// The rows and the choice in the order of time.
-fn table(report: &PlanReport) -> String {
-    let mut table = Table::new();
+/// The rows and the choice in the order of time, and whether each is the choice.
+fn by_time(report: &PlanReport) -> Vec<(&CommandRow, bool)> {
     let chosen = report.chosen.as_ref();
     let is_other =
         |row: &&CommandRow| chosen.is_none_or(|chosen| chosen.row.setting != row.row.setting);
-    let mut rows: Vec<&CommandRow> = report.rows.iter().filter(is_other).chain(chosen).collect();
-    rows.sort_by(|a, b| a.row.scan_s.total_cmp(&b.row.scan_s));
-    let cells = rows.into_iter().map(|found| {
+    let others = report.rows.iter().filter(is_other).map(|row| (row, false));
+    let mut rows: Vec<_> = others.chain(chosen.map(|row| (row, true))).collect();
+    rows.sort_by(|(a, _), (b, _)| a.row.scan_s.total_cmp(&b.row.scan_s));
+    rows
+}
+
+/// The speed of a row, with a mark if it is the choice.
+fn speed(row: &PlanRow, is_chosen: bool) -> String {
+    let mark = if is_chosen { ">" } else { "" };
+    format!("{mark}{:.2}", row.setting.speed_deg_s)
+}
+
+/// Each setting, its time, gaps, error and sizes.
+fn table(report: &PlanReport) -> String {
+    let cells = by_time(report).into_iter().map(|(found, is_chosen)| {
         let CommandRow { row, unmet, .. } = found;
         let (setting, gap) = (&row.setting, &row.gap_deg);
-        let mark = if is_other(&found) { "" } else { ">" };
         let marked = |limit: &str, value: String| match unmet.iter().any(|it| it.limit == limit) {
             true => value + "!",
             false => value,
         };
         [
-            format!("{mark}{:.2}", setting.speed_deg_s),
+            speed(row, is_chosen),
             format!("{:.0}", setting.accel_deg_s2),
             format!("{:.0}", setting.rpm),
             setting.sweeps.to_string(),
@@ -112,9 +131,57 @@ fn table(report: &PlanReport) -> String {
             format!("{:.0}", megabytes(row.cloud_bytes)),
         ]
     });
+    formatted(HEADINGS, cells)
+}
+
+const DETAILS: [&str; 13] = [
+    "\ndeg/s",
+    "start\ndeg",
+    "mean\ndeg",
+    "none\n%",
+    "gap, mm\n50 %",
+    "\n95 %",
+    "\n99 %",
+    "\nworst",
+    "error\nrange",
+    "parts,\nazim",
+    "mm\ntilt",
+    "\nclock",
+    "\ndelay",
+];
+
+/// Of each setting the start, the density, the gaps at the distance and the parts of the error.
+fn details(report: &PlanReport) -> String {
+    let cells = by_time(report).into_iter().map(|(found, is_chosen)| {
+        let row = &found.row;
+        let (gap, error) = (&row.gap_mm, &row.error_mm);
+        [
+            speed(row, is_chosen),
+            format!("{:.0}", row.best_start_deg),
+            format!("{:.3}", row.resolution_deg),
+            format!("{:.2}", 100.0 * row.share_without_point),
+            format!("{:.0}", gap.p50),
+            format!("{:.0}", gap.p95),
+            format!("{:.0}", gap.p99),
+            format!("{:.0}", gap.worst),
+            format!("{:.1}", error.range.hypot(error.range_step)),
+            format!("{:.1}", error.azimuth),
+            format!("{:.1}", error.tilt),
+            format!("{:.2}", error.clock),
+            format!("{:.1}", error.delay),
+        ]
+    });
+    formatted(DETAILS, cells)
+}
+
+fn formatted<const N: usize>(
+    headings: [&str; N],
+    cells: impl Iterator<Item = [String; N]>,
+) -> String {
+    let mut table = Table::new();
     table
         .load_style(NOTHING)
-        .set_header(HEADINGS)
+        .set_header(headings)
         .add_rows(cells);
     for column in table.column_iter_mut() {
         column
