@@ -13,10 +13,10 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use sim::HeadRotation;
+use sim::Scene;
 use sim::effect_models::EffectsConfig;
 use sim::effects::{ConfiguredEffects, Effects, FiringEffectSet};
 use sim::motion::{AxisMotion, Sweeps};
-use sim::scenes;
 use sim::sensor::{LidarMount, LidarSensor, ReturnMode};
 use sim::simulate::{Polls, Simulation, SimulationEvent, SimulationSink};
 use units::{Gearing, Stamp};
@@ -83,7 +83,7 @@ fn sweep() -> Simulation {
         rest_s: 0.1,
     });
     Simulation {
-        scene: Arc::new(scenes::hall()),
+        scene: Arc::new(Scene::hall()),
         sensor: LidarSensor::vlp16(),
         returns: ReturnMode::Strongest,
         rotation: HeadRotation {

@@ -24,7 +24,7 @@ fn from_surface_m(scene: &sim::Scene, point: DVec3) -> f64 {
 #[test]
 #[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
 fn velodyne_decoder_places_simulated_points_on_the_scenes_surfaces() {
-    let hall = sim::scenes::hall();
+    let hall = sim::Scene::hall();
     for (model, theirs, unit_m, crossing_m) in [
         ("vlp16", "VLP16", 0.002, 0.0),
         ("hi-res", "PuckHiRes", 0.002, 0.0),

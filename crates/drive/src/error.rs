@@ -111,7 +111,7 @@ pub enum DriveError {
     /// The drive would not notice the host's death, and on a bus nothing else would stop the axis.
     #[error("no move: the drive refuses to monitor this program's heartbeat (object 1016:01)")]
     HostNotMonitored,
-    /// The unit refused the request in the handshake (RS232: `F` instead of `O`).
+    /// The drive refused the request in the handshake (RS232: `F` instead of `O`).
     #[error("{operation} on the drive link: expected the handshake O, got F {attempts} time(s)")]
     Handshake {
         /// The operation.

@@ -10,7 +10,7 @@ use calibration::{
     AccuracyStudy, AngleErrors, CalibrationRefusal, KnownCovariance, PointError, Scan, study,
 };
 use cloud::{Fields, Points};
-use protocol::vlp16::Model;
+use protocol::vlp16::LidarModel;
 use scanner::config::{DeviceCalibration, ParameterCovariance};
 use scanner::{Accuracy, TiltSource};
 
@@ -46,7 +46,7 @@ pub struct Studied {
     /// The result.
     pub study: AccuracyStudy,
     /// The lidar.
-    pub model: &'static Model,
+    pub model: &'static LidarModel,
     /// Whether a log is of simulated devices.
     pub simulated: bool,
     /// Whether the scanner is calibrated.
@@ -169,7 +169,7 @@ fn angle_errors(logs: &[ReadLog]) -> AngleErrors {
 }
 
 /// Values of parameters by name.
-fn corrections(calibration: &DeviceCalibration, model: &Model) -> Vec<(String, f64)> {
+fn corrections(calibration: &DeviceCalibration, model: &LidarModel) -> Vec<(String, f64)> {
     let axis = &calibration.axis_correction;
     let [ripple_sin, ripple_cos] = axis.ripple_deg;
     let mut values: Vec<(String, f64)> = [

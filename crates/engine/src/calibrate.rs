@@ -10,7 +10,7 @@ use calibration::{Calibration, CalibrationRefusal, NominalLaser, Scan};
 use cloud::Points;
 use cloud::mount::Mount;
 use lidar::Options;
-use protocol::vlp16::Model;
+use protocol::vlp16::LidarModel;
 use protocol::vlp16::models::ALL;
 use scanner::config::MountConfig;
 use scanner::{Accuracy, ScanConfig, TiltSource};
@@ -58,7 +58,7 @@ pub struct Calibrated {
     /// The result.
     pub calibration: Calibration,
     /// The lidar.
-    pub model: &'static Model,
+    pub model: &'static LidarModel,
     /// Whether a log is of simulated devices.
     pub simulated: bool,
     /// The logs with their shots.
@@ -68,7 +68,7 @@ pub struct Calibrated {
 /// A log that was read.
 pub(crate) struct ReadLog {
     pub scan: Scan,
-    pub model: &'static Model,
+    pub model: &'static LidarModel,
     pub config: ScanConfig,
     pub gear: f64,
     pub report: ScanReport,
@@ -215,7 +215,7 @@ pub(crate) fn read(
     })
 }
 
-pub(crate) fn tables(model: &Model) -> Vec<NominalLaser> {
+pub(crate) fn tables(model: &LidarModel) -> Vec<NominalLaser> {
     let lasers = model.lasers.iter().map(|laser| NominalLaser {
         elevation_deg: laser.elevation_deg,
         vertical_offset_m: laser.vertical_offset_m,

@@ -18,7 +18,7 @@ use units::ShortNumber;
 
 pub use axis::{AxisSettings, HomingSettings, LimitSwitchSettings, WithoutBrake};
 pub use device::{Device, DeviceKind, Devices};
-pub use lidar::{LidarName, LidarSettings};
+pub use lidar::LidarSettings;
 pub use mount::{MountSettings, load_mount};
 
 use crate::config::daemon::DaemonConfig;
@@ -83,7 +83,7 @@ impl Config {
         self.mount.check()?;
         let lidar = &self.lidar;
         between("lidar.range_sd_m", lidar.accuracy().range_sd_m, 0.0, 10.0)?;
-        let sheet = lidar.model.sheet();
+        let sheet = lidar.sheet;
         let rpm = sheet.check_rpm(lidar.rpm);
         rpm.map_err(|what| format!("lidar.rpm: {what}"))?;
         self.axis.check()?;

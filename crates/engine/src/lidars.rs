@@ -1,7 +1,7 @@
 //! Lidars that the axis may tilt, by their data sheets.
 
 use analysis::plan::{PlanLaser, PlanLidar};
-use protocol::vlp16::{Model, models};
+use protocol::vlp16::{LidarModel, models};
 use sim::patterns::{PatternSensor, PlanarFront};
 
 /// A lidar by its data sheet.
@@ -17,7 +17,7 @@ pub struct LidarSheet {
     /// Name by the maker.
     pub title: &'static str,
     /// Its packets, where velomotion reads them.
-    pub model: Option<&'static Model>,
+    pub model: Option<&'static LidarModel>,
     /// Its lasers, rates, aperture and ranges.
     pub sensor: PatternSensor,
     /// Steps of its ranges, metres.
@@ -88,12 +88,19 @@ pub static LIDARS: [&LidarSheet; 7] = [
     &VLP_16, &HI_RES, &HDL_32E, &VLP_32C, &HDL_64E, &UTM_30LX, &LMS_151,
 ];
 
+/// Names of those whose packets velomotion reads.
+pub static CAPTURED: [&str; 4] = [VLP_16.name, HI_RES.name, HDL_32E.name, VLP_32C.name];
+
 /// Range up to which the first standard deviation holds, metres.
 const NEAR_M: f64 = 10.0;
 /// Steps of the azimuths of rotating heads on the wire, degrees (VLP-16 manual 63-9243).
 const AZIMUTH_STEP_DEG: f64 = 0.01;
 
-const fn of_model(name: &'static str, model: &'static Model, sensor: PatternSensor) -> LidarSheet {
+const fn of_model(
+    name: &'static str,
+    model: &'static LidarModel,
+    sensor: PatternSensor,
+) -> LidarSheet {
     LidarSheet {
         name,
         title: model.name,
@@ -129,7 +136,7 @@ impl LidarSheet {
 
     /// The lidar of a model of packets.
     #[must_use]
-    pub fn of(model: &Model) -> Option<&'static Self> {
+    pub fn of(model: &LidarModel) -> Option<&'static Self> {
         let is_its = |lidar: &&'static Self| lidar.model.is_some_and(|its| its == model);
         LIDARS.into_iter().find(is_its)
     }
@@ -228,6 +235,7 @@ mod tests {
     fn sheets_agree_with_the_tables_of_patterns() {
         for lidar in LIDARS {
             assert_eq!(LidarSheet::named(lidar.name), Some(lidar));
+            assert_eq!(lidar.model.is_some(), CAPTURED.contains(&lidar.name));
             assert_eq!(
                 lidar.model.and_then(LidarSheet::of),
                 lidar.model.map(|_| lidar)

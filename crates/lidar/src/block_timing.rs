@@ -5,7 +5,7 @@
 //! gap. The azimuths show the jump, and the time of the next packet gives its duration. Nothing is
 //! extrapolated across missing packets.
 
-use protocol::vlp16::{BLOCKS, DataPacket, Model};
+use protocol::vlp16::{BLOCKS, DataPacket, LidarModel};
 use units::Span;
 
 use crate::continuity::BlindSector;
@@ -90,11 +90,11 @@ pub(crate) fn first_azimuth(packet: &DataPacket<'_>) -> i32 {
 }
 
 impl AzimuthSteps {
-    pub(crate) fn new(packet: &DataPacket<'_>, model: &Model, dual: bool) -> Self {
+    pub(crate) fn new(packet: &DataPacket<'_>, model: &LidarModel, dual: bool) -> Self {
         let mut steps = Self {
             azimuths: [0; BLOCKS],
             inner: [0; BLOCKS],
-            blocks: Model::distinct_blocks(dual),
+            blocks: LidarModel::distinct_blocks(dual),
             period_ns: i64::from(model.block_period_ns()),
             least_cdeg: 0,
             usual_cdeg: None,

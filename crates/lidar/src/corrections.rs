@@ -2,7 +2,7 @@
 //!
 //! It holds the origin and direction of each beam in the sensor's frame, and its range offset.
 
-use protocol::vlp16::{Laser, Model};
+use protocol::vlp16::{Laser, LidarModel};
 
 /// Corrections of one laser, in place of the model's table.
 ///
@@ -66,9 +66,9 @@ impl From<&Laser> for LaserCorrection {
     }
 }
 
-impl From<&Model> for Corrections {
+impl From<&LidarModel> for Corrections {
     /// The corrections of a sensor by its model's table.
-    fn from(model: &Model) -> Self {
+    fn from(model: &LidarModel) -> Self {
         Self {
             lasers: model.lasers.iter().map(LaserCorrection::from).collect(),
         }

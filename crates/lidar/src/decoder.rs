@@ -5,7 +5,7 @@
 
 use core::ptr;
 
-use protocol::vlp16::{DATA_LEN, DataPacket, Model, PositionPacket, ReturnMode};
+use protocol::vlp16::{DATA_LEN, DataPacket, LidarModel, PositionPacket, ReturnMode};
 use units::{Host, Lidar, Span, Stamp};
 
 use crate::block_timing::{AzimuthSteps, BlockTiming, Successor, SuccessorLink, first_azimuth};
@@ -45,7 +45,7 @@ struct PendingPacket {
     start: Stamp<Lidar>,
     host: Stamp<Host>,
     dual: bool,
-    model: Option<&'static Model>,
+    model: Option<&'static LidarModel>,
 }
 
 impl PendingPacket {
@@ -288,7 +288,7 @@ impl PacketDecoder {
         self.tables = Some(tables);
     }
 
-    fn tables_for(&mut self, model: &'static Model) -> Box<ModelTables> {
+    fn tables_for(&mut self, model: &'static LidarModel) -> Box<ModelTables> {
         let corrections = self.options.corrections.as_deref();
         let fitting = corrections.filter(|corrections| fits(corrections, model));
         self.stats.corrections_refused = match (corrections, fitting) {
@@ -362,7 +362,7 @@ impl PacketDecoder {
 
     fn count(
         &mut self,
-        model: &'static Model,
+        model: &'static LidarModel,
         steps: &AzimuthSteps,
         link: SuccessorLink,
         next: Option<Successor>,

@@ -2,7 +2,7 @@
 //!
 //! Points are computed on request, so times alone cost no geometry.
 
-use protocol::vlp16::{ChannelReturn, Model};
+use protocol::vlp16::{ChannelReturn, LidarModel};
 use units::{Lidar, Span, Stamp};
 
 use crate::geometry::LaserRay;
@@ -118,7 +118,7 @@ pub struct Firing<'a> {
     /// Rate of the azimuth in degrees per second.
     pub azimuth_rate_deg_s: f64,
     /// The decoded model.
-    pub model: &'static Model,
+    pub model: &'static LidarModel,
     pub(crate) rays: &'a [LaserRay],
     pub(crate) channels: FiringChannels<'a>,
     /// Start within its block, as a fraction of the block's period.

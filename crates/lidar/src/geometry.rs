@@ -6,7 +6,7 @@
 
 use core::array;
 
-use protocol::vlp16::{CHANNELS, Model};
+use protocol::vlp16::{CHANNELS, LidarModel};
 use units::Span;
 
 use crate::corrections::{Corrections, LaserCorrection};
@@ -59,7 +59,7 @@ pub(crate) struct ChannelTable {
 /// The lasers of a model in firing order.
 #[derive(Clone, Debug)]
 pub(crate) struct Geometry {
-    pub model: &'static Model,
+    pub model: &'static LidarModel,
     pub rays: Vec<LaserRay>,
     pub channels: ChannelTable,
 }
@@ -67,7 +67,7 @@ pub(crate) struct Geometry {
 impl Geometry {
     /// `corrections` must have as many lasers as the model: see [`fits`].
     pub(crate) fn new(
-        model: &'static Model,
+        model: &'static LidarModel,
         vertical_offsets: bool,
         corrections: Option<&Corrections>,
     ) -> Self {
@@ -108,12 +108,12 @@ impl Geometry {
 }
 
 /// Whether corrections have as many lasers as the model.
-pub(crate) fn fits(corrections: &Corrections, model: &Model) -> bool {
+pub(crate) fn fits(corrections: &Corrections, model: &LidarModel) -> bool {
     corrections.lasers.len() == model.lasers.len()
 }
 
 impl ChannelTable {
-    fn new(model: &Model, rays: &[LaserRay]) -> Self {
+    fn new(model: &LidarModel, rays: &[LaserRay]) -> Self {
         let lasers = rays.len().max(1);
         let laser = |channel: usize| channel % lasers;
         let of = |value: &dyn Fn(&LaserRay) -> f64| -> PerChannel<f64> {

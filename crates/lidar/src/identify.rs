@@ -7,7 +7,7 @@
 use core::ptr;
 
 use protocol::vlp16::{
-    DataPacket, Model,
+    DataPacket, LidarModel,
     models::{HDL_32E, VLP_16, VLP_32C},
 };
 use units::Span;
@@ -52,25 +52,25 @@ fn pairs_share_azimuths(packet: &DataPacket<'_>) -> bool {
 /// Identifies the model of one sensor.
 #[derive(Clone, Debug)]
 pub(crate) struct Identifier {
-    user_model: Option<&'static Model>,
+    user_model: Option<&'static LidarModel>,
     /// Model by spacing, for the named model that it contradicts.
     by_spacing: Option<SpacingFinding>,
     /// Whether a spacing confirmed the current model.
     confirmed: bool,
     /// Model by the last spacing, if it contradicts a confirmed model.
-    contradicted_by: Option<&'static Model>,
+    contradicted_by: Option<&'static LidarModel>,
     /// Model that explains the last spacings without loss, and their number.
-    regular: Option<(&'static Model, u8)>,
+    regular: Option<(&'static LidarModel, u8)>,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct SpacingFinding {
-    named: Option<&'static Model>,
-    model: &'static Model,
+    named: Option<&'static LidarModel>,
+    model: &'static LidarModel,
 }
 
 impl Identifier {
-    pub(crate) const fn new(user_model: Option<&'static Model>) -> Self {
+    pub(crate) const fn new(user_model: Option<&'static LidarModel>) -> Self {
         Self {
             user_model,
             by_spacing: None,
@@ -86,8 +86,8 @@ impl Identifier {
         &mut self,
         packet: &DataPacket<'_>,
         spacing: Option<Span>,
-    ) -> (Option<&'static Model>, Option<ModelConflict>) {
-        let named = self.user_model.or_else(|| Model::of(packet.product()));
+    ) -> (Option<&'static LidarModel>, Option<ModelConflict>) {
+        let named = self.user_model.or_else(|| LidarModel::of(packet.product()));
         if self
             .by_spacing
             .is_some_and(|by_spacing| !same(by_spacing.named, named))
@@ -128,9 +128,9 @@ impl Identifier {
     fn contradicting_model(
         &mut self,
         spacing: Span,
-        named: Option<&'static Model>,
+        named: Option<&'static LidarModel>,
         dual: bool,
-    ) -> Option<&'static Model> {
+    ) -> Option<&'static LidarModel> {
         let current = self.by_spacing.map(|by_spacing| by_spacing.model).or(named);
         match evidence_of(spacing, current, named, dual, self.confirmed)? {
             SpacingEvidence::Current => {
@@ -169,16 +169,16 @@ enum SpacingEvidence {
     /// The spacing of the current model.
     Current,
     /// The spacing of another model, and no multiple of the current one's.
-    Other(&'static Model),
+    Other(&'static LidarModel),
     /// A multiple of the current model's spacing, and the spacing of another model.
-    Lossless(&'static Model),
+    Lossless(&'static LidarModel),
 }
 
 /// Evidence of a spacing; `None` if it may be loss, a gap or a clock step.
 fn evidence_of(
     spacing: Span,
-    current: Option<&'static Model>,
-    named: Option<&'static Model>,
+    current: Option<&'static LidarModel>,
+    named: Option<&'static LidarModel>,
     dual: bool,
     confirmed: bool,
 ) -> Option<SpacingEvidence> {
@@ -186,7 +186,7 @@ fn evidence_of(
         return None;
     }
     let spacing_ns = spacing.as_nanos();
-    let fits = |model: &Model, packets: i64| {
+    let fits = |model: &LidarModel, packets: i64| {
         let off_by = spacing_ns - packets * i64::from(model.packet_period_ns(dual));
         off_by.abs() <= TOLERANCE_NS
     };
@@ -213,7 +213,7 @@ fn evidence_of(
     })
 }
 
-fn same(a: Option<&'static Model>, b: Option<&'static Model>) -> bool {
+fn same(a: Option<&'static LidarModel>, b: Option<&'static LidarModel>) -> bool {
     match (a, b) {
         (Some(a), Some(b)) => ptr::eq(a, b),
         (None, None) => true,
@@ -228,7 +228,7 @@ mod tests {
     use super::*;
 
     /// Model by the first spacing, if it contradicts the named model.
-    fn contradiction(us: i64, named: &'static Model, dual: bool) -> Option<&'static str> {
+    fn contradiction(us: i64, named: &'static LidarModel, dual: bool) -> Option<&'static str> {
         match evidence_of(Span::from_micros(us), Some(named), Some(named), dual, false)? {
             SpacingEvidence::Current | SpacingEvidence::Lossless(_) => None,
             SpacingEvidence::Other(model) => Some(model.name),
@@ -284,7 +284,7 @@ mod tests {
                 // Both stamps are truncated to microseconds.
                 let us = (first_ns + period_ns) / 1_000;
                 for named in [&VLP_16, &PUCK_HI_RES, &HDL_32E, &VLP_32C] {
-                    let timing = |model: &Model| model.packet_period_ns(dual);
+                    let timing = |model: &LidarModel| model.packet_period_ns(dual);
                     let is_multiple = timing(real).is_multiple_of(timing(named));
                     // Only a VLP-32C that loses every second packet resembles a VLP-16.
                     assert!(

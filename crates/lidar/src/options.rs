@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use protocol::vlp16::Model;
+use protocol::vlp16::LidarModel;
 
 use crate::corrections::Corrections;
 use crate::firing::Duplicates;
@@ -11,7 +11,7 @@ use crate::firing::Duplicates;
 #[derive(Clone, Debug)]
 pub struct Options {
     /// The model, which otherwise follows from the factory byte and the packet spacing.
-    pub model: Option<&'static Model>,
+    pub model: Option<&'static LidarModel>,
     /// Whether z includes the vertical offset of each laser (manual table 9-1).
     pub vertical_offsets: bool,
     /// Treatment of dual returns at one distance.

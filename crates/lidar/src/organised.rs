@@ -6,7 +6,7 @@
 
 use std::ptr;
 
-use protocol::vlp16::Model;
+use protocol::vlp16::LidarModel;
 use units::{Lidar, Span, Stamp};
 
 use crate::firing::{Firing, ReturnKind, SensorPoint};
@@ -28,7 +28,7 @@ pub struct FiringColumn {
 /// both layers.
 #[derive(Clone, Debug, Default)]
 pub struct OrganisedFrame {
-    model: Option<&'static Model>,
+    model: Option<&'static LidarModel>,
     columns: Vec<FiringColumn>,
     /// One `Vec` per layer, by firing and then by ring. The second is empty until it is needed.
     layers: [Vec<Option<SensorPoint>>; 2],
@@ -48,7 +48,7 @@ impl OrganisedFrame {
     pub fn push(&mut self, firing: &Firing<'_>) -> Result<(), LidarFrameError> {
         let model = *self.model.get_or_insert(firing.model);
         if !ptr::eq(model, firing.model) {
-            return Err(LidarFrameError::Model {
+            return Err(LidarFrameError::LidarModel {
                 expected: model.name,
                 got: firing.model.name,
             });

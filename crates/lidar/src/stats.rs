@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use protocol::vlp16::{Model, PacketError, Pps, Product, ReturnMode};
+use protocol::vlp16::{LidarModel, PacketError, Pps, Product, ReturnMode};
 use units::Span;
 
 /// Statistics of all payloads so far; firings and returns are those of emitted packets.
@@ -42,7 +42,7 @@ pub struct Stats {
     /// Returns with equal dual pairs counted once.
     pub unique_returns: u64,
     /// The decoded model.
-    pub model: Option<&'static Model>,
+    pub model: Option<&'static LidarModel>,
     /// The last product byte.
     pub product: Option<Product>,
     /// The last return mode.
@@ -77,11 +77,11 @@ pub struct ModelConflict {
     /// Product by the factory byte.
     pub product: Product,
     /// The user's model, which takes precedence.
-    pub user_model: Option<&'static Model>,
+    pub user_model: Option<&'static LidarModel>,
     /// Device time between the two packets.
     pub spacing: Span,
     /// The model with that packet period.
-    pub spacing_of: &'static Model,
+    pub spacing_of: &'static LidarModel,
 }
 
 impl Stats {
@@ -124,7 +124,7 @@ impl Stats {
 
 impl fmt::Display for ModelConflict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match Model::of(self.product) {
+        match LidarModel::of(self.product) {
             Some(named) => write!(f, "the packets' factory byte says {}", named.name)?,
             None => {
                 let byte = self.product.to_u8();

@@ -3,7 +3,7 @@
 //! The decoder takes its times from a [`Timekeeper`], so a survey and the later decoding agree
 //! exactly.
 
-use protocol::vlp16::{DATA_LEN, DataPacket, Model};
+use protocol::vlp16::{DATA_LEN, DataPacket, LidarModel};
 use units::{Host, Lidar, Span, Stamp};
 
 use crate::hours::HourUnwrapper;
@@ -39,7 +39,7 @@ pub(crate) struct PacketFacts {
     pub dual: bool,
     /// The model after this packet. It follows from the spacing before it, so it applies to the
     /// previous packet as well.
-    pub model: Option<&'static Model>,
+    pub model: Option<&'static LidarModel>,
     pub conflict: Option<ModelConflict>,
 }
 

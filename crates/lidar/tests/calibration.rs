@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 
 use lidar::calibration::{Ignored, from_ros_yaml, from_toml};
 use lidar::{Corrections, LaserCorrection};
-use protocol::vlp16::Model;
+use protocol::vlp16::LidarModel;
 use protocol::vlp16::models::{HDL_32E, PUCK_HI_RES, VLP_16, VLP_32C};
 
 /// One laser of a ROS file: angles in radians, lengths in metres.
@@ -21,7 +21,7 @@ struct RosLaser {
 
 impl RosLaser {
     /// A laser with individual deviations from its model.
-    fn invented(model: &Model, i: usize) -> Self {
+    fn invented(model: &LidarModel, i: usize) -> Self {
         let wobble = |scale: f64, k: usize| scale * ((i * 7 + k * 3) as f64).sin();
         let laser = model.lasers[i];
         Self {
@@ -62,7 +62,7 @@ impl RosLaser {
     }
 }
 
-fn ros_file(model: &Model, order: impl Iterator<Item = usize>) -> String {
+fn ros_file(model: &LidarModel, order: impl Iterator<Item = usize>) -> String {
     let mut text = "lasers:\n".to_owned();
     for i in order {
         text += &RosLaser::invented(model, i).yaml(i);
@@ -77,7 +77,7 @@ fn ros_file(model: &Model, order: impl Iterator<Item = usize>) -> String {
     text
 }
 
-const MODELS: [&Model; 4] = [&VLP_16, &PUCK_HI_RES, &HDL_32E, &VLP_32C];
+const MODELS: [&LidarModel; 4] = [&VLP_16, &PUCK_HI_RES, &HDL_32E, &VLP_32C];
 
 #[test]
 fn ros_files_place_points_like_the_ros_driver() {

@@ -11,7 +11,7 @@ use engine::reconstruct::tilt_table::tilt_source;
 use lidar::Duplicates;
 use numpy::PyReadonlyArray2;
 use protocol::record::Wire;
-use protocol::vlp16::Model;
+use protocol::vlp16::LidarModel;
 use pyo3::prelude::*;
 use scanner::config::MountConfig;
 use scanner::{AngleTable, TiltSource};
@@ -188,7 +188,7 @@ pub(crate) fn decoder_request(
     })
 }
 
-fn captured_model(name: &str) -> Result<&'static Model, BindingError> {
+fn captured_model(name: &str) -> Result<&'static LidarModel, BindingError> {
     let model = LidarSheet::named(name).and_then(|sheet| sheet.model);
     model.ok_or_else(|| {
         unknown(

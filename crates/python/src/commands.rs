@@ -86,7 +86,7 @@ pub(crate) fn plan<'py>(
         }
         let config = config::load(config.as_deref())?;
         let (name, device) = profile::choose(&config, device.as_deref())?;
-        let configured = config.lidar.model.sheet();
+        let configured = config.lidar.sheet;
         let lidar = lidar.as_deref().map_or(Ok(configured), lidar_sheet)?;
         let rpm = match rpm.is_empty() {
             true if lidar == configured => vec![config.lidar.rpm],

@@ -12,7 +12,7 @@ use cloud::{Fields, Points, Sink, SinkError};
 use common::{RECORDINGS, Recording};
 use drive::record::Wire;
 use lidar::{Corrections, Decoder, Duplicates, FrameCutter, Options};
-use protocol::vlp16::Model;
+use protocol::vlp16::LidarModel;
 use scanner::{Alignment, PlacementCounts, Placer};
 
 fn fast(
@@ -191,7 +191,7 @@ fn revolutions_end_where_the_firings_say() {
     }
 }
 
-fn moved(model: &Model) -> Corrections {
+fn moved(model: &LidarModel) -> Corrections {
     let mut corrections = Corrections::from(model);
     for (laser, i) in corrections.lasers.iter_mut().zip(0..) {
         let i = f64::from(i);

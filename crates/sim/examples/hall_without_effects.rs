@@ -9,9 +9,9 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use sim::HeadRotation;
+use sim::Scene;
 use sim::effects::{Effects, FiringEffectSet};
 use sim::motion::{AxisMotion, Sweeps};
-use sim::scenes;
 use sim::sensor::{LidarMount, LidarSensor, ReturnMode};
 use sim::simulate::{Polls, Simulation, SimulationEvent, SimulationSink};
 use units::{Gearing, Stamp};
@@ -60,7 +60,7 @@ fn main() -> ExitCode {
         return ExitCode::FAILURE;
     };
     let simulation = Simulation {
-        scene: Arc::new(scenes::hall()),
+        scene: Arc::new(Scene::hall()),
         sensor: LidarSensor::vlp16(),
         returns: ReturnMode::Strongest,
         rotation: HeadRotation {

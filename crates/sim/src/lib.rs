@@ -41,7 +41,6 @@ mod scene;
 #[cfg(feature = "effects")]
 pub mod scene_file;
 pub mod scenery;
-pub mod scenes;
 pub mod sensor;
 pub mod simulate;
 

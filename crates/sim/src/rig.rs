@@ -23,7 +23,6 @@ use crate::gear_ripple::GearRipple;
 use crate::lidar_clock::LidarClock;
 use crate::packet_maker::{HeadRotation, PacketMaker, SimulatedLidar};
 use crate::scene::Scene;
-use crate::scenes;
 use crate::sensor::{LidarMount, LidarSensor, ReturnMode};
 use shaft::{CYCLE, ShaftCourse};
 
@@ -85,7 +84,7 @@ impl RigConfig {
     #[must_use]
     pub fn new(start: Stamp<Host>) -> Self {
         Self {
-            scene: Arc::new(scenes::hall()),
+            scene: Arc::new(Scene::hall()),
             mount: LidarMount::above(0.06),
             drive: NodeConfig::default(),
             attached: Attachment::Usb,

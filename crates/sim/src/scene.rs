@@ -6,7 +6,7 @@
 use glam::DVec3;
 
 use crate::cast::{CastError, Caster, Hit, Object, Ray, Reach};
-use crate::scenery::{Material, MaterialAssignment, PlacedScenery};
+use crate::scenery::{Material, MaterialAssignment, PlacedScenery, Scenery, no_files, shipped};
 
 /// Objects and materials.
 #[derive(Clone, Debug, Default)]
@@ -26,6 +26,21 @@ pub struct SceneHit {
 }
 
 impl Scene {
+    /// A building hall of 30 x 20 x 6 m with six pillars, crates, a cabinet and a retroreflecting
+    /// sign: the scene of the rig.
+    ///
+    /// The scanner is near the middle, its tilt axis at the origin and the floor 1.2 m below.
+    /// Every surface is from 1 m to 20 m away, so every firing returns.
+    #[must_use]
+    pub fn hall() -> Self {
+        // A test checks that the scene exists.
+        let placed = shipped("hall")
+            .and_then(|text| Scenery::parse(text).ok()?.place(0, &mut no_files).ok());
+        placed
+            .and_then(|placed| Self::of(placed).ok())
+            .unwrap_or_default()
+    }
+
     /// An empty scene: no ray returns.
     #[must_use]
     pub fn new() -> Self {

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use engine::lidars::LidarSheet;
 use engine::reconstruct::source::SensorAddress;
+use protocol::vlp16::LidarModel;
 use scanner::Tolerance;
 use sim::effect_models::EffectTolerance;
 
@@ -16,8 +17,8 @@ mod requests;
 mod values;
 
 use values::{
-    acceleration, address_and_port, azimuth, deceleration, degrees, effect_or_all, lidar_sheet,
-    metres, millimetres, number, place, seconds, share, threads, two_times, whole,
+    acceleration, address_and_port, azimuth, captured_model, deceleration, degrees, effect_or_all,
+    lidar_sheet, metres, millimetres, number, place, seconds, share, threads, two_times, whole,
 };
 
 /// Version, and the commit of the build.
@@ -321,9 +322,10 @@ pub struct LidarArguments {
     /// Lidar to use if the recording holds several
     #[arg(long, value_name = "ADDRESS[:PORT]")]
     pub sensor: Option<SensorAddress>,
-    /// Model, if neither the factory byte nor the timing of the packets identifies it
-    #[arg(long, value_enum)]
-    pub model: Option<ModelName>,
+    /// Model, if neither the factory byte nor the timing of the packets identifies it; vlp16 is
+    /// also a Puck or Puck LITE, vlp32c an Ultra Puck
+    #[arg(long, value_parser = captured_model())]
+    pub model: Option<&'static LidarModel>,
     /// Calibration of the individual lidar: ROS YAML or TOML
     #[arg(long, value_name = "FILE")]
     pub calibration: Option<PathBuf>,
@@ -343,19 +345,6 @@ pub enum TimeArgument {
     Host,
     /// UTC, while the lidar's clock is locked to a satellite receiver
     Utc,
-}
-
-/// Lidar models.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum ModelName {
-    /// VLP-16, Puck, Puck LITE
-    Vlp16,
-    /// Puck Hi-Res
-    HiRes,
-    /// HDL-32E
-    Hdl32e,
-    /// VLP-32C, Ultra Puck
-    Vlp32c,
 }
 
 /// Treatment of two equal returns of one pulse.
@@ -403,9 +392,10 @@ pub struct Info {
     /// Logs, pcap or pcapng files; - is stdin
     #[arg(value_name = "FILE", required = true)]
     pub files: Vec<PathBuf>,
-    /// Model, if neither the factory byte nor the timing of the packets identifies it
-    #[arg(long, value_enum)]
-    pub model: Option<ModelName>,
+    /// Model, if neither the factory byte nor the timing of the packets identifies it; vlp16 is
+    /// also a Puck or Puck LITE, vlp32c an Ultra Puck
+    #[arg(long, value_parser = captured_model())]
+    pub model: Option<&'static LidarModel>,
 }
 
 /// `plan`.

@@ -30,6 +30,26 @@ macro_rules! objects {
     };
 }
 
+/// Purpose of a digital input, 1 to 10.
+#[must_use]
+pub const fn digital_input(number: u8) -> TypedObject<u16> {
+    TypedObject::new(
+        INPUT_6.address.index,
+        number,
+        "Configuration of a Digital Input",
+    )
+}
+
+/// Purpose of a digital output, 1 to 5; [`OUTPUT_BRAKE`] makes it the holding brake.
+#[must_use]
+pub const fn digital_output(number: u8) -> TypedObject<u16> {
+    TypedObject::new(
+        OUTPUT_1.address.index,
+        number,
+        "Configuration of a Digital Output",
+    )
+}
+
 objects! {
     /// Constant 0x00020192: servo drive.
     DEVICE_TYPE: u32 = 0x1000, 0, "Device Type";

@@ -16,6 +16,6 @@ pub use data::{
     ReturnMode,
 };
 pub use error::PacketError;
-pub use models::{Laser, Model};
+pub use models::{Laser, LidarModel};
 pub use nmea::{GpsPosition, NmeaError, NmeaFault, Rmc, UtcTime};
 pub use position::{POSITION_LEN, PositionPacket, Pps};

@@ -23,7 +23,7 @@ pub struct Laser {
 
 /// A sensor model.
 #[derive(Debug, PartialEq)]
-pub struct Model {
+pub struct LidarModel {
     /// Name by the manufacturer.
     pub name: &'static str,
     /// Its factory byte.
@@ -40,7 +40,7 @@ pub struct Model {
     pub distance_unit_m: f64,
 }
 
-impl Model {
+impl LidarModel {
     /// The model of a factory byte.
     #[must_use]
     pub fn of(product: Product) -> Option<&'static Self> {
@@ -80,10 +80,10 @@ impl ReturnMode {
 }
 
 /// All models.
-pub static ALL: [&Model; 4] = [&VLP_16, &PUCK_HI_RES, &HDL_32E, &VLP_32C];
+pub static ALL: [&LidarModel; 4] = [&VLP_16, &PUCK_HI_RES, &HDL_32E, &VLP_32C];
 
 /// VLP-16 and Puck LITE (manual 63-9243, table 9-1 and figure 9-9).
-pub static VLP_16: Model = Model {
+pub static VLP_16: LidarModel = LidarModel {
     name: "VLP-16",
     product: Product::Vlp16,
     lasers: &VLP_16_LASERS,
@@ -94,7 +94,7 @@ pub static VLP_16: Model = Model {
 };
 
 /// Puck Hi-Res (manual 63-9243, table 9-1): a VLP-16 with its lasers closer together.
-pub static PUCK_HI_RES: Model = Model {
+pub static PUCK_HI_RES: LidarModel = LidarModel {
     name: "Puck Hi-Res",
     product: Product::PuckHiRes,
     lasers: &PUCK_HI_RES_LASERS,
@@ -112,7 +112,7 @@ pub static PUCK_HI_RES: Model = Model {
 /// block plus 1.152 us per laser: one after the other, not in pairs, and from a timestamp written
 /// when the packet ended. The times here count from the first firing, like the other models' and as
 /// the maker's viewer has it.
-pub static HDL_32E: Model = Model {
+pub static HDL_32E: LidarModel = LidarModel {
     name: "HDL-32E",
     product: Product::Hdl32e,
     lasers: &HDL_32E_LASERS,
@@ -130,7 +130,7 @@ pub static HDL_32E: Model = Model {
 /// calibration says how high the rays start: all start in one point here. The manual's sample code
 /// multiplies the pair's time by the laser's number, which would make the last pair fire after the
 /// next firing began; pairs are counted here, as its figure 9-7 has it.
-pub static VLP_32C: Model = Model {
+pub static VLP_32C: LidarModel = LidarModel {
     name: "VLP-32C",
     product: Product::Vlp32c,
     lasers: &VLP_32C_LASERS,
@@ -235,7 +235,7 @@ const fn lasers<const N: usize>(
 }
 
 /// Checks the firing period against the printed recharge time.
-const fn timing_is_consistent(model: &Model, groups: u32, recharge_ns: u32) -> bool {
+const fn timing_is_consistent(model: &LidarModel, groups: u32, recharge_ns: u32) -> bool {
     groups * model.laser_period_ns + recharge_ns == model.firing_period_ns
         && model.lasers.len() * model.firings_per_block == CHANNELS
 }
@@ -326,8 +326,8 @@ mod tests {
     #[test]
     fn a_factory_byte_names_its_model() {
         for model in ALL {
-            assert!(core::ptr::eq(Model::of(model.product).unwrap(), model));
+            assert!(core::ptr::eq(LidarModel::of(model.product).unwrap(), model));
         }
-        assert!(Model::of(Product::Unknown(0x63)).is_none());
+        assert!(LidarModel::of(Product::Unknown(0x63)).is_none());
     }
 }

@@ -8,7 +8,7 @@ export interface Problem {
 }
 
 /** An entry of the drive's error history. */
-export interface Fault {
+export interface DriveFault {
   /** Four hexadecimal digits. */
   code: string;
   name?: string | null;
@@ -16,7 +16,7 @@ export interface Fault {
   remedy?: string | null;
 }
 
-export type DeviceState = "absent" | "connected" | "fault";
+export type DeviceHealth = "absent" | "connected" | "fault";
 export type Doing = "idle" | "connecting" | "homing" | "moving" | "capturing" | "stopping";
 
 export interface Status {
@@ -40,7 +40,7 @@ export interface Status {
     received?: number | null;
   };
   drive: {
-    state: DeviceState;
+    state: DeviceHealth;
     problem?: Problem | null;
     port?: string | null;
     link?: string | null;
@@ -48,10 +48,10 @@ export interface Status {
     referenced?: boolean | null;
     angle_deg?: number | null;
     speed_deg_s?: number | null;
-    faults: Fault[];
+    faults: DriveFault[];
   };
   lidar: {
-    state: DeviceState;
+    state: DeviceHealth;
     problem?: Problem | null;
     model?: string | null;
     return_mode?: string | null;
@@ -159,8 +159,8 @@ export interface ErrorBudget {
   total: number;
 }
 
-/** Plan of a capture. */
-export interface Plan {
+/** Estimate of a capture. */
+export interface CaptureEstimate {
   motor_rpm: number;
   cruise_deg_s: number;
   sweep_s: number;
@@ -256,7 +256,7 @@ export const api = {
   /** The scan can be restored for 10 s. */
   remove: (id: string) => sendRequest<unknown>("DELETE", `scans/${encodeURIComponent(id)}?undo=true`),
   restore: (id: string) => sendRequest<Scan>("POST", `scans/${encodeURIComponent(id)}/restore`),
-  plan: (request: CaptureRequest) => sendRequest<Plan>("GET", `plan?${query(request)}`),
+  plan: (request: CaptureRequest) => sendRequest<CaptureEstimate>("GET", `plan?${query(request)}`),
   capture: (request: CaptureRequest) => sendRequest<Scan>("POST", "captures", request),
   /** Stops any motion; of a capture the swept part is kept. */
   stop: (signal: AbortSignal) => sendRequest<unknown>("POST", "tilt/stop", undefined, signal),

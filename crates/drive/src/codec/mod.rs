@@ -1,4 +1,4 @@
-//! Encoding of requests and decoding of replies on each transport.
+//! Encoding of requests and decoding of replies on each link.
 //!
 //! USB carries EPOS2 frames, RS232 the same messages with a handshake ([`rs232`]), CAN carries SDO.
 //! Timing, matching and retries belong to [`crate::link`], other CAN services to
@@ -29,7 +29,7 @@ pub(crate) enum DecodedFrame {
     Reply(Reply),
     /// RS232: an expected handshake byte.
     Handshake,
-    /// RS232: the unit refused the request (`F`) and did not execute it.
+    /// RS232: the drive refused the request (`F`) and did not execute it.
     Refused,
     /// A frame of the bus other than an SDO response of this node.
     Bus(CanFrame),
@@ -41,15 +41,15 @@ pub(crate) enum DecodedFrame {
     Damaged,
 }
 
-/// Encoder and decoder of one transport.
+/// Encoder and decoder of one link.
 #[derive(Clone, Debug)]
 pub(crate) struct Codec {
     node: u8,
-    transport: Transport,
+    link: LinkCodec,
 }
 
 #[derive(Clone, Debug)]
-enum Transport {
+enum LinkCodec {
     Usb(UsbDecoder),
     Rs232(Rs232Master),
     Can(NodeId),
@@ -59,19 +59,19 @@ enum Transport {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Outgoing {
     pub bytes: Vec<u8>,
-    /// The bytes contain the request's body: the unit executes it no earlier than now.
+    /// The bytes contain the request's body: the drive executes it no earlier than now.
     pub is_body: bool,
 }
 
 impl Codec {
     pub fn new(link: DriveLink, node: u8) -> Self {
-        let transport = match link {
-            DriveLink::Usb => Transport::Usb(UsbDecoder::new()),
-            DriveLink::Rs232 => Transport::Rs232(Rs232Master::new()),
+        let link = match link {
+            DriveLink::Usb => LinkCodec::Usb(UsbDecoder::new()),
+            DriveLink::Rs232 => LinkCodec::Rs232(Rs232Master::new()),
             // `AxisConfig::check` rejects any other node id before anything is sent.
-            DriveLink::Can => Transport::Can(NodeId::new(node).unwrap_or(NodeId::MAX)),
+            DriveLink::Can => LinkCodec::Can(NodeId::new(node).unwrap_or(NodeId::MAX)),
         };
-        Self { node, transport }
+        Self { node, link }
     }
 
     #[cfg(test)]
@@ -86,14 +86,14 @@ impl Codec {
         access: ObjectAccess,
         deadline: Stamp<Host>,
     ) -> Vec<u8> {
-        match &mut self.transport {
-            Transport::Usb(_) => usb::to_bytes(&serial_frame(self.node, address, access))
+        match &mut self.link {
+            LinkCodec::Usb(_) => usb::to_bytes(&serial_frame(self.node, address, access))
                 .as_slice()
                 .to_vec(),
-            Transport::Rs232(master) => {
+            LinkCodec::Rs232(master) => {
                 master.begin(&serial_frame(self.node, address, access), deadline)
             }
-            Transport::Can(node) => {
+            LinkCodec::Can(node) => {
                 let request = access.to_sdo(address);
                 request.to_frame(*node).to_socketcan().to_vec()
             }
@@ -108,7 +108,7 @@ impl Codec {
         access: ObjectAccess,
         now: Stamp<Host>,
     ) -> Option<Vec<u8>> {
-        let Transport::Rs232(master) = &mut self.transport else {
+        let LinkCodec::Rs232(master) = &mut self.link else {
             return None;
         };
         Some(master.send_unsolicited(&serial_frame(self.node, address, access), now))
@@ -116,28 +116,28 @@ impl Codec {
 
     /// Bytes of the longest segment.
     pub fn segment_len(&self) -> usize {
-        match self.transport {
-            Transport::Usb(_) | Transport::Rs232(_) => MAX_SEGMENT,
-            Transport::Can(_) => SEGMENT_LEN,
+        match self.link {
+            LinkCodec::Usb(_) | LinkCodec::Rs232(_) => MAX_SEGMENT,
+            LinkCodec::Can(_) => SEGMENT_LEN,
         }
     }
 
     /// Bytes that one call of [`Codec::push`] takes.
     pub fn chunk_len(&self) -> usize {
-        match self.transport {
-            Transport::Usb(_) | Transport::Rs232(_) => 1,
-            Transport::Can(_) => SOCKETCAN_LEN,
+        match self.link {
+            LinkCodec::Usb(_) | LinkCodec::Rs232(_) => 1,
+            LinkCodec::Can(_) => SOCKETCAN_LEN,
         }
     }
 
     /// Processes a byte, or on CAN a frame, from the device; `None` inside an incomplete frame.
     pub fn push(&mut self, chunk: &[u8], now: Stamp<Host>) -> Option<DecodedFrame> {
-        match &mut self.transport {
-            Transport::Can(node) => Some(decode_can(*node, chunk)),
-            Transport::Usb(decoder) => decoder
+        match &mut self.link {
+            LinkCodec::Can(node) => Some(decode_can(*node, chunk)),
+            LinkCodec::Usb(decoder) => decoder
                 .push(*chunk.first()?)
                 .map(|frame| decode_serial(&frame)),
-            Transport::Rs232(master) => master.push(*chunk.first()?, now),
+            LinkCodec::Rs232(master) => master.push(*chunk.first()?, now),
         }
     }
 
@@ -178,16 +178,16 @@ impl Codec {
     }
 
     fn rs232(&self) -> Option<&Rs232Master> {
-        match &self.transport {
-            Transport::Rs232(master) => Some(master),
-            Transport::Usb(_) | Transport::Can(_) => None,
+        match &self.link {
+            LinkCodec::Rs232(master) => Some(master),
+            LinkCodec::Usb(_) | LinkCodec::Can(_) => None,
         }
     }
 
     fn rs232_mut(&mut self) -> Option<&mut Rs232Master> {
-        match &mut self.transport {
-            Transport::Rs232(master) => Some(master),
-            Transport::Usb(_) | Transport::Can(_) => None,
+        match &mut self.link {
+            LinkCodec::Rs232(master) => Some(master),
+            LinkCodec::Usb(_) | LinkCodec::Can(_) => None,
         }
     }
 }

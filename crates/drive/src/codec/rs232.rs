@@ -1,15 +1,15 @@
 //! The master's side of an EPOS2 RS232 dialogue: opcode, `O`, body, `O`; then `00`, `O`, answer,
 //! `O` (Communication Guide, "RS232 Communication").
 //!
-//! After a failure the unit may be anywhere in the dialogue. A flush of `F` bytes resets it: as a
+//! After a failure the drive may be anywhere in the dialogue. A flush of `F` bytes resets it: as a
 //! handshake `F` refuses, in a body it completes a frame with a wrong checksum, as an opcode it is
 //! unknown and refused. The line must then stay quiet for a while, so that no stale byte is taken
-//! for an answer. The guide itself only promises that the unit drops an incomplete frame after 500
-//! ms of silence and does not describe unknown opcodes. If a unit stays silent after two flushes,
+//! for an answer. The guide itself only promises that the drive drops an incomplete frame after 500
+//! ms of silence and does not describe unknown opcodes. If a drive stays silent after two flushes,
 //! the master therefore waits for the guide's silence instead.
 //!
 //! A request that must not wait, a stop on a line without answers, is sent unsolicited: flush,
-//! opcode, body and both handshakes at once. A unit whose answers are lost still executes it.
+//! opcode, body and both handshakes at once. A drive whose answers are lost still executes it.
 
 use std::collections::VecDeque;
 
@@ -28,7 +28,7 @@ pub(super) struct Rs232Master {
     deadline: Stamp<Host>,
     /// Accumulated cost of consecutive failures.
     failures: u32,
-    /// The unit has sent a byte in this dialogue.
+    /// The drive has sent a byte in this dialogue.
     has_input: bool,
 }
 
@@ -52,7 +52,7 @@ enum DialogueState {
 
 /// Longer than an answer takes through a serial adapter with a latency timer of 16 ms.
 const QUIET: Span = Span::from_millis(20);
-/// The unit's frame timeout plus 20 ms.
+/// The drive's frame timeout plus 20 ms.
 const SILENCE: Span = Span::from_millis(FRAME_TIMEOUT_MS as i64 + 20);
 /// Completes the longest body that `F` as a length announces: length, 71 words, checksum.
 const FLUSH_LEN: usize = 1 + 2 * (FAILED as usize + 1) + 2;
@@ -60,9 +60,9 @@ const FLUSH_LEN: usize = 1 + 2 * (FAILED as usize + 1) + 2;
 const FLUSH_TIME: Span = Span::from_millis(40);
 /// Cost of consecutive failures above which silence replaces the flush.
 const MAX_FAILURE_COST: u32 = 8;
-/// Cost of a dialogue without any byte from the unit: a flush may not reset it.
+/// Cost of a dialogue without any byte from the drive: a flush may not reset it.
 const COST_SILENT: u32 = 4;
-/// Cost of a dialogue with damaged bytes: the unit responds once the line is good again.
+/// Cost of a dialogue with damaged bytes: the drive responds once the line is good again.
 const COST_DAMAGED: u32 = 1;
 
 impl Rs232Master {
@@ -92,7 +92,7 @@ impl Rs232Master {
         vec![frame.opcode]
     }
 
-    /// Encodes a complete request for a unit in an unknown state; the unit's bytes are discarded.
+    /// Encodes a complete request for a drive in an unknown state; the drive's bytes are discarded.
     pub fn send_unsolicited(&mut self, frame: &SerialFrame, now: Stamp<Host>) -> Vec<u8> {
         self.out.clear();
         self.state = DialogueState::Quiet {
@@ -121,7 +121,7 @@ impl Rs232Master {
         Some(out)
     }
 
-    /// Processes a byte from the unit.
+    /// Processes a byte from the drive.
     pub fn push(&mut self, byte: u8, now: Stamp<Host>) -> Option<DecodedFrame> {
         use DialogueState::{Answer, AwaitAnswer, BodySent, Idle, OpcodeSent, Quiet};
         self.has_input = true;
@@ -161,7 +161,7 @@ impl Rs232Master {
                 Some(decode_serial(&frame))
             }
             (OpcodeSent | BodySent, FAILED) => {
-                // A desynchronised unit may refuse each byte of a body.
+                // A desynchronised drive may refuse each byte of a body.
                 self.drain_stale(now);
                 Some(DecodedFrame::Refused)
             }
@@ -169,7 +169,7 @@ impl Rs232Master {
         }
     }
 
-    /// Cancels the dialogue in progress and resets the unit.
+    /// Cancels the dialogue in progress and resets the drive.
     pub fn cancel(&mut self, now: Stamp<Host>) {
         if matches!(
             self.state,
@@ -219,7 +219,7 @@ impl Rs232Master {
         }
     }
 
-    /// Discards input until the line is quiet: the unit awaits an opcode but may still be sending.
+    /// Discards input until the line is quiet: the drive awaits an opcode but may still be sending.
     fn drain_stale(&mut self, now: Stamp<Host>) {
         let until = now.saturating_add(QUIET);
         self.state = DialogueState::Quiet { span: QUIET, until };

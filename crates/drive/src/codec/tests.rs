@@ -112,7 +112,7 @@ fn rs232_read_frames_match_golden_bytes() {
     let mut codec = Codec::new(DriveLink::Rs232, 1);
     assert_eq!(encode(&mut codec, STATUSWORD, ObjectAccess::Read), [0x10]);
     assert!(!codec.is_ready());
-    assert_eq!(codec.outgoing(at(0)), None, "not before the unit is ready");
+    assert_eq!(codec.outgoing(at(0)), None, "not before the drive is ready");
     assert_eq!(codec.push(&[OKAY], at(1)), Some(DecodedFrame::Handshake));
     let body = codec.outgoing(at(1)).unwrap();
     assert_eq!(body.bytes, [0x01, 0x41, 0x60, 0x00, 0x01, 0xAB, 0xF0]);
@@ -183,7 +183,7 @@ fn rs232_recovers_after_a_flush_and_silence() {
         if let Some(flush) = flush {
             assert!(flush.bytes.iter().all(|&b| b == FAILED));
         }
-        // The unit's last bytes are discarded, but awaited.
+        // The drive's last bytes are discarded, but awaited.
         assert_eq!(codec.push(&[OKAY], at(30)), Some(DecodedFrame::Handshake));
         codec.expire(at(49));
         assert!(!codec.is_ready());

@@ -50,7 +50,7 @@ pub(crate) enum RequestFailure {
     },
     /// Nothing arrived for this span, probes included.
     LinkLost { silent: Span },
-    /// The unit refused every attempt (RS232 handshake).
+    /// The drive refused every attempt (RS232 handshake).
     Refused { attempts: u8 },
 }
 

@@ -106,7 +106,7 @@ impl RequestLink {
         }
     }
 
-    /// The unit refused a request. As the refusal may be that of an older one, the link is
+    /// The drive refused a request. As the refusal may be that of an older one, the link is
     /// desynchronised.
     pub(super) fn handle_refusal(&mut self, now: Stamp<Host>) {
         self.has_input = true;
@@ -144,14 +144,14 @@ impl RequestLink {
             .active
             .and_then(|active| self.budget.damage_deadline(active.request.probe_timeout));
         let (may_retry, counted) = match damage_deadline {
-            // An RS232 unit that needs a longer pause does not answer before its end.
+            // An RS232 drive that needs a longer pause does not answer before its end.
             Some(end) => (
                 now.max(self.codec.deadline().unwrap_or(now)) < end,
                 probes.saturating_sub(1),
             ),
             None => (probes < MAX_PROBES, probes),
         };
-        // Such a unit is probed only after its pause.
+        // Such a drive is probed only after its pause.
         let next_probe = now.max(self.codec.deadline().unwrap_or(now));
         let may_be_silent = !self.has_input
             && !self.budget.has_damage()

@@ -114,7 +114,7 @@ pub struct DriveListener {
 
 impl DriveListener {
     /// Creates a listener for the drive with this node id. It also takes requests to node 0, which
-    /// every unit executes itself.
+    /// every drive executes itself.
     #[must_use]
     pub fn new(node: u8) -> Self {
         Self {

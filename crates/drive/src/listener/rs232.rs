@@ -1,6 +1,6 @@
 //! Passive decoder of an RS232 dialogue: separates handshake from bodies.
 //!
-//! A byte that does not fit ends the dialogue; the next opcode begins another, as for the unit. A
+//! A byte that does not fit ends the dialogue; the next opcode begins another, as for the drive. A
 //! handshake that is not in the log follows from the byte after it.
 
 use protocol::epos2::message::{
@@ -34,17 +34,17 @@ enum Awaiting {
     /// From the master: an opcode.
     #[default]
     Opcode,
-    /// From the unit: the handshake for this opcode.
+    /// From the drive: the handshake for this opcode.
     OpcodeHandshake(u8),
     /// From the master: the body.
     Body(BodyDecoder),
-    /// From the unit: the handshake for the body.
+    /// From the drive: the handshake for the body.
     BodyHandshake,
-    /// From the unit: the answer's opcode.
+    /// From the drive: the answer's opcode.
     AnswerOpcode,
     /// From the master: the handshake for the answer's opcode.
     AnswerOpcodeHandshake,
-    /// From the unit: the answer.
+    /// From the drive: the answer.
     Answer(BodyDecoder),
     /// From the master: the handshake for the answer.
     AnswerHandshake,
@@ -63,7 +63,7 @@ impl Rs232Listener {
     pub fn push(&mut self, direction: Direction, byte: u8) -> Option<SerialEvent> {
         match direction {
             Direction::ToDevice => self.push_from_master(byte),
-            Direction::FromDevice => self.push_from_unit(byte),
+            Direction::FromDevice => self.push_from_drive(byte),
         }
     }
 
@@ -97,7 +97,7 @@ impl Rs232Listener {
         None
     }
 
-    fn push_from_unit(&mut self, byte: u8) -> Option<SerialEvent> {
+    fn push_from_drive(&mut self, byte: u8) -> Option<SerialEvent> {
         let (next, event) = match (&mut self.awaiting, byte) {
             (Awaiting::OpcodeHandshake(opcode), OKAY) => {
                 (Awaiting::Body(BodyDecoder::new(*opcode)), None)

@@ -188,7 +188,7 @@ async fn configure_limit_switches(
     let functions = [(switches.negative, 0), (switches.positive, 1)];
     for (input, function) in functions {
         if let Some(input) = input {
-            write_if_different(ops, TypedObject::new(0x2070, input, "input"), function).await?;
+            write_if_different(ops, objects::digital_input(input), function).await?;
         }
     }
     let mask = switches.mask();
@@ -216,7 +216,7 @@ async fn configure_brake(ops: &Ops, brake: BrakeConfig) -> Result<(), DriveError
         .await?;
     ops.write_verified(objects::BRAKE_FALL, ms(brake.fall))
         .await?;
-    let output = TypedObject::new(0x2079, brake.output, "output");
+    let output = objects::digital_output(brake.output);
     write_if_different(ops, output, objects::OUTPUT_BRAKE).await?;
     let bit = 1 << objects::OUTPUT_BRAKE;
     ops.write_bits(objects::OUTPUT_MASK, bit, bit).await

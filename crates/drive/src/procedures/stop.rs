@@ -175,7 +175,7 @@ async fn diagnose(ops: &Ops, cause: DriveError) -> DriveError {
     match (cause, silence.filter(|_| is_held)) {
         (
             DriveError::Fault {
-                error: None | Some(DeviceError(0x8130)),
+                error: None | Some(DeviceError::CAN_LIFE_GUARD),
             }
             | DriveError::State { .. }
             | DriveError::NotTaken { .. }

@@ -4,7 +4,7 @@ use protocol::record::DriveLink;
 use units::{Host, Span, Stamp};
 
 use super::rig::Rig;
-use super::unit::Distortion;
+use super::test_drive::Distortion;
 use crate::{CommandOutcome, DriveError};
 use protocol::epos2::cia402::DeviceState;
 
@@ -49,14 +49,14 @@ fn damage_in_bursts_is_survived() {
             for (k, burst) in (0..).zip([2, 20, 50, 75, 100]) {
                 let mut rig = Rig::sweeping_on(link, Span::from_micros(600_000 + 7_310 * k));
                 let until = rig.now + Span::from_millis(burst);
-                rig.unit.distort = distorting(damage, rig.now, until);
+                rig.drive.distort = distorting(damage, rig.now, until);
                 let ended = rig.finish();
                 assert!(
                     matches!(ended, Ok(CommandOutcome::Arrived(_))),
                     "{link:?} {damage:?} for {burst} ms: {ended:?}"
                 );
                 // The first sample follows soon after. An RS232 handshake without an answer looks
-                // like a working unit.
+                // like a working drive.
                 let seen = rig.samples().into_iter().find(|s| s.answer > until);
                 let hole = seen.unwrap().answer - until;
                 let cut = matches!(damage, Damage::Half | Damage::Head);
@@ -76,7 +76,7 @@ fn damage_in_bursts_is_survived() {
 
 /// The sweep fails and the axis stops if it still receives: within 200 ms of the first recognised
 /// damage, later by one request timeout where the damage looks like a missing reply, and after a
-/// second where it looks like silence (RS232, whose unit waits for handshakes). Another 100 ms
+/// second where it looks like silence (RS232, whose drive waits for handshakes). Another 100 ms
 /// later the client knows whether the axis has stopped.
 #[test]
 fn continuous_damage_ends_the_sweep_in_time() {
@@ -84,7 +84,7 @@ fn continuous_damage_ends_the_sweep_in_time() {
         for damage in DAMAGES {
             let mut rig = Rig::sweeping_on(link, Span::from_millis(600));
             let (from, for_ever) = (rig.now, rig.now + Span::from_secs(100));
-            rig.unit.distort = distorting(damage, from, for_ever);
+            rig.drive.distort = distorting(damage, from, for_ever);
             let error = rig.finish().unwrap_err();
             let DriveError::NotStopped { cause, .. } = &error else {
                 panic!("{link:?} {damage:?}: {error}")
@@ -106,11 +106,11 @@ fn continuous_damage_ends_the_sweep_in_time() {
                 rig.now - stop
             );
             assert_ne!(
-                rig.unit.state(),
+                rig.drive.state(),
                 DeviceState::OperationEnabled,
                 "{link:?} {damage:?}: the drive is still enabled"
             );
-            assert!(rig.unit.is_at_rest(), "{link:?} {damage:?}: {error}");
+            assert!(rig.drive.is_at_rest(), "{link:?} {damage:?}: {error}");
         }
     }
 }
@@ -119,13 +119,13 @@ fn continuous_damage_ends_the_sweep_in_time() {
 const BLIND_STOP: Span = Span::from_millis(240);
 
 /// Silence gets a second, to the end of the probe under way; on RS232 a probe takes the 500 ms
-/// after which the unit drops a telegram.
+/// after which the drive drops a telegram.
 #[test]
 fn silence_ends_the_sweep_after_a_second() {
     for (link, most) in [(DriveLink::Usb, 1_100), (DriveLink::Rs232, 1_520)] {
         let mut rig = Rig::sweeping_on(link, Span::from_millis(600));
         let from = rig.now;
-        rig.unit.distort = Box::new(|_, _| Vec::new());
+        rig.drive.distort = Box::new(|_, _| Vec::new());
         let error = rig.finish().unwrap_err();
         let DriveError::NotStopped { cause, .. } = &error else {
             panic!("{link:?}: {error}")
@@ -144,7 +144,7 @@ fn silence_ends_the_sweep_after_a_second() {
 fn a_damaged_heartbeat_is_ignored() {
     let mut rig = Rig::sweeping_on(DriveLink::Can, Span::from_millis(600));
     let mut n = 0;
-    rig.unit.distort = Box::new(move |_, mut bytes| {
+    rig.drive.distort = Box::new(move |_, mut bytes| {
         if bytes[..2] == [0, 0] && bytes[2..4] == [0x07, 0x01] {
             n += 1;
             if n % 2 == 0 {

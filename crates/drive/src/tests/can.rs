@@ -7,7 +7,7 @@ use protocol::record::DriveLink;
 use units::{Host, Span, Stamp};
 
 use super::rig::{Rig, to};
-use super::unit::Fate;
+use super::test_drive::Fate;
 use crate::{
     AngleSource, AxisConfig, CommandOutcome, CommandProgress, DriveCommand, DriveError,
     Observation, ShaftSample,
@@ -26,9 +26,9 @@ fn homed() -> Rig {
 fn the_stream_is_sampled_at_1_khz_with_none_lost() {
     let mut rig = homed();
     let until = rig.now + Span::from_secs(60);
-    let before = rig.unit.bus.syncs.len();
+    let before = rig.drive.bus.syncs.len();
     rig.run(DriveCommand::Hold { until }).unwrap();
-    let syncs = &rig.unit.bus.syncs[before..];
+    let syncs = &rig.drive.bus.syncs[before..];
     let samples = rig.samples();
     assert!(samples.len() > 59_500, "{}", samples.len());
     assert!(
@@ -61,7 +61,7 @@ fn the_stream_continues_while_the_state_is_read() {
     assert!((905..=920).contains(&moving.len()), "{}", moving.len());
     // The position was not polled.
     let is_position_read = |(_, request): &(Stamp<Host>, SerialRequest)| matches!(request, SerialRequest::ReadObject(r) if r.address.index == 0x6064);
-    assert!(!rig.unit.requests.iter().any(is_position_read));
+    assert!(!rig.drive.requests.iter().any(is_position_read));
 }
 
 #[test]
@@ -69,7 +69,7 @@ fn a_drive_that_refuses_the_mapping_is_polled() {
     for refused in [(0x1A00, 2), (0x1A00, 0), (0x1800, 1), (0x1800, 2)] {
         let mut rig = can();
         let (index, sub) = refused;
-        rig.unit
+        rig.drive
             .on_write(index, sub, Fate::Refused(CommError::PDO_MAPPING));
         let Ok(CommandOutcome::Connected(connected)) = rig.run(DriveCommand::Connect) else {
             panic!("{:?}", rig.events.last())
@@ -85,7 +85,7 @@ fn a_drive_that_refuses_the_mapping_is_polled() {
 #[test]
 fn a_refused_inhibit_time_keeps_the_stream() {
     let mut rig = can();
-    rig.unit
+    rig.drive
         .on_write(0x1800, 3, Fate::Refused(CommError::PDO_MAPPING));
     let Ok(CommandOutcome::Connected(connected)) = rig.run(DriveCommand::Connect) else {
         panic!("{:?}", rig.events.last())
@@ -96,7 +96,7 @@ fn a_refused_inhibit_time_keeps_the_stream() {
 #[test]
 fn a_drive_that_does_not_monitor_the_host_is_not_moved() {
     let mut rig = can();
-    rig.unit
+    rig.drive
         .on_write(0x1016, 1, Fate::Refused(CommError::PDO_MAPPING));
     let Ok(CommandOutcome::Connected(connected)) = rig.run(DriveCommand::Connect) else {
         panic!("{:?}", rig.events.last())
@@ -113,7 +113,7 @@ fn a_drive_that_does_not_monitor_the_host_is_not_moved() {
 #[test]
 fn a_drive_that_keeps_its_reaction_to_a_lost_host_is_not_moved() {
     let mut rig = can();
-    rig.unit.on_write(0x6007, 0, Fate::Ignored);
+    rig.drive.on_write(0x6007, 0, Fate::Ignored);
     let error = rig.run(DriveCommand::Connect).unwrap_err();
     assert_eq!(
         error.to_string(),
@@ -124,7 +124,7 @@ fn a_drive_that_keeps_its_reaction_to_a_lost_host_is_not_moved() {
 #[test]
 fn a_stalled_stream_is_replaced_by_polls() {
     let mut rig = homed();
-    rig.unit.bus.copies = Box::new(|n| usize::from(!(300..600).contains(&n)));
+    rig.drive.bus.copies = Box::new(|n| usize::from(!(300..600).contains(&n)));
     rig.run(DriveCommand::Sweep(to(-15.0))).unwrap();
     let samples = rig.samples();
     for pair in samples.windows(2) {
@@ -137,7 +137,7 @@ fn a_stalled_stream_is_replaced_by_polls() {
 #[test]
 fn lost_and_repeated_stream_frames_do_not_affect_the_others() {
     let mut rig = homed();
-    rig.unit.bus.copies = Box::new(|n| match n % 17 {
+    rig.drive.bus.copies = Box::new(|n| match n % 17 {
         3 => 0,
         9 => 2,
         _ => 1,
@@ -178,7 +178,7 @@ fn logged_samples_have_the_drives_time() {
             assert_eq!(address.index, 0x1013);
             assert_eq!(*request, sample.request);
             let latched = sample.request + Span::from_micros(120);
-            assert_eq!(*value, rig.unit.device_us(latched));
+            assert_eq!(*value, rig.drive.device_us(latched));
             timed += 1;
         }
     }
@@ -202,18 +202,18 @@ fn the_drive_stops_when_the_host_dies() {
     let mut rig = homed();
     rig.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
     assert_eq!(rig.run_for(Span::from_millis(600)), None);
-    assert_eq!(rig.unit.get(0x1016, 1), 127 << 16 | 500);
+    assert_eq!(rig.drive.get(0x1016, 1), 127 << 16 | 500);
     // The host stops calling the client.
     let died = rig.now;
-    while rig.unit.state() == DeviceState::OperationEnabled {
+    while rig.drive.state() == DeviceState::OperationEnabled {
         rig.now += Span::from_millis(1);
-        rig.unit.live(rig.now);
+        rig.drive.live(rig.now);
         assert!(rig.now - died < Span::from_millis(550));
     }
     // The ramp from 1125 rpm takes 57 ms, then the standstill and the brake.
-    rig.unit.live(rig.now + Span::from_millis(150));
-    assert_eq!(rig.unit.state(), DeviceState::Fault);
-    assert_eq!(rig.unit.get(0x1003, 1), 0x8130);
+    rig.drive.live(rig.now + Span::from_millis(150));
+    assert_eq!(rig.drive.state(), DeviceState::Fault);
+    assert_eq!(rig.drive.get(0x1003, 1), 0x8130);
 }
 
 #[test]
@@ -240,12 +240,12 @@ fn the_host_may_be_silent_once_the_power_is_off() {
     rig.run(DriveCommand::Goto(to(0.0))).unwrap();
     rig.run(DriveCommand::Brake).unwrap();
     rig.now += Span::from_secs(30);
-    rig.unit.live(rig.now);
-    assert_ne!(rig.unit.state(), DeviceState::Fault);
+    rig.drive.live(rig.now);
+    assert_ne!(rig.drive.state(), DeviceState::Fault);
     rig.run(DriveCommand::Goto(to(10.0))).unwrap();
     rig.now += Span::from_secs(30);
-    rig.unit.live(rig.now);
-    assert_eq!(rig.unit.state(), DeviceState::Fault);
+    rig.drive.live(rig.now);
+    assert_eq!(rig.drive.state(), DeviceState::Fault);
 }
 
 #[test]
@@ -254,7 +254,7 @@ fn a_missing_heartbeat_in_mid_sweep_stops_the_axis() {
     rig.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
     assert_eq!(rig.run_for(Span::from_millis(600)), None);
     let at = rig.now;
-    rig.unit.bus.silent = true;
+    rig.drive.bus.silent = true;
     let error = rig.finish().unwrap_err();
     assert!(
         matches!(error, DriveError::NodeSilent { node: 1, .. }),
@@ -290,7 +290,7 @@ fn a_node_stopped_by_another_master_is_reported() {
     let mut rig = homed();
     rig.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
     assert_eq!(rig.run_for(Span::from_millis(600)), None);
-    rig.unit.node.nmt(NmtCommand::EnterPreOperational);
+    rig.drive.node.nmt(NmtCommand::EnterPreOperational);
     let error = rig.finish().unwrap_err();
     assert!(matches!(error, DriveError::NodeLeft { .. }), "{error}");
 }
@@ -298,7 +298,7 @@ fn a_node_stopped_by_another_master_is_reported() {
 #[test]
 fn a_restart_between_commands_prevents_the_next_move() {
     let mut rig = homed();
-    rig.unit.restart(rig.now);
+    rig.drive.restart(rig.now);
     rig.now += Span::from_millis(5);
     let error = rig.run(DriveCommand::Goto(to(0.0))).unwrap_err();
     assert!(matches!(error, DriveError::Restarted { .. }), "{error}");
@@ -339,12 +339,12 @@ fn replies_about_another_object_or_of_another_node_are_ignored() {
 #[test]
 fn a_late_reply_is_not_used_for_the_next_read_of_the_same_object() {
     let mut rig = can();
-    rig.unit
+    rig.drive
         .on_write(0x1A00, 0, Fate::Refused(CommError::PDO_MAPPING));
     rig.run(DriveCommand::Connect).unwrap();
     rig.run(DriveCommand::Home).unwrap();
     rig.forget();
-    rig.unit.hand = Box::new(|n, request| match request {
+    rig.drive.hand = Box::new(|n, request| match request {
         SerialRequest::ReadObject(read) if read.address.index == 0x6064 && n % 37 == 0 => {
             Fate::Late(Span::from_millis(150))
         }

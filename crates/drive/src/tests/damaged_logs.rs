@@ -21,7 +21,7 @@ type Record = (Direction, Vec<u8>, Stamp<Host>);
 struct Recorded {
     log: Vec<Record>,
     samples: Vec<ShaftSample>,
-    /// Start of the unit's clock.
+    /// Start of the drive's clock.
     started: Stamp<Host>,
 }
 
@@ -38,7 +38,7 @@ fn recorded(link: DriveLink) -> &'static Recorded {
         .unwrap();
         Recorded {
             samples: rig.samples(),
-            started: rig.unit.started,
+            started: rig.drive.started,
             log: rig.log,
         }
     })
@@ -79,15 +79,15 @@ fn a_clean_log_gives_the_clients_own_samples() {
 #[test]
 fn a_log_without_handshakes_gives_the_same_positions() {
     let Recorded { log, samples, .. } = recorded(DriveLink::Rs232);
-    for (is_of_unit, is_of_master) in [(true, false), (false, true), (true, true)] {
+    for (is_of_drive, is_of_master) in [(true, false), (false, true), (true, true)] {
         let is_kept = |(direction, bytes, _): &&Record| match direction {
             Direction::ToDevice => !is_of_master || *bytes != [OKAY],
-            Direction::FromDevice => !is_of_unit || *bytes != [OKAY],
+            Direction::FromDevice => !is_of_drive || *bytes != [OKAY],
         };
         let rest: Vec<Record> = log.iter().filter(is_kept).cloned().collect();
         assert!(rest.len() < log.len());
         let observed = listen(DriveLink::Rs232, &rest);
-        let what = format!("without the unit's: {is_of_unit}, the master's: {is_of_master}");
+        let what = format!("without the drive's: {is_of_drive}, the master's: {is_of_master}");
         assert_eq!(observed.len(), samples.len(), "{what}");
         for (client, log) in samples.iter().zip(&observed) {
             assert_eq!(client.position, log.position, "{what}");

@@ -8,7 +8,7 @@ use protocol::record::DriveLink;
 use units::{Degrees, Quadcounts, Rpm, Span};
 
 use super::rig::{Rig, to};
-use super::unit::Fate;
+use super::test_drive::Fate;
 use crate::error::Deviation;
 use crate::{AxisConfig, CommandOutcome, CommandProgress, DriveCommand, DriveError, MoveCommand};
 use protocol::epos2::cia402::DeviceState;
@@ -29,7 +29,7 @@ fn moving() -> Rig {
 fn a_fault_in_mid_sweep_is_named_and_the_axis_is_made_safe() {
     let mut rig = moving();
     let at = rig.now + Span::from_millis(10);
-    rig.unit.fault_at = Some((at, DeviceError::POSITIVE_LIMIT));
+    rig.drive.fault_at = Some((at, DeviceError::POSITIVE_LIMIT));
     assert_eq!(
         rig.finish(),
         Err(DriveError::Fault {
@@ -37,9 +37,9 @@ fn a_fault_in_mid_sweep_is_named_and_the_axis_is_made_safe() {
         })
     );
     assert!(rig.made_safe().is_some());
-    assert_eq!(rig.unit.state(), DeviceState::Fault);
+    assert_eq!(rig.drive.state(), DeviceState::Fault);
     let quick_stop = rig
-        .unit
+        .drive
         .requests
         .iter()
         .find(|(_, request)| is_write(request, 0x6040, 0x0B))
@@ -51,7 +51,7 @@ fn a_fault_in_mid_sweep_is_named_and_the_axis_is_made_safe() {
 #[test]
 fn a_blocked_axis_is_stopped_once_it_is_behind_its_plan() {
     let mut rig = Rig::homed();
-    rig.unit.node.block();
+    rig.drive.node.block();
     let began = rig.now;
     // In a faster move the drive's own following error of 3 deg comes first.
     let error = rig
@@ -73,13 +73,13 @@ fn a_blocked_axis_is_stopped_once_it_is_behind_its_plan() {
     let took = (rig.now - began).as_secs_f64();
     assert!(took < 0.5, "{took}");
     assert!(rig.made_safe().is_some());
-    assert_eq!(rig.unit.state(), DeviceState::SwitchOnDisabled);
+    assert_eq!(rig.drive.state(), DeviceState::SwitchOnDisabled);
 }
 
 #[test]
 fn a_fault_that_does_not_clear_ends_the_connection() {
     let mut rig = Rig::new(AxisConfig::default());
-    rig.unit.on_write(0x6040, 0, Fate::Ignored);
+    rig.drive.on_write(0x6040, 0, Fate::Ignored);
     assert_eq!(
         rig.run(DriveCommand::Connect),
         Err(DriveError::FaultStays {
@@ -95,7 +95,7 @@ fn a_fault_that_does_not_clear_ends_the_connection() {
 #[test]
 fn a_limit_switch_mask_that_is_not_accepted_prevents_moves() {
     let mut rig = Rig::new(AxisConfig::default());
-    rig.unit.on_write(0x2071, 4, Fate::Ignored);
+    rig.drive.on_write(0x2071, 4, Fate::Ignored);
     let error = rig.run(DriveCommand::Connect).unwrap_err();
     assert_eq!(
         error.to_string(),
@@ -106,7 +106,7 @@ fn a_limit_switch_mask_that_is_not_accepted_prevents_moves() {
 #[test]
 fn a_restart_between_commands_is_detected_before_the_next_move() {
     let mut rig = Rig::homed();
-    rig.unit.set(0x2071, 4, 8);
+    rig.drive.set(0x2071, 4, 8);
     assert!(matches!(
         rig.run(DriveCommand::Goto(to(0.0))),
         Err(DriveError::NotTaken { .. })
@@ -117,7 +117,7 @@ fn a_restart_between_commands_is_detected_before_the_next_move() {
 #[test]
 fn another_device_is_refused() {
     let mut rig = Rig::new(AxisConfig::default());
-    rig.unit.hand = Box::new(|_, request| match request {
+    rig.drive.hand = Box::new(|_, request| match request {
         SerialRequest::ReadObject(read) if read.address == Address::new(0x1018, 1) => {
             Fate::Value(0x2E)
         }
@@ -134,7 +134,7 @@ fn another_device_is_refused() {
 #[test]
 fn a_refusal_names_object_and_reason() {
     let mut rig = Rig::new(AxisConfig::default());
-    rig.unit
+    rig.drive
         .on_write(0x607F, 0, Fate::Refused(CommError::NO_OBJECT));
     let error = rig.run(DriveCommand::Connect).unwrap_err();
     assert!(matches!(
@@ -157,11 +157,11 @@ fn stop_in_mid_sweep_stops() {
     let Ok(CommandOutcome::Stopped(stopped)) = rig.finish() else {
         panic!("{:?}", rig.events.last())
     };
-    assert_eq!(stopped.position.0, rig.unit.position(rig.now));
+    assert_eq!(stopped.position.0, rig.drive.position(rig.now));
     assert!(stopped.angle.is_some() && stopped.brake);
-    assert_eq!(rig.unit.state(), DeviceState::SwitchOnDisabled);
+    assert_eq!(rig.drive.state(), DeviceState::SwitchOnDisabled);
     let (seen, _) = rig
-        .unit
+        .drive
         .requests
         .iter()
         .find(|(_, request)| is_write(request, 0x6040, 0x0B))
@@ -174,7 +174,7 @@ fn stop_does_not_wait_for_a_lost_answer() {
     let mut rig = moving();
     // Every reply is lost until the drive receives a quick stop.
     let mut stopped = false;
-    rig.unit.hand = Box::new(move |_, request| {
+    rig.drive.hand = Box::new(move |_, request| {
         stopped |= is_write(request, 0x6040, 0x0B);
         if stopped { Fate::Sent } else { Fate::Lost }
     });
@@ -183,7 +183,7 @@ fn stop_does_not_wait_for_a_lost_answer() {
     rig.client.start(DriveCommand::Stop).unwrap();
     assert!(matches!(rig.finish(), Ok(CommandOutcome::Stopped(_))));
     let (seen, _) = rig
-        .unit
+        .drive
         .requests
         .iter()
         .find(|(_, request)| is_write(request, 0x6040, 0x0B))
@@ -199,7 +199,7 @@ fn stop_of_an_idle_or_faulty_drive_is_harmless() {
     };
     assert!(stopped.fault);
     assert_eq!(stopped.angle, None);
-    assert_eq!(rig.unit.state(), DeviceState::Fault);
+    assert_eq!(rig.drive.state(), DeviceState::Fault);
 }
 
 /// An encoder of 512 lines behind a configuration of 500 makes every angle 2.4 % wrong.
@@ -218,15 +218,15 @@ fn a_drive_that_contradicts_the_configuration_is_not_moved() {
         // Some of these objects change only without power.
         rig.run(DriveCommand::Brake).unwrap();
         let (index, sub) = object;
-        rig.unit.set(index, sub, value);
-        let before = rig.unit.requests.len();
+        rig.drive.set(index, sub, value);
+        let before = rig.drive.requests.len();
         let error = rig.run(DriveCommand::Sweep(to(45.0))).unwrap_err();
         assert!(
             matches!(error, DriveError::Contradiction { .. }),
             "{object:X?}: {error}"
         );
         assert!(error.help().contains(key), "{error}: {}", error.help());
-        let enabled = rig.unit.requests[before..].iter().any(|(_, request)| {
+        let enabled = rig.drive.requests[before..].iter().any(|(_, request)| {
             matches!(request, SerialRequest::WriteObject(write)
                 if write.address.index == 0x6040 && write.value & 0xF == 0xF)
         });
@@ -240,8 +240,8 @@ fn a_drive_that_always_answers_late_is_not_moved() {
     for link in [DriveLink::Usb, DriveLink::Rs232, DriveLink::Can] {
         let mut rig = Rig::homed_on(link);
         rig.run(DriveCommand::Brake).unwrap();
-        rig.unit.turnaround = Span::from_millis(150);
-        let before = rig.unit.requests.len();
+        rig.drive.turnaround = Span::from_millis(150);
+        let before = rig.drive.requests.len();
         for command in [DriveCommand::Sweep(to(45.0)), DriveCommand::Home] {
             let error = rig.run(command).unwrap_err();
             let DriveError::SlowReplies { took, limit } = error else {
@@ -249,7 +249,7 @@ fn a_drive_that_always_answers_late_is_not_moved() {
             };
             assert!(took >= Span::from_millis(150) && limit < took, "{link:?}");
         }
-        let enabled = rig.unit.requests[before..].iter().any(|(_, request)| {
+        let enabled = rig.drive.requests[before..].iter().any(|(_, request)| {
             matches!(request, SerialRequest::WriteObject(write)
                 if write.address.index == 0x6040 && write.value & 0xF == 0xF)
         });
@@ -277,20 +277,20 @@ fn slowly_moving() -> Rig {
 #[test]
 fn power_off_follows_a_quick_stop_that_does_not_stop() {
     let mut rig = slowly_moving();
-    rig.unit.hand = Box::new(|_, request| match request {
+    rig.drive.hand = Box::new(|_, request| match request {
         _ if is_write(request, 0x6040, 0x0B) => Fate::Ignored,
         _ => Fate::Sent,
     });
     rig.client.start(DriveCommand::Stop).unwrap();
     assert!(matches!(rig.finish(), Ok(CommandOutcome::Stopped(_))));
     assert!(rig.progress().contains(&CommandProgress::PowerCut));
-    assert_eq!(rig.unit.state(), DeviceState::SwitchOnDisabled);
+    assert_eq!(rig.drive.state(), DeviceState::SwitchOnDisabled);
 }
 
 #[test]
 fn an_axis_that_power_off_does_not_stop_is_reported() {
     let mut rig = slowly_moving();
-    rig.unit.on_write(0x6040, 0, Fate::Ignored);
+    rig.drive.on_write(0x6040, 0, Fate::Ignored);
     rig.client.start(DriveCommand::Stop).unwrap();
     let error = rig.finish().unwrap_err();
     assert!(
@@ -309,7 +309,7 @@ fn an_axis_that_power_off_does_not_stop_is_reported() {
 fn a_lost_link_in_mid_sweep_is_reported_as_not_stopped() {
     let mut rig = moving();
     let died = rig.now;
-    rig.unit.hand = Box::new(|_, _| Fate::Lost);
+    rig.drive.hand = Box::new(|_, _| Fate::Lost);
     let error = rig.finish().unwrap_err();
     let DriveError::NotStopped { cause, stop } = &error else {
         panic!("{error:?}")
@@ -318,13 +318,13 @@ fn a_lost_link_in_mid_sweep_is_reported_as_not_stopped() {
     assert!(matches!(**stop, DriveError::LinkLost { .. }), "{stop:?}");
     assert!(rig.now - died < Span::from_secs(2));
     // The drive received the quick stop although its replies are lost.
-    assert!(rig.unit.state() != DeviceState::OperationEnabled);
+    assert!(rig.drive.state() != DeviceState::OperationEnabled);
 }
 
 #[test]
 fn lost_answers_to_polls_cost_only_samples() {
     let mut rig = Rig::homed();
-    rig.unit.hand = Box::new(|n, request| {
+    rig.drive.hand = Box::new(|n, request| {
         if is_read(request, 0x6064) && n % 40 == 7 {
             Fate::Lost
         } else {
@@ -341,7 +341,7 @@ fn lost_answers_to_polls_cost_only_samples() {
 #[test]
 fn late_replies_are_used_with_their_actual_times() {
     let mut rig = Rig::homed();
-    rig.unit.hand = Box::new(|n, _| match n % 50 {
+    rig.drive.hand = Box::new(|n, _| match n % 50 {
         20 => Fate::Late(Span::from_millis(130)),
         _ => Fate::Sent,
     });
@@ -364,7 +364,7 @@ fn damage_and_repetition_are_survived() {
     ] {
         let mut rig = Rig::new(AxisConfig::default());
         // Reads and rejected writes are repeated; a write whose answer is damaged is not.
-        rig.unit.hand = Box::new(move |n, request| {
+        rig.drive.hand = Box::new(move |n, request| {
             let write = matches!(request, SerialRequest::WriteObject(_));
             if n % every == 0 && !(write && fate == Fate::Damaged) {
                 fate
@@ -381,14 +381,14 @@ fn damage_and_repetition_are_survived() {
             let result = rig.run(command);
             assert!(result.is_ok(), "{fate:?} {command:?}: {result:?}");
         }
-        assert_eq!(rig.unit.position(rig.now), -10_000);
+        assert_eq!(rig.drive.position(rig.now), -10_000);
     }
 }
 
 #[test]
 fn a_write_is_not_repeated_when_its_answer_is_lost() {
     let mut rig = Rig::new(AxisConfig::default());
-    rig.unit.hand = Box::new(|_, request| {
+    rig.drive.hand = Box::new(|_, request| {
         if is_write(request, 0x607F, 1500) {
             Fate::Lost
         } else {
@@ -408,7 +408,7 @@ fn a_lost_last_answer_does_not_fail_the_sweep() {
     let mut rig = Rig::homed();
     assert!(rig.run(DriveCommand::Sweep(to(-15.0))).is_ok());
     let mut lost = 0;
-    rig.unit.hand = Box::new(move |_, request| {
+    rig.drive.hand = Box::new(move |_, request| {
         // Disabling the voltage may be repeated.
         if is_write(request, 0x6040, 0) && lost < 2 {
             lost += 1;
@@ -428,7 +428,7 @@ fn a_lost_last_answer_does_not_fail_the_sweep() {
 #[test]
 fn silence_ends_a_command_in_bounded_time() {
     let mut rig = Rig::new(AxisConfig::default());
-    rig.unit.hand = Box::new(|_, _| Fate::Lost);
+    rig.drive.hand = Box::new(|_, _| Fate::Lost);
     let began = rig.now;
     let error = rig.run(DriveCommand::Connect).unwrap_err();
     assert!(matches!(error, DriveError::LinkLost { .. }));

@@ -18,7 +18,7 @@ use crate::{
 
 const LINKS: [DriveLink; 3] = [DriveLink::Usb, DriveLink::Rs232, DriveLink::Can];
 
-/// A rig with a unit as it leaves the factory, and the delays of its link.
+/// A rig with a drive as it leaves the factory, and the delays of its link.
 pub(super) fn rig_with(link: DriveLink, config: NodeConfig) -> Rig {
     let mut rig = Rig::with(link, AxisConfig::default(), config);
     let delay = match link {
@@ -26,10 +26,10 @@ pub(super) fn rig_with(link: DriveLink, config: NodeConfig) -> Rig {
         DriveLink::Rs232 => Span::from_micros(200),
         DriveLink::Can => Span::from_micros(160),
     };
-    (rig.unit.forth, rig.unit.turnaround) = (delay, delay);
+    (rig.drive.forth, rig.drive.turnaround) = (delay, delay);
     if link == DriveLink::Rs232 {
         // 115,200 baud, 8N1.
-        rig.unit.per_byte = Span::from_nanos(86_806);
+        rig.drive.per_byte = Span::from_nanos(86_806);
     }
     rig
 }
@@ -51,7 +51,7 @@ fn moving_on(link: DriveLink) -> Rig {
     rig
 }
 
-/// When the client sent a quick stop, whether the unit received it or not: controlword (6040) 000B
+/// When the client sent a quick stop, whether the drive received it or not: controlword (6040) 000B
 /// in a frame of USB or CAN, or in a body of RS232.
 fn sent_quick_stop(rig: &Rig) -> Option<Stamp<Host>> {
     let is_quick_stop = |bytes: &[u8]| {
@@ -73,18 +73,18 @@ fn from_home(rig: &Rig, angle_deg: f64) -> MovePlan {
 #[test]
 fn connect_home_sweep_and_brake_succeed() {
     let mut rig = rig_with(DriveLink::Usb, NodeConfig::default());
-    assert_eq!(rig.unit.node.state(), DeviceState::Fault);
+    assert_eq!(rig.drive.node.state(), DeviceState::Fault);
     let Ok(CommandOutcome::Connected(connected)) = rig.run(DriveCommand::Connect) else {
         panic!("{:?}", rig.events.last())
     };
     assert_eq!(connected.history.first(), Some(&DeviceError::CAN_PASSIVE));
     assert_eq!(connected.identity.serial, 1);
-    assert_eq!(rig.unit.node.brake(), BrakeState::Closed);
+    assert_eq!(rig.drive.node.brake(), BrakeState::Closed);
     let Ok(CommandOutcome::Homed { angle, .. }) = rig.run(DriveCommand::Home) else {
         panic!("{:?}", rig.events.last())
     };
     assert!((angle.0 + 60.0).abs() < 0.01, "{angle:?}");
-    assert_eq!(rig.unit.node.brake(), BrakeState::Open);
+    assert_eq!(rig.drive.node.brake(), BrakeState::Open);
     rig.events.clear();
     let Ok(CommandOutcome::Arrived(arrived)) = rig.run(DriveCommand::Sweep(to(-15.0))) else {
         panic!("{:?}", rig.events.last())
@@ -101,7 +101,7 @@ fn connect_home_sweep_and_brake_succeed() {
         panic!("{:?}", rig.events.last())
     };
     assert_eq!((stopped.position.0, stopped.fault), (-10_000, false));
-    assert_eq!(rig.unit.node.brake(), BrakeState::Closed);
+    assert_eq!(rig.drive.node.brake(), BrakeState::Closed);
     assert_eq!(rig.client.link_stats().lost, 0);
     assert_eq!(rig.client.link_stats().unmatched, 0);
 }
@@ -121,10 +121,10 @@ fn samples_are_shaft_positions_between_their_stamps() {
         // Drive zero and world zero differ by a constant of whole counts.
         let origin = {
             let first = samples[0];
-            rig.unit.world_qc(first.request).floor() - f64::from(first.position.0)
+            rig.drive.world_qc(first.request).floor() - f64::from(first.position.0)
         };
         for s in &samples {
-            let [before, after] = [s.request, s.answer].map(|at| rig.unit.world_qc(at) - origin);
+            let [before, after] = [s.request, s.answer].map(|at| rig.drive.world_qc(at) - origin);
             let got = f64::from(s.position.0);
             assert!(
                 before.floor() <= got && got <= after + 0.01,
@@ -164,7 +164,7 @@ fn stop_in_mid_sweep_keeps_the_position() {
         panic!("{:?}", rig.events.last())
     };
     assert!(stopped.angle.is_some());
-    assert_eq!(rig.unit.node.brake(), BrakeState::Closed);
+    assert_eq!(rig.drive.node.brake(), BrakeState::Closed);
     // 1125 rpm at 20,000 rpm/s take 56 ms to stop; then 50 ms of standstill, the brake, and some
     // round trips.
     assert!(rig.now - start < Span::from_millis(200));
@@ -209,12 +209,12 @@ fn a_limit_switch_in_mid_sweep_is_named() {
 fn a_blocked_motor_is_a_following_error() {
     for link in LINKS {
         let mut rig = moving_on(link);
-        rig.unit.node.block();
+        rig.drive.node.block();
         let error = Some(DeviceError::FOLLOWING);
         assert_eq!(rig.finish(), Err(DriveError::Fault { error }), "{link:?}");
         assert_eq!(rig.made_safe().unwrap().validity, PositionValidity::Valid);
         // The axis can move on once it is free.
-        rig.unit.node.unblock();
+        rig.drive.node.unblock();
         rig.run(DriveCommand::ClearFaults).unwrap();
         assert!(rig.run(DriveCommand::Goto(to(0.0))).is_ok(), "{link:?}");
     }
@@ -225,7 +225,7 @@ fn a_cut_cable_in_mid_sweep_is_reported_and_stops_the_axis_on_can() {
     for link in LINKS {
         let mut rig = moving_on(link);
         let at = rig.now;
-        rig.unit.cut();
+        rig.drive.cut();
         let error = rig.finish().unwrap_err();
         assert!(matches!(error, DriveError::NotStopped { .. }), "{error}");
         let replies = rig.now - sent_quick_stop(&rig).unwrap_or(rig.now);
@@ -233,9 +233,9 @@ fn a_cut_cable_in_mid_sweep_is_reported_and_stops_the_axis_on_can() {
         assert!(replies < Span::from_millis(240), "{link:?}: {replies:?}");
         assert!(rig.now - at < Span::from_millis(1_900), "{link:?}");
         if link == DriveLink::Can {
-            rig.unit.live(at + Span::from_millis(600));
-            assert_eq!(rig.unit.node.state(), DeviceState::Fault);
-            assert!(rig.unit.is_at_rest());
+            rig.drive.live(at + Span::from_millis(600));
+            assert_eq!(rig.drive.node.state(), DeviceState::Fault);
+            assert!(rig.drive.is_at_rest());
         }
     }
 }
@@ -318,7 +318,7 @@ fn a_lagging_servo_homes_and_arrives() {
                 panic!("{slept:?}")
             };
             assert!(!stopped.fault && stopped.position.0.abs_diff(-10_000) <= 1);
-            assert_eq!(rig.unit.node.brake(), BrakeState::Closed);
+            assert_eq!(rig.drive.node.brake(), BrakeState::Closed);
         }
     }
 }

@@ -23,7 +23,7 @@ fn config() -> AxisConfig {
 
 fn is_powered(rig: &Rig) -> bool {
     matches!(
-        rig.unit.node.state(),
+        rig.drive.node.state(),
         DeviceState::OperationEnabled | DeviceState::QuickStopActive
     )
 }
@@ -94,15 +94,15 @@ fn a_held_axis_stays_powered_when_the_host_dies_on_can() {
     for _ in 0..2_000 {
         assert!(rig.step().is_none());
     }
-    rig.unit.cut();
-    let limit = rig.unit.node.time_us() + 500_000;
-    while rig.unit.node.time_us() < limit {
+    rig.drive.cut();
+    let limit = rig.drive.node.time_us() + 500_000;
+    while rig.drive.node.time_us() < limit {
         assert!(is_powered(&rig));
         if rig.step().is_some() {
             break;
         }
     }
-    assert_eq!(rig.unit.node.state(), DeviceState::QuickStopActive);
+    assert_eq!(rig.drive.node.state(), DeviceState::QuickStopActive);
 }
 
 /// The drive stops without a fault: the samples alone show an axis that is behind its plan.

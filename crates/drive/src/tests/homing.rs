@@ -8,7 +8,7 @@ use units::{Degrees, Span};
 
 use super::faults::{is_read, is_write};
 use super::rig::Rig;
-use super::unit::{Fate, near_its_switch};
+use super::test_drive::{Fate, near_its_switch};
 use crate::{AxisConfig, CommandOutcome, DriveCommand, DriveError};
 
 #[test]
@@ -16,11 +16,11 @@ fn homing_that_never_ends_is_stopped() {
     let mut config = AxisConfig::default();
     config.homing.time_limit = Span::from_secs(5);
     // No switch ever comes.
-    let unit = NodeConfig {
+    let drive = NodeConfig {
         switches: [None; 4],
         ..near_its_switch()
     };
-    let mut rig = Rig::with(DriveLink::Usb, config, unit);
+    let mut rig = Rig::with(DriveLink::Usb, config, drive);
     rig.run(DriveCommand::Connect).unwrap();
     assert!(matches!(
         rig.run(DriveCommand::Home),
@@ -34,7 +34,7 @@ fn the_homing_error_bit_is_reported() {
     let mut rig = Rig::new(AxisConfig::default());
     rig.run(DriveCommand::Connect).unwrap();
     // The drive cannot home without acceleration.
-    rig.unit.set(0x60C5, 0, 0);
+    rig.drive.set(0x60C5, 0, 0);
     assert!(matches!(
         rig.run(DriveCommand::Home),
         Err(DriveError::Homing { method: 17, .. })
@@ -55,16 +55,16 @@ fn a_home_outside_the_limits_is_refused() {
 
 /// Connects and homes a rig whose requests have these fates from the start of homing.
 fn home_with(
-    unit: NodeConfig,
+    drive: NodeConfig,
     hand: impl FnMut(usize, &SerialRequest) -> Fate + 'static,
 ) -> Result<CommandOutcome, DriveError> {
-    let mut rig = Rig::with(DriveLink::Usb, AxisConfig::default(), unit);
+    let mut rig = Rig::with(DriveLink::Usb, AxisConfig::default(), drive);
     rig.run(DriveCommand::Connect).unwrap();
-    rig.unit.hand = Box::new(hand);
+    rig.drive.hand = Box::new(hand);
     rig.run(DriveCommand::Home)
 }
 
-/// A unit whose switch never comes.
+/// A drive whose switch never comes.
 fn without_switches() -> NodeConfig {
     NodeConfig {
         switches: [None; 4],

@@ -7,7 +7,7 @@ use units::{Quadcounts, Span, Stamp};
 
 use super::long_object::LongObject;
 use super::rig::{Rig, to};
-use super::unit::{Fate, SERIAL};
+use super::test_drive::{Fate, SERIAL};
 use crate::error::Deviation;
 use crate::{
     AngleSource, AxisConfig, CommandOutcome, DriveCommand, DriveError, Observation,
@@ -55,7 +55,7 @@ fn connect_home_sweep_and_brake_work_on_each_link() {
             (0, 0, 0),
             "{link:?}"
         );
-        assert_eq!(rig.unit.get(0x1016, 1), 0, "the host may go");
+        assert_eq!(rig.drive.get(0x1016, 1), 0, "the host may go");
     }
 }
 
@@ -98,7 +98,7 @@ fn a_log_gives_the_same_observations_on_each_link() {
             "{link:?}"
         );
         let is_read = |request: &SerialRequest| matches!(request, SerialRequest::ReadObject(read) if read.address.index == 0x6064);
-        let requests = rig.unit.requests.iter();
+        let requests = rig.drive.requests.iter();
         let reads = requests.filter(|(_, request)| is_read(request)).count();
         match link {
             // The last frame of the stream may be in flight.
@@ -163,13 +163,13 @@ fn a_fault_in_mid_sweep_stops_it() {
         ] {
             let mut rig = moving_on(link);
             let at = rig.now + Span::from_millis(3);
-            rig.unit.fault_at = Some((at, DeviceError(code)));
+            rig.drive.fault_at = Some((at, DeviceError(code)));
             let error = Some(DeviceError(code));
             assert_eq!(rig.finish(), Err(DriveError::Fault { error }), "{link:?}");
             let stopped = rig.made_safe().unwrap();
             assert_eq!((stopped.validity, stopped.fault), (place, true));
             assert_eq!(stopped.angle.is_some(), place == PositionValidity::Valid);
-            assert_eq!(rig.unit.state(), DeviceState::Fault);
+            assert_eq!(rig.drive.state(), DeviceState::Fault);
             let reaction = rig.quick_stop().unwrap() - at;
             // On CAN an EMCY message reports it at once, else the next statusword.
             let limit = if link == DriveLink::Can { 3 } else { 40 };
@@ -186,7 +186,7 @@ fn a_restart_in_mid_sweep_is_reported_and_the_position_is_lost() {
     for link in LINKS {
         let mut rig = moving_on(link);
         let at = rig.now;
-        rig.unit.restart(at);
+        rig.drive.restart(at);
         let error = rig.finish().unwrap_err();
         assert!(
             matches!(error, DriveError::Restarted { .. }),
@@ -220,9 +220,9 @@ fn a_lost_link_in_mid_sweep_is_reported_in_time() {
     for link in LINKS {
         let mut rig = moving_on(link);
         let died = rig.now;
-        rig.unit.hand = Box::new(|_, _| Fate::Lost);
-        rig.unit.bus.silent = true;
-        rig.unit.bus.copies = Box::new(|_| 0);
+        rig.drive.hand = Box::new(|_, _| Fate::Lost);
+        rig.drive.bus.silent = true;
+        rig.drive.bus.copies = Box::new(|_| 0);
         let error = rig.finish().unwrap_err();
         let DriveError::NotStopped { cause, stop } = &error else {
             panic!("{link:?}: {error:?}")
@@ -238,7 +238,7 @@ fn a_lost_link_in_mid_sweep_is_reported_in_time() {
         // The drive received the quick stop although its replies are lost.
         if link != DriveLink::Rs232 {
             assert_eq!(
-                rig.unit.state(),
+                rig.drive.state(),
                 DeviceState::SwitchOnDisabled,
                 "{link:?}: power off follows"
             );
@@ -262,7 +262,7 @@ fn a_lost_link_in_mid_sweep_is_reported_in_time() {
 #[test]
 fn a_gap_of_most_of_a_second_does_not_end_a_move() {
     for link in LINKS {
-        // Lost bytes of RS232 cost the unit's frame timeout of 500 ms, too.
+        // Lost bytes of RS232 cost the drive's frame timeout of 500 ms, too.
         let silences: &[i64] = match link {
             DriveLink::Rs232 => &[50, 200],
             _ => &[50, 200, 500, 900],
@@ -276,7 +276,7 @@ fn a_gap_of_most_of_a_second_does_not_end_a_move() {
             rig.client.start(DriveCommand::Sweep(slow)).unwrap();
             assert_eq!(rig.run_for(Span::from_millis(600)), None, "{link:?}");
             let until = rig.now + Span::from_millis(silent_ms);
-            rig.unit.lose_replies_until(until);
+            rig.drive.lose_replies_until(until);
             let end = rig.finish();
             assert!(
                 matches!(end, Ok(CommandOutcome::Arrived(_))),
@@ -301,7 +301,7 @@ fn silence_at_the_end_of_a_move_does_not_fail_it() {
             let before = took - Span::from_millis(10 * k);
             assert_eq!(rig.run_for(before), None, "{link:?} {k}");
             let until = rig.now + Span::from_millis(190);
-            rig.unit.lose_replies_until(until);
+            rig.drive.lose_replies_until(until);
             let end = rig.finish();
             if let Err(error) = end {
                 // The stop came before the target was reached.
@@ -309,8 +309,8 @@ fn silence_at_the_end_of_a_move_does_not_fail_it() {
                 assert!(is_safe, "{link:?} {k}: {error}");
                 return false;
             }
-            let is_off = rig.unit.state() == DeviceState::SwitchOnDisabled;
-            assert!(rig.unit.is_at_rest(), "{link:?} {k}");
+            let is_off = rig.drive.state() == DeviceState::SwitchOnDisabled;
+            assert!(rig.drive.is_at_rest(), "{link:?} {k}");
             is_off
         });
         let stopped = stopped.count();
@@ -329,14 +329,14 @@ fn a_loaded_host_waits_at_the_end_of_a_move() {
             rig.client.start(DriveCommand::Sweep(to(-15.0))).unwrap();
             assert_eq!(rig.run_for(Span::from_millis(15 * k)), None, "{link:?} {k}");
             let until = rig.now + Span::from_millis(900);
-            rig.unit.lose_replies_until(until);
+            rig.drive.lose_replies_until(until);
             let end = rig.finish();
             assert!(
                 matches!(end, Ok(CommandOutcome::Arrived(_))),
                 "{link:?} {k}: {end:?}"
             );
             assert_eq!(
-                rig.unit.state(),
+                rig.drive.state(),
                 DeviceState::OperationEnabled,
                 "{link:?} {k}: no stop"
             );
@@ -352,7 +352,7 @@ fn a_loaded_host_does_not_delay_a_stop() {
         if is_loaded {
             rig.client.handle_host_delay(Span::from_millis(20), rig.now);
         }
-        rig.unit.distort = Box::new(|_, _| Vec::new());
+        rig.drive.distort = Box::new(|_, _| Vec::new());
         let from = rig.now;
         rig.client.start(DriveCommand::Stop).unwrap();
         assert!(rig.finish().is_err());
@@ -365,7 +365,7 @@ fn a_loaded_host_does_not_delay_a_stop() {
 fn a_blocked_axis_fails_the_move() {
     for link in LINKS {
         let mut rig = Rig::homed_on(link);
-        rig.unit.node.block();
+        rig.drive.node.block();
         // In a faster move the drive's own following error of 3 deg comes first.
         let error = rig
             .run(DriveCommand::Goto(crate::MoveCommand {
@@ -383,7 +383,7 @@ fn a_blocked_axis_fails_the_move() {
             ),
             "{link:?}: {error}"
         );
-        assert_eq!(rig.unit.state(), DeviceState::SwitchOnDisabled);
+        assert_eq!(rig.drive.state(), DeviceState::SwitchOnDisabled);
     }
 }
 
@@ -418,7 +418,7 @@ fn a_host_delayed_on_can_reports_that_the_drive_stopped() {
     // The drive's own time advances meanwhile.
     for _ in 0..1_700 {
         rig.now += Span::from_millis(1);
-        rig.unit.live(rig.now);
+        rig.drive.live(rig.now);
     }
     let error = rig.finish().unwrap_err();
     let error_8130 = DriveError::Fault {
@@ -478,7 +478,7 @@ fn loss_damage_repetition_and_refusal_are_survived() {
             let mut rig = Rig::on(link, AxisConfig::default());
             // Reads and rejected writes are repeated; a write with a lost reply is not. A segmented
             // transfer is restarted as a whole.
-            rig.unit.hand = Box::new(move |n, request| {
+            rig.drive.hand = Box::new(move |n, request| {
                 let repeated = match request {
                     SerialRequest::ReadObject(_) => true,
                     _ => {
@@ -503,7 +503,7 @@ fn loss_damage_repetition_and_refusal_are_survived() {
                 let result = rig.run(command);
                 assert!(result.is_ok(), "{link:?} {fate:?} {command:?}: {result:?}");
             }
-            assert_eq!(rig.unit.position(rig.now), -10_000);
+            assert_eq!(rig.drive.position(rig.now), -10_000);
         }
     }
 }
@@ -514,7 +514,7 @@ fn a_wrong_toggle_bit_is_reported() {
         let mut rig = Rig::on(link, AxisConfig::default());
         let mut name = LongObject::new(link == DriveLink::Can);
         name.wrong_toggle = true;
-        rig.unit.long_object = Some(name);
+        rig.drive.long_object = Some(name);
         let error = rig.run(DriveCommand::Connect).unwrap_err();
         assert_eq!(
             error.to_string(),
@@ -535,11 +535,11 @@ fn a_stop_from_mid_sweep_is_immediate_and_keeps_the_position() {
             panic!("{link:?}: {:?}", rig.events.last())
         };
         assert_eq!(stopped.validity, PositionValidity::Valid);
-        assert_eq!(stopped.position.0, rig.unit.position(rig.now));
+        assert_eq!(stopped.position.0, rig.drive.position(rig.now));
         let reaction = rig.quick_stop().unwrap() - start;
         assert!(reaction < Span::from_millis(10), "{link:?}: {reaction:?}");
-        assert_eq!(rig.unit.state(), DeviceState::SwitchOnDisabled);
-        assert_eq!(rig.unit.get(0x1016, 1), 0);
+        assert_eq!(rig.drive.state(), DeviceState::SwitchOnDisabled);
+        assert_eq!(rig.drive.get(0x1016, 1), 0);
     }
 }
 
@@ -548,7 +548,7 @@ fn a_stop_from_mid_sweep_is_immediate_and_keeps_the_position() {
 fn a_reply_to_another_request_in_mid_sweep_is_ignored() {
     for link in LINKS {
         let mut rig = Rig::homed_on(link);
-        rig.unit.hand = Box::new(|n, request| match request {
+        rig.drive.hand = Box::new(|n, request| match request {
             SerialRequest::ReadObject(read) if n % 11 == 5 && read.address.index == 0x6041 => {
                 Fate::Another
             }

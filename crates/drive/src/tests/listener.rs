@@ -5,7 +5,7 @@ use protocol::record::{Direction, DriveLink};
 use units::Span;
 
 use super::rig::{Rig, to};
-use super::unit::Fate;
+use super::test_drive::Fate;
 use crate::{DriveCommand, DriveListener, Observation, ShaftSample};
 
 fn sampled(observed: &[Observation]) -> Vec<ShaftSample> {
@@ -41,7 +41,7 @@ fn a_log_gives_the_clients_samples_writes_and_states() {
 #[test]
 fn lost_and_late_answers_do_not_corrupt_the_log() {
     let mut rig = Rig::homed();
-    rig.unit.hand = Box::new(|n, request| match n % 31 {
+    rig.drive.hand = Box::new(|n, request| match n % 31 {
         _ if matches!(
             request,
             protocol::epos2::message::SerialRequest::WriteObject(_)

@@ -1,5 +1,5 @@
 //! An object that is longer than any of the software EPOS2, writable, and with faulty segments on
-//! request: it replaces the name (1008) of a unit.
+//! request: it replaces the name (1008) of a drive.
 
 use protocol::epos2::message::{
     InitiateSegmentedWrite, ReadSegment, SegmentedRead, SegmentedWrite, SerialAnswer,

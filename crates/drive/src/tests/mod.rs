@@ -16,5 +16,5 @@ mod procedures;
 mod rig;
 mod rs232;
 mod script;
-mod unit;
+mod test_drive;
 mod wire;

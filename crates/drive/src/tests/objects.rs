@@ -8,7 +8,7 @@ use protocol::record::DriveLink;
 
 use super::long_object::LongObject;
 use super::rig::{Rig, to};
-use super::unit::Fate;
+use super::test_drive::Fate;
 use crate::{AxisConfig, CommandOutcome, DriveCommand, DriveError, Observation};
 
 const LINKS: [DriveLink; 3] = [DriveLink::Usb, DriveLink::Rs232, DriveLink::Can];
@@ -21,13 +21,13 @@ fn rig(link: DriveLink) -> Rig {
 }
 
 fn with_name(mut rig: Rig) -> Rig {
-    let on_can = rig.unit.link == DriveLink::Can;
-    rig.unit.long_object = Some(LongObject::new(on_can));
+    let on_can = rig.drive.link == DriveLink::Can;
+    rig.drive.long_object = Some(LongObject::new(on_can));
     rig
 }
 
 fn name(rig: &mut Rig) -> &mut LongObject {
-    rig.unit.long_object.as_mut().unwrap()
+    rig.drive.long_object.as_mut().unwrap()
 }
 
 fn write(address: Address, bytes: &[u8]) -> DriveCommand {
@@ -61,7 +61,7 @@ fn long_objects_are_written_and_read_back() {
             assert_eq!(name(&mut rig).bytes, bytes, "{link:?}");
             assert_eq!(read(&mut rig, NAME).unwrap(), bytes, "{link:?}");
         }
-        assert_eq!(rig.unit.aborts, []);
+        assert_eq!(rig.drive.aborts, []);
         assert_eq!(rig.client.link_stats().lost, 0);
         // The log can be decoded.
         let is_noise = |seen: &&Observation| matches!(seen, Observation::Noise { .. });
@@ -78,12 +78,12 @@ fn short_objects_take_one_exchange_of_their_width() {
             (0x2100, 1, &[0x90, 0x01]),
             (0x6081, 0, &[0x78, 0x56, 0x34, 0x12]),
         ] {
-            rig.unit.requests.clear();
+            rig.drive.requests.clear();
             rig.run(write(Address::new(index, sub), bytes)).unwrap();
             let mut value = [0; 4];
             value[..bytes.len()].copy_from_slice(bytes);
-            assert_eq!(rig.unit.get(index, sub), u32::from_le_bytes(value));
-            assert_eq!(rig.unit.requests.len(), 2, "the statusword, and it");
+            assert_eq!(rig.drive.get(index, sub), u32::from_le_bytes(value));
+            assert_eq!(rig.drive.requests.len(), 2, "the statusword, and it");
         }
     }
 }
@@ -122,7 +122,7 @@ fn aborts_by_the_drive_are_reported_at_the_start_and_at_the_end() {
             Err(DriveError::Refused { .. })
         ));
         // The node's abort ends the transfer, and the next one works.
-        assert_eq!(rig.unit.aborts, []);
+        assert_eq!(rig.drive.aborts, []);
         assert_eq!(name(&mut rig).bytes, b"EPOS2");
         assert_eq!(read(&mut rig, NAME).unwrap(), b"EPOS2");
     }
@@ -147,7 +147,7 @@ fn a_wrong_toggle_bit_aborts_a_write() {
         // The pending abort is sent with the next command.
         name(&mut rig).wrong_toggle = false;
         assert_eq!(read(&mut rig, NAME).unwrap(), name(&mut rig).bytes);
-        assert_eq!(rig.unit.aborts, aborts, "{link:?}");
+        assert_eq!(rig.drive.aborts, aborts, "{link:?}");
     }
 }
 
@@ -156,7 +156,7 @@ fn a_lost_segment_is_not_repeated() {
     for link in LINKS {
         for lost in 1..4 {
             let mut rig = rig(link);
-            rig.unit.hand = Box::new(move |n, _| if n == lost { Fate::Lost } else { Fate::Sent });
+            rig.drive.hand = Box::new(move |n, _| if n == lost { Fate::Lost } else { Fate::Sent });
             let ended = rig.run(write(NAME, b"fourteen bytes"));
             // A single segment suffices on a serial link.
             if lost == 3 && link != DriveLink::Can {
@@ -168,9 +168,9 @@ fn a_lost_segment_is_not_repeated() {
                 matches!(error, DriveError::NoAnswer { attempts: 1, .. }),
                 "{link:?} {lost}: {error}"
             );
-            rig.unit.hand = Box::new(|_, _| Fate::Sent);
+            rig.drive.hand = Box::new(|_, _| Fate::Sent);
             read(&mut rig, NAME).unwrap();
-            let timed_out = rig.unit.aborts == [CommError::TIMEOUT];
+            let timed_out = rig.drive.aborts == [CommError::TIMEOUT];
             assert_eq!(timed_out, link == DriveLink::Can, "{link:?} {lost}");
         }
     }
@@ -208,7 +208,7 @@ fn direct_writes_are_refused_for_the_controlword_and_while_enabled() {
         rig.forget();
         let error = rig.run(write(NAME, b"a new name")).unwrap_err();
         assert!(matches!(error, DriveError::State { .. }), "{error}");
-        assert_eq!(rig.unit.requests.len(), 1, "{link:?}: the statusword");
+        assert_eq!(rig.drive.requests.len(), 1, "{link:?}: the statusword");
         rig.run(DriveCommand::Brake).unwrap();
         assert!(rig.run(write(NAME, b"a new name")).is_ok());
     }
@@ -225,7 +225,7 @@ fn every_byte_value_passes_at_every_position() {
                 let value = u32::from_le_bytes(std::array::from_fn(|at| {
                     if mask & 1 << at == 0 { 0x11 } else { special }
                 }));
-                rig.unit.hand = Box::new(move |_, request| match request {
+                rig.drive.hand = Box::new(move |_, request| match request {
                     SerialRequest::ReadObject(read) if read.address == SERIAL => Fate::Value(value),
                     _ => Fate::Sent,
                 });
@@ -235,7 +235,7 @@ fn every_byte_value_passes_at_every_position() {
                 assert_eq!(status.identity.serial, value, "{link:?}");
                 let object = Address::new(0x6065, 0);
                 rig.run(write(object, &value.to_le_bytes())).unwrap();
-                assert_eq!(rig.unit.get(0x6065, 0), value, "{link:?}");
+                assert_eq!(rig.drive.get(0x6065, 0), value, "{link:?}");
             }
             for (len, at) in (5..16).flat_map(|len| (0..len).map(move |at| (len, at))) {
                 let mut bytes = vec![0x11; len];

@@ -9,7 +9,7 @@ use protocol::record::DriveLink;
 use units::{Degrees, Quadcounts, Rpm, Span};
 
 use super::rig::{Rig, to};
-use super::unit::{Fate, SERIAL, near_its_switch};
+use super::test_drive::{Fate, SERIAL, near_its_switch};
 use crate::{AxisConfig, CommandKind, CommandOutcome, CommandProgress, DriveCommand, DriveError};
 
 fn target(qc: i32) -> (u16, u8, u32) {
@@ -26,12 +26,12 @@ fn connect_identifies_the_drive_clears_faults_and_configures() {
     assert_eq!(connected.identity.serial, SERIAL);
     assert_eq!(connected.history, [DeviceError::CAN_PASSIVE]);
     assert!(!connected.referenced);
-    assert_eq!(rig.unit.state(), DeviceState::SwitchOnDisabled);
+    assert_eq!(rig.drive.state(), DeviceState::SwitchOnDisabled);
     let cleared = CommandProgress::FaultCleared {
         error: Some(DeviceError::CAN_PASSIVE),
     };
     assert!(rig.progress().contains(&cleared));
-    let held = |index, sub| rig.unit.get(index, sub);
+    let held = |index, sub| rig.drive.get(index, sub);
     assert_eq!(held(0x2071, 4), 8 | 3, "2071:4 stops at both switches");
     assert_eq!(held(0x607D, 1) as i32, -40_000);
     assert_eq!(held(0x607D, 2) as i32, 40_000);
@@ -53,9 +53,9 @@ fn missing_switches_and_brake_are_not_configured() {
         ..AxisConfig::default()
     });
     rig.run(DriveCommand::Connect).unwrap();
-    let fresh = Rig::new(AxisConfig::default()).unit;
+    let fresh = Rig::new(AxisConfig::default()).drive;
     for (index, sub) in [(0x2071, 4), (0x2079, 1), (0x2078, 2), (0x2100, 1)] {
-        assert_eq!(rig.unit.get(index, sub), fresh.get(index, sub));
+        assert_eq!(rig.drive.get(index, sub), fresh.get(index, sub));
     }
 }
 
@@ -64,13 +64,13 @@ fn connect_stops_an_axis_left_moving() {
     let mut rig = Rig::homed();
     rig.client.start(DriveCommand::Goto(to(45.0))).unwrap();
     assert_eq!(rig.run_for(Span::from_millis(300)), None);
-    assert_eq!(rig.unit.state(), DeviceState::OperationEnabled);
+    assert_eq!(rig.drive.state(), DeviceState::OperationEnabled);
     // Another process takes over.
     rig.client = crate::DriveClient::new(AxisConfig::default(), crate::DriveLink::Usb);
     rig.forget();
     rig.run(DriveCommand::Connect).unwrap();
     assert_eq!(rig.writes()[0], (0x6040, 0, 0x0B));
-    assert_eq!(rig.unit.state(), DeviceState::SwitchOnDisabled);
+    assert_eq!(rig.drive.state(), DeviceState::SwitchOnDisabled);
 }
 
 #[test]
@@ -89,7 +89,7 @@ fn home_finds_the_home_position() {
     for wanted in [(0x6098, 0, 17), (0x607C, 0, 3333), (0x6040, 0, 0x1F)] {
         assert!(writes.contains(&wanted), "{wanted:X?}");
     }
-    assert_eq!(rig.unit.get(0x6060, 0), 1, "profile position again");
+    assert_eq!(rig.drive.get(0x6060, 0), 1, "profile position again");
 }
 
 #[test]
@@ -98,17 +98,17 @@ fn homing_by_current_writes_its_threshold_and_others_do_not() {
         let mut config = AxisConfig::default();
         (config.homing.method, config.homing.offset) = (method, Degrees(offset));
         // A mechanical stop half a degree above.
-        let unit = NodeConfig {
+        let drive = NodeConfig {
             hard_stops: [None, Some(-42_967)],
             switches: [None; 4],
             ..near_its_switch()
         };
-        let mut rig = Rig::with(DriveLink::Usb, config, unit);
-        rig.unit.set(0x2080, 0, 0);
+        let mut rig = Rig::with(DriveLink::Usb, config, drive);
+        rig.drive.set(0x2080, 0, 0);
         rig.run(DriveCommand::Connect).unwrap();
         let homed = rig.run(DriveCommand::Home);
         assert!(homed.is_ok(), "method {method}: {homed:?}");
-        rig.unit.get(0x2080, 0)
+        rig.drive.get(0x2080, 0)
     };
     assert_eq!(threshold(-3, -5.0), 500);
     assert_eq!(threshold(35, 0.0), 0);
@@ -140,7 +140,7 @@ fn sweeps_are_sampled_from_standstill_to_standstill() {
         assert!(pair[0].answer <= pair[1].request);
         assert!(pair[0].request < pair[0].answer);
         let apart = pair[1].request - pair[0].request;
-        assert!(apart >= rig.unit.turnaround, "{apart:?}");
+        assert!(apart >= rig.drive.turnaround, "{apart:?}");
         assert!(apart < Span::from_millis(60), "{apart:?}");
     }
 }
@@ -157,7 +157,7 @@ fn samples_lie_between_their_stamps() {
         .unwrap();
     let t0 = samples[began + 1].request;
     for s in samples.iter().skip(began + 1).take(600) {
-        // The unit reads its counter when the request arrives.
+        // The drive reads its counter when the request arrives.
         let way = 37_500.0 * (s.request - t0).as_secs_f64();
         let got = f64::from(s.position.0 - samples[began + 1].position.0);
         assert!((got - way).abs() <= 1.0, "{got} {way}");
@@ -169,7 +169,7 @@ fn polls_follow_each_answer_immediately() {
     let mut config = AxisConfig::default();
     config.timing.poll_period = Span::ZERO;
     let mut rig = Rig::new(config);
-    rig.unit.turnaround = Span::from_micros(250);
+    rig.drive.turnaround = Span::from_micros(250);
     rig.run(DriveCommand::Connect).unwrap();
     rig.run(DriveCommand::Home).unwrap();
     rig.forget();
@@ -216,7 +216,7 @@ fn brake_switches_the_power_off_without_a_quick_stop() {
     assert_eq!(stopped.angle, Some(Degrees(-60.0)));
     assert!(stopped.brake && !stopped.fault);
     assert_eq!(rig.writes(), [(0x6040, 0, 0)]);
-    assert_eq!(rig.unit.state(), DeviceState::SwitchOnDisabled);
+    assert_eq!(rig.drive.state(), DeviceState::SwitchOnDisabled);
 }
 
 #[test]
@@ -241,7 +241,7 @@ fn clear_faults_clears_the_fault() {
             DeviceError::CAN_PASSIVE
         ]))
     );
-    assert_eq!(rig.unit.state(), DeviceState::SwitchOnDisabled);
+    assert_eq!(rig.drive.state(), DeviceState::SwitchOnDisabled);
 }
 
 #[test]
@@ -313,7 +313,7 @@ fn the_client_is_send() {
 /// Reads of an object give these values in turn, the last one from then on.
 fn reads_as(rig: &mut Rig, address: Address, values: &'static [u32]) {
     let mut next = 0;
-    rig.unit.hand = Box::new(move |_, request| match request {
+    rig.drive.hand = Box::new(move |_, request| match request {
         SerialRequest::ReadObject(read) if read.address == address => {
             let value = values[next.min(values.len() - 1)];
             next += 1;
@@ -328,10 +328,10 @@ const SWITCHES: Address = Address::new(0x2071, 1);
 #[test]
 fn a_powered_axis_that_moves_away_in_a_hold_is_stopped() {
     let mut rig = Rig::homed();
-    let here = rig.unit.position(rig.now);
+    let here = rig.drive.position(rig.now);
     // 0.6 deg further after ten samples.
     let mut left = 10;
-    rig.unit.hand = Box::new(move |_, request| match request {
+    rig.drive.hand = Box::new(move |_, request| match request {
         SerialRequest::ReadObject(read) if read.address == Address::new(0x6064, 0) => {
             left -= 1;
             Fate::Value((here + if left < 0 { 400 } else { 0 }).cast_unsigned())
@@ -386,7 +386,7 @@ fn no_move_begins_towards_a_pressed_switch() {
             inputs: 2
         }
     );
-    assert!(rig.unit.is_at_rest() && !rig.writes().contains(&(0x6040, 0, 0x1F)));
+    assert!(rig.drive.is_at_rest() && !rig.writes().contains(&(0x6040, 0, 0x1F)));
 }
 
 #[test]

@@ -5,7 +5,7 @@ use protocol::epos2::message::SerialRequest;
 use protocol::record::{Direction, DriveLink};
 use units::{Degrees, Host, Rpm, RpmPerS, Span, Stamp};
 
-use super::unit::{Unit, near_its_switch};
+use super::test_drive::{TestDrive, near_its_switch};
 use crate::{
     AxisConfig, CommandOutcome, CommandProgress, DriveClient, DriveCommand, DriveError, DriveEvent,
     DriveListener, MoveCommand, Observation, ShaftSample, StopReport,
@@ -13,7 +13,7 @@ use crate::{
 
 pub struct Rig {
     pub client: DriveClient,
-    pub unit: Unit,
+    pub drive: TestDrive,
     pub now: Stamp<Host>,
     pub events: Vec<DriveEvent>,
     pub log: Vec<(Direction, Vec<u8>, Stamp<Host>)>,
@@ -28,11 +28,11 @@ impl Rig {
         Self::with(link, config, near_its_switch())
     }
 
-    pub fn with(link: DriveLink, config: AxisConfig, unit: NodeConfig) -> Self {
+    pub fn with(link: DriveLink, config: AxisConfig, drive: NodeConfig) -> Self {
         let now = Stamp::from_nanos(1_795_000_000_000_000_000);
         Self {
             client: DriveClient::new(config, link),
-            unit: Unit::new(link, unit, now),
+            drive: TestDrive::new(link, drive, now),
             now,
             events: Vec::new(),
             log: Vec::new(),
@@ -57,14 +57,14 @@ impl Rig {
         let mut rig = Self::homed_on(link);
         rig.client.start(DriveCommand::Sweep(to(45.0))).unwrap();
         assert_eq!(rig.run_for(span), None, "{link:?}");
-        let moved = rig.unit.position(rig.now) + 40_000;
+        let moved = rig.drive.position(rig.now) + 40_000;
         assert!(moved > 5_000, "{link:?}: {moved}");
         rig.forget();
         rig
     }
 
     pub fn forget(&mut self) {
-        self.unit.requests.clear();
+        self.drive.requests.clear();
         self.events.clear();
         self.log.clear();
     }
@@ -98,7 +98,7 @@ impl Rig {
 
     fn transmit(&mut self) {
         while let Some(frame) = self.client.poll_transmit(self.now) {
-            self.unit.input(&frame, self.now);
+            self.drive.input(&frame, self.now);
             self.log.push((Direction::ToDevice, frame, self.now));
         }
     }
@@ -120,14 +120,14 @@ impl Rig {
                 DriveEvent::Sample(_) | DriveEvent::Progress(_) => {}
             }
         }
-        let answer = self.unit.next_answer();
+        let answer = self.drive.next_answer();
         let next = self
             .client
             .poll_timeout()
             .map_or(answer, |at| at.min(answer));
         // Virtual time always advances.
         self.now = next.max(self.now + Span::from_nanos(1));
-        while let Some(bytes) = self.unit.take_answer(self.now) {
+        while let Some(bytes) = self.drive.take_answer(self.now) {
             self.client.handle_input(&bytes, self.now);
             self.log.push((Direction::FromDevice, bytes, self.now));
         }
@@ -140,7 +140,7 @@ impl Rig {
     /// When the drive received the first quick stop.
     pub fn quick_stop(&self) -> Option<Stamp<Host>> {
         let is_stop = |request: &SerialRequest| matches!(request, SerialRequest::WriteObject(w) if w.address.index == 0x6040 && w.value == 0x0B);
-        let stop = self.unit.requests.iter().find(|(_, r)| is_stop(r));
+        let stop = self.drive.requests.iter().find(|(_, r)| is_stop(r));
         stop.map(|(at, _)| *at)
     }
 
@@ -174,7 +174,7 @@ impl Rig {
 
     /// Writes that reached the drive: index, sub, value.
     pub fn writes(&self) -> Vec<(u16, u8, u32)> {
-        self.unit
+        self.drive
             .requests
             .iter()
             .filter_map(|(_, request)| match request {

@@ -1,4 +1,4 @@
-//! Features of RS232: a dialogue with missing bytes, and units that stay behind in it.
+//! Features of RS232: a dialogue with missing bytes, and drives that stay behind in it.
 
 use proptest::prelude::*;
 use protocol::epos2::message::{ReadObject, SerialRequest as Wire, WriteObject};
@@ -31,8 +31,8 @@ fn request(index: u16, access: ObjectAccess) -> LinkRequest {
     }
 }
 
-/// A unit whose object at index i has the value i.
-struct Unit {
+/// A drive whose object at index i has the value i.
+struct TestDrive {
     state: UnitState,
     observed: Stamp<Host>,
     executed: Vec<Wire>,
@@ -45,7 +45,7 @@ enum UnitState {
     Receipt,
 }
 
-impl Unit {
+impl TestDrive {
     fn new() -> Self {
         Self {
             state: UnitState::Opcode,
@@ -210,14 +210,14 @@ proptest! {
     #[test]
     fn replies_belong_to_their_requests(there in fates(), back in fates(), abandons in proptest::collection::vec(any::<bool>(), 12)) {
         let mut link = RequestLink::new(Codec::new(DriveLink::Rs232, 1));
-        let mut unit = Unit::new();
+        let mut drive = TestDrive::new();
         let (mut out, mut home) = (Line::new(there), Line::new(back));
         let mut now = at(0);
         for (n, abandon) in (0u16..).zip(abandons) {
             let access = if n % 4 == 3 { ObjectAccess::Write { value: 1, width: 2 } } else { ObjectAccess::Read };
             link.submit(request(0x6000 + n, access));
             let began = now;
-            let executed_before = unit.executed.len();
+            let executed_before = drive.executed.len();
             for _ in 0..20_000 {
                 while let Some(bytes) = link.transmit(now) {
                     out.send(&bytes, now);
@@ -233,7 +233,7 @@ proptest! {
                             Wire::WriteObject(w) => w.address.index == 0x6000 + n,
                             _ => false,
                         };
-                        prop_assert!(unit.executed[executed_before..].iter().any(ours));
+                        prop_assert!(drive.executed[executed_before..].iter().any(ours));
                         break;
                     }
                     Some(Err(RequestFailure::NoReply { .. } | RequestFailure::LinkLost { .. } | RequestFailure::Refused { .. })) => break,
@@ -246,7 +246,7 @@ proptest! {
                 let next = [out.next(), home.next(), link.deadline()];
                 now = next.into_iter().flatten().min().unwrap().max(now);
                 while let Some(byte) = out.take(now) {
-                    let replies = unit.take(byte, now);
+                    let replies = drive.take(byte, now);
                     home.send(&replies, now + Span::from_micros(300));
                 }
                 while let Some(byte) = home.take(now) {

@@ -16,7 +16,7 @@ use protocol::epos2::{BoundedVec, SerialFrame};
 use protocol::record::DriveLink;
 use units::{Host, Span, Stamp};
 
-use super::unit::{Fate, Unit};
+use super::test_drive::{Fate, TestDrive};
 
 /// Recognises the requests in the host's bytes.
 pub enum RequestTap {
@@ -81,25 +81,25 @@ impl RequestTap {
         }
     }
 
-    pub fn input(&mut self, unit: &mut Unit, input: &[u8], now: Stamp<Host>) {
+    pub fn input(&mut self, drive: &mut TestDrive, input: &[u8], now: Stamp<Host>) {
         match self {
             Self::Usb { decoder, bytes } => {
                 for &byte in input {
                     bytes.push(byte);
                     if let Some(Ok(frame)) = decoder.push(byte) {
-                        usb(unit, &frame, std::mem::take(bytes), now);
+                        usb(drive, &frame, std::mem::take(bytes), now);
                     }
                 }
             }
             Self::Rs232(handshake) => {
                 for &byte in input {
                     let was = std::mem::replace(handshake, Handshake::Opcode);
-                    *handshake = rs232(was, unit, byte, now);
+                    *handshake = rs232(was, drive, byte, now);
                 }
             }
             Self::Can => {
                 for bytes in input.chunks(16) {
-                    can(unit, bytes, now);
+                    can(drive, bytes, now);
                 }
             }
             Self::Gone => {}
@@ -107,9 +107,9 @@ impl RequestTap {
     }
 }
 
-/// The answer of a script instead of the unit's.
-fn scripted(unit: &mut Unit, request: &SerialRequest, fate: Fate) -> Option<SerialFrame> {
-    if let Some(answer) = unit.long_object.as_mut().and_then(|it| it.answer(request)) {
+/// The answer of a script instead of the drive's.
+fn scripted(drive: &mut TestDrive, request: &SerialRequest, fate: Fate) -> Option<SerialFrame> {
+    if let Some(answer) = drive.long_object.as_mut().and_then(|it| it.answer(request)) {
         return Some(answer);
     }
     match (fate, request) {
@@ -122,51 +122,51 @@ fn scripted(unit: &mut Unit, request: &SerialRequest, fate: Fate) -> Option<Seri
     }
 }
 
-/// Whether a request with this fate changes the unit.
+/// Whether a request with this fate changes the drive.
 fn is_executed(fate: Fate) -> bool {
     !matches!(fate, Fate::Ignored | Fate::Refused(_))
 }
 
-fn reply(unit: &mut Unit, mut bytes: Vec<u8>, fate: Fate, now: Stamp<Host>) {
+fn reply(drive: &mut TestDrive, mut bytes: Vec<u8>, fate: Fate, now: Stamp<Host>) {
     let by = match fate {
         Fate::Lost => return,
         Fate::Late(by) => by,
         _ => Span::ZERO,
     };
     if fate == Fate::Damaged {
-        match unit.link {
+        match drive.link {
             // A damaged CAN frame does not arrive; a wrong length comes closest.
             DriveLink::Can => bytes[4] = 7,
             _ => *bytes.last_mut().unwrap() ^= 0x55,
         }
     }
     if fate == Fate::Twice {
-        unit.send(bytes.clone(), by, now);
+        drive.send(bytes.clone(), by, now);
     }
-    unit.send(bytes, by, now);
+    drive.send(bytes, by, now);
 }
 
-fn usb(unit: &mut Unit, frame: &SerialFrame, mut bytes: Vec<u8>, now: Stamp<Host>) {
+fn usb(drive: &mut TestDrive, frame: &SerialFrame, mut bytes: Vec<u8>, now: Stamp<Host>) {
     let request = SerialRequest::parse(frame).unwrap().unwrap();
-    let fate = unit.meet(request, now);
-    let script = scripted(unit, &request, fate);
+    let fate = drive.meet(request, now);
+    let script = scripted(drive, &request, fate);
     if fate == Fate::Rejected {
         *bytes.last_mut().unwrap() ^= 0x55;
     }
     let mut answers = Vec::new();
     if is_executed(fate) {
-        answers = unit.server.input(&mut unit.node, &bytes);
+        answers = drive.server.input(&mut drive.node, &bytes);
     }
     if let Some(answer) = script {
         answers = vec![usb::to_bytes(&answer).to_vec()];
     }
     for answer in answers {
-        reply(unit, answer, fate, now);
+        reply(drive, answer, fate, now);
     }
 }
 
-/// The unit receives the byte of the handshake, or a request as a whole.
-fn rs232(handshake: Handshake, unit: &mut Unit, byte: u8, now: Stamp<Host>) -> Handshake {
+/// The drive receives the byte of the handshake, or a request as a whole.
+fn rs232(handshake: Handshake, drive: &mut TestDrive, byte: u8, now: Stamp<Host>) -> Handshake {
     let mut bytes = vec![byte];
     let (fate, next) = match handshake {
         Handshake::Opcode if SerialRequest::OPCODES.contains(&byte) => (
@@ -184,8 +184,8 @@ fn rs232(handshake: Handshake, unit: &mut Unit, byte: u8, now: Stamp<Host>) -> H
                 }
                 Some(Ok(frame)) => {
                     let request = SerialRequest::parse(&frame).unwrap().unwrap();
-                    let fate = unit.meet(request, now);
-                    let script = scripted(unit, &request, fate);
+                    let fate = drive.meet(request, now);
+                    let script = scripted(drive, &request, fate);
                     bytes = body;
                     if fate == Fate::Rejected {
                         *bytes.last_mut().unwrap() ^= 0x55;
@@ -206,7 +206,7 @@ fn rs232(handshake: Handshake, unit: &mut Unit, byte: u8, now: Stamp<Host>) -> H
             }
         }
         Handshake::Ready(fate, script) if byte == OKAY => {
-            let mut answers = unit.server.input(&mut unit.node, &bytes);
+            let mut answers = drive.server.input(&mut drive.node, &bytes);
             if let Some(frame) = script {
                 let mut body = Vec::new();
                 encode_body(&frame, &mut body).unwrap();
@@ -218,19 +218,19 @@ fn rs232(handshake: Handshake, unit: &mut Unit, byte: u8, now: Stamp<Host>) -> H
                 _ => fate,
             };
             for answer in answers {
-                reply(unit, answer, fate, now);
+                reply(drive, answer, fate, now);
             }
             return Handshake::Receipt;
         }
         Handshake::Ready(..) | Handshake::Receipt => (Fate::Sent, Handshake::Opcode),
     };
-    for answer in unit.server.input(&mut unit.node, &bytes) {
-        reply(unit, answer, fate, now);
+    for answer in drive.server.input(&mut drive.node, &bytes) {
+        reply(drive, answer, fate, now);
     }
     next
 }
 
-/// The body of a request that the unit refuses, with its handshake.
+/// The body of a request that the drive refuses, with its handshake.
 fn harmless(request: &SerialRequest, body: Vec<u8>) -> Vec<u8> {
     let SerialRequest::WriteObject(write) = *request else {
         return body;
@@ -242,36 +242,36 @@ fn harmless(request: &SerialRequest, body: Vec<u8>) -> Vec<u8> {
     body
 }
 
-fn can(unit: &mut Unit, bytes: &[u8], now: Stamp<Host>) {
+fn can(drive: &mut TestDrive, bytes: &[u8], now: Stamp<Host>) {
     let frame = CanFrame::from_socketcan(bytes).unwrap();
     match BusMessage::parse(&frame).unwrap() {
         BusMessage::SdoRequest(to, request) => {
             assert_eq!(to, node_id());
-            return sdo_request(unit, &request, bytes, now);
+            return sdo_request(drive, &request, bytes, now);
         }
-        BusMessage::Sync(_) => unit.bus.syncs.push(now - unit.forth),
+        BusMessage::Sync(_) => drive.bus.syncs.push(now - drive.forth),
         _ => {}
     }
-    let sent = unit.server.input(&mut unit.node, bytes);
-    unit.on_bus(sent, now);
+    let sent = drive.server.input(&mut drive.node, bytes);
+    drive.on_bus(sent, now);
 }
 
-fn sdo_request(unit: &mut Unit, request: &sdo::SdoRequest, bytes: &[u8], now: Stamp<Host>) {
+fn sdo_request(drive: &mut TestDrive, request: &sdo::SdoRequest, bytes: &[u8], now: Stamp<Host>) {
     if let sdo::SdoRequest::Abort { error, .. } = *request {
-        unit.aborts.push(error);
-        unit.server.input(&mut unit.node, bytes);
+        drive.aborts.push(error);
+        drive.server.input(&mut drive.node, bytes);
         return;
     }
     let (wire, address) = serial_request(request);
-    let fate = unit.meet(wire, now);
-    let script = scripted(unit, &wire, fate);
+    let fate = drive.meet(wire, now);
+    let script = scripted(drive, &wire, fate);
     if is_executed(fate) && script.is_none() {
-        for bytes in unit.server.input(&mut unit.node, bytes) {
+        for bytes in drive.server.input(&mut drive.node, bytes) {
             let frame = CanFrame::from_socketcan(&bytes).unwrap();
             if channel(&frame) == Some(CommunicationObject::SdoResponse(node_id())) {
-                reply(unit, bytes, fate, now);
+                reply(drive, bytes, fate, now);
             } else {
-                unit.on_bus(vec![bytes], now);
+                drive.on_bus(vec![bytes], now);
             }
         }
     }
@@ -284,10 +284,10 @@ fn sdo_request(unit: &mut Unit, request: &sdo::SdoRequest, bytes: &[u8], now: St
         let transfer = Initiate::Expedited(Expedited::of(0x1234_u32));
         sdo::SdoResponse::InitiateUpload { address, transfer }
     } else {
-        sdo_answer(&unit.node, &wire, address, &script)
+        sdo_answer(&drive.node, &wire, address, &script)
     };
     let bytes = answer.to_frame(node_id()).to_socketcan().to_vec();
-    reply(unit, bytes, fate, now);
+    reply(drive, bytes, fate, now);
 }
 
 /// The serial request of the same meaning, and the object.
@@ -381,8 +381,8 @@ fn channel(frame: &CanFrame) -> Option<CommunicationObject> {
     frame.cob_id().map(CommunicationObject::of)
 }
 
-impl Unit {
-    /// Frames that the unit sends on its own at `now`.
+impl TestDrive {
+    /// Frames that the drive sends on its own at `now`.
     pub(super) fn on_bus(&mut self, sent: Vec<Vec<u8>>, now: Stamp<Host>) {
         let stream = Pdo::Transmit(PdoNumber::One).channel(node_id());
         for bytes in sent {

@@ -10,7 +10,7 @@ use analysis::plan::{
     PlannedScan, ScanPredictor, ScanSetting, TiltSweep,
 };
 use drive::AxisConfig;
-use protocol::vlp16::Model;
+use protocol::vlp16::LidarModel;
 use sim::RigLidar;
 use units::{Degrees, ShortNumber};
 
@@ -136,7 +136,7 @@ impl ScanPlanner {
     pub fn of_capture(
         config: &Config,
         capture: &CapturePlan,
-        model: Option<&'static Model>,
+        model: Option<&'static LidarModel>,
         rpm: Option<u32>,
     ) -> Result<Self, Failure> {
         Self::of_capture_at(config, capture, model, rpm, USUAL_M)
@@ -150,13 +150,13 @@ impl ScanPlanner {
     pub fn of_capture_at(
         config: &Config,
         capture: &CapturePlan,
-        model: Option<&'static Model>,
+        model: Option<&'static LidarModel>,
         rpm: Option<u32>,
         at_m: f64,
     ) -> Result<Self, Failure> {
         let (usual_lidar, usual_rpm) = match profile::simulated(&capture.device) {
             true => (SIMULATED, RigLidar::default().rpm),
-            false => (config.lidar.model.sheet(), config.lidar.rpm),
+            false => (config.lidar.sheet, config.lidar.rpm),
         };
         let lidar = model.and_then(LidarSheet::of).unwrap_or(usual_lidar);
         let rpm = rpm.unwrap_or(usual_rpm);
@@ -414,7 +414,7 @@ enum RangeSource {
 
 impl RangeSource {
     fn of(config: &Config, device: &Device, request: &PlanRequest) -> Self {
-        let is_configured = request.lidar == config.lidar.model.sheet();
+        let is_configured = request.lidar == config.lidar.sheet;
         if request.range_sd_m.is_some() {
             Self::Request
         } else if profile::simulated(device) && is_simulated(request.lidar, &request.rpm) {

@@ -1,49 +1,10 @@
 //! The lidar of the configuration.
 
-use protocol::vlp16::{Model, models};
 use scanner::config::LidarConfig;
-use serde::Deserialize;
+use serde::de::Error;
+use serde::{Deserialize, Deserializer};
 
-use crate::lidars::{self, LidarSheet};
-
-/// A lidar model, by the name that `--lidar` and `--model` take.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum LidarName {
-    /// VLP-16, Puck, Puck LITE.
-    #[default]
-    Vlp16,
-    /// Puck Hi-Res.
-    HiRes,
-    /// HDL-32E.
-    Hdl32e,
-    /// VLP-32C, Ultra Puck.
-    Vlp32c,
-}
-
-impl LidarName {
-    /// Its data sheet.
-    #[must_use]
-    pub const fn sheet(self) -> &'static LidarSheet {
-        match self {
-            Self::Vlp16 => &lidars::VLP_16,
-            Self::HiRes => &lidars::HI_RES,
-            Self::Hdl32e => &lidars::HDL_32E,
-            Self::Vlp32c => &lidars::VLP_32C,
-        }
-    }
-
-    /// The model.
-    #[must_use]
-    pub const fn model(self) -> &'static Model {
-        match self {
-            Self::Vlp16 => &models::VLP_16,
-            Self::HiRes => &models::PUCK_HI_RES,
-            Self::Hdl32e => &models::HDL_32E,
-            Self::Vlp32c => &models::VLP_32C,
-        }
-    }
-}
+use crate::lidars::{self, CAPTURED, LidarSheet};
 
 /// The lidar on the platform. Captures find its model and rate in its packets; before, they expect
 /// these.
@@ -52,7 +13,8 @@ impl LidarName {
 #[non_exhaustive]
 pub struct LidarSettings {
     /// Its model.
-    pub model: LidarName,
+    #[serde(rename = "model", deserialize_with = "captured")]
+    pub sheet: &'static LidarSheet,
     /// Revolutions per minute, as set on its own page.
     pub rpm: u32,
     /// Standard deviation of a range, including quantisation, metres; the data sheet's without it.
@@ -63,7 +25,7 @@ impl Default for LidarSettings {
     /// A VLP-16 with factory settings.
     fn default() -> Self {
         Self {
-            model: LidarName::Vlp16,
+            sheet: &lidars::VLP_16,
             rpm: 600,
             range_sd_m: None,
         }
@@ -75,9 +37,17 @@ impl LidarSettings {
     #[must_use]
     pub fn accuracy(&self) -> LidarConfig {
         // The same at all ranges for these lidars.
-        let usual_m = self.model.sheet().range_sd_m(0.0);
+        let usual_m = self.sheet.range_sd_m(0.0);
         LidarConfig {
             range_sd_m: self.range_sd_m.unwrap_or(usual_m),
         }
     }
+}
+
+/// Reads the name of a lidar that velomotion captures.
+fn captured<'de, D: Deserializer<'de>>(name: D) -> Result<&'static LidarSheet, D::Error> {
+    let name = String::deserialize(name)?;
+    LidarSheet::named(&name)
+        .filter(|sheet| sheet.model.is_some())
+        .ok_or_else(|| Error::unknown_variant(&name, &CAPTURED))
 }

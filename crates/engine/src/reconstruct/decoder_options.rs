@@ -7,7 +7,7 @@ use std::sync::Arc;
 use lidar::calibration::{from_ros_yaml, from_toml};
 use lidar::{Corrections, Decoder, Duplicates, Options};
 use protocol::record::Wire;
-use protocol::vlp16::Model;
+use protocol::vlp16::LidarModel;
 use scanner::config::DeviceCalibration;
 
 use crate::failure::{Failure, Kind};
@@ -24,7 +24,7 @@ const MAX_MESSAGE: usize = 200;
 #[derive(Clone, Debug, Default)]
 pub struct DecoderRequest {
     /// Model, if the packets do not tell it right.
-    pub model: Option<&'static Model>,
+    pub model: Option<&'static LidarModel>,
     /// Calibration file of the individual lidar: `.yaml` (ROS) or `.toml`.
     pub calibration: Option<PathBuf>,
     /// Equal returns of a dual-return packet.
@@ -65,7 +65,7 @@ pub fn decoder_options(request: &DecoderRequest, source: &Source) -> Result<Opti
     })
 }
 
-pub(crate) fn other_model(calibration: &DeviceCalibration, model: &Model) -> Failure {
+pub(crate) fn other_model(calibration: &DeviceCalibration, model: &LidarModel) -> Failure {
     let calibrated = calibration.model.as_deref().unwrap_or("unknown model");
     Failure::new(
         Kind::BadInput,
@@ -78,7 +78,7 @@ pub(crate) fn other_model(calibration: &DeviceCalibration, model: &Model) -> Fai
 }
 
 /// Model of the first packets, which the calibration must match.
-fn model(options: &Options, source: &Source) -> Result<&'static Model, Failure> {
+fn model(options: &Options, source: &Source) -> Result<&'static LidarModel, Failure> {
     let mut decoder = Decoder::new(options.clone());
     source.read_until(|record| {
         if let Wire::Lidar { payload, .. } = record.wire {
@@ -109,7 +109,7 @@ fn brief(message: &str) -> String {
 }
 
 /// Reads a calibration: ROS YAML or our TOML.
-fn calibration(path: &Path, model: &'static Model) -> Result<Corrections, Failure> {
+fn calibration(path: &Path, model: &'static LidarModel) -> Result<Corrections, Failure> {
     let wrong = |what: String| {
         Failure::new(Kind::BadInput, format!("{}: {}", path.display(), brief(&what))).help(
             "use a velodyne_pointcloud calibration (.yaml), or a file with one [[laser]] table per laser (.toml; docs, Replay)",

@@ -8,7 +8,7 @@ mod native;
 mod ros;
 mod yaml;
 
-use protocol::vlp16::Model;
+use protocol::vlp16::LidarModel;
 use thiserror::Error;
 
 use crate::corrections::{Corrections, LaserCorrection};
@@ -119,7 +119,7 @@ struct EntryLines {
 fn assemble(
     layer: &'static str,
     line: usize,
-    model: &'static Model,
+    model: &'static LidarModel,
     entries: Vec<LaserEntry>,
 ) -> Result<Corrections, CalibrationError> {
     let expected = model.lasers.len();
@@ -164,7 +164,7 @@ fn assemble(
 /// Refuses implausible values for the model.
 fn check_plausible(
     layer: &'static str,
-    model: &'static Model,
+    model: &'static LidarModel,
     entry: &LaserEntry,
     of_model: LaserCorrection,
 ) -> Result<(), CalibrationError> {

@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use protocol::vlp16::Model;
+use protocol::vlp16::LidarModel;
 use serde::Deserialize;
 use toml::Spanned;
 
@@ -38,7 +38,7 @@ struct LaserTable {
 ///
 /// # Errors
 /// [`CalibrationError`], with the line.
-pub fn from_toml(text: &str, model: &'static Model) -> Result<Corrections, CalibrationError> {
+pub fn from_toml(text: &str, model: &'static LidarModel) -> Result<Corrections, CalibrationError> {
     let file: CalibrationFile = toml::from_str(text).map_err(|error| CalibrationError::Syntax {
         layer: LAYER,
         line: error.span().map_or(1, |span| line(text, span)),
@@ -59,7 +59,11 @@ pub fn from_toml(text: &str, model: &'static Model) -> Result<Corrections, Calib
 }
 
 impl LaserTable {
-    fn entry(&self, text: &str, model: &'static Model) -> Result<LaserEntry, CalibrationError> {
+    fn entry(
+        &self,
+        text: &str,
+        model: &'static LidarModel,
+    ) -> Result<LaserEntry, CalibrationError> {
         let id_line = line(text, self.id.span());
         let laser = usize::try_from(*self.id.get_ref()).ok();
         // An index beyond the model's lasers is refused in `assemble`.

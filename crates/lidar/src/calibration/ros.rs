@@ -10,7 +10,7 @@
 
 use std::f64::consts::PI;
 
-use protocol::vlp16::Model;
+use protocol::vlp16::LidarModel;
 
 use super::yaml::{YamlNode, YamlValue, parse};
 use super::{CalibrationError, EntryLines, LaserEntry, assemble};
@@ -67,7 +67,7 @@ pub struct Ignored {
 /// [`CalibrationError`], with the line.
 pub fn from_ros_yaml(
     text: &str,
-    model: &'static Model,
+    model: &'static LidarModel,
 ) -> Result<RosCalibration, CalibrationError> {
     let root = parse(LAYER, text)?;
     let top = YamlMapping::new(&root, "the file", |key| TOP.contains(&key))?;
@@ -105,7 +105,7 @@ pub fn from_ros_yaml(
 }
 
 /// Checks the distance unit, which is that of the packets: another unit means another model.
-fn check_unit(top: &YamlMapping<'_>, model: &'static Model) -> Result<(), CalibrationError> {
+fn check_unit(top: &YamlMapping<'_>, model: &'static LidarModel) -> Result<(), CalibrationError> {
     let Some(unit) = top.get("distance_resolution") else {
         return Ok(());
     };

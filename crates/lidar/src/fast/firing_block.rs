@@ -5,7 +5,7 @@
 //! [`FiringBlock::firings`] gives the plain definition. [`FiringBlock::place`] places several
 //! channels at a time, to within 1e-14 of the distance.
 
-use protocol::vlp16::{CHANNELS, Model};
+use protocol::vlp16::{CHANNELS, LidarModel};
 use units::{Host, Lidar, Real, Span, Stamp};
 
 use super::azimuth::{PaceOffsets, SinCos};
@@ -138,7 +138,7 @@ impl<'a> BlockReturns<'a> {
 impl<'a> FiringBlock<'a> {
     /// The decoded model.
     #[must_use]
-    pub const fn model(&self) -> &'static Model {
+    pub const fn model(&self) -> &'static LidarModel {
         self.geometry.model
     }
 

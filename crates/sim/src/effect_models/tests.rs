@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use crate::motion::{AxisMotion, Sweeps};
-use crate::scenes;
+use crate::scene::Scene;
 use units::{Gearing, Stamp};
 
 /// For each effect a table of settings with which it acts in the hall.
@@ -115,7 +115,7 @@ fn hall() -> Simulation {
         rest_s: 0.01,
     });
     Simulation {
-        scene: Arc::new(scenes::hall()),
+        scene: Arc::new(Scene::hall()),
         sensor: LidarSensor::vlp16(),
         returns: ReturnMode::Dual,
         rotation: HeadRotation {

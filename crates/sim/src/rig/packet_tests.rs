@@ -112,7 +112,7 @@ fn decode(packet: &[u8]) -> Vec<Decoded> {
 #[test]
 fn packets_agree_with_the_truth_within_their_rounding() {
     let (ms, drift_ppm) = (800, 50.0);
-    let mut device = Device::new(scenes::hall(), lidar(3_599_700_000, drift_ppm), sweep(ms));
+    let mut device = Device::new(Scene::hall(), lidar(3_599_700_000, drift_ppm), sweep(ms));
     let sensor = LidarSensor::vlp16();
     let truth = device.truth();
     let (mut compared, mut worst) = (0, 0.0_f64);
@@ -151,7 +151,7 @@ fn packets_agree_with_the_truth_within_their_rounding() {
 
 #[test]
 fn stamps_count_in_the_lidars_own_time_and_wrap_at_the_hour() {
-    let mut device = Device::new(scenes::hall(), lidar(3_599_999_000, -40.0), sweep(20));
+    let mut device = Device::new(Scene::hall(), lidar(3_599_999_000, -40.0), sweep(20));
     let packets: Vec<SimulatedPacket> = (0..5).map(|_| device.packet()).collect();
     let stamps: Vec<u32> = packets.iter().map(|p| stamp_us(&p.payload)).collect();
     // 1327.104 us per packet, rounded down to whole microseconds.
@@ -196,7 +196,7 @@ fn surfaces_out_of_range_do_not_return() {
 
 #[test]
 fn truth_outside_the_run_or_the_lasers_is_none() {
-    let truth = Device::new(scenes::hall(), lidar(0, 0.0), sweep(10)).truth();
+    let truth = Device::new(Scene::hall(), lidar(0, 0.0), sweep(10)).truth();
     assert_eq!(truth.end().as_nanos() - START.as_nanos(), 10_000_000);
     for (device_ns, laser, known) in [
         (0, 0, true),

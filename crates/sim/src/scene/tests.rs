@@ -1,11 +1,14 @@
 //! Casting against an independent slow reference: marching along the ray by signed distance, then
 //! bisection.
 
+use std::collections::BTreeSet;
+
 use glam::{DMat3, DVec3, Vec3Swizzles, dvec2, dvec3};
 use proptest::prelude::*;
 
 use super::*;
 use crate::cast::{Cuboid, Cylinder, Placement, Plane, Sphere};
+use crate::sensor::{LidarMount, LidarSensor};
 
 const FAR: f64 = 1e12;
 
@@ -409,4 +412,34 @@ fn a_sphere_of_one_metre_is_hit_at_a_kilometre() {
     }
     let past = scene([(ball(dvec3(1_000.0, 1.000_001, 0.0), 1.0), 0)]);
     assert_eq!(past.cast(DVec3::ZERO, DVec3::X, 0.0, FAR), None);
+}
+
+#[test]
+fn every_firing_in_the_hall_returns_within_20_m_at_every_tilt() {
+    let (scene, sensor, mount) = (Scene::hall(), LidarSensor::vlp16(), LidarMount::above(0.06));
+    let mut seen = BTreeSet::new();
+    for tilt in (-90..=0).map(|half| f64::from(half) / 2.0) {
+        for azimuth in (0..1_800).map(|i| f64::from(i) / 5.0) {
+            for laser in 0..16 {
+                let (origin, direction) = sensor.ray(laser, azimuth, tilt, &mount).unwrap();
+                let hit = scene.cast(origin, direction, 1.0, 100.0).unwrap();
+                assert!((1.2..20.0).contains(&hit.range_m), "{hit:?}");
+                seen.insert(hit.reflectivity);
+            }
+        }
+    }
+    // Floor, both kinds of wall, ceiling, pillars, cardboard, wood, steel and the sign are all
+    // hit.
+    assert_eq!(
+        seen.into_iter().collect::<Vec<_>>(),
+        [12, 22, 28, 33, 35, 40, 45, 62, 210]
+    );
+}
+
+#[test]
+fn the_floor_is_one_tripod_height_below_the_axis() {
+    let down = Scene::hall()
+        .cast(DVec3::ZERO, -DVec3::Z, 0.0, 100.0)
+        .unwrap();
+    assert_eq!((down.range_m, down.reflectivity), (1.2, 28));
 }

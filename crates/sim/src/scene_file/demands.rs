@@ -138,7 +138,7 @@ impl SceneFacts<'_> {
         };
         let mut demands: Vec<EffectDemand> = self.moving(&survey).into_iter().collect();
         for fact in self.stated {
-            demands.push(self.sized(fact.effect, &survey).at(Some(fact.line)));
+            demands.push(self.stated_demand(fact.effect, &survey).at(Some(fact.line)));
         }
         if !self.is_ideal {
             demands.extend(self.edges(&survey));
@@ -147,7 +147,7 @@ impl SceneFacts<'_> {
             let of_drive = self.simulation.polls.map(|_| "encoder_quantisation");
             let usual = of_sensor.into_iter().chain(of_drive).chain(["link_jitter"]);
             for effect in usual.filter(|name| self.stated.iter().all(|fact| fact.effect != *name)) {
-                demands.push(self.sized(effect, &survey));
+                demands.push(self.stated_demand(effect, &survey));
             }
         }
         let rank = |name: &str| EffectsConfig::NAMES.iter().position(|known| *known == name);
@@ -249,7 +249,7 @@ impl SceneFacts<'_> {
     }
 
     /// The demand for an effect by its settings.
-    fn sized(&self, effect: &'static str, survey: &SceneSurvey) -> EffectDemand {
+    fn stated_demand(&self, effect: &'static str, survey: &SceneSurvey) -> EffectDemand {
         let config = self.config;
         let motion = &self.simulation.motion;
         let range_m = survey.farthest_m;
@@ -258,7 +258,7 @@ impl SceneFacts<'_> {
         let by_angle = |deg: f64| deg.to_radians() * range_m;
         let by_delay = |us: f64| by_angle(1e-6 * us * speed_deg_s);
         let demand = |reason: String| EffectDemand::new(effect, reason);
-        let sized = match effect {
+        let stated = match effect {
             "own_shadow" => config.own_shadow.settings().map(|shadow| {
                 let hidden_deg: f64 = (shadow.sectors.iter())
                     .map(|sector| sector.width_deg())
@@ -366,7 +366,7 @@ impl SceneFacts<'_> {
             }),
             _ => None,
         };
-        sized.unwrap_or_else(|| demand("the scene states it".to_owned()))
+        stated.unwrap_or_else(|| demand("the scene states it".to_owned()))
     }
 }
 

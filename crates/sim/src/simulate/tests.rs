@@ -11,7 +11,7 @@ use crate::effects::{
 use crate::firing::{Echoes, SimulatedFiring};
 use crate::motion::Sweeps;
 use crate::packet_maker::{HeadRotation, TruePoint};
-use crate::scenes;
+use crate::scene::Scene;
 use crate::sensor::{LidarMount, LidarSensor, ReturnMode};
 use firmware_sim::vlp16::DATA_PORT;
 
@@ -78,7 +78,7 @@ fn hall(sensor: LidarSensor) -> Simulation {
         rest_s: 0.03,
     });
     Simulation {
-        scene: Arc::new(scenes::hall()),
+        scene: Arc::new(Scene::hall()),
         sensor,
         returns: ReturnMode::Strongest,
         rotation: HeadRotation {

@@ -3,16 +3,14 @@
 use cloud::Fields;
 use engine::capture::jog::{GotoRequest, JogRequest};
 use engine::capture_request::CaptureRequest;
-use engine::config::LidarName;
 use engine::failure::Failure;
 use engine::reconstruct::decoder_options::DecoderRequest;
 use engine::reconstruct::replay;
 use lidar::Duplicates;
-use protocol::vlp16::Model;
 
 use super::{
-    AccuracyArguments, Capture, EqualReturns, LidarArguments, ModelName, MotionArguments, Output,
-    TiltVerb, TimeArgument,
+    AccuracyArguments, Capture, EqualReturns, LidarArguments, MotionArguments, Output, TiltVerb,
+    TimeArgument,
 };
 
 impl AccuracyArguments {
@@ -38,7 +36,7 @@ impl LidarArguments {
     #[must_use]
     pub fn request(&self) -> DecoderRequest {
         DecoderRequest {
-            model: self.model.map(ModelName::model),
+            model: self.model,
             calibration: self.calibration.clone(),
             duplicates: match self.equal_returns {
                 EqualReturns::Once => Duplicates::Unique,
@@ -91,20 +89,6 @@ impl From<&Capture> for CaptureRequest {
                 .map(|t| format!("{}m@{}m", t.off.0, t.at.0)),
             name: None,
         }
-    }
-}
-
-impl ModelName {
-    /// The model.
-    #[must_use]
-    pub const fn model(self) -> &'static Model {
-        let name = match self {
-            Self::Vlp16 => LidarName::Vlp16,
-            Self::HiRes => LidarName::HiRes,
-            Self::Hdl32e => LidarName::Hdl32e,
-            Self::Vlp32c => LidarName::Vlp32c,
-        };
-        name.model()
     }
 }
 

@@ -4,8 +4,9 @@ use std::net::SocketAddr;
 use std::num::NonZeroUsize;
 use std::ops::RangeInclusive;
 
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use engine::lidars::{LIDARS, LidarSheet};
+use protocol::vlp16::LidarModel;
 
 use super::ALL;
 
@@ -13,6 +14,16 @@ use super::ALL;
 pub(super) fn effect_or_all() -> PossibleValuesParser {
     let names = sim::effect_models::EffectsConfig::NAMES.iter().copied();
     PossibleValuesParser::new(names.chain([ALL]))
+}
+
+/// Parses the name of a lidar whose packets velomotion reads.
+pub(super) fn captured_model() -> impl TypedValueParser<Value = &'static LidarModel> {
+    let captured = LIDARS.into_iter().filter(|lidar| lidar.model.is_some());
+    let names = captured.map(|lidar| PossibleValue::new(lidar.name).help(lidar.title));
+    PossibleValuesParser::new(names).try_map(|name| {
+        let lidar = LidarSheet::named(&name).and_then(|lidar| lidar.model);
+        lidar.ok_or("expected the name of a lidar")
+    })
 }
 
 /// Parses the name of a lidar that may be planned with.

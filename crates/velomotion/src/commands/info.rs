@@ -21,7 +21,7 @@ pub fn run(arguments: &cli::Info) -> Result<CommandOutput, Failure> {
 fn info(arguments: &cli::Info, file: &Path) -> Result<CommandOutput, Failure> {
     let source = Source::open(file, None)?;
     let options = Options {
-        model: arguments.model.map(cli::ModelName::model),
+        model: arguments.model,
         ..Options::default()
     };
     let report = read_contents(&source, options)?;

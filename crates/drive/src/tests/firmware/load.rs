@@ -40,13 +40,13 @@ fn sweep_and_brake(
         panic!("{link:?}: {swept:?}")
     };
     assert!(arrived.position.0.abs_diff(-10_000) <= 2, "{arrived:?}");
-    let target = rig.unit.world_qc(rig.now);
+    let target = rig.drive.world_qc(rig.now);
     let stopped = rig.run(DriveCommand::Brake).map(|outcome| match outcome {
         CommandOutcome::Stopped(report) => report,
         other => panic!("{link:?}: {other:?}"),
     });
     assert_eq!(rig.run_for(Span::from_secs(1)), None);
-    let fallen = rig.unit.world_qc(rig.now) - target;
+    let fallen = rig.drive.world_qc(rig.now) - target;
     let dropped = rig.events.iter().find_map(|event| match event {
         DriveEvent::Progress(CommandProgress::MovedAfterPowerOff(moved)) => Some(moved.0),
         _ => None,

@@ -5,7 +5,6 @@ use crate::effect_models::testing::{around, cast, firing};
 use crate::effects::ObjectsEffect;
 use crate::firing::{Echoes, SimulatedFiring, Surroundings};
 use crate::scene::Scene;
-use crate::scenes;
 use glam::{DMat3, DVec3, dvec3};
 
 fn divergence() -> Divergence {
@@ -105,7 +104,7 @@ fn an_edge_close_to_a_wall_gives_a_mixed_pixel() {
 /// The map and the four corners against sub-rays at every shot.
 #[test]
 fn footprints_without_sub_rays_are_those_that_sub_rays_leave_unchanged() {
-    let surroundings = around(scenes::hall());
+    let surroundings = around(Scene::hall());
     let divergence = divergence();
     let (mut missed, mut shots, mut acted) = (0, 0, 0);
     let mut worst_m = 0.0_f64;
@@ -147,7 +146,7 @@ fn the_map_of_static_objects_is_valid_near_moving_objects() {
         }],
     });
     let (walker, divergence) = (walker.unwrap(), divergence());
-    let mut surroundings = around(scenes::hall());
+    let mut surroundings = around(Scene::hall());
     let (mut alone, mut near, mut acted) = (0, 0, 0);
     for step in 0..400 {
         let firing = firing(0.2 * f64::from(step) - 40.0, -0.01 * f64::from(step));
@@ -180,7 +179,7 @@ fn the_map_of_static_objects_is_valid_near_moving_objects() {
 
 #[test]
 fn most_shots_of_a_hall_need_no_sub_rays() {
-    let surroundings = around(scenes::hall());
+    let surroundings = around(Scene::hall());
     let map = Plain::new(&surroundings, 0.002);
     let (mut plain, mut shots) = (0, 0);
     for step in 0..360 {

@@ -1,5 +1,5 @@
 //! The software EPOS2 of firmware-sim in virtual time, on a link that loses, delays, damages,
-//! repeats or replaces any reply. Unit and client share only the frames.
+//! repeats or replaces any reply. Drive and client share only the frames.
 
 use std::collections::VecDeque;
 
@@ -23,13 +23,13 @@ pub enum Fate {
     Late(Span),
     Damaged,
     Twice,
-    /// The unit receives the request damaged.
+    /// The drive receives the request damaged.
     Rejected,
     /// The reply is that of another request, of another kind.
     Another,
-    /// The unit confirms the request without executing it.
+    /// The drive confirms the request without executing it.
     Ignored,
-    /// The unit refuses the request.
+    /// The drive refuses the request.
     Refused(CommError),
     /// The object reads as this value.
     Value(u32),
@@ -40,7 +40,7 @@ pub type Hand = Box<dyn FnMut(usize, &SerialRequest) -> Fate>;
 /// Transforms bytes that arrive at this time.
 pub type Distortion = Box<dyn FnMut(Stamp<Host>, Vec<u8>) -> Vec<u8>>;
 
-/// The unit's side of a link.
+/// The drive's side of a link.
 #[allow(clippy::large_enum_variant)] // one or two of them in a test
 pub(super) enum Server {
     Usb(UsbServer),
@@ -57,7 +57,7 @@ impl Server {
         }
     }
 
-    /// Takes bytes from the host; returns the unit's.
+    /// Takes bytes from the host; returns the drive's.
     pub fn input(&mut self, node: &mut Node, bytes: &[u8]) -> Vec<Vec<u8>> {
         let mut answers = Vec::new();
         match self {
@@ -73,7 +73,7 @@ impl Server {
         answers
     }
 
-    /// The unit's unsolicited frames. Call it after each tick of the node.
+    /// The drive's unsolicited frames. Call it after each tick of the node.
     pub fn poll(&mut self, node: &mut Node) -> Vec<Vec<u8>> {
         let mut replies = Vec::new();
         if let Self::Can(server) = self {
@@ -87,7 +87,7 @@ impl Server {
 const CYCLE: Span = Span::from_millis(1);
 pub const SERIAL: u32 = 0x9090_9090;
 
-pub struct Unit {
+pub struct TestDrive {
     pub node: Node,
     pub(super) server: Server,
     tap: RequestTap,
@@ -106,19 +106,19 @@ pub struct Unit {
     pub forth: Span,
     pub per_byte: Span,
     pub turnaround: Span,
-    /// Bytes on their way to the unit.
+    /// Bytes on their way to the drive.
     inbound: VecDeque<(Stamp<Host>, Vec<u8>)>,
     answers: Vec<(Stamp<Host>, Vec<u8>)>,
     is_cut: bool,
     pub requests: Vec<(Stamp<Host>, SerialRequest)>,
-    /// The unit's last start, and its present control cycle.
+    /// The drive's last start, and its present control cycle.
     pub started: Stamp<Host>,
     cycle: Stamp<Host>,
     /// Start of each control cycle, and the shaft's motion through it, world qc.
     truth: Vec<(Stamp<Host>, f64, f64)>,
 }
 
-/// A unit with factory settings that is used without a CAN bus, close to its negative switch so
+/// A drive with factory settings that is used without a CAN bus, close to its negative switch so
 /// that homing takes half a second.
 pub fn near_its_switch() -> NodeConfig {
     NodeConfig {
@@ -131,7 +131,7 @@ pub fn near_its_switch() -> NodeConfig {
     }
 }
 
-impl Unit {
+impl TestDrive {
     pub fn new(link: DriveLink, config: NodeConfig, now: Stamp<Host>) -> Self {
         Self {
             node: Node::new(config),
@@ -168,7 +168,7 @@ impl Unit {
         });
     }
 
-    /// Sends bytes to the unit.
+    /// Sends bytes to the drive.
     pub fn input(&mut self, bytes: &[u8], now: Stamp<Host>) {
         if self.is_cut {
             return;
@@ -206,7 +206,7 @@ impl Unit {
         fate
     }
 
-    /// Advances the unit.
+    /// Advances the drive.
     pub fn live(&mut self, now: Stamp<Host>) {
         loop {
             let input = self.inbound.front().map(|inbound| inbound.0);
@@ -242,7 +242,7 @@ impl Unit {
         self.node.set_phase_us(us as u32);
     }
 
-    /// The unit's clock (1013).
+    /// The drive's clock (1013).
     pub fn device_us(&self, at: Stamp<Host>) -> u32 {
         ((at - self.started).as_nanos() / 1_000) as u32
     }
@@ -264,7 +264,7 @@ impl Unit {
         }
     }
 
-    /// The next instant at which the unit may send something.
+    /// The next instant at which the drive may send something.
     pub fn next_answer(&self) -> Stamp<Host> {
         let answer = self.answers.first().map(|a| a.0);
         let input = self.inbound.front().map(|inbound| inbound.0);
@@ -278,7 +278,7 @@ impl Unit {
         due.then(|| (self.distort)(now, self.answers.remove(0).1))
     }
 
-    /// Restarts the unit: settings, reference and NMT state are lost.
+    /// Restarts the drive: settings, reference and NMT state are lost.
     pub fn restart(&mut self, now: Stamp<Host>) {
         self.live(now);
         self.inbound.clear();
