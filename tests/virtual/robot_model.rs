@@ -65,6 +65,7 @@ fn the_robot_model_moves_as_the_published_transforms() {
         nodes.find(|node| node.has_tag_name("joint") && node.attribute("name") == Some(name))
     };
     let tilt = joint(TILT_JOINT).unwrap();
+    assert_eq!(tilt.attribute("type"), Some("revolute"));
     let limit = tilt.children().find(|node| node.has_tag_name("limit"));
     let limit = |name| -> f64 { limit.unwrap().attribute(name).unwrap().parse().unwrap() };
     let axis = &config.axis;

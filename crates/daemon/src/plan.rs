@@ -29,7 +29,7 @@ const BEFORE_S: f64 = 15.0;
 #[schema(example = json!({
     "asked": {"speed_deg_s": 56.25, "both_ways": false}, "motor_rpm": 1_125, "cruise_deg_s": 56.25,
     "sweep_s": 0.9125, "moves_s": 0.9125, "step_deg": 5.625, "resolution_deg": 0.586,
-    "gap_deg": 0.939, "error_mm": 9.81, "warning": null, "homing_s": 5.32, "frames": 9.125,
+    "gap_deg": 0.946, "error_mm": 9.81, "warning": null, "homing_s": 5.32, "frames": 9.125,
     "bytes": 31_259_975, "headline": ["56.25 deg/s is 1125 rpm of the motor"],
 }))]
 #[non_exhaustive]

@@ -52,7 +52,7 @@ pub enum LidarFrameError {
     },
     /// The firing is of another model than those before it in the frame.
     #[error("organised frame: expected firings of a {expected}, got one of a {got}")]
-    LidarModel {
+    Model {
         /// The frame's model.
         expected: &'static str,
         /// The firing's model.

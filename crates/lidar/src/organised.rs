@@ -48,7 +48,7 @@ impl OrganisedFrame {
     pub fn push(&mut self, firing: &Firing<'_>) -> Result<(), LidarFrameError> {
         let model = *self.model.get_or_insert(firing.model);
         if !ptr::eq(model, firing.model) {
-            return Err(LidarFrameError::LidarModel {
+            return Err(LidarFrameError::Model {
                 expected: model.name,
                 got: firing.model.name,
             });

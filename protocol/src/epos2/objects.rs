@@ -30,7 +30,7 @@ macro_rules! objects {
     };
 }
 
-/// Purpose of a digital input, 1 to 10.
+/// Purpose of a digital input, 1 to 9.
 #[must_use]
 pub const fn digital_input(number: u8) -> TypedObject<u16> {
     TypedObject::new(

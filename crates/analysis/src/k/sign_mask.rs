@@ -3,7 +3,7 @@
 //!
 //! All access goes through `fearless_simd`, whose tokens prove what the processor has.
 //!
-//! Where two registers can be joined by their upper halves, two bits of a float say all: its sign,
+//! Where two registers can be joined by their upper halves, two bits of a float suffice: its sign,
 //! and the first bit of its exponent, which is set from 2 on. All numbers are scaled so that the
 //! band where f32 cannot tell is as wide as 2, and shifted by half its width so that nothing in it
 //! is negative: the two bits are 00 in the band, 01 above it, and the first is 1 below zero. The
@@ -134,8 +134,8 @@ pub(super) mod x86 {
     /// Floats from 0 to below this are in the band; from it on the first bit of their exponent is
     /// set.
     const BAND_END: f32 = 2.0;
-    /// Twice the band is as wide.
-    const UP: f32 = BAND_END / (2.0 * F32_BAND);
+    /// The scale at which twice the band is 2 wide.
+    const BAND_SCALE: f32 = BAND_END / (2.0 * F32_BAND);
     /// The upper half of 32 bits.
     const UPPER: i32 = 0xffff_0000_u32.cast_signed();
 
@@ -150,7 +150,7 @@ pub(super) mod x86 {
         type Mask = u32x16<Avx512>;
 
         const MASK_NAMES_PAIRS: bool = true;
-        const SCALE: f32 = UP;
+        const SCALE: f32 = BAND_SCALE;
         const MOVED: f32 = F32_BAND;
 
         #[inline(always)]
@@ -216,7 +216,7 @@ pub(super) mod x86 {
         type Mask = (u16x16<Avx2>, u16x16<Avx2>);
 
         const MASK_NAMES_PAIRS: bool = false;
-        const SCALE: f32 = UP;
+        const SCALE: f32 = BAND_SCALE;
         const MOVED: f32 = F32_BAND;
 
         #[inline(always)]
@@ -234,7 +234,7 @@ pub(super) mod x86 {
             let (row, row_end) = row.split();
             let (next, next_end) = next.split();
             for (row, next) in [(row, next), (row_end, next_end)] {
-                let joined = joined(self.0, row, next);
+                let joined = upper_halves(self.0, row, next);
                 *negative += joined >> 15;
                 *least = joined.min(*least);
             }
@@ -275,6 +275,7 @@ pub(super) mod x86 {
     );
 
     fearless_simd::kernel!(
+        /// The mask with the first two bits of each float of two rows shifted in.
         #[inline(always)]
         fn shifted_in(
             token: Avx512,
@@ -301,8 +302,9 @@ pub(super) mod x86 {
     );
 
     fearless_simd::kernel!(
+        /// The upper halves of two rows, in turn.
         #[inline(always)]
-        fn joined(token: Avx2, row: f32x8<Avx2>, next: f32x8<Avx2>) -> u16x16<Avx2> {
+        fn upper_halves(token: Avx2, row: f32x8<Avx2>, next: f32x8<Avx2>) -> u16x16<Avx2> {
             let first = _mm256_srli_epi32::<16>(_mm256_castps_si256(row.into()));
             let second = _mm256_castps_si256(next.into());
             _mm256_blend_epi16::<0b1010_1010>(first, second).simd_into(token)

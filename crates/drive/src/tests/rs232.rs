@@ -32,7 +32,7 @@ fn request(index: u16, access: ObjectAccess) -> LinkRequest {
 }
 
 /// A drive whose object at index i has the value i.
-struct TestDrive {
+struct ScriptedDrive {
     state: UnitState,
     observed: Stamp<Host>,
     executed: Vec<Wire>,
@@ -45,7 +45,7 @@ enum UnitState {
     Receipt,
 }
 
-impl TestDrive {
+impl ScriptedDrive {
     fn new() -> Self {
         Self {
             state: UnitState::Opcode,
@@ -210,7 +210,7 @@ proptest! {
     #[test]
     fn replies_belong_to_their_requests(there in fates(), back in fates(), abandons in proptest::collection::vec(any::<bool>(), 12)) {
         let mut link = RequestLink::new(Codec::new(DriveLink::Rs232, 1));
-        let mut drive = TestDrive::new();
+        let mut drive = ScriptedDrive::new();
         let (mut out, mut home) = (Line::new(there), Line::new(back));
         let mut now = at(0);
         for (n, abandon) in (0u16..).zip(abandons) {

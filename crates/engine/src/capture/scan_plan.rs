@@ -333,6 +333,15 @@ impl ScanPlanner {
         if let (Some(chosen), Some(_)) = (&chosen, limits.gap_deg) {
             rows.retain(|row| row.scan_s >= chosen.scan_s || !self.unmet_of(row).is_empty());
         }
+        // The same of the best setting that there is.
+        if let Some(nearest) = &nearest {
+            let best = &nearest.row;
+            rows.retain(|row| {
+                row.scan_s >= best.scan_s
+                    || row.gap_deg.p99 > best.gap_deg.p99
+                    || row.error_mm.total > best.error_mm.total
+            });
+        }
         Ok(PlanReport {
             device: self.name.clone(),
             simulated: profile::simulated(&self.device),

@@ -117,7 +117,7 @@ impl Mesh {
     }
 
     /// The same triangles with a tree of this quality, which changes only the time of rays.
-    /// [`Mesh::new`] uses the default quality.
+    /// [`Mesh::new`] uses [`Quality::MESH`].
     #[must_use]
     pub fn rebuilt(&self, quality: Quality) -> Self {
         let mut mesh = self.clone();

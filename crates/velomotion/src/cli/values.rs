@@ -5,7 +5,7 @@ use std::num::NonZeroUsize;
 use std::ops::RangeInclusive;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use engine::lidars::{LIDARS, LidarSheet};
+use engine::lidars::{CAPTURED, LIDARS, LidarSheet};
 use protocol::vlp16::LidarModel;
 
 use super::ALL;
@@ -18,7 +18,7 @@ pub(super) fn effect_or_all() -> PossibleValuesParser {
 
 /// Parses the name of a lidar whose packets velomotion reads.
 pub(super) fn captured_model() -> impl TypedValueParser<Value = &'static LidarModel> {
-    let captured = LIDARS.into_iter().filter(|lidar| lidar.model.is_some());
+    let captured = CAPTURED.into_iter().filter_map(LidarSheet::named);
     let names = captured.map(|lidar| PossibleValue::new(lidar.name).help(lidar.title));
     PossibleValuesParser::new(names).try_map(|name| {
         let lidar = LidarSheet::named(&name).and_then(|lidar| lidar.model);

@@ -1,4 +1,4 @@
-//! The fast paths of leaves (outlines, loops by number of edges, packed sign masks) against
+//! The fast paths of leaves (outlines, loops by number of edges, sign masks) against
 //! counting every pair.
 
 use std::f64::consts::PI;

@@ -1,6 +1,6 @@
 // The two devices: chips in the header, problems with remedies, the tilt gauge, values. control.ts has the buttons.
 
-import { type Fault, type Problem, type Scan, type Status, api } from "../api.ts";
+import { type DriveFault, type Problem, type Scan, type Status, api } from "../api.ts";
 import { attribute, h, id, show, text } from "../dom.ts";
 import type { Motion } from "../events.ts";
 import { bytes, count, digits, fixed, sentence } from "../format.ts";
@@ -59,7 +59,7 @@ export function setStatus(status: Status): void {
 }
 
 /** Formats an entry of the drive's error history. */
-function faultWords(fault: Fault): string {
+function faultWords(fault: DriveFault): string {
   return [fault.code, fault.name ?? fault.meaning].filter(Boolean).join(" ");
 }
 

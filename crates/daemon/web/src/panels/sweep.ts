@@ -1,6 +1,6 @@
 // The form of the next scan, and its plan: duration, resolution, bytes. control.ts handles Start.
 
-import { type CaptureRequest, type Plan, type Status, RequestError, api } from "../api.ts";
+import { type CaptureRequest, type CaptureEstimate, type Status, RequestError, api } from "../api.ts";
 import { attribute, h, id } from "../dom.ts";
 import { bytes, digits, duration } from "../format.ts";
 
@@ -124,7 +124,7 @@ function show_error(words: string): void {
   out.replaceChildren(h("p", { class: "wrong" }, words));
 }
 
-function draw(found: Plan): void {
+function draw(found: CaptureEstimate): void {
   const cell = (value: string, words: string) => h("span", {}, h("b", {}, value), words);
   const step = found.step_deg ?? null;
   const resolution = found.resolution_deg ?? null;

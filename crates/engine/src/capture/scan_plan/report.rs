@@ -83,7 +83,7 @@ impl ScanPlanner {
                 lidar.title
             )),
             Some(_) if profile::simulated(&self.device) && !is_simulated(lidar, rpm) => Some(
-                "the simulated lidar is a VLP-16 at 600 rpm; name a device with --device"
+                "the simulated lidar is a VLP-16 at 600 rpm; name the device of another with --device"
                     .to_owned(),
             ),
             Some(_) => None,
@@ -218,7 +218,7 @@ impl ScanPlanner {
                  every scan; --mount-sd includes it"
             ),
         };
-        vec![
+        let mut assumed = vec![
             format!(
                 "ranges: standard deviation {:.2} mm, quantisation included; {}",
                 1e3 * errors.range_sd_m,
@@ -226,6 +226,7 @@ impl ScanPlanner {
             ),
             "constant errors of the ranges are not included: a few mm from laser to laser, which calibrate measures"
                 .to_owned(),
+            "angle errors of the lasers and the width of their beams are not included".to_owned(),
             format!(
                 "drive: a position every {:.2} ms, {:.0} us off, and a delay of up to {:.2} ms that no scan reveals",
                 1e3 * errors.link.poll_s,
@@ -243,6 +244,10 @@ impl ScanPlanner {
                 Some(rest) => format!("homing from {rest} deg"),
                 None => "homing from where the same scan before ended".to_owned(),
             },
-        ]
+        ];
+        if self.predictor.lidar.azimuth_step_deg == 0.0 {
+            assumed.push("azimuths of a planar scanner are taken as exact".to_owned());
+        }
+        assumed
     }
 }

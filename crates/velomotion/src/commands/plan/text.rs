@@ -33,16 +33,21 @@ pub(super) fn text(report: &PlanReport, written: Vec<String>) -> String {
              {} deg; start: best azimuth of the lidar at the start, which a capture does not control",
             report.unseen_beyond_deg
         )),
-        "parts of the error: one standard deviation each".to_owned(),
+        wrapped(
+            "parts of the error, one standard deviation each: range and its steps; azimuth; tilt \
+             angle and clock; delay that all angles share; mount",
+        ),
     ];
     if report.rows.iter().any(|row| !row.unmet.is_empty()) {
         lines.push("!: beyond the limit".to_owned());
     }
+    lines.push(wrapped(
+        "rows are from fewer azimuths at the start and fewer directions than a choice: their gaps \
+         may be some percent too narrow",
+    ));
     match &report.chosen {
         Some(chosen) => {
-            lines.push(
-                ">: the choice; the other rows are from fewer azimuths and directions".to_owned(),
-            );
+            lines.push(">: the choice".to_owned());
             lines.extend(choice(chosen, report));
         }
         None => lines.extend(report.unmet.is_none().then(|| {
@@ -134,8 +139,9 @@ fn table(report: &PlanReport) -> String {
     formatted(HEADINGS, cells)
 }
 
-const DETAILS: [&str; 13] = [
+const DETAILS: [&str; 14] = [
     "\ndeg/s",
+    "\nn",
     "start\ndeg",
     "mean\ndeg",
     "none\n%",
@@ -145,9 +151,9 @@ const DETAILS: [&str; 13] = [
     "\nworst",
     "error\nrange",
     "parts,\nazim",
-    "mm\ntilt",
-    "\nclock",
+    "mm\nangle",
     "\ndelay",
+    "\nmount",
 ];
 
 /// Of each setting the start, the density, the gaps at the distance and the parts of the error.
@@ -157,6 +163,7 @@ fn details(report: &PlanReport) -> String {
         let (gap, error) = (&row.gap_mm, &row.error_mm);
         [
             speed(row, is_chosen),
+            row.setting.sweeps.to_string(),
             format!("{:.0}", row.best_start_deg),
             format!("{:.3}", row.resolution_deg),
             format!("{:.2}", 100.0 * row.share_without_point),
@@ -166,9 +173,9 @@ fn details(report: &PlanReport) -> String {
             format!("{:.0}", gap.worst),
             format!("{:.1}", error.range.hypot(error.range_step)),
             format!("{:.1}", error.azimuth),
-            format!("{:.1}", error.tilt),
-            format!("{:.2}", error.clock),
+            format!("{:.1}", error.tilt.hypot(error.clock)),
             format!("{:.1}", error.delay),
+            error.mount.map_or("-".to_owned(), |mm| format!("{mm:.1}")),
         ]
     });
     formatted(DETAILS, cells)
