@@ -238,6 +238,10 @@ mod tests {
                 lidar.title
             );
             assert_eq!(text.contains(&says_so), !is_captured, "{text}");
+            assert!(
+                text.lines().all(|line| line.chars().count() <= 80),
+                "{text}"
+            );
         }
     }
 
