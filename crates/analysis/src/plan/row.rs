@@ -129,7 +129,7 @@ impl GapEffort {
     };
 
     /// What a capture gives, and a row of a table. Of fast sweeps both ways the 99 % gap depends on
-    /// the pair of azimuths: 4 pairs missed a third of it, 12 are within 6 % of 48.
+    /// the pair of azimuths: 4 pairs missed a third of it, 12 are within 5 % of 48.
     const USUAL: Self = Self {
         stride: 1,
         starts: 12,

@@ -62,30 +62,30 @@ pub(super) struct LasEncoder<W: Write + Seek + Send + Sync + 'static> {
     fault: WriteFault,
     /// Before begin, or after finish.
     output: Option<ErrorHidingOutput<W>>,
-    open: Option<OpenFile<W>>,
+    open: Option<OpenLasFile<W>>,
 }
 
-/// A file with its header written, and the rows that are not.
-struct OpenFile<W: Write + Seek + Send + Sync + 'static> {
+/// An output with its header, and the rows that are not written yet.
+struct OpenLasFile<W: Write + Seek + Send + Sync + 'static> {
     writer: las::Writer<ErrorHidingOutput<W>>,
     rows: PointData,
 }
 
-impl<W: Write + Seek + Send + Sync + 'static> OpenFile<W> {
-    /// Writes the first rows: all that there are, or so many.
-    fn write_rows(&mut self, most: usize) -> las::Result<()> {
-        let end = most.saturating_mul(self.rows.record_len());
-        let later = self.rows.raw_bytes().get(end..).unwrap_or_default();
-        let later = later.to_vec();
-        self.rows.resize_for(self.rows.len().min(most));
+impl<W: Write + Seek + Send + Sync + 'static> OpenLasFile<W> {
+    /// Writes at most `limit` rows and keeps the rest.
+    fn write_rows(&mut self, limit: usize) -> las::Result<()> {
+        let end = limit.saturating_mul(self.rows.record_len());
+        let rest = self.rows.raw_bytes().get(end..).unwrap_or_default();
+        let rest = rest.to_vec();
+        self.rows.resize_for(self.rows.len().min(limit));
         self.writer.write_points(&self.rows)?;
-        let kept = later.len() / self.rows.record_len();
-        self.rows.resize_for(kept).copy_from_slice(&later);
+        let kept = rest.len() / self.rows.record_len();
+        self.rows.resize_for(kept).copy_from_slice(&rest);
         Ok(())
     }
 }
 
-/// The library completes a file that is dropped: also with the rows that are not written yet.
+/// Writes the waiting rows, since the library completes a file that is dropped.
 impl<W: Write + Seek + Send + Sync + 'static> Drop for LasEncoder<W> {
     fn drop(&mut self) {
         if let Some(open) = &mut self.open {
@@ -254,7 +254,7 @@ impl<W: Write + Seek + Send + Sync + 'static> FormatEncoder for LasEncoder<W> {
         let rows = PointDataBuilder::new().for_header(&header).build();
         if let Some(output) = self.output.take() {
             let writer = self.fault.outcome(las::Writer::new(output, header))?;
-            self.open = Some(OpenFile { writer, rows });
+            self.open = Some(OpenLasFile { writer, rows });
         }
         Ok(())
     }
@@ -264,11 +264,11 @@ impl<W: Write + Seek + Send + Sync + 'static> FormatEncoder for LasEncoder<W> {
             return Err(EncodeError::library("the file is not open"));
         };
         let row_bytes = open.rows.record_len();
-        let before = open.rows.len();
-        let rows = open.rows.resize_for(before + batch.len());
-        let new = rows.get_mut(before * row_bytes..).unwrap_or_default();
+        let waiting = open.rows.len();
+        let rows = open.rows.resize_for(waiting + batch.len());
+        let new_rows = rows.get_mut(waiting * row_bytes..).unwrap_or_default();
         let points = (self.flags, self.dual_return);
-        encode(batch, points, &self.extras, new, row_bytes);
+        encode(batch, points, &self.extras, new_rows, row_bytes);
         let at_once = match self.format {
             "laz" => ROWS_OF_LAZ,
             _ => open.rows.len(),
