@@ -161,6 +161,12 @@ impl SyncMatcher {
     ) -> Stamp<Host> {
         let elapsed_ns = elapsed_us * 1_000 - elapsed_us * DRIFT_PPM / 1_000;
         let sampled = last.sampled.saturating_add(Span::from_nanos(elapsed_ns));
+        // No sample is later than its arrival: the drive's clock has advanced by more than the
+        // host's, which was set back meanwhile.
+        let sampled = match sampled > arrival {
+            true => last.sync,
+            false => sampled,
+        };
         let bound = sampled.saturating_add(SLACK);
         let mut skips = 0;
         while self.unanswered.get(1).is_some_and(|next| *next <= bound) {

@@ -1,7 +1,7 @@
 //! Errors of the reconstruction.
 
 use thiserror::Error;
-use units::{Degrees, GearingError};
+use units::{Degrees, GearingError, Span};
 
 use crate::angles::AngleTableError;
 use crate::tolerance::UnreachableTolerance;
@@ -49,6 +49,18 @@ pub enum ScanError {
         from: Degrees,
         /// Where it ended.
         to: Degrees,
+    },
+    /// The recording is silent for hours in mid-sweep, but the axis went on only for moments.
+    #[error(
+        "the recording is silent for {:.1} s at {:.3} deg in a sweep, where the axis goes on as after {:.1} s: the host's clock was set by hours while nothing was recorded", silence.as_secs_f64(), at.0, motion.as_secs_f64()
+    )]
+    SetByHours {
+        /// Angle before the silence.
+        at: Degrees,
+        /// Its length.
+        silence: Span,
+        /// Time that the axis needed for the way between.
+        motion: Span,
     },
     /// The table of angles is unusable.
     #[error(transparent)]

@@ -16,7 +16,7 @@ mod uncommanded;
 
 use drive::cia402::{control, mode};
 use drive::objects::{self, Address};
-use units::{DegPerS, DegPerS2, Degrees, Gearing, Host, Quadcounts, Rpm, RpmPerS, Stamp};
+use units::{DegPerS, DegPerS2, Degrees, Gearing, Host, Quadcounts, Rpm, RpmPerS, Span, Stamp};
 
 use crate::angles::AngleSample;
 use crate::config::SweepPlan;
@@ -37,6 +37,27 @@ pub struct Sweep {
     pub end: Stamp<Host>,
     /// The command of its motion.
     pub commanded: Commanded,
+}
+
+impl Sweep {
+    /// A silence of hours among the samples of this sweep which the axis crossed in moments: its
+    /// length, that of the motion, and the angle before it. The lidar's clock repeats hourly and
+    /// cannot show such a step of the host's.
+    pub(crate) fn hours(&self, samples: &[AngleSample]) -> Option<(Span, Span, Degrees)> {
+        let speed = self.commanded.speed.0.abs();
+        let during = |s: &AngleSample| (self.start..=self.end).contains(&s.host);
+        samples.windows(2).find_map(|pair| {
+            let &[a, b] = pair else { return None };
+            let silence = b.host.saturating_since(a.host);
+            let motion_s = (b.angle.0 - a.angle.0).abs() / speed;
+            let is_on_its_way = (self.to.0 - b.angle.0).abs() > END_TOLERANCE_DEG;
+            (during(&a)
+                && is_on_its_way
+                && silence > SILENCE
+                && silence.as_secs_f64() > SILENCE_RATIO * motion_s)
+                .then(|| (silence, Span::from_secs_f64(motion_s), a.angle))
+        })
+    }
 }
 
 /// Command of a profile move; zero where it was not written.
@@ -125,6 +146,10 @@ const END_TOLERANCE_DEG: f64 = 0.1;
 /// A jump exceeds this, and the way at three times the commanded speed or at the greatest speed.
 const JUMP_DEG: f64 = 0.1;
 const JUMP_SPEEDS: f64 = 3.0;
+/// A silence in a sweep from this length on may be due to a clock that was set by an hour; it is if
+/// it is so many times as long as the motion.
+const SILENCE: Span = Span::from_secs(1_800);
+const SILENCE_RATIO: f64 = 10.0;
 /// Twice the speed of the fastest sweep, 100 deg/s.
 const MAX_SPEED_DEG_S: f64 = 200.0;
 /// A sweep is not seen if so much of its way is between two samples, and little between others.

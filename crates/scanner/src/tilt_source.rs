@@ -106,6 +106,17 @@ impl TiltAngles {
         if let [(from, to), ..] = *found.surplus {
             return Err(ScanError::SurplusSweep { from, to });
         }
+        let hours = found
+            .seen
+            .iter()
+            .find_map(|sweep| sweep.hours(&self.samples));
+        if let Some((silence, motion, at)) = hours {
+            return Err(ScanError::SetByHours {
+                at,
+                silence,
+                motion,
+            });
+        }
         match (&*found.seen, &*found.unseen, &*found.ambiguous) {
             ([], &[(from, to), ..], _) => Err(ScanError::UnseenSweep { from, to }),
             ([], [], &[(from, to), ..]) => Err(ScanError::AmbiguousMotion { from, to }),

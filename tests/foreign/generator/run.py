@@ -48,7 +48,8 @@ def verdict(row):
     but well above what the samples allow. wrong, poor: the same two with a message. ALARM: a
     warning about a plain scan. LOST: fewer points than the recording allows. DOUBLED: points twice.
     UNFOUNDED: points of a sweep without polls. MISBLAMED: a step of a clock that was not set so.
-    ABSURD: a bound above 90 deg. refused: several logs in one file, and no cloud.
+    ABSURD: a bound above 90 deg. refused: several logs in one file, or a clock set by hours, and
+    no cloud.
     """
     beyond = any((row.get(name) or 0.0) > 1.0 for name in RATIOS)
     beyond |= bool(row.get("unmatched"))
@@ -61,7 +62,7 @@ def verdict(row):
         return "MISBLAMED"
     if beyond:
         return "wrong" if has_message else "SILENT"
-    if row["exit"] == 3 and row["joined"]:
+    if row["exit"] == 3 and row["refusable"]:
         return "refused"
     possible = max(GOOD_DEG, 1.5 * (row.get("possible_deg") or 0.0))
     poor = (row.get("worst_deg") or 0.0) > possible
@@ -286,7 +287,7 @@ def main():
                 )
                 row.update(condition=condition.name, group=condition.group, seed=seed)
                 row["share"], row["most"] = condition.share, condition.most
-                row["joined"] = len(truths) > 1
+                row["refusable"] = len(truths) > 1 or condition.hours
                 row["misblamed"] = misblamed(row["sync"], truths)
                 row["quiet"] = all(t.setup.network != "busy" for t in truths)
                 row["verdict"] = verdict(row)

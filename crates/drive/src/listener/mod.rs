@@ -1,7 +1,7 @@
 //! A passive decoder of drive traffic, for logs: shaft samples, object accesses and statuswords.
 //!
 //! It matches replies with requests, and PDOs with SYNCs, by the client's own rules, so it observes
-//! what the client observed. Damaged frames, lost replies and unmatched replies lead to fewer
+//! what the client observed. Damaged frames, lost and late replies and unmatched ones lead to fewer
 //! observations, never to wrong ones. USB, RS232 and CAN records give the same observations.
 //! Segmented transfers are matched but not reported.
 
@@ -107,6 +107,8 @@ pub struct DriveListener {
     can: CanListener,
     matcher: RequestMatcher,
     last_id: u64,
+    /// When the last request, or probe, was sent.
+    last_sent: Stamp<Host>,
     /// Shortest time between a request and its reply so far.
     shortest_reply: Option<Span>,
     slow_polls: SlowPolls,
@@ -126,6 +128,7 @@ impl DriveListener {
             can: CanListener::new(node),
             matcher: RequestMatcher::default(),
             last_id: 0,
+            last_sent: Stamp::from_nanos(0),
             shortest_reply: None,
             slow_polls: SlowPolls::default(),
         }
@@ -163,11 +166,11 @@ impl DriveListener {
                 Some(SerialEvent::Answer(frame)) => {
                     // On RS232 the drive executed the request before it announced the answer; the
                     // words take longer.
-                    let host = match link {
+                    let executed = match link {
                         DriveLink::Rs232 => self.announced,
                         _ => host,
                     };
-                    self.handle_answer(&frame, direction, host, emit);
+                    self.handle_answer(&frame, executed, host, emit);
                 }
             }
         }
@@ -233,6 +236,11 @@ impl DriveListener {
         matched
     }
 
+    /// Time since the last request: a master that waits for long sends a probe.
+    fn silence(&self, host: Stamp<Host>) -> Span {
+        host.saturating_since(self.last_sent)
+    }
+
     fn report_lost_writes(&mut self, emit: &mut impl FnMut(Observation)) {
         while let Some(sent) = self.matcher.take_lost_write() {
             if let (ObjectAccess::Write { value, .. }, true) = (sent.access, sent.id != 0) {
@@ -256,6 +264,7 @@ impl DriveListener {
         emit: &mut impl FnMut(Observation),
     ) {
         let is_own = node == self.node || node == 0;
+        self.last_sent = sent;
         self.last_id += u64::from(is_own);
         let request = SentRequest {
             address,
@@ -295,16 +304,28 @@ impl DriveListener {
     fn handle_answer(
         &mut self,
         frame: &Result<SerialFrame, SerialFrameError>,
-        direction: Direction,
+        executed: Stamp<Host>,
         host: Stamp<Host>,
         emit: &mut impl FnMut(Observation),
     ) {
-        let noise = Observation::Noise { direction, host };
+        let noise = Observation::Noise {
+            direction: Direction::FromDevice,
+            host,
+        };
         let Ok(Ok(reply)) = frame.as_ref().map(Reply::parse) else {
             return emit(noise);
         };
-        match self.matched(&reply, host, emit) {
-            ReplyMatch::Request(sent) if sent.id != 0 => self.report(&sent, &reply, host, emit),
+        match self.matched(&reply, executed, emit) {
+            // The log may lack records in between, and this value is of another request.
+            ReplyMatch::Request(_)
+                if reply.value().is_some() && self.slow_polls.is_late(self.silence(host)) =>
+            {
+                self.slow_polls.learn(None, self.silence(host));
+                emit(noise);
+            }
+            ReplyMatch::Request(sent) if sent.id != 0 => {
+                self.report(&sent, &reply, executed, emit);
+            }
             ReplyMatch::Request(_) | ReplyMatch::Probe(_) => {}
             ReplyMatch::Unmatched => emit(noise),
         }

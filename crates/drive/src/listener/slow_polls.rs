@@ -20,6 +20,10 @@ use crate::request_matcher::SentRequest;
 const REPLY_TIMES: usize = 16;
 /// Reply times that define what is usual.
 const MIN_REPLY_TIMES: usize = 4;
+/// A reply is late after this time, the shortest timeout of this client, and this many times the
+/// longest usual one: a busy host hardly delays its links by more than it did before.
+const LATE: Span = Span::from_millis(40);
+const LATE_RATIO: i64 = 4;
 /// Positions of an axis at rest differ by at most this.
 const REST_COUNTS: f64 = 2.0;
 /// Greatest deviation from the expected position, relative to the way between two polls.
@@ -89,6 +93,15 @@ impl SlowPolls {
         let (id, host) = self.unmatched?;
         let (_, longest) = self.usual()?;
         (next.saturating_since(host) > longest).then_some(id)
+    }
+
+    /// Whether a reply after this silence is later than any usual one, and than a master waits.
+    pub fn is_late(&self, silence: Span) -> bool {
+        let usual = self.usual().map(|(_, longest)| longest.as_nanos());
+        usual.is_some_and(|longest| {
+            let late = longest.saturating_mul(LATE_RATIO);
+            silence > LATE.max(Span::from_nanos(late))
+        })
     }
 
     /// Shortest and longest usual reply time.

@@ -150,6 +150,24 @@ fn a_long_pause_restarts_matching_and_a_short_one_does_not() {
     assert_eq!(syncs.handle_pdo(77, us(4_000_500)), Some(us(4_000_000)));
 }
 
+/// The host sleeps for 600 ms, and its clock is set back meanwhile: it shows 20 ms. A bound from
+/// before would put every SYNC of the next half second before the sample.
+#[test]
+fn a_clock_that_was_set_back_moves_no_position_to_a_later_sync() {
+    let mut syncs = started(0);
+    syncs.handle_sync(us(201_000));
+    // The PDO of a SYNC that was not recorded.
+    assert_eq!(syncs.handle_pdo(801_300, us(221_600)), Some(us(201_000)));
+    for sync in (222_000..400_000).step_by(2_000) {
+        syncs.handle_sync(us(sync));
+        syncs.handle_sync(us(sync + 1_000));
+        for own in [sync, sync + 1_000] {
+            let device = (own + 580_300) as u32;
+            assert_eq!(syncs.handle_pdo(device, us(own + 1_100)), Some(us(own)));
+        }
+    }
+}
+
 #[derive(Clone, Copy, Debug)]
 struct Delivery {
     /// From SYNC to sample, and from there to arrival.

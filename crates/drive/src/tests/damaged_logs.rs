@@ -97,6 +97,36 @@ fn a_log_without_handshakes_gives_the_same_positions() {
     }
 }
 
+/// A recorder that was stopped for a while leaves the beginning of one answer and the end of
+/// another: no position is given a time that another one had.
+#[test]
+fn a_hole_in_a_log_joins_no_two_polls() {
+    for link in LINKS {
+        let Recorded { log, samples, .. } = recorded(link);
+        let middle = samples[samples.len() / 3].request;
+        let first = log.partition_point(|(.., host)| *host < middle);
+        // Every record of two polls is the first that is missing, every one of two others the last.
+        for from in first..first + 20 {
+            for length in [40, 80].map(Span::from_millis) {
+                let end = log[from].2 + length;
+                let end = log.partition_point(|(.., host)| *host < end);
+                for end in end..end + 20 {
+                    let rest = [&log[..from], &log[end.min(log.len())..]].concat();
+                    for seen in listen(link, &rest) {
+                        let is_true = |own: &ShaftSample| {
+                            own.position == seen.position
+                                && own.request <= seen.answer
+                                && seen.request <= own.answer
+                        };
+                        let is_one = samples.iter().any(is_true);
+                        assert!(is_one, "{link:?}, {from}, {end}: {seen:?}");
+                    }
+                }
+            }
+        }
+    }
+}
+
 /// The drive's time is that of the sample: 120 us after the SYNC here.
 #[test]
 fn the_drives_time_belongs_to_the_position() {

@@ -57,7 +57,11 @@ fn lost_and_late_answers_do_not_corrupt_the_log() {
     });
     rig.run(DriveCommand::Sweep(to(-15.0))).unwrap();
     let observed = rig.observations();
-    assert_eq!(sampled(&observed), rig.samples());
+    let (mut samples, seen) = (rig.samples(), sampled(&observed));
+    assert!(seen.iter().all(|sample| samples.contains(sample)));
+    // A value after a long silence may be another one's, for all that the log shows.
+    samples.retain(|s| seen.contains(s) || s.answer - s.request < Span::from_millis(120));
+    assert_eq!(seen, samples);
     assert!(
         observed
             .iter()

@@ -29,6 +29,9 @@ pub fn scan_failure(path: &Path, link: Option<DriveLink>, error: &ScanError) -> 
         ScanError::SurplusSweep { .. } => {
             "a program has joined the logs of several scans: replay each by itself; replay --tilt none gives all points in the sensor's own frame"
         }
+        ScanError::SetByHours { .. } => {
+            "the stamps of the lidar repeat every hour, so that nothing tells the true time: scan again, and correct the clock before; replay --tilt none gives the points in the sensor's own frame"
+        }
         ScanError::AmbiguousMotion { .. } => {
             "the recorder dropped the command: whether this was a sweep cut short or another move, the log does not show; replay --tilt none gives its points in the sensor's own frame"
         }

@@ -87,6 +87,32 @@ fn a_move_between_the_limits_is_a_sweep_with_its_measured_speed() {
     assert_eq!((sweep.end - sweep.start).as_nanos(), 1_000_000_000);
 }
 
+/// The lidar's stamps repeat hourly: a host whose clock was set by hours while it slept leaves a
+/// silence of hours that the axis crosses in moments.
+#[test]
+fn a_silence_that_is_longer_than_its_motion_is_a_clock_set_by_hours() {
+    let hours = |silence_s: i64, before_deg: f64| {
+        let mut axis = Axis::new();
+        axis.command(-45.0, 0x1F);
+        axis.travel(-before_deg, 56.25);
+        axis.now += silence_s * 1_000;
+        axis.travel(before_deg - 45.0, 56.25);
+        let sweeps = axis.watch.sweeps(&axis.samples, Some(&PLAN)).seen;
+        assert_eq!(sweeps.len(), 1);
+        sweeps[0].hours(&axis.samples)
+    };
+    let (silence, motion, at) = hours(7_200, 20.0).unwrap();
+    assert!(
+        (silence.as_secs_f64() - 7_200.0).abs() < 0.01,
+        "{silence:?}"
+    );
+    assert!(motion.as_secs_f64() < 1.0, "{motion:?}");
+    assert!((at.0 + 20.0).abs() < 1e-6, "{at:?}");
+    assert_eq!(hours(1, 20.0), None);
+    // The axis is at its target: it may have been there for hours.
+    assert_eq!(hours(7_200, 44.99), None);
+}
+
 #[test]
 fn the_return_move_is_a_sweep_only_if_planned() {
     let mut axis = Axis::new();
