@@ -2,6 +2,7 @@
 
 use std::hint::black_box;
 
+use crate::LEAST_MM;
 use crate::placing::{
     BLOCK, Exact, FIRING, PACKET, PlacedPoints, PlainFiring, RETURN, SensorGeometry, place, worst_m,
 };
@@ -23,7 +24,7 @@ pub(crate) const GRANULARITY: Study = Study {
         ("time_ns_per_point", "ns per point"),
         ("worst_error_mm", "worst error, mm at 100 m"),
     ],
-    trades: &[Trade::new(0, 1).joined()],
+    trades: &[Trade::new(0, 1).joined().down_to(LEAST_MM)],
     finding,
     measure,
 };

@@ -2,6 +2,7 @@
 
 use std::hint::black_box;
 
+use crate::LEAST_MM;
 use crate::placing::{
     Addition, Exact, Float, LASERS, PlacedPoints, PlainFiring, RETURN, SensorGeometry, Sine,
     SineTable, place,
@@ -21,7 +22,7 @@ pub(crate) const TRIGONOMETRY: Study = Study {
         ("time_ns_per_point", "ns per point"),
         ("worst_error_mm", "worst error, mm at 100 m"),
     ],
-    trades: &[Trade::new(0, 1)],
+    trades: &[Trade::new(0, 1).down_to(LEAST_MM)],
     finding,
     measure,
 };

@@ -5,6 +5,7 @@ mod reference;
 
 use std::hint::black_box;
 
+use crate::LEAST_MM;
 use crate::placing::Float;
 use analysis::tradeoff::{
     Bench, Row, SeededNoise, Study, StudyError, StudyFindings, StudyRows, TimedChoice, Trade, Work,
@@ -26,7 +27,10 @@ pub(super) const PRECISION: Study = Study {
         ("worst_error_mm", "worst error, mm"),
         ("missed_per_million", "slipped through, of a million"),
     ],
-    trades: &[Trade::new(0, 2).by_group(), Trade::new(0, 3).by_group()],
+    trades: &[
+        Trade::new(0, 2).by_group().down_to(LEAST_MM),
+        Trade::new(0, 3).by_group(),
+    ],
     finding,
     measure,
 };
