@@ -20,7 +20,7 @@ use lidar::{Decoder, Options, Stats};
 use units::{Gearing, Host, Lidar, Span, Stamp};
 
 use crate::alignment::{Alignment, PlacementCounts};
-use crate::angles::{SlowPollFilter, sample};
+use crate::angles::{AngleSample, OutlierFilter, SlowPollFilter, sample};
 use crate::calibration::PointCalibration;
 use crate::clock::{Arrival, DeviceClock, Moment, OnlineClock};
 use crate::config::{ScanConfig, SweepPlan};
@@ -41,6 +41,7 @@ pub struct Live<'a> {
     grid: StampGrid,
     host_steps: HostSteps,
     slow_polls: SlowPollFilter,
+    outliers: OutlierFilter,
     moves: MoveWatch,
     sweeps: SweepWatch,
     fit: StreamingFit,
@@ -99,6 +100,7 @@ impl<'a> Live<'a> {
             grid: StampGrid::default(),
             host_steps: HostSteps::default(),
             slow_polls: SlowPollFilter::default(),
+            outliers: OutlierFilter::default(),
             moves: MoveWatch::new(gearing),
             sweeps: SweepWatch::new(gearing),
             fit: StreamingFit::default(),
@@ -244,12 +246,17 @@ impl<'a> Live<'a> {
         });
     }
 
-    /// Angle, sweep and trajectory of a shaft sample.
+    /// Angle, sweep and trajectory of a shaft sample, and of one before it that waited.
     fn sample(&mut self, shaft: &ShaftSample) {
         let sample = sample(shaft, self.gearing);
-        if !self.slow_polls.accepts(&sample, self.fit.newest()) {
-            return;
+        if self.slow_polls.accepts(&sample, self.fit.newest()) {
+            for certain in self.outliers.push(sample) {
+                self.angle(certain);
+            }
         }
+    }
+
+    fn angle(&mut self, sample: AngleSample) {
         let Some(piece) = self.fit.add(sample) else {
             return;
         };

@@ -18,7 +18,7 @@ use drive::cia402::{control, mode};
 use drive::objects::{self, Address};
 use units::{DegPerS, DegPerS2, Degrees, Gearing, Host, Quadcounts, Rpm, RpmPerS, Span, Stamp};
 
-use crate::angles::AngleSample;
+use crate::angles::{AngleSample, MAX_SPEED_DEG_S};
 use crate::config::SweepPlan;
 pub(crate) use streaming::SweepWatch;
 
@@ -150,8 +150,6 @@ const JUMP_SPEEDS: f64 = 3.0;
 /// it is so many times as long as the motion.
 const SILENCE: Span = Span::from_secs(1_800);
 const SILENCE_RATIO: f64 = 10.0;
-/// Twice the speed of the fastest sweep, 100 deg/s.
-const MAX_SPEED_DEG_S: f64 = 200.0;
 /// A sweep is not seen if so much of its way is between two samples, and little between others.
 const UNSEEN_SHARE: f64 = 0.75;
 /// Range of an axis at rest: an encoder at an edge flickers by one count.

@@ -12,6 +12,38 @@ const ALWAYS_DEG: f64 = 0.1;
 /// Above the acceleration of any tilting platform.
 const HARDEST_DEG_S2: f64 = 20_000.0;
 
+/// Twice the speed of the fastest sweep, 100 deg/s.
+pub(crate) const MAX_SPEED_DEG_S: f64 = 200.0;
+
+/// Discards outliers while samples come in: one that the axis cannot have reached waits for the
+/// next, which shows whether the axis is there.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct OutlierFilter {
+    last: Option<AngleSample>,
+    waiting: Option<AngleSample>,
+}
+
+impl OutlierFilter {
+    /// The samples that are certain after this one, in order of time.
+    pub fn push(&mut self, this: AngleSample) -> impl Iterator<Item = AngleSample> + use<> {
+        let waited = self.waiting.take().filter(|waited| {
+            self.last
+                .is_none_or(|last| is_plausible(&last, waited, &this))
+        });
+        let last = waited.or(self.last);
+        let is_reached = last.is_none_or(|last| {
+            let time = this.host.saturating_since(last.host) + last.bound + this.bound;
+            (this.angle.0 - last.angle.0).abs() <= ALWAYS_DEG + MAX_SPEED_DEG_S * time.as_secs_f64()
+        });
+        self.last = last;
+        match is_reached {
+            true => self.last = Some(this),
+            false => self.waiting = Some(this),
+        }
+        [waited, is_reached.then_some(this)].into_iter().flatten()
+    }
+}
+
 /// Discards outliers from samples in order of time, and returns their number.
 pub(crate) fn discard(samples: &mut Vec<AngleSample>) -> u64 {
     let before = samples.len();
@@ -70,6 +102,24 @@ mod tests {
             assert_eq!(discard(&mut stream), 1, "bit {bit}");
             assert!(!stream.contains(&clean[40]));
         }
+    }
+
+    #[test]
+    fn a_stream_is_filtered_without_delay() {
+        let filtered = |stream: &[AngleSample]| -> Vec<AngleSample> {
+            let mut filter = OutlierFilter::default();
+            stream.iter().flat_map(|this| filter.push(*this)).collect()
+        };
+        let clean = samples((0..100).map(|i| -0.05625 * f64::from(i)), 1_000);
+        assert_eq!(filtered(&clean), clean);
+        let mut wild = clean.clone();
+        wild[40].angle.0 += 1.5;
+        let passed = filtered(&wild);
+        assert_eq!(passed.len(), 99);
+        assert!(!passed.contains(&wild[40]));
+        // A drive that restarts at zero stays there.
+        let restarted = samples((0..50).map(|i| if i < 20 { -30.0 } else { 0.0 }), 1_000);
+        assert_eq!(filtered(&restarted), restarted);
     }
 
     #[test]

@@ -30,6 +30,8 @@ enum Watched {
     OtherMove(Degrees),
     /// The last sample that moved, and the target.
     Motion(AngleSample, Degrees),
+    /// The axis came to rest at the first angle, before its target: it may have been held.
+    Short(Degrees, Degrees),
 }
 
 /// An axis at rest for this long has ended its sweep.
@@ -94,7 +96,7 @@ impl SweepWatch {
                 Some(target) => Watched::OtherMove(target),
                 None => Watched::Nothing,
             };
-        } else if let (Watched::Nothing, Some(due)) = (self.state, due)
+        } else if let (Watched::Nothing | Watched::Short(..), Some(due)) = (self.state, due)
             && moves.is_position_mode()
             && moved(rest.angle)
             && last.host.saturating_since(rest.host) >= REST
@@ -114,8 +116,17 @@ impl SweepWatch {
             Watched::Motion(seen, target) if moved(seen.angle) => {
                 self.state = Watched::Motion(*sample, target);
             }
-            Watched::Motion(seen, _) if sample.host.saturating_since(seen.host) > STILL => {
+            Watched::Motion(seen, target) if sample.host.saturating_since(seen.host) > STILL => {
                 self.end(sample.host);
+                self.state = Watched::Short(seen.angle, target);
+            }
+            Watched::Short(at, target)
+                if moved(at) && (sample.angle.0 - at.0) * (target.0 - at.0) > 0.0 =>
+            {
+                if let Some((_, end)) = self.spans.last_mut() {
+                    *end = Stamp::from_nanos(i64::MAX);
+                }
+                self.state = Watched::Motion(*sample, target);
             }
             _ => {}
         }

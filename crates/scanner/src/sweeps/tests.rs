@@ -211,6 +211,19 @@ fn a_slow_sweep_goes_on_after_its_head_was_held() {
     axis.travel(-24.5, 1.0);
     let sweeps = axis.watch.sweeps(&axis.samples, Some(&PLAN)).seen;
     assert!((sweeps[0].to.0 + 45.0).abs() < 1e-6, "{sweeps:?}");
+    // So it does while it is measured: its one span ends where the axis is at its target.
+    let mut live = SweepWatch::new(Gearing::new(500, 120, 1).unwrap());
+    for sample in &axis.samples {
+        live.sample(sample, &axis.watch, Some(&PLAN));
+    }
+    let [(start, end)] = live.spans() else {
+        panic!("{:?}", live.spans());
+    };
+    assert_eq!(*start, sweeps[0].start);
+    assert!(
+        (*end - sweeps[0].end).as_nanos().abs() <= 2_000_000,
+        "{end:?}"
+    );
 }
 
 #[test]
