@@ -2,9 +2,9 @@
 
 use std::hint::black_box;
 
-use crate::LEAST_MM;
 use crate::placing::{
-    BLOCK, Exact, FIRING, PACKET, PlacedPoints, PlainFiring, RETURN, SensorGeometry, place, worst_m,
+    BLOCK, Exact, FIRING, LEAST_MM, PACKET, PlacedPoints, PlainFiring, RETURN, SensorGeometry,
+    place, worst_m,
 };
 use analysis::tradeoff::{
     Bench, Row, Study, StudyError, StudyFindings, StudyRows, TimedChoice, Trade,

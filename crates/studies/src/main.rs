@@ -43,9 +43,6 @@ struct Arguments {
     quick: bool,
 }
 
-/// Errors of a point below this do not matter: a two-thousandth of the step of the ranges, 2 mm.
-const LEAST_MM: f64 = 1e-3;
-
 /// The page of the book that this program writes.
 const BOOK: Book<'_> = Book {
     title: "Studies behind velomotion's choices",

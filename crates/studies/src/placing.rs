@@ -5,6 +5,9 @@
 
 use std::ops::{Add, Mul, Sub};
 
+/// Errors of a point below this do not matter: a two-thousandth of the step of the ranges, 2 mm.
+pub(crate) const LEAST_MM: f64 = 1e-3;
+
 /// Lasers per firing.
 pub const LASERS: usize = 16;
 /// Firings per block.

@@ -2,10 +2,9 @@
 
 use std::hint::black_box;
 
-use crate::LEAST_MM;
 use crate::placing::{
-    Addition, Exact, Float, LASERS, PlacedPoints, PlainFiring, RETURN, SensorGeometry, Sine,
-    SineTable, place,
+    Addition, Exact, Float, LASERS, LEAST_MM, PlacedPoints, PlainFiring, RETURN, SensorGeometry,
+    Sine, SineTable, place,
 };
 use analysis::tradeoff::{
     Bench, Row, Study, StudyError, StudyFindings, StudyRows, TimedChoice, Trade,

@@ -5,8 +5,7 @@ mod reference;
 
 use std::hint::black_box;
 
-use crate::LEAST_MM;
-use crate::placing::Float;
+use crate::placing::{Float, LEAST_MM};
 use analysis::tradeoff::{
     Bench, Row, SeededNoise, Study, StudyError, StudyFindings, StudyRows, TimedChoice, Trade, Work,
 };
