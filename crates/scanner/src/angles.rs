@@ -7,7 +7,9 @@ mod table;
 
 use units::{Degrees, Host, Span, Stamp};
 
-pub(crate) use outliers::{MAX_SPEED_DEG_S, OutlierFilter, discard as discard_outliers};
+pub(crate) use outliers::{
+    MAX_SPEED_DEG_S, OutlierFilter, discard as discard_outliers, is_reached,
+};
 pub(crate) use polls::{SlowPollFilter, sample, with_shared_sd};
 pub use table::{AngleTable, AngleTableError, TableTime};
 

@@ -50,9 +50,9 @@ pub enum ScanError {
         /// Where it ended.
         to: Degrees,
     },
-    /// The recording is silent for hours in mid-sweep, but the axis went on only for moments.
+    /// The host's clock was set by hours in mid-sweep, while nothing was recorded.
     #[error(
-        "the recording is silent for {:.1} s at {:.3} deg in a sweep, where the axis goes on as after {:.1} s: the host's clock was set by hours while nothing was recorded", silence.as_secs_f64(), at.0, motion.as_secs_f64()
+        "the recording is silent for {:.1} s in a sweep, at {:.3} deg, but the axis moved on as far as in {:.1} s: the host's clock was set by hours meanwhile", silence.as_secs_f64(), at.0, motion.as_secs_f64()
     )]
     SetByHours {
         /// Angle before the silence.

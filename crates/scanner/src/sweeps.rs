@@ -18,7 +18,7 @@ use drive::cia402::{control, mode};
 use drive::objects::{self, Address};
 use units::{DegPerS, DegPerS2, Degrees, Gearing, Host, Quadcounts, Rpm, RpmPerS, Span, Stamp};
 
-use crate::angles::{AngleSample, MAX_SPEED_DEG_S};
+use crate::angles::{AngleSample, MAX_SPEED_DEG_S, is_reached};
 use crate::config::SweepPlan;
 pub(crate) use streaming::SweepWatch;
 
@@ -39,23 +39,42 @@ pub struct Sweep {
     pub commanded: Commanded,
 }
 
+/// A silence in a sweep that shows whole hours too many.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct HoursTooMany {
+    /// Angle before it.
+    pub at: Degrees,
+    /// Its length.
+    pub silence: Span,
+    /// Time that the axis needed for the way meanwhile.
+    pub motion: Span,
+}
+
 impl Sweep {
-    /// A silence of hours among the samples of this sweep which the axis crossed in moments: its
-    /// length, that of the motion, and the angle before it. The lidar's clock repeats hourly and
-    /// cannot show such a step of the host's.
-    pub(crate) fn hours(&self, samples: &[AngleSample]) -> Option<(Span, Span, Degrees)> {
+    /// The host's clock was set by hours during a silence: the axis moved on as far as without
+    /// these hours. The lidar's clock repeats hourly and cannot show such a step.
+    pub(crate) fn hours_too_many(&self, samples: &[AngleSample]) -> Option<HoursTooMany> {
         let speed = self.commanded.speed.0.abs();
-        let during = |s: &AngleSample| (self.start..=self.end).contains(&s.host);
+        let is_on_its_way = |s: &AngleSample| {
+            let ends = [self.from, self.to];
+            let is_away = |end: Degrees| (s.angle.0 - end.0).abs() > END_TOLERANCE_DEG;
+            (self.start..=self.end).contains(&s.host) && ends.into_iter().all(is_away)
+        };
         samples.windows(2).find_map(|pair| {
             let &[a, b] = pair else { return None };
             let silence = b.host.saturating_since(a.host);
             let motion_s = (b.angle.0 - a.angle.0).abs() / speed;
-            let is_on_its_way = (self.to.0 - b.angle.0).abs() > END_TOLERANCE_DEG;
-            (during(&a)
-                && is_on_its_way
-                && silence > SILENCE
-                && silence.as_secs_f64() > SILENCE_RATIO * motion_s)
-                .then(|| (silence, Span::from_secs_f64(motion_s), a.angle))
+            let hours = (silence.as_secs_f64() / HOUR_S).round();
+            let rest_s = silence.as_secs_f64() - hours * HOUR_S;
+            // A head may be held or pushed meanwhile.
+            let is_as_long = motion_s / 2.0 - 1.0 <= rest_s && rest_s <= 2.0 * motion_s + 1.0;
+            (hours >= 1.0 && is_on_its_way(&a) && is_on_its_way(&b) && is_as_long).then(|| {
+                HoursTooMany {
+                    at: a.angle,
+                    silence,
+                    motion: Span::from_secs_f64(motion_s),
+                }
+            })
         })
     }
 }
@@ -143,13 +162,9 @@ struct Setting {
 
 /// Greatest distance of a sweep's start and target from the ends of the plan.
 const END_TOLERANCE_DEG: f64 = 0.1;
-/// A jump exceeds this, and the way at three times the commanded speed or at the greatest speed.
-const JUMP_DEG: f64 = 0.1;
+/// A jump exceeds the way at three times the commanded speed, or at the greatest speed.
 const JUMP_SPEEDS: f64 = 3.0;
-/// A silence in a sweep from this length on may be due to a clock that was set by an hour; it is if
-/// it is so many times as long as the motion.
-const SILENCE: Span = Span::from_secs(1_800);
-const SILENCE_RATIO: f64 = 10.0;
+const HOUR_S: f64 = 3_600.0;
 /// A sweep is not seen if so much of its way is between two samples, and little between others.
 const UNSEEN_SHARE: f64 = 0.75;
 /// Range of an axis at rest: an encoder at an edge flickers by one count.
@@ -426,13 +441,12 @@ fn unbroken(window: &[AngleSample], speed: DegPerS, rest: f64) -> usize {
     let restart = window.len() - zeros.count();
     let broken = window.windows(2).enumerate().position(|(before, pair)| {
         let &[a, b] = pair else { return false };
-        let time_s = (b.host.saturating_since(a.host) + a.bound + b.bound).as_secs_f64();
         // A head that was held or pushed returns faster than it was commanded to move.
-        let speed = match before + 1 == restart {
+        let speed_deg_s = match before + 1 == restart {
             true => JUMP_SPEEDS * speed.0,
             false => (JUMP_SPEEDS * speed.0).max(MAX_SPEED_DEG_S),
         };
-        (b.angle.0 - a.angle.0).abs() > JUMP_DEG + speed * time_s
+        !is_reached(&a, &b, speed_deg_s)
     });
     broken.map_or(window.len(), |before| before + 1)
 }

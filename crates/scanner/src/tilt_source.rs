@@ -10,7 +10,7 @@ use crate::config::{ScanConfig, SweepPlan};
 use crate::error::ScanError;
 use crate::sample_gaps::SampleGaps;
 use crate::survey::ShaftRecords;
-use crate::sweeps::{FoundSweeps, MoveWatch, Sweep};
+use crate::sweeps::{FoundSweeps, HoursTooMany, MoveWatch, Sweep};
 use crate::tolerance::{Accuracy, MethodChoice};
 use crate::trajectory::{Method, Trajectory};
 
@@ -106,11 +106,13 @@ impl TiltAngles {
         if let [(from, to), ..] = *found.surplus {
             return Err(ScanError::SurplusSweep { from, to });
         }
-        let hours = found
-            .seen
-            .iter()
-            .find_map(|sweep| sweep.hours(&self.samples));
-        if let Some((silence, motion, at)) = hours {
+        let hours = |sweep: &Sweep| sweep.hours_too_many(&self.samples);
+        if let Some(HoursTooMany {
+            at,
+            silence,
+            motion,
+        }) = found.seen.iter().find_map(hours)
+        {
             return Err(ScanError::SetByHours {
                 at,
                 silence,

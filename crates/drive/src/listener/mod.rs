@@ -1,11 +1,12 @@
 //! A passive decoder of drive traffic, for logs: shaft samples, object accesses and statuswords.
 //!
 //! It matches replies with requests, and PDOs with SYNCs, by the client's own rules, so it observes
-//! what the client observed. Damaged frames, lost and late replies and unmatched ones lead to fewer
-//! observations, never to wrong ones. USB, RS232 and CAN records give the same observations.
+//! what the client observed, without values that come late. Damaged frames, lost and unmatched
+//! replies and missing records lead to fewer observations, never to wrong ones. USB, RS232 and CAN records give the same observations.
 //! Segmented transfers are matched but not reported.
 
 mod can;
+mod recent_times;
 mod rs232;
 mod slow_polls;
 
@@ -21,6 +22,7 @@ use crate::event::{SampleTrigger, ShaftSample};
 use crate::exchange::{ObjectAccess, Reply, TransferRequest};
 use crate::request_matcher::{ReplyMatch, RequestMatcher, SentRequest};
 use can::{CanEvent, CanListener};
+use recent_times::{LateAfter, RecentTimes};
 use rs232::{Rs232Listener, SerialEvent};
 use slow_polls::SlowPolls;
 
@@ -95,6 +97,23 @@ pub enum Observation {
     },
 }
 
+/// A position is late after 3 ms, and another value after the shortest timeout of this client: one of
+/// many positions is not missed. A busy host hardly delays its links by more than it did before.
+const LATE_POSITION: LateAfter = LateAfter {
+    time: Span::from_millis(3),
+    ratio: 4,
+};
+const LATE_VALUE: LateAfter = LateAfter {
+    time: Span::from_millis(40),
+    ..LATE_POSITION
+};
+/// The words of an answer on RS232 follow its announcement evenly: eleven bytes take 1 ms at 115,200
+/// baud. Beyond three times that the words may be of another answer.
+const LATE_WORDS: LateAfter = LateAfter {
+    time: Span::from_millis(3),
+    ratio: 2,
+};
+
 /// Decodes the traffic of one node.
 #[derive(Clone, Debug)]
 pub struct DriveListener {
@@ -109,6 +128,10 @@ pub struct DriveListener {
     last_id: u64,
     /// When the last request, or probe, was sent.
     last_sent: Stamp<Host>,
+    /// From the last request or probe to a value.
+    silences: RecentTimes,
+    /// From the announcement of an answer on RS232 to its last word.
+    words: RecentTimes,
     /// Shortest time between a request and its reply so far.
     shortest_reply: Option<Span>,
     slow_polls: SlowPolls,
@@ -129,6 +152,8 @@ impl DriveListener {
             matcher: RequestMatcher::default(),
             last_id: 0,
             last_sent: Stamp::from_nanos(0),
+            silences: RecentTimes::default(),
+            words: RecentTimes::default(),
             shortest_reply: None,
             slow_polls: SlowPolls::default(),
         }
@@ -236,9 +261,16 @@ impl DriveListener {
         matched
     }
 
-    /// Time since the last request: a master that waits for long sends a probe.
-    fn silence(&self, host: Stamp<Host>) -> Span {
-        host.saturating_since(self.last_sent)
+    /// Whether a value that was complete at `host` came later than usual after the last request or
+    /// probe, or after the drive announced it.
+    fn is_late(&mut self, sent: &SentRequest, executed: Stamp<Host>, host: Stamp<Host>) -> bool {
+        let silence = host.saturating_since(self.last_sent);
+        let words = host.saturating_since(executed);
+        let limit = match sent.address == objects::POSITION_ACTUAL.address {
+            true => LATE_POSITION,
+            false => LATE_VALUE,
+        };
+        self.silences.is_late(silence, limit) | self.words.is_late(words, LATE_WORDS)
     }
 
     fn report_lost_writes(&mut self, emit: &mut impl FnMut(Observation)) {
@@ -316,11 +348,10 @@ impl DriveListener {
             return emit(noise);
         };
         match self.matched(&reply, executed, emit) {
-            // The log may lack records in between, and this value is of another request.
-            ReplyMatch::Request(_)
-                if reply.value().is_some() && self.slow_polls.is_late(self.silence(host)) =>
+            // The log may lack records in between; the value may be of another request.
+            ReplyMatch::Request(sent)
+                if reply.value().is_some() && self.is_late(&sent, executed, host) =>
             {
-                self.slow_polls.learn(None, self.silence(host));
                 emit(noise);
             }
             ReplyMatch::Request(sent) if sent.id != 0 => {

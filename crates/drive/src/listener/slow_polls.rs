@@ -12,18 +12,11 @@ use protocol::epos2::objects;
 use units::{Host, Span, Stamp};
 
 use super::Observation;
+use super::recent_times::RecentTimes;
 use crate::event::ShaftSample;
 use crate::exchange::{ObjectAccess, Reply};
 use crate::request_matcher::SentRequest;
 
-/// Reply times kept: a spike of the link soon leaves them.
-const REPLY_TIMES: usize = 16;
-/// Reply times that define what is usual.
-const MIN_REPLY_TIMES: usize = 4;
-/// A reply is late after this time, the shortest timeout of this client, and this many times the
-/// longest usual one: a busy host hardly delays its links by more than it did before.
-const LATE: Span = Span::from_millis(40);
-const LATE_RATIO: i64 = 4;
 /// Positions of an axis at rest differ by at most this.
 const REST_COUNTS: f64 = 2.0;
 /// Greatest deviation from the expected position, relative to the way between two polls.
@@ -32,8 +25,7 @@ const MAX_DEVIATION: f64 = 0.25;
 /// The last replies and positions, and a reply that fits several polls.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SlowPolls {
-    reply_times: [Span; REPLY_TIMES],
-    count: usize,
+    reply_times: RecentTimes,
     /// The last two samples, the newer one second.
     samples: [Option<ShaftSample>; 2],
     /// The newest poll that an unmatched reply fits, and when that reply came.
@@ -42,10 +34,7 @@ pub(super) struct SlowPolls {
 
 impl SlowPolls {
     pub fn learn(&mut self, seen: Option<&Observation>, reply_time: Span) {
-        if let Some(slot) = self.reply_times.get_mut(self.count % REPLY_TIMES) {
-            *slot = reply_time;
-        }
-        self.count += 1;
+        self.reply_times.learn(reply_time);
         self.unmatched = None;
         if let Some(Observation::Sample(sample)) = seen {
             self.samples = [self.samples[1], Some(*sample)];
@@ -63,7 +52,7 @@ impl SlowPolls {
             request.access == ObjectAccess::Read
                 && request.address == objects::POSITION_ACTUAL.address
         };
-        let usual = self.usual();
+        let usual = self.reply_times.usual();
         if !is_poll(older) || !is_poll(newer) || !reply.error().is_none() {
             return false;
         }
@@ -91,27 +80,8 @@ impl SlowPolls {
     /// unmatched one.
     pub fn settled(&self, next: Stamp<Host>) -> Option<u64> {
         let (id, host) = self.unmatched?;
-        let (_, longest) = self.usual()?;
+        let (_, longest) = self.reply_times.usual()?;
         (next.saturating_since(host) > longest).then_some(id)
-    }
-
-    /// Whether a reply after this silence is later than any usual one, and than a master waits.
-    pub fn is_late(&self, silence: Span) -> bool {
-        let usual = self.usual().map(|(_, longest)| longest.as_nanos());
-        usual.is_some_and(|longest| {
-            let late = longest.saturating_mul(LATE_RATIO);
-            silence > LATE.max(Span::from_nanos(late))
-        })
-    }
-
-    /// Shortest and longest usual reply time.
-    fn usual(&self) -> Option<(Span, Span)> {
-        let known = self.reply_times.get(..self.count.min(REPLY_TIMES))?;
-        let least = known.iter().min().copied();
-        let greatest = known.iter().max().copied();
-        least
-            .zip(greatest)
-            .filter(|_| known.len() >= MIN_REPLY_TIMES)
     }
 
     /// The position at an even rate, from the last two.

@@ -30,7 +30,7 @@ pub fn scan_failure(path: &Path, link: Option<DriveLink>, error: &ScanError) -> 
             "a program has joined the logs of several scans: replay each by itself; replay --tilt none gives all points in the sensor's own frame"
         }
         ScanError::SetByHours { .. } => {
-            "the stamps of the lidar repeat every hour, so that nothing tells the true time: scan again, and correct the clock before; replay --tilt none gives the points in the sensor's own frame"
+            "the lidar's stamps repeat every hour and do not show the true time: correct the host's clock and scan again; replay --tilt none gives the points in the sensor's own frame"
         }
         ScanError::AmbiguousMotion { .. } => {
             "the recorder dropped the command: whether this was a sweep cut short or another move, the log does not show; replay --tilt none gives its points in the sensor's own frame"

@@ -15,6 +15,12 @@ const HARDEST_DEG_S2: f64 = 20_000.0;
 /// Twice the speed of the fastest sweep, 100 deg/s.
 pub(crate) const MAX_SPEED_DEG_S: f64 = 200.0;
 
+/// Whether an axis that moves at `speed_deg_s` at most gets from one sample to the next.
+pub(crate) fn is_reached(from: &AngleSample, to: &AngleSample, speed_deg_s: f64) -> bool {
+    let time = to.host.saturating_since(from.host) + from.bound + to.bound;
+    (to.angle.0 - from.angle.0).abs() <= ALWAYS_DEG + speed_deg_s * time.as_secs_f64()
+}
+
 /// Discards outliers while samples come in: one that the axis cannot have reached waits for the
 /// next, which shows whether the axis is there.
 #[derive(Clone, Debug, Default)]
@@ -31,10 +37,7 @@ impl OutlierFilter {
                 .is_none_or(|last| is_plausible(&last, waited, &this))
         });
         let last = waited.or(self.last);
-        let is_reached = last.is_none_or(|last| {
-            let time = this.host.saturating_since(last.host) + last.bound + this.bound;
-            (this.angle.0 - last.angle.0).abs() <= ALWAYS_DEG + MAX_SPEED_DEG_S * time.as_secs_f64()
-        });
+        let is_reached = last.is_none_or(|last| is_reached(&last, &this, MAX_SPEED_DEG_S));
         self.last = last;
         match is_reached {
             true => self.last = Some(this),

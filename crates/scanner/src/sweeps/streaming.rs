@@ -5,7 +5,7 @@ use units::{Degrees, Gearing, Host, Span, Stamp};
 
 use super::uncommanded::REST;
 use super::{END_TOLERANCE_DEG, MoveWatch, REST_QC};
-use crate::angles::AngleSample;
+use crate::angles::{AngleSample, MAX_SPEED_DEG_S, is_reached};
 use crate::config::SweepPlan;
 
 /// Follows the samples of an axis, and reports when sweeps begin and end.
@@ -30,12 +30,13 @@ enum Watched {
     OtherMove(Degrees),
     /// The last sample that moved, and the target.
     Motion(AngleSample, Degrees),
-    /// The axis came to rest at the first angle, before its target: it may have been held.
-    Short(Degrees, Degrees),
+    /// The axis came to rest at the first angle, before its target: it may be held.
+    RestOnTheWay(Degrees, Degrees),
 }
 
-/// An axis at rest for this long has ended its sweep.
-const STILL: Span = Span::from_millis(50);
+/// An axis at rest for this long has ended its sweep: the slowest, at 0.05 deg/s, goes two counts of
+/// the encoder in 60 ms.
+const STILL: Span = Span::from_millis(100);
 
 impl SweepWatch {
     /// An observer of an axis with `gearing`.
@@ -96,7 +97,7 @@ impl SweepWatch {
                 Some(target) => Watched::OtherMove(target),
                 None => Watched::Nothing,
             };
-        } else if let (Watched::Nothing | Watched::Short(..), Some(due)) = (self.state, due)
+        } else if let (Watched::Nothing | Watched::RestOnTheWay(..), Some(due)) = (self.state, due)
             && moves.is_position_mode()
             && moved(rest.angle)
             && last.host.saturating_since(rest.host) >= REST
@@ -113,15 +114,21 @@ impl SweepWatch {
             Watched::Motion(_, target) | Watched::OtherMove(target) if !moved(target) => {
                 self.end(sample.host);
             }
+            // The drive has restarted.
+            Watched::Motion(seen, _) if !is_reached(&seen, sample, MAX_SPEED_DEG_S) => {
+                self.end(seen.host);
+            }
             Watched::Motion(seen, target) if moved(seen.angle) => {
                 self.state = Watched::Motion(*sample, target);
             }
             Watched::Motion(seen, target) if sample.host.saturating_since(seen.host) > STILL => {
                 self.end(sample.host);
-                self.state = Watched::Short(seen.angle, target);
+                self.state = Watched::RestOnTheWay(seen.angle, target);
             }
-            Watched::Short(at, target)
-                if moved(at) && (sample.angle.0 - at.0) * (target.0 - at.0) > 0.0 =>
+            Watched::RestOnTheWay(at, target)
+                if moved(at)
+                    && moves.is_position_mode()
+                    && (sample.angle.0 - at.0) * (target.0 - at.0) > 0.0 =>
             {
                 if let Some((_, end)) = self.spans.last_mut() {
                     *end = Stamp::from_nanos(i64::MAX);

@@ -1,6 +1,7 @@
 //! Findings as text of 80 columns.
 
 use analysis::tradeoff::{StudyFindings, StudyReport};
+use comfy_table::Width::Fixed;
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Table};
 
@@ -37,6 +38,16 @@ fn findings(findings: &StudyFindings) -> String {
 /// The table: names on the left, values on the right, marks of the fronts last.
 fn table(findings: &StudyFindings) -> String {
     let cells = findings.cells();
+    let headings = findings.headings();
+    let longest_word = |column: usize| {
+        let texts = cells
+            .iter()
+            .filter_map(|row| row.get(column).map(String::as_str));
+        let texts = texts.chain(headings.get(column).copied());
+        let words = texts.flat_map(str::split_whitespace);
+        words.map(|word| word.chars().count()).max().unwrap_or(0)
+    };
+    let words: Vec<usize> = (0..headings.len()).map(longest_word).collect();
     let names = cells.iter().filter_map(|row| row.first());
     let is_short = names.map(|name| name.chars().count()).max() <= Some(NAME_WIDTH);
     let mut table = Table::new();
@@ -44,12 +55,15 @@ fn table(findings: &StudyFindings) -> String {
         .load_style(NOTHING.header_separator(LineStyle::none().fill('-').junction('-')))
         .set_width(WIDTH as u16)
         .set_content_arrangement(ContentArrangement::Dynamic)
-        .set_header(findings.headings())
+        .set_header(headings)
         .add_rows(cells);
     for column in table.column_iter_mut() {
         column.set_padding((0, 1));
         if column.index > 0 {
             column.set_cell_alignment(CellAlignment::Right);
+            // No word and no number is broken; one column of padding follows.
+            let least = words.get(column.index).map_or(0, |longest| longest + 1) as u16;
+            column.set_constraint(ColumnConstraint::LowerBoundary(Fixed(least)));
         } else if is_short {
             column.set_constraint(ColumnConstraint::ContentWidth);
         }
