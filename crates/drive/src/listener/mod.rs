@@ -2,8 +2,8 @@
 //!
 //! It matches replies with requests, and PDOs with SYNCs, by the client's own rules, so it observes
 //! what the client observed, without values that come late. Damaged frames, lost and unmatched
-//! replies and missing records lead to fewer observations, never to wrong ones. USB, RS232 and CAN records give the same observations.
-//! Segmented transfers are matched but not reported.
+//! replies and missing records lead to fewer observations, never to wrong ones. USB, RS232 and CAN
+//! records give the same observations. Segmented transfers are matched but not reported.
 
 mod can;
 mod recent_times;
@@ -97,8 +97,8 @@ pub enum Observation {
     },
 }
 
-/// A position is late after 3 ms, and another value after the shortest timeout of this client: one of
-/// many positions is not missed. A busy host hardly delays its links by more than it did before.
+/// A position is late after 3 ms, and another value after the shortest timeout of this client: one
+/// of many positions is not missed. A busy host hardly delays its links by more than it did before.
 const LATE_POSITION: LateAfter = LateAfter {
     time: Span::from_millis(3),
     ratio: 4,
@@ -107,8 +107,8 @@ const LATE_VALUE: LateAfter = LateAfter {
     time: Span::from_millis(40),
     ..LATE_POSITION
 };
-/// The words of an answer on RS232 follow its announcement evenly: eleven bytes take 1 ms at 115,200
-/// baud. Beyond three times that the words may be of another answer.
+/// The words of an answer on RS232 follow its announcement evenly: eleven bytes take 1 ms at
+/// 115,200 baud. Beyond three times that the words may be of another answer.
 const LATE_WORDS: LateAfter = LateAfter {
     time: Span::from_millis(3),
     ratio: 2,

@@ -34,8 +34,8 @@ enum Watched {
     RestOnTheWay(Degrees, Degrees),
 }
 
-/// An axis at rest for this long has ended its sweep: the slowest, at 0.05 deg/s, goes two counts of
-/// the encoder in 60 ms.
+/// An axis at rest for this long has ended its sweep: the slowest, at 0.05 deg/s, goes two counts
+/// of the encoder in 60 ms.
 const STILL: Span = Span::from_millis(100);
 
 impl SweepWatch {

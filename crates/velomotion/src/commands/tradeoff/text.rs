@@ -48,6 +48,9 @@ fn table(findings: &StudyFindings) -> String {
         words.map(|word| word.chars().count()).max().unwrap_or(0)
     };
     let words: Vec<usize> = (0..headings.len()).map(longest_word).collect();
+    let values: usize = words.iter().skip(1).sum();
+    // A blank between columns, and one more where there is room.
+    let blank = u16::from(NAME_WIDTH + values + 2 * headings.len() <= WIDTH);
     let names = cells.iter().filter_map(|row| row.first());
     let is_short = names.map(|name| name.chars().count()).max() <= Some(NAME_WIDTH);
     let mut table = Table::new();
@@ -58,11 +61,11 @@ fn table(findings: &StudyFindings) -> String {
         .set_header(headings)
         .add_rows(cells);
     for column in table.column_iter_mut() {
-        column.set_padding((0, 1));
+        column.set_padding((0, blank));
         if column.index > 0 {
             column.set_cell_alignment(CellAlignment::Right);
-            // No word and no number is broken; one column of padding follows.
-            let least = words.get(column.index).map_or(0, |longest| longest + 1) as u16;
+            // No word and no number is broken.
+            let least = words.get(column.index).copied().unwrap_or(0) as u16 + blank;
             column.set_constraint(ColumnConstraint::LowerBoundary(Fixed(least)));
         } else if is_short {
             column.set_constraint(ColumnConstraint::ContentWidth);
