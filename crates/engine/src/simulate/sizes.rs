@@ -34,8 +34,12 @@ use crate::failure::{Failure, Kind};
 
 /// Firings of a sample, about: 65,000 shots of a VLP-16.
 const FIRINGS: f64 = 4_096.0;
-/// The beginning of a scene that is sampled, seconds of it.
-const SAMPLED_S: f64 = 20.0;
+/// The beginning of a scene that is sampled, seconds of it: ten times as long as a usual scan.
+const SAMPLED_S: f64 = 300.0;
+/// Of a longer sample not all packets without a return are kept, but one in so many, for the clock.
+const ALL_KEPT_S: f64 = 20.0;
+const EMPTY_KEPT: u64 = 16;
+
 /// What an effect changes in the cloud.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[non_exhaustive]
@@ -101,6 +105,11 @@ impl<'a> Sampler<'a> {
             every: (sampled_s / period_s / FIRINGS) as u64,
             threads,
         }
+    }
+
+    /// Seconds of the scene that are sampled, if it is longer.
+    fn beginning_s(&self) -> Option<f64> {
+        (self.scene.simulation.motion.end_s > SAMPLED_S).then_some(SAMPLED_S)
     }
 
     /// Effects of the simulation and those that the scene calls for, in the order in which they
@@ -194,6 +203,9 @@ impl<'a> Sampler<'a> {
             gearing,
             records: Vec::new(),
             end_ns: scene.simulation.start.as_nanos() + (SAMPLED_S * 1e9) as i64,
+            is_thinned: scene.simulation.motion.end_s > ALL_KEPT_S,
+            datagrams: 0,
+            had_return: false,
         };
         let began = Instant::now();
         scene
@@ -298,6 +310,10 @@ struct SampleLog {
     gearing: Option<units::Gearing>,
     records: Vec<SampleRecord>,
     end_ns: i64,
+    is_thinned: bool,
+    datagrams: u64,
+    /// Whether the last datagram had a return: the next one ends its azimuths.
+    had_return: bool,
 }
 
 /// A record that owns its bytes.
@@ -329,14 +345,34 @@ impl SampleRecord {
     }
 }
 
+impl SampleLog {
+    /// Whether to keep a datagram.
+    fn keeps(&mut self, payload: &[u8]) -> bool {
+        let has_return = has_return(payload);
+        let is_needed = has_return || self.had_return;
+        self.had_return = has_return;
+        self.datagrams += 1;
+        is_needed || !self.is_thinned || self.datagrams.is_multiple_of(EMPTY_KEPT)
+    }
+}
+
+/// Whether a data packet has a distance above 0: blocks of four bytes and 32 times three.
+fn has_return(payload: &[u8]) -> bool {
+    let blocks = payload.chunks_exact(100).take(12);
+    let mut shots = blocks.flat_map(|block| block.get(4..).unwrap_or_default().chunks_exact(3));
+    shots.any(|shot| !shot.starts_with(&[0, 0]))
+}
+
 impl SimulationSink for SampleLog {
     fn event(&mut self, event: &SimulationEvent) -> ControlFlow<()> {
         let record = match event {
-            SimulationEvent::Datagram { at, port, payload } => Some(SampleRecord {
-                host: *at,
-                from: Ok(*port),
-                bytes: payload.clone(),
-            }),
+            SimulationEvent::Datagram { at, port, payload } => {
+                self.keeps(payload).then(|| SampleRecord {
+                    host: *at,
+                    from: Ok(*port),
+                    bytes: payload.clone(),
+                })
+            }
             _ => frame_of(event, self.gearing).map(|(host, direction, frame)| SampleRecord {
                 host,
                 from: Err(direction),

@@ -38,6 +38,9 @@ pub struct EffectChoice {
     /// Points of the sample that are missing, added or displaced by more than the tolerance,
     /// compared with all effects, percent.
     pub left_percent: f64,
+    /// Seconds of the scene that were sampled, if it is longer: what happens later may differ.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sampled_s: Option<f64>,
     /// Computing time of the sample over that with all effects.
     pub time_ratio: f64,
     /// Computing time of the choice, seconds.
@@ -110,6 +113,7 @@ impl Sampler<'_> {
             on: all.to_vec(),
             off: Vec::new(),
             left_percent: 0.0,
+            sampled_s: self.beginning_s(),
             time_ratio: 1.0,
             took_s: 0.0,
         };
@@ -161,8 +165,11 @@ impl EffectChoice {
             true => "; it takes longer than it saves in this run",
             false => "",
         };
+        let beginning = self.sampled_s.map_or(String::new(), |seconds| {
+            format!(" of the first {seconds} s")
+        });
         format!(
-            "{} mm, {} %{whose}: {off}; together {:.3} % of the sampled points are missing, added or displaced by more than {} mm, compared with all effects; \
+            "{} mm, {} %{whose}: {off}; together {:.3} % of the sampled points{beginning} are missing, added or displaced by more than {} mm, compared with all effects; \
              {:.0} % of their time; choosing took {:.1} s{worth}",
             self.tolerance.displaced_mm,
             self.tolerance.percent,

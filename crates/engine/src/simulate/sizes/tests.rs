@@ -176,3 +176,33 @@ fn a_fixed_axis_has_sizes_too() {
             .all(|size| size.effect != "encoder_quantisation")
     );
 }
+
+/// A truck that comes after 22 s of 30: the sample covers the whole scene.
+#[test]
+fn what_happens_late_counts() {
+    let late = scene(
+        r#"
+[motion]
+kind = "fixed"
+duration_s = 30
+
+[sensor]
+only_laser = 7
+
+[[objects]]
+name = "hall"
+box = { from_m = [-40, -40, -1], to_m = [40, 40, 9] }
+
+[[objects]]
+name = "truck"
+position_m = [-130, 4, 0]
+velocity_m_s = [5, 0, 0]
+box = { size_m = [20, 3, 4] }
+"#,
+    );
+    let sampler = Sampler::new(&late, THREADS);
+    let sizes = sampler.sizes(&["moving_objects"]).unwrap();
+    let moving = size(&sizes, "moving_objects");
+    assert!(moving.moved_percent > 1.0, "{moving:?}");
+    assert_eq!(sampler.beginning_s(), None);
+}
