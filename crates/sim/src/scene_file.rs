@@ -358,6 +358,13 @@ impl SceneFile {
         Ok(SceneEffects { effects, lines })
     }
 
+    /// Whether a beam could meet anything.
+    #[must_use]
+    pub fn has_objects(&self) -> bool {
+        let placed = self.simulation.scene.placed();
+        !placed.objects.is_empty() || !self.movers.movers().is_empty()
+    }
+
     /// Those effects, for a sample: of the firings only each `every`-th has returns.
     ///
     /// # Errors

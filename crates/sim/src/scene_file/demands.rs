@@ -252,10 +252,10 @@ impl SceneFacts<'_> {
     fn stated_demand(&self, effect: &'static str, survey: &SceneSurvey) -> EffectDemand {
         let config = self.config;
         let motion = &self.simulation.motion;
-        let range_m = survey.farthest_m;
+        let arm_m = survey.farthest_m + self.simulation.mount.position_m.length();
         let speeds = motion.moves.iter().map(|next| next.cruise_deg_s.abs());
         let speed_deg_s = speeds.fold(0.0, f64::max);
-        let by_angle = |deg: f64| deg.to_radians() * range_m;
+        let by_angle = |deg: f64| deg.to_radians() * arm_m;
         let by_delay = |us: f64| by_angle(1e-6 * us * speed_deg_s);
         let demand = |reason: String| EffectDemand::new(effect, reason);
         let stated = match effect {
@@ -263,13 +263,12 @@ impl SceneFacts<'_> {
                 let hidden_deg: f64 = (shadow.sectors.iter())
                     .map(|sector| sector.width_deg())
                     .sum();
-                let below = shadow.below_deg.map_or_else(String::new, |deg| {
-                    format!(", and its tripod what is below {deg} deg")
-                });
-                demand(format!(
-                    "the frame hides {hidden_deg} deg of azimuth{below}"
-                ))
-                .percent(hidden_deg / 3.6)
+                let frame = (!shadow.sectors.is_empty())
+                    .then(|| format!("the frame hides {hidden_deg} deg of azimuth"));
+                let tripod = (shadow.below_deg)
+                    .map(|deg| format!("the tripod hides what is below {deg} deg"));
+                let reason: Vec<String> = frame.into_iter().chain(tripod).collect();
+                demand(reason.join(", ")).percent(hidden_deg / 3.6)
             }),
             "base_drift" => config.base_drift.settings().map(|drift| {
                 let length = |three: [f64; 3]| three.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -304,10 +303,9 @@ impl SceneFacts<'_> {
             }),
             "tilt_limits" => config.tilt_limits.settings().map(|limits| {
                 let (from, to) = (limits.from_deg, limits.to_deg);
-                let ends = motion
-                    .moves
-                    .iter()
-                    .flat_map(|next| [next.from_deg, next.to_deg]);
+                let moves = motion.moves.iter();
+                let ends = moves.flat_map(|next| [next.from_deg, next.to_deg]);
+                let ends = ends.chain([motion.at(0.0).angle_deg]);
                 let over = ends
                     .map(|deg| (from - deg).max(deg - to))
                     .fold(0.0, f64::max);

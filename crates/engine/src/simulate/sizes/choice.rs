@@ -75,14 +75,19 @@ impl Sampler<'_> {
         let points = reference.points.len();
         let least_percent = 300.0 / points.max(1) as f64;
         if tolerance.percent < least_percent {
+            if points == 0 {
+                let message = "tolerance: the sample has no points to compare";
+                return Err(Failure::new(Kind::BadInput, message)
+                    .help("see what the lidar can reach: objects, range, and the axis's angle"));
+            }
+            let stated_percent = (100.0 * least_percent).ceil() / 100.0;
             let message = format!(
-                "tolerance: expected a share from {least_percent:.2} % up to below 100 %, which {points} sampled points can show, got {} %",
+                "tolerance: expected a share from {stated_percent} % up to below 100 %, which {points} sampled points can show, got {} %",
                 tolerance.percent
             );
             return Err(Failure::new(Kind::Usage, message).help(format!(
-                "state {}mm,{:.2}% or more; any length above 0 mm can be met",
+                "state {}mm,{stated_percent}% or more; any length above 0 mm can be met",
                 tolerance.displaced_mm,
-                0.005 + least_percent
             )));
         }
         let compared = |names: &[&'static str]| {

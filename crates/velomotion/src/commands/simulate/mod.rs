@@ -78,6 +78,7 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, 
         .extend(without_use.map(|name| format!("--without {name}: the scene does not have it")));
     let mut progress = Progress::new(common);
     progress.begin_run(scene.simulation.motion.end_s);
+    let (has_objects, range) = (scene.has_objects(), scene.simulation.sensor.range());
     let request = SimulationRequest {
         name,
         log: &log,
@@ -93,8 +94,14 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, 
     let (mut report, failure) = made?;
     report.warnings.extend(warnings);
     if report.returned == 0 && report.shots > 0 {
-        let nothing = "no shot returned; a file without objects needs a scene (scene = \"hall\") or [[objects]]";
-        report.warnings.push(nothing.to_owned());
+        let nothing = match has_objects {
+            true => format!(
+                "no shot returned: no object is within {} to {} m of the lidar where it points",
+                range.min_m, range.max_m
+            ),
+            false => "no shot returned: the file has no objects; name a scene (scene = \"hall\") or add [[objects]]".to_owned(),
+        };
+        report.warnings.push(nothing);
     }
     if common.quiet && !common.json {
         for warning in &report.warnings {
