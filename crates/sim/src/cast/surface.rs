@@ -98,6 +98,21 @@ impl Object {
         }
     }
 
+    /// The line through the middle of a finite object along its longest side, in the world, and the
+    /// object's greatest distance from it, metres.
+    pub(crate) fn middle_line(&self) -> Option<([DVec3; 2], f64)> {
+        let bounds = self.own_bounds()?;
+        let (low, high) = (DVec3::from(bounds.low), DVec3::from(bounds.high));
+        let half = 0.5 * (high - low);
+        let along = half.to_array();
+        let longest = (0..3).max_by(|a, b| along[*a].total_cmp(&along[*b]))?;
+        let mut side = DVec3::ZERO;
+        side[longest] = half[longest];
+        let middle = 0.5 * (low + high) + self.origin_m();
+        let ends = [middle - side, middle + side].map(|end| self.placement.world_point(end));
+        (half.is_finite()).then(|| (ends, (half - side).length()))
+    }
+
     /// Box in the world, with room for what the motion rounds off; `None` of what is endless. An
     /// object without extent in its own frame (NaN, ends the wrong way round) gives `Err`.
     pub(super) fn bounds(&self) -> Result<Option<BoundingBox>, BoundingBox> {

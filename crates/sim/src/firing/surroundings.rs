@@ -12,7 +12,7 @@ use glam::DVec3;
 use super::body::Body;
 use super::echo::{Echo, Echoes};
 use super::{SimulatedFiring, batch};
-use crate::cast::Hit;
+use crate::cast::{Hit, Object};
 use crate::scene::Scene;
 use crate::sensor::DetectionRange;
 
@@ -103,6 +103,11 @@ impl Surroundings {
     /// The same with or without normals of surfaces.
     pub(crate) fn with_normals(self, normals: bool) -> Self {
         Self { normals, ..self }
+    }
+
+    /// The objects that do not move.
+    pub(crate) fn static_objects(&self) -> &[Object] {
+        self.scene.caster().objects()
     }
 
     /// The sensor's range of detection.

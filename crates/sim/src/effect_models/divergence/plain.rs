@@ -5,8 +5,8 @@
 //! inverse distance is linear along every line of samples (one plane) and the reflectivity is
 //! constant. Because lasers are off the centre, near surfaces hide more for them: a cell that is
 //! not plain marks those around it, as far as the parallax of its nearest sample reaches. Objects
-//! between samples (10 mrad at most) in otherwise plain surroundings and moving objects are not
-//! seen.
+//! so thin that they fit between samples (10 mrad at most) mark the cells along their middle. Thin
+//! parts of larger meshes and moving objects are not seen.
 
 use crate::firing::Surroundings;
 use glam::DVec3;
@@ -17,6 +17,10 @@ const CELLS: usize = 96;
 const STEPS: usize = 2;
 /// Samples per side, one beyond each end.
 const GRID: usize = CELLS * STEPS + 3;
+/// Angle between samples, radians: 2 / (CELLS * STEPS) where they are farthest apart, rounded up.
+const SAMPLE: f64 = 0.0105;
+/// Most points along an object's middle.
+const MOST_ALONG: f64 = 10_000.0;
 /// Largest distance of lasers from the centre, metres; the map does not serve others.
 const PARALLAX_M: f64 = 0.1;
 /// Largest half angle of a footprint, radians.
@@ -56,7 +60,38 @@ impl Plain {
                 }
             }
         }
+        for object in surroundings.static_objects() {
+            if let Some((ends, half_m)) = object.middle_line() {
+                map.spoil_thin(ends, half_m);
+            }
+        }
         map
+    }
+
+    /// Marks the cells along the middle of an object where it fits between samples.
+    fn spoil_thin(&mut self, [from_m, to_m]: [DVec3; 2], half_m: f64) {
+        let is_thin = |distance_m: f64| 2.0 * half_m < SAMPLE * distance_m;
+        let way_m = to_m - from_m;
+        let nearest = -from_m.dot(way_m) / way_m.length_squared();
+        let nearest = if nearest.is_finite() { nearest } else { 0.0 };
+        let nearest_m = (from_m + nearest.clamp(0.0, 1.0) * way_m).length();
+        if !is_thin(from_m.length().max(to_m.length())) {
+            return;
+        }
+        // Nearer parts are not thin, so that steps of half a sample are enough.
+        let thin_m = nearest_m.max(2.0 * half_m / SAMPLE);
+        let steps = (2.0 * way_m.length() / (SAMPLE * thin_m)).ceil();
+        let steps = steps.clamp(1.0, MOST_ALONG) as u32;
+        for step in 0..=steps {
+            let point_m = from_m + f64::from(step) / f64::from(steps) * way_m;
+            let distance_m = point_m.length();
+            if is_thin(distance_m)
+                && let Some(cell) = cell_of(point_m)
+            {
+                let (row, column) = (cell / CELLS % CELLS, cell % CELLS);
+                self.spoil(cell / (CELLS * CELLS), row, column, distance_m);
+            }
+        }
     }
 
     /// Whether the surroundings of a ray's end are plain.

@@ -1,6 +1,6 @@
 use super::super::moving_objects::{MovingBox, MovingObjects, MovingObjectsSettings};
 use super::*;
-use crate::cast::{Cuboid, Object, Placement, Plane, Sphere};
+use crate::cast::{Cuboid, Cylinder, Object, Placement, Plane, Sphere};
 use crate::effect_models::testing::{around, cast, firing};
 use crate::effects::ObjectsEffect;
 use crate::firing::{Echoes, SimulatedFiring, Surroundings};
@@ -207,4 +207,33 @@ fn settings_out_of_bounds_are_rejected() {
     assert_eq!(wrong(|s| s.horizontal_mrad = f64::NAN), "horizontal_mrad");
     assert_eq!(wrong(|s| s.flat_m = 0.0), "flat_m");
     assert_eq!(wrong(|s| s.least_share = 2.0), "least_share");
+}
+
+/// A pole of 2 cm at 15 m, thinner than the map's samples are apart, in front of a wall.
+#[test]
+fn a_thin_pole_is_no_plain_surroundings() {
+    let pole = |x_m: f64| {
+        let pole = Cylinder {
+            radius_m: 0.01,
+            bottom_m: -3.0,
+            top_m: 3.0,
+            capped: true,
+        };
+        let placement = Placement::at(dvec3(x_m, 15.0, 0.0)).unwrap();
+        let scene = wall(30.0 * DVec3::Y, DVec3::Y);
+        around(scene.with(Object::new(pole).placed(placement), 50).unwrap())
+    };
+    // Half way between two samples, where laser 1 fires.
+    let at_m = 15.0 * f64::tan(0.3_f64.to_radians());
+    for place in -3..=4 {
+        let pole = pole(at_m + 0.002 * f64::from(place));
+        let firing = firing(0.3, 0.0);
+        let mut echoes = cast(&firing, &pole);
+        let acted = divergence().receive(&firing, &pole, &mut echoes);
+        assert!(acted > 0, "{place}");
+        let seen = [&echoes.strongest, &echoes.other]
+            .into_iter()
+            .any(|all| all[1].range_m < 16.0);
+        assert!(seen, "{place}: {echoes:?}");
+    }
 }
