@@ -35,9 +35,10 @@ pub struct CalibrationRequest<'a> {
 /// Steps of Gauss-Newton on the same elements: they are a guess until the parameters fit.
 const COARSE_STEPS: usize = 2;
 const FINE_STEPS: usize = 1;
-/// Nothing moves by more than this in the last loop, standard deviations.
+/// The loops end when nothing moves by more than this, standard deviations.
 const SETTLED_SD: f64 = 0.3;
-/// Results of two starts agree within this many standard deviations.
+/// Results of two starts agree within this many standard deviations, and the last loop moves
+/// nothing by more.
 const STARTS_AGREE_SD: f64 = 1.0;
 /// The second start from the first: 2 deg, 20 mm, 1 ms.
 const SECOND_START: [(usize, f64); 5] = [
@@ -329,7 +330,7 @@ impl<'a> Estimator<'a> {
     fn judge(&self, solution: &Solution) -> Result<(), CalibrationRefusal> {
         let moves = solution.moves.iter().copied().enumerate();
         if let Some((index, moves_sd)) = moves.max_by(|a, b| a.1.total_cmp(&b.1))
-            && moves_sd >= SETTLED_SD
+            && moves_sd >= STARTS_AGREE_SD
         {
             let name = self.parameters[index].name.clone();
             return Err(CalibrationRefusal::NotSettled { name, moves_sd });
@@ -341,7 +342,7 @@ impl<'a> Estimator<'a> {
                 let value = solution.values[index].abs();
                 let lever = if index < first + 3 { 1.0 } else { DRIFT_AT_M };
                 let (mm_s, sds) = (value * lever * 1e3, value / sd);
-                if sds > DRIFT_SD && mm_s > DRIFT_MM_S {
+                if sds > DRIFT_SD && mm_s > DRIFT_MM_S && self.is_in_both_halves(solution, index)? {
                     let log = log + 1;
                     return Err(CalibrationRefusal::Drift { log, mm_s, sds });
                 }
@@ -352,6 +353,32 @@ impl<'a> Estimator<'a> {
             true => Ok(()),
             false => Err(CalibrationRefusal::Misfit { chi2 }),
         }
+    }
+
+    /// Whether either half of the surface elements shows a parameter by half of its value or more.
+    /// A drift along all surfaces, as over a bare floor, follows the noise of their normals, which
+    /// its standard deviation does not contain: the halves differ by as much as the drift.
+    fn is_in_both_halves(
+        &self,
+        solution: &Solution,
+        index: usize,
+    ) -> Result<bool, CalibrationRefusal> {
+        let (values, noise_m) = (&solution.values, &solution.noise_m);
+        let all = self.patches(values, noise_m)?;
+        let mut halves = [(); 2].map(|()| Patches {
+            list: Vec::new(),
+            scale: all.scale,
+        });
+        for (number, patch) in all.list.into_iter().enumerate() {
+            halves[number % 2].list.push(patch);
+        }
+        for half in &halves {
+            let (step, _) = self.step(&self.equations(half, values, noise_m), values)?;
+            if (values[index] + step[index]) / values[index] < 0.5 {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 
     /// Refuses results that depend on the start.
