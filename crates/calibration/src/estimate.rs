@@ -2,6 +2,8 @@
 
 mod stage_two;
 
+use std::ops::Range;
+
 use cloud::mount::Mount;
 
 use crate::calibration::{
@@ -35,6 +37,8 @@ pub struct CalibrationRequest<'a> {
 /// Steps of Gauss-Newton on the same elements: they are a guess until the parameters fit.
 const COARSE_STEPS: usize = 2;
 const FINE_STEPS: usize = 1;
+/// Steps without some parameters, of which the others take the place.
+const RATIO_STEPS: usize = 3;
 /// The loops end when nothing moves by more than this, standard deviations.
 const SETTLED_SD: f64 = 0.3;
 /// Results of two starts agree within this many standard deviations, and the last loop moves
@@ -265,6 +269,16 @@ impl<'a> Estimator<'a> {
         equations: &Equations,
         values: &[f64],
     ) -> Result<(Vec<f64>, Matrix), CalibrationRefusal> {
+        self.step_of(equations, values, &self.is_fixed)
+    }
+
+    /// The same with other parameters fixed.
+    fn step_of(
+        &self,
+        equations: &Equations,
+        values: &[f64],
+        is_fixed: &[bool],
+    ) -> Result<(Vec<f64>, Matrix), CalibrationRefusal> {
         let size = self.layout.len();
         // In units of the priors, which keeps the matrix well scaled.
         let unit = |i: usize| self.parameters[i].prior_sd;
@@ -272,12 +286,12 @@ impl<'a> Estimator<'a> {
         let mut scatter = Matrix::zero(size);
         let mut right = vec![0.0; size];
         for i in 0..size {
-            if self.is_fixed[i] {
+            if is_fixed[i] {
                 *hessian.at_mut(i, i) = 1.0;
                 continue;
             }
             right[i] = -equations.gradient[i] * unit(i) - (values[i] - self.start[i]) / unit(i);
-            for j in (0..size).filter(|&j| !self.is_fixed[j]) {
+            for j in (0..size).filter(|&j| !is_fixed[j]) {
                 let units = unit(i) * unit(j);
                 *hessian.at_mut(i, j) = equations.hessian.at(i, j) * units;
                 *scatter.at_mut(i, j) = equations.scatter.at(i, j) * units;
@@ -287,11 +301,11 @@ impl<'a> Estimator<'a> {
         }
         let azimuths = self.layout.azimuths();
         let mean: f64 = values[azimuths.clone()].iter().sum();
-        for i in azimuths.clone().filter(|&i| !self.is_fixed[i]) {
+        for i in azimuths.clone().filter(|&i| !is_fixed[i]) {
             let count = self.layout.lasers as f64;
             let weight = 1.0 / (GAUGE_SD_RAD * count).powi(2);
             right[i] -= weight * mean * unit(i);
-            for j in azimuths.clone().filter(|&j| !self.is_fixed[j]) {
+            for j in azimuths.clone().filter(|&j| !is_fixed[j]) {
                 *hessian.at_mut(i, j) += weight * unit(i) * unit(j);
             }
         }
@@ -308,7 +322,7 @@ impl<'a> Estimator<'a> {
         for i in 0..size {
             for j in 0..size {
                 let grow = |i: usize| (robust[i] / inverse.at(i, i)).max(1.0).sqrt();
-                let free = !self.is_fixed[i] && !self.is_fixed[j];
+                let free = !is_fixed[i] && !is_fixed[j];
                 let units = if free {
                     unit(i) * unit(j) * grow(i) * grow(j)
                 } else {
@@ -342,7 +356,10 @@ impl<'a> Estimator<'a> {
                 let value = solution.values[index].abs();
                 let lever = if index < first + 3 { 1.0 } else { DRIFT_AT_M };
                 let (mm_s, sds) = (value * lever * 1e3, value / sd);
-                if sds > DRIFT_SD && mm_s > DRIFT_MM_S && self.is_in_both_halves(solution, index)? {
+                if sds > DRIFT_SD
+                    && mm_s > DRIFT_MM_S
+                    && self.is_needed(solution, first..first + 6)?
+                {
                     let log = log + 1;
                     return Err(CalibrationRefusal::Drift { log, mm_s, sds });
                 }
@@ -355,30 +372,32 @@ impl<'a> Estimator<'a> {
         }
     }
 
-    /// Whether either half of the surface elements shows a parameter by half of its value or more.
-    /// A drift along all surfaces, as over a bare floor, follows the noise of their normals, which
-    /// its standard deviation does not contain: the halves differ by as much as the drift.
-    fn is_in_both_halves(
+    /// Whether residuals are worse without some parameters, by the likelihood ratio. A drift along
+    /// all surfaces, as over a bare floor, follows the noise of their normals, which its standard
+    /// deviation does not contain: without it the residuals are as good.
+    fn is_needed(
         &self,
         solution: &Solution,
-        index: usize,
+        some: Range<usize>,
     ) -> Result<bool, CalibrationRefusal> {
-        let (values, noise_m) = (&solution.values, &solution.noise_m);
-        let all = self.patches(values, noise_m)?;
-        let mut halves = [(); 2].map(|()| Patches {
-            list: Vec::new(),
-            scale: all.scale,
-        });
-        for (number, patch) in all.list.into_iter().enumerate() {
-            halves[number % 2].list.push(patch);
-        }
-        for half in &halves {
-            let (step, _) = self.step(&self.equations(half, values, noise_m), values)?;
-            if (values[index] + step[index]) / values[index] < 0.5 {
-                return Ok(false);
+        let noise_m = &solution.noise_m;
+        let patches = self.patches(&solution.values, noise_m)?;
+        let squares = |without: Range<usize>| {
+            let (mut values, mut is_fixed) = (solution.values.clone(), self.is_fixed.clone());
+            for index in without {
+                values[index] = self.start[index];
+                is_fixed[index] = true;
             }
-        }
-        Ok(true)
+            for _ in 0..RATIO_STEPS {
+                let equations = self.equations(&patches, &values, noise_m);
+                let (step, _) = self.step_of(&equations, &values, &is_fixed)?;
+                for (value, step) in values.iter_mut().zip(step) {
+                    *value += step;
+                }
+            }
+            Ok(self.equations(&patches, &values, noise_m).squares)
+        };
+        Ok(squares(some)? - squares(0..0)? > DRIFT_SD * DRIFT_SD)
     }
 
     /// Refuses results that depend on the start.

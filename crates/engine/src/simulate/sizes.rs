@@ -234,7 +234,10 @@ impl<'a> Sampler<'a> {
             &tilt,
             Accuracy::default(),
         )
-        .map_err(|error| failed(&error))?;
+        .map_err(|error| {
+            Failure::new(Kind::BadInput, format!("a sample of the scene gives no cloud: {error}"))
+                .help("replay refuses the log of the scene alike: see [drive], [link] and what loses their messages")
+        })?;
         let mut cloud = SampleCloud {
             points: HashMap::new(),
             took_s,

@@ -11,6 +11,7 @@ use utoipa::ToSchema;
 
 use super::facts::StatedFact;
 use super::survey::{MaterialSurvey, SceneSurvey};
+use crate::cast::Object;
 use crate::effect_models::{EffectsConfig, Mover, Weather};
 use crate::simulate::Simulation;
 
@@ -159,8 +160,13 @@ impl SceneFacts<'_> {
         let end_s = self.simulation.motion.end_s;
         let path_m = self.movers.iter().map(|mover| {
             let travel = &mover.travel;
-            // An object of a metre about its origin.
-            (travel.velocity_m_s.length() + travel.turn_deg_s.length().to_radians()) * end_s
+            let objects = mover.scene.caster().objects().iter();
+            let lines = objects.filter_map(Object::middle_line);
+            let arms = lines.flat_map(|(ends, half_m)| ends.map(|end| end.length() + half_m));
+            let arm_m = arms.fold(0.0, f64::max);
+            // No point of a turning object is farther off than across its circle.
+            let turned_m = travel.turn_deg_s.length().to_radians() * end_s * arm_m;
+            travel.velocity_m_s.length() * end_s + turned_m.min(2.0 * arm_m)
         });
         let farthest_m = path_m.fold(0.0, f64::max);
         let (name, line) = match self.mover_names.first() {

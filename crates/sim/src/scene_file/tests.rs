@@ -293,6 +293,23 @@ fn the_facts_of_a_scene_call_for_its_effects() {
     assert!((300.0..800.0).contains(&lag_mm), "{lag_mm}");
 }
 
+/// A boom of 40 m that turns by 20 deg, and a fan of 1.2 m that turns many times.
+#[test]
+fn a_turning_object_is_displaced_by_its_own_arm() {
+    let displaced_m = |objects: &str| {
+        let motion = "[motion]\nkind = \"fixed\"\nduration_s = 1\n";
+        let scene = SceneFile::parse(&format!("{motion}{objects}"), None, None).unwrap();
+        let demand = scene.demand("moving_objects").unwrap();
+        demand.displaced_mm.unwrap() * 1e-3
+    };
+    let boom = "[[objects]]\nposition_m = [0, 10, 0]\nturn_deg_s = [0, 0, 20]\n\
+                box = { from_m = [0, -0.1, -0.1], to_m = [40, 0.1, 0.1] }\n";
+    assert!((displaced_m(boom) - 40.0 * 20.0_f64.to_radians()).abs() < 0.2);
+    let fan = "[[objects]]\nposition_m = [0, 10, 0]\nturn_deg_s = [0, 1200, 0]\n\
+               box = { size_m = [1.2, 0.05, 0.1] }\n";
+    assert!((displaced_m(fan) - 1.2).abs() < 0.2);
+}
+
 #[test]
 fn demanded_effects_are_switched_off_and_set_in_the_file() {
     let with = |effects: &str| {

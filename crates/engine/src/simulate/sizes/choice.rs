@@ -174,7 +174,7 @@ impl EffectChoice {
             format!(" of the first {seconds} s")
         });
         format!(
-            "{} mm, {} %{whose}: {off}; together {:.3} % of the sampled points{beginning} are missing, added or displaced by more than {} mm, compared with all effects; \
+            "{} mm, {} %{whose}: {off}; together {:.3} % of the sampled points{beginning} are missing, added or displaced by more than {} mm, compared with all effects that are not switched off; \
              {:.0} % of their time; choosing took {:.1} s{worth}",
             self.tolerance.displaced_mm,
             self.tolerance.percent,

@@ -76,6 +76,9 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, 
         (arguments.without.iter()).filter(|name| *name != cli::ALL && !scene.is_requested(name));
     warnings
         .extend(without_use.map(|name| format!("--without {name}: the scene does not have it")));
+    if arguments.tolerance.is_some() && choice.is_none() {
+        warnings.push("--tolerance: no effect is left to choose from".to_owned());
+    }
     let mut progress = Progress::new(common);
     progress.begin_run(scene.simulation.motion.end_s);
     let (has_objects, range) = (scene.has_objects(), scene.simulation.sensor.range());
