@@ -123,14 +123,17 @@ impl TwoSidedClock {
             taken.saturating_since(latched.sample.request)
         };
         let mut all: Vec<Span> = run.iter().map(ahead).collect();
+        // No sample is before its SYNC.
+        all.retain(|ahead| *ahead >= Span::ZERO);
         all.sort_unstable();
         let quick = *all.get(all.len() / QUICK_SHARE)?;
         let half = median_interval(run).half();
         let arrivals: Vec<Arrival<Drive>> = run
             .iter()
             .filter(|latched| {
-                let beyond = ahead(latched).saturating_sub(quick);
-                -half <= beyond && beyond <= half
+                let ahead = ahead(latched);
+                let beyond = ahead.saturating_sub(quick);
+                ahead >= Span::ZERO && -half <= beyond && beyond <= half
             })
             .map(|latched| Arrival {
                 device: backwards(latched.device_ns),
