@@ -2,6 +2,8 @@ use units::Span;
 
 use super::*;
 
+mod hours;
+mod live;
 mod pushed;
 mod unfinished;
 
@@ -85,38 +87,6 @@ fn a_move_between_the_limits_is_a_sweep_with_its_measured_speed() {
     assert!((sweep.cruise.0 + 45.0).abs() < 1e-6, "{sweep:?}");
     assert_eq!(sweep.start, ms(19));
     assert_eq!((sweep.end - sweep.start).as_nanos(), 1_000_000_000);
-}
-
-/// The lidar's stamps repeat hourly: a host whose clock was set by hours while it slept leaves a
-/// silence of hours, though the axis moved on for moments.
-#[test]
-fn hours_that_the_axis_did_not_need_are_a_step_of_the_clock() {
-    let hours = |silence_ms: i64, before_deg: f64, meanwhile_deg: f64| {
-        let mut axis = Axis::new();
-        axis.command(-45.0, 0x1F);
-        axis.travel(-before_deg, 56.25);
-        axis.now += silence_ms;
-        axis.angle -= meanwhile_deg;
-        axis.travel(before_deg + meanwhile_deg - 45.0, 56.25);
-        let sweeps = axis.watch.sweeps(&axis.samples, Some(&PLAN)).seen;
-        assert_eq!(sweeps.len(), 1);
-        sweeps[0].hours_too_many(&axis.samples)
-    };
-    let found = hours(7_200_400, 10.0, 22.5).unwrap();
-    assert!(
-        (found.silence.as_secs_f64() - 7_200.4).abs() < 0.01,
-        "{found:?}"
-    );
-    assert!((found.motion.as_secs_f64() - 0.4).abs() < 0.02, "{found:?}");
-    assert!((found.at.0 + 10.0).abs() < 1e-6, "{found:?}");
-    // Held by hand.
-    assert!(hours(3_600_000, 10.0, 0.0).is_some());
-    // Not whole hours; no hour at all.
-    assert_eq!(hours(1_800_400, 10.0, 22.5), None);
-    assert_eq!(hours(400, 10.0, 22.5), None);
-    // At its target the axis may rest for hours, and before it leaves its place.
-    assert_eq!(hours(7_200_400, 15.0, 29.95), None);
-    assert_eq!(hours(7_200_400, 0.05, 22.5), None);
 }
 
 #[test]
@@ -217,60 +187,6 @@ fn a_slow_sweep_goes_on_after_its_head_was_held() {
     axis.travel(-24.5, 1.0);
     let sweeps = axis.watch.sweeps(&axis.samples, Some(&PLAN)).seen;
     assert!((sweeps[0].to.0 + 45.0).abs() < 1e-6, "{sweeps:?}");
-    // So it does while it is measured: its one span ends where the axis is at its target.
-    let spans = live_spans(&axis);
-    let &[(start, end)] = spans.last().unwrap().as_slice() else {
-        panic!("{:?}", spans.last());
-    };
-    assert_eq!(start, sweeps[0].start);
-    assert!(
-        (end - sweeps[0].end).as_nanos().abs() <= 2_000_000,
-        "{end:?}"
-    );
-}
-
-/// The spans of the live cloud after each sample.
-fn live_spans(axis: &Axis) -> Vec<Vec<(Stamp<Host>, Stamp<Host>)>> {
-    let mut live = SweepWatch::new(Gearing::new(500, 120, 1).unwrap());
-    let after = |sample: &AngleSample| {
-        live.sample(sample, &axis.watch, Some(&PLAN));
-        live.spans().to_vec()
-    };
-    axis.samples.iter().map(after).collect()
-}
-
-/// Two counts of the encoder take 60 ms.
-#[test]
-fn the_slowest_sweep_does_not_end_between_two_counts() {
-    let mut axis = Axis::new();
-    axis.command(-45.0, 0x1F);
-    axis.travel(-1.0, 0.05);
-    for sample in &mut axis.samples {
-        sample.angle.0 = (sample.angle.0 / 0.0015).ceil() * 0.0015;
-    }
-    let moving = axis.samples.len() - 50;
-    let spans = live_spans(&axis);
-    let open = Stamp::from_nanos(i64::MAX);
-    let begun = spans.iter().position(|spans| !spans.is_empty()).unwrap();
-    for spans in &spans[begun..moving] {
-        assert!(matches!(spans[..], [(_, end)] if end == open), "{spans:?}");
-    }
-}
-
-/// A drive that restarts stands at zero; what the axis does then is not its sweep.
-#[test]
-fn a_restarted_drive_does_not_go_on_with_its_sweep() {
-    let mut axis = Axis::new();
-    axis.command(-45.0, 0x1F);
-    axis.travel(-20.0, 56.25);
-    axis.angle = 0.0;
-    axis.stay(200);
-    axis.travel(-0.3, 1.0);
-    let spans = live_spans(&axis);
-    let &[(_, end)] = spans.last().unwrap().as_slice() else {
-        panic!("{:?}", spans.last());
-    };
-    assert!(end < ms(axis.now - 400), "{end:?}");
 }
 
 #[test]
