@@ -176,13 +176,14 @@ pub fn choose_effects(
     tolerance: Option<EffectTolerance>,
     threads: NonZeroUsize,
     clock: Stopwatch,
+    interrupt: Option<&AtomicBool>,
 ) -> Result<Option<EffectChoice>, Failure> {
     let requested: Vec<&'static str> = (EffectsConfig::NAMES.iter().copied())
         .filter(|effect| scene.is_requested(effect) && !is_out(effect))
         .collect();
     let choice = match tolerance.or(scene.tolerance) {
         Some(chosen) if !requested.is_empty() => {
-            let sampler = Sampler::new(scene, threads);
+            let sampler = Sampler::new(scene, threads).interrupted_by(interrupt);
             Some(sampler.choose(chosen, &requested, tolerance.is_none())?)
         }
         _ => None,

@@ -245,7 +245,15 @@ pub(crate) fn simulate<'py>(
         };
         let is_out =
             |effect: &str| (without.iter()).any(|name| name == effect || name == ALL_EFFECTS);
-        let choice = choose_effects(&mut scene_file, &name, is_out, tolerance, threads, None)?;
+        let choice = choose_effects(
+            &mut scene_file,
+            &name,
+            is_out,
+            tolerance,
+            threads,
+            None,
+            None,
+        )?;
         let is_chosen_out = |effect: &str| {
             (choice.iter()).any(|choice| choice.off.iter().any(|out| out.effect == effect))
         };

@@ -10,6 +10,7 @@ mod unmet;
 use std::collections::HashMap;
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use cloud::{Fields, Points, Sink, SinkError};
@@ -90,6 +91,7 @@ pub struct Sampler<'a> {
     on: Vec<&'static str>,
     every: u64,
     threads: NonZeroUsize,
+    interrupt: Option<&'a AtomicBool>,
 }
 
 impl<'a> Sampler<'a> {
@@ -104,7 +106,19 @@ impl<'a> Sampler<'a> {
             on: usage.iter().map(|used| used.name).collect(),
             every: (sampled_s / period_s / FIRINGS) as u64,
             threads,
+            interrupt: None,
         }
+    }
+
+    /// The same, which ends with a failure once the flag is set.
+    #[must_use]
+    pub fn interrupted_by(self, interrupt: Option<&'a AtomicBool>) -> Self {
+        Self { interrupt, ..self }
+    }
+
+    fn is_interrupted(&self) -> bool {
+        let flag = self.interrupt;
+        flag.is_some_and(|flag| flag.load(Ordering::Relaxed))
     }
 
     /// Seconds of the scene that are sampled, if it is longer.
@@ -200,6 +214,7 @@ impl<'a> Sampler<'a> {
         let polls = scene.simulation.polls;
         let gearing = polls.map(|polls| effects.encoder.gearing().unwrap_or(polls.gearing));
         let mut log = SampleLog {
+            interrupt: self.interrupt,
             gearing,
             records: Vec::new(),
             end_ns: scene.simulation.start.as_nanos() + (SAMPLED_S * 1e9) as i64,
@@ -212,6 +227,10 @@ impl<'a> Sampler<'a> {
             .simulation
             .run(&mut effects, self.threads, &mut log)
             .map_err(|error| failed(&error))?;
+        if self.is_interrupted() {
+            let stopped = "stopped by the user while effects were compared";
+            return Err(Failure::new(Kind::Interrupted, stopped).help("no log was written"));
+        }
         let took_s = began.elapsed().as_secs_f64();
         let busy_ns = 1e9 * took_s * self.threads.get() as f64;
         let time_percent = (effects.usage().iter())
@@ -309,7 +328,8 @@ impl Difference {
 }
 
 /// The messages of a sample.
-struct SampleLog {
+struct SampleLog<'a> {
+    interrupt: Option<&'a AtomicBool>,
     gearing: Option<units::Gearing>,
     records: Vec<SampleRecord>,
     end_ns: i64,
@@ -348,7 +368,7 @@ impl SampleRecord {
     }
 }
 
-impl SampleLog {
+impl SampleLog<'_> {
     /// Whether to keep a datagram.
     fn keeps(&mut self, payload: &[u8]) -> bool {
         let has_return = has_return(payload);
@@ -366,7 +386,7 @@ fn has_return(payload: &[u8]) -> bool {
     shots.any(|shot| !shot.starts_with(&[0, 0]))
 }
 
-impl SimulationSink for SampleLog {
+impl SimulationSink for SampleLog<'_> {
     fn event(&mut self, event: &SimulationEvent) -> ControlFlow<()> {
         let record = match event {
             SimulationEvent::Datagram { at, port, payload } => {
@@ -386,7 +406,9 @@ impl SimulationSink for SampleLog {
             .as_ref()
             .is_some_and(|record| record.host.as_nanos() > self.end_ns);
         self.records.extend(record);
-        match is_over {
+        let flag = self.interrupt;
+        let is_interrupted = flag.is_some_and(|flag| flag.load(Ordering::Relaxed));
+        match is_over || is_interrupted {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),
         }

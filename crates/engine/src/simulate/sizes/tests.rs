@@ -206,3 +206,14 @@ box = { size_m = [20, 3, 4] }
     assert!(moving.moved_percent > 1.0, "{moving:?}");
     assert_eq!(sampler.beginning_s(), None);
 }
+
+#[test]
+fn an_interrupted_comparison_ends() {
+    let scene = scene(GLASS);
+    let flag = AtomicBool::new(true);
+    let sampler = Sampler::new(&scene, THREADS).interrupted_by(Some(&flag));
+    let failure = sampler.sizes(&["reflectance"]).unwrap_err();
+    assert_eq!(failure.kind, Kind::Interrupted);
+    flag.store(false, Ordering::Relaxed);
+    assert!(sampler.sizes(&["reflectance"]).is_ok());
+}

@@ -61,8 +61,9 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, 
         arguments.tolerance,
         threads,
         clock,
+        Some(&interrupt),
     )?;
-    let sampler = Sampler::new(&scene, threads);
+    let sampler = Sampler::new(&scene, threads).interrupted_by(Some(&interrupt));
     let sizes = match arguments.explain {
         true => Some(sampler.sizes(&sampler.candidates())?),
         false => None,
