@@ -17,7 +17,7 @@ use units::{Degrees, Host, Lidar, Stamp};
 use crate::calibration::PointCalibration;
 use crate::clock::{LidarClock, Moment};
 use crate::sample_gaps::SampleGaps;
-use crate::steps::ClockStep;
+use crate::steps::{ClockStep, DelayChange};
 use crate::sweeps::Sweep;
 use crate::tolerance::MethodChoice;
 use crate::trajectory::{Method, Trajectory};
@@ -30,6 +30,8 @@ pub struct Alignment {
     pub clock: LidarClock,
     /// Clocks set in mid-recording, in order. Host times are those of the clock before the first.
     pub steps: Vec<ClockStep>,
+    /// Lasting changes of the packets' delay whose cause is not known, in order.
+    pub delay_changes: Vec<DelayChange>,
     /// Host time to tilt angle.
     pub trajectory: Trajectory,
     /// Reason for the method of the angles, if a tolerance chose it.
@@ -85,6 +87,7 @@ impl Alignment {
         Self {
             clock,
             steps: Vec::new(),
+            delay_changes: Vec::new(),
             trajectory,
             choice: None,
             sweeps: Vec::new(),

@@ -58,6 +58,7 @@ impl Survey {
         let Timeline {
             clock,
             steps,
+            delay_changes,
             drive,
             arrivals,
         } = self.timeline().ok_or(ScanError::NoLidarPackets)?;
@@ -87,6 +88,7 @@ impl Survey {
         Ok(Alignment {
             clock,
             steps,
+            delay_changes,
             trajectory,
             choice,
             sweeps,

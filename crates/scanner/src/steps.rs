@@ -13,9 +13,9 @@
 //! where whole packets seem to be missing, the delays show that none are. Steps of the host's clock
 //! from 1 ms to 10 ms are found where neither device was recorded for half a second, as on a host
 //! that sleeps, and where the samples show them: by the drive's own clock (`drive_clock`), or by
-//! the motion of the axis (`motion`). On a quiet network these show steps from 0.1 ms on. Others,
-//! and steps undone within six seconds, are not; the clock's bound contains them. `lidar` unwraps
-//! hours.
+//! the motion of the axis (`motion`). On a quiet network these show steps from 0.1 ms on. Where
+//! they do not, the change of the delay is reported. Others, and steps undone within six seconds,
+//! are not found; the clock's bound contains all of them. `lidar` unwraps hours.
 
 mod drive_clock;
 mod jumps;
@@ -80,10 +80,22 @@ impl fmt::Display for ClockStep {
     }
 }
 
+/// A lasting change of the packets' delay of which nothing shows the cause: the network's delay, or
+/// a step of the host's clock that is too small for the samples. The clock's bound contains it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct DelayChange {
+    /// Time since the lidar's first packet.
+    pub after: Span,
+    /// By how much packets arrive later from then on; negative if earlier.
+    pub by: Span,
+}
+
 /// Clock and stamps, without the steps of the host's clock.
 pub(crate) struct Timeline {
     pub clock: LidarClock,
     pub steps: Vec<ClockStep>,
+    pub delay_changes: Vec<DelayChange>,
     /// Converts host stamps of the drive's records.
     pub drive: HostTimeline,
     /// The lidar's packets, with converted stamps.
@@ -102,17 +114,24 @@ impl Timeline {
         clock_steps: &ClockSteps,
     ) -> Option<Self> {
         let found = jumps::find(arrivals);
-        let mut cuts: Vec<Cut> = found
-            .jumps
-            .iter()
-            .filter_map(|jump| attribute(*jump, &found, samples, clock_steps))
-            .collect();
+        let begin = arrivals.first()?.host;
+        let mut cuts: Vec<Cut> = Vec::new();
+        let mut delay_changes = Vec::new();
+        for jump in &found.jumps {
+            match attribute(*jump, &found, samples, clock_steps) {
+                Cause::Set(cut) => cuts.push(cut),
+                Cause::Delay => {}
+                Cause::Unknown => delay_changes.push(DelayChange {
+                    after: arrivals.get(jump.at)?.host.saturating_since(begin),
+                    by: jump.by,
+                }),
+            }
+        }
         cuts.sort_by_key(|cut| (cut.at, cut.clock == SetClock::Host));
         separate(&mut cuts, arrivals.len());
         let pieces = pieces(arrivals, &cuts, &found.strays);
         let joints: Vec<Joint> = cuts.iter().map(Cut::joint).collect();
         let (clock, rises) = LidarClock::fit_pieces(&pieces, &joints)?;
-        let begin = arrivals.first()?.host;
         let mut line = HostTimeline::new(clock_steps);
         let mut steps = Vec::new();
         let mut host_steps = Vec::new();
@@ -145,6 +164,7 @@ impl Timeline {
         Some(Self {
             clock,
             steps,
+            delay_changes,
             drive: line,
             arrivals: shifted(arrivals, host_steps, |arrival, by| Arrival {
                 host: before(arrival.host, by),
@@ -188,13 +208,28 @@ fn separate(cuts: &mut Vec<Cut>, packets: usize) {
     cuts.retain(|cut| cut.at < packets);
 }
 
-/// The clock that jumped; `None` if packets were merely delayed.
+/// What a jump of the delays is.
+enum Cause {
+    /// A clock was set.
+    Set(Cut),
+    /// Packets were delayed: the records of the drive show that the host's clock was not set.
+    Delay,
+    Unknown,
+}
+
+impl From<Option<Cut>> for Cause {
+    fn from(cut: Option<Cut>) -> Self {
+        cut.map_or(Self::Delay, Self::Set)
+    }
+}
+
+/// Which clock jumped, or whether packets were merely delayed.
 fn attribute(
     jump: Jump,
     found: &jumps::JumpReport,
     samples: &[ShaftSample],
     clock_steps: &ClockSteps,
-) -> Option<Cut> {
+) -> Cause {
     let cut = |clock| Cut {
         at: jump.at,
         clock,
@@ -204,48 +239,54 @@ fn attribute(
     };
     match jump.evidence {
         Evidence::Grid => {
-            return Some(Cut {
+            return Cause::Set(Cut {
                 known: Some(Span::ZERO.saturating_sub(jump.by)),
                 ..cut(SetClock::Lidar)
             });
         }
-        Evidence::Spacing => return Some(cut(SetClock::Lidar)),
+        Evidence::Spacing => return Cause::Set(cut(SetClock::Lidar)),
         Evidence::Silence(silence) => {
             let sleeps = clock_steps.sleeps(jump.at, silence);
-            return sleeps.then(|| cut(SetClock::Host));
+            return sleeps.then(|| cut(SetClock::Host)).into();
         }
         // No delay puts the records of the drive back.
         Evidence::Regular
             if jump.by <= Span::from_nanos(-jumps::SMALLEST_OF_HOST_NS)
                 && clock_steps.shows(jump.at, jump.by, Span::ZERO) =>
         {
-            return Some(cut(SetClock::Host));
+            return Cause::Set(cut(SetClock::Host));
         }
         Evidence::Regular => {
             let next = clock_steps.next_sample(jump.at);
             if drive_clock::is_known(samples, next) {
-                return drive_clock::step(samples, next, jump.by).map(|around| Cut {
-                    boundary: samples.get(around.start).map(|sample| sample.request),
-                    samples: Some(around),
-                    ..cut(SetClock::Host)
-                });
+                let around = drive_clock::step(samples, next, jump.by);
+                return around
+                    .map(|around| Cut {
+                        boundary: samples.get(around.start).map(|sample| sample.request),
+                        samples: Some(around),
+                        ..cut(SetClock::Host)
+                    })
+                    .into();
             }
-            return motion::step(samples, next, jump.by).map(|first| Cut {
-                boundary: samples.get(first).map(|sample| sample.request),
-                // After a step back stamps are those of samples before it, too.
-                samples: (jump.by < Span::ZERO).then(|| first.saturating_sub(1)..first + 1),
-                ..cut(SetClock::Host)
+            return motion::step(samples, next, jump.by).map_or(Cause::Unknown, |first| {
+                Cause::Set(Cut {
+                    boundary: samples.get(first).map(|sample| sample.request),
+                    // After a step back stamps are those of samples before it, too.
+                    samples: (jump.by < Span::ZERO).then(|| first.saturating_sub(1)..first + 1),
+                    ..cut(SetClock::Host)
+                })
             });
         }
         Evidence::Delays => {}
     }
     if clock_steps.shows(jump.at, jump.by, found.silence(jump.at)) {
-        return Some(cut(SetClock::Host));
+        return Cause::Set(cut(SetClock::Host));
     }
     if found.device_jumped(&found.level, jump.at) {
-        return Some(cut(SetClock::Lidar));
+        return Cause::Set(cut(SetClock::Lidar));
     }
-    (!clock_steps.is_dense(jump.at)).then(|| cut(SetClock::Host))
+    let is_dense = clock_steps.is_dense(jump.at);
+    (!is_dense).then(|| cut(SetClock::Host)).into()
 }
 
 /// The packets between the steps, without uncertain ones, in order of device time.

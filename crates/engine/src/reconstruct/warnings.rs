@@ -25,7 +25,9 @@ pub(super) fn alignment_warnings(
 ) -> Vec<String> {
     let mut warnings = Vec::new();
     let clock_bound = alignment.clock.bound();
-    if clock_bound > WARNING_CLOCK_BOUND {
+    if let Some(change) = delay_change_warning(alignment) {
+        warnings.push(change);
+    } else if clock_bound > WARNING_CLOCK_BOUND {
         warnings.push(format!(
             "for a while all packets of the lidar came late, or the host's clock was slewed or set by a little: times may be wrong by {:.1} ms",
             clock_bound.as_secs_f64() * 1e3
@@ -61,6 +63,29 @@ pub(super) fn alignment_warnings(
         warnings.extend(overshoots(plan, alignment));
     }
     warnings
+}
+
+/// A warning if the packets' delay changed and stayed so.
+fn delay_change_warning(alignment: &Alignment) -> Option<String> {
+    let changes = &alignment.delay_changes;
+    let change = changes
+        .iter()
+        .max_by_key(|change| change.by.as_nanos().abs())?;
+    let (way, set, became) = match change.by < Span::ZERO {
+        true => ("earlier", "back", "shorter"),
+        false => ("later", "forward", "longer"),
+    };
+    let more = match changes.len() - 1 {
+        0 => String::new(),
+        others => format!(" (the greatest of {} such changes)", others + 1),
+    };
+    let ms = |span: Span| span.as_secs_f64() * 1e3;
+    Some(format!(
+        "from {:.3} s into the recording on packets arrive {:.2} ms {way}{more}: the host's clock was set {set}, or the network's delay became {became}; times may be wrong by {:.2} ms",
+        change.after.as_secs_f64(),
+        ms(change.by).abs(),
+        ms(alignment.clock.bound())
+    ))
 }
 
 /// A warning if the angles are less certain than those of a good scan. An age of the positions of

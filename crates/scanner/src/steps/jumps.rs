@@ -11,6 +11,7 @@
 //! motion of the axis.
 
 mod grid;
+mod quiet;
 mod whole_packets;
 
 use std::collections::VecDeque;
@@ -19,6 +20,7 @@ use units::Span;
 
 use crate::clock::Arrival;
 pub(super) use grid::shifted;
+use quiet::without_drift;
 
 /// The smallest jump to look for.
 pub(crate) const LEAST: Span = Span::from_millis(10);
@@ -33,11 +35,6 @@ const SMALL_WINDOW: usize = 256;
 const SILENCE: Span = Span::from_millis(500);
 /// The smallest jump of the host's clock to look for: the delays of most networks vary by less.
 pub(super) const SMALLEST_OF_HOST_NS: i64 = 1_000_000;
-/// On a network whose least delays vary less, smaller ones count if the motion shows them too.
-const SMALLEST_ON_QUIET_NS: i64 = 100_000;
-const MIN_SPREADS: i64 = 3;
-/// Windows that show the spread of the least delays.
-const MIN_SPREAD_WINDOWS: usize = 8;
 /// Largest relative drift of two crystals, in ppm.
 const DRIFT_PPM: i64 = 200;
 /// Time for which a jump must last.
@@ -413,44 +410,6 @@ fn offsets(arrivals: &[Arrival]) -> Vec<i64> {
         .iter()
         .map(|arrival| offset(arrival).saturating_sub(first))
         .collect()
-}
-
-/// The offsets without the mean drift of the clocks, and the smallest jump that is no chance: the
-/// least delays of windows of packets vary by less.
-fn without_drift(offsets: &[i64]) -> (Vec<i64>, i64) {
-    let Some((drift, spread)) = spread(offsets, SMALL_WINDOW) else {
-        return (offsets.to_vec(), SMALLEST_OF_HOST_NS);
-    };
-    let smallest =
-        (MIN_SPREADS.saturating_mul(spread)).clamp(SMALLEST_ON_QUIET_NS, SMALLEST_OF_HOST_NS);
-    let per_packet = drift as f64 / SMALL_WINDOW as f64;
-    let level = offsets
-        .iter()
-        .enumerate()
-        .map(|(at, offset)| offset.saturating_sub((at as f64 * per_packet) as i64));
-    (level.collect(), smallest)
-}
-
-/// Drift of the least offsets from window to window of so many packets, and the median deviation
-/// from it; `None` with few windows.
-fn spread(offsets: &[i64], window: usize) -> Option<(i64, i64)> {
-    let least: Vec<i64> = offsets
-        .chunks_exact(window)
-        .filter_map(|window| window.iter().min().copied())
-        .collect();
-    let mut rises: Vec<i64> = least
-        .windows(2)
-        .filter_map(|pair| Some(pair.last()?.saturating_sub(*pair.first()?)))
-        .collect();
-    if rises.len() < MIN_SPREAD_WINDOWS {
-        return None;
-    }
-    let middle = rises.len() / 2;
-    let drift = *rises.select_nth_unstable(middle).1;
-    for rise in &mut rises {
-        *rise = rise.saturating_sub(drift).saturating_abs();
-    }
-    Some((drift, *rises.select_nth_unstable(middle).1))
 }
 
 /// Usual spacing of packets by the device's clock: the mean of those near the median.

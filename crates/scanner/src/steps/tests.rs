@@ -371,19 +371,59 @@ fn a_slower_network_while_the_axis_moves_is_no_step() {
                 packet.host += Span::from_micros(slower_us);
             }
         }
-        let steps = recorded.stepped(&[]).timeline().steps;
-        assert_eq!(steps, [], "{slower_us} us");
+        let timeline = recorded.stepped(&[]).timeline();
+        assert_eq!(timeline.steps, [], "{slower_us} us");
+        assert_changed_once(&timeline, 7.0, slower_us * 1_000);
     }
 }
 
-/// A step below 10 ms is absorbed, and the bound contains it.
+/// The delay changed once, near that second and by about so much.
+fn assert_changed_once(timeline: &Timeline, second: f64, by: i64) {
+    let [change] = timeline.delay_changes[..] else {
+        panic!("{by}: {:?}", timeline.delay_changes);
+    };
+    let off = change.by.as_nanos() - by;
+    assert!(off.abs() < 20_000 + by.abs() / 10, "{by}: {change:?}");
+    let after = change.after.as_secs_f64();
+    assert!((after - second).abs() < 0.1, "{by}: {change:?}");
+}
+
+/// Neither a busy network nor drift changes the delay.
 #[test]
-fn undetectably_small_steps_are_within_the_bound() {
+fn a_delay_that_varies_does_not_change() {
+    for seconds in [1, 2, 12, 60] {
+        for busy in [false, true] {
+            let mut recorded = Recorded::new(seconds, Some(2_500));
+            if busy {
+                recorded = recorded.on_busy_network();
+            }
+            let changes = recorded.stepped(&[]).timeline().delay_changes;
+            assert_eq!(changes, [], "{seconds} s, busy: {busy}");
+        }
+    }
+}
+
+/// In a recording of a second, too.
+#[test]
+fn a_small_step_in_a_short_recording_changes_the_delay() {
+    for by in [100_000, 300_000, -100_000, -300_000] {
+        let recorded = Recorded::new(2, Some(2_500));
+        let timeline = recorded.stepped(&[(S, by)]).timeline();
+        assert_eq!(timeline.steps, []);
+        assert_changed_once(&timeline, 1.0, by);
+    }
+}
+
+/// A step below 10 ms that nothing attributes is absorbed; it is reported, and the bound contains
+/// it.
+#[test]
+fn unattributed_small_steps_are_reported_and_within_the_bound() {
     for by in [100_000, 2_000_000, 8_000_000, -100_000, -2_000_000] {
         let recorded = Recorded::new(60, Some(2_500));
         let seen = recorded.stepped(&[(31 * S, by)]);
         let timeline = seen.timeline();
         assert_eq!(timeline.steps, []);
+        assert_changed_once(&timeline, 31.0, by);
         // The stamps of the polls have the step too.
         let host_bound = timeline.clock.host_bound().as_nanos();
         assert!(host_bound >= by.abs() - 2_000, "{by}: {host_bound} ns");

@@ -7,10 +7,8 @@
 
 use units::Span;
 
-use super::{
-    Evidence, Jump, MIN_IRREGULAR_NS, MIN_SPREADS, QUANTUM_NS, alike, is_frequent, offsets, spread,
-    steps,
-};
+use super::quiet::{MIN_SPREADS, spread};
+use super::{Evidence, Jump, MIN_IRREGULAR_NS, QUANTUM_NS, alike, is_frequent, offsets, steps};
 use crate::clock::Arrival;
 
 /// Packets on either side whose stamps have to be on the grid, and the share of them.
