@@ -97,13 +97,13 @@ fn finding(findings: &StudyFindings) -> String {
         return findings.study.title.to_owned();
     };
     format!(
-        "{:.0} s give gaps of {:.2} deg, {:.0} s {:.2} deg; the error stays at {:.0} to {:.0} mm, that of the ranges",
+        "{:.0} s give gaps of {:.2} deg, {:.0} s {:.2} deg; the error without ranges falls from {:.1} to {:.1} mm",
         value(fast, 0),
         value(fast, 2),
         value(slow, 0),
         value(slow, 2),
-        value(slow, 5),
-        value(fast, 5),
+        value(fast, 4),
+        value(slow, 4),
     )
 }
 
