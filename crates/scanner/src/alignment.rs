@@ -16,6 +16,7 @@ use units::{Degrees, Host, Lidar, Stamp};
 
 use crate::calibration::PointCalibration;
 use crate::clock::{LidarClock, Moment};
+use crate::residuals::ResidualInterval;
 use crate::sample_gaps::SampleGaps;
 use crate::steps::{ClockStep, DelayChange};
 use crate::sweeps::Sweep;
@@ -55,6 +56,8 @@ pub struct Alignment {
     pub implausible: u64,
     /// Gaps between the angle samples within the sweeps.
     pub sample_gaps: SampleGaps,
+    /// Residuals of clock and angle, in equal intervals from the first packet to the last.
+    pub residuals: Vec<ResidualInterval>,
     /// Standard deviation of a range, metres.
     pub range_sd_m: f64,
     /// Only firings within one of these spans become points.
@@ -99,6 +102,7 @@ impl Alignment {
             calibration: None,
             implausible: 0,
             sample_gaps: SampleGaps::default(),
+            residuals: Vec::new(),
             range_sd_m,
             spans,
         }

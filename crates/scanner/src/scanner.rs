@@ -14,6 +14,7 @@ use crate::alignment::{Alignment, PlacementCounts};
 use crate::config::ScanConfig;
 use crate::error::ScanError;
 use crate::placer::Placer;
+use crate::residuals;
 use crate::steps::Timeline;
 use crate::survey::Survey;
 use crate::sweeps::FoundSweeps;
@@ -85,6 +86,7 @@ impl Survey {
         let sample_gaps = angles.gaps(&sweeps);
         // `trajectory`: the commanded profile or a spline, by least squares (Levenberg-Marquardt).
         let (trajectory, choice) = angles.trajectory(&sweeps, &spans, accuracy, clock.bound())?;
+        let residuals = residuals::over_time(&arrivals, &clock, &trajectory, &spans);
         Ok(Alignment {
             clock,
             steps,
@@ -100,6 +102,7 @@ impl Survey {
             calibration: angles.calibration,
             implausible: angles.implausible,
             sample_gaps,
+            residuals,
             range_sd_m: config.lidar.range_sd_m,
             spans,
         })

@@ -35,6 +35,18 @@ fn the_scan_in_view_is_measured_on_request() {
                 .until_has("#ranges-words", "half of the points within")
                 .await;
             assert!(words.contains(" m"), "{words}");
+            for (plot, usual, unit) in [
+                ("delays", "median ", " \u{b5}s"),
+                ("deviations", "RMS ", "\u{b0}"),
+            ] {
+                let words = page.text(&format!("#{plot}-words")).await;
+                assert!(words.starts_with(usual), "{words}");
+                assert!(words.contains(&format!("{unit}, at most ")), "{words}");
+                // Two bars per part of the recording, the greatest 38 high.
+                let bars = format!("return Math.max(...[...document.querySelectorAll('#{plot} path')].map((path) => path.getBBox().height))");
+                let height: f64 = page.run(&bars).await.as_f64().unwrap();
+                assert!((height - 38.0).abs() < 0.1, "{plot}: {height}");
+            }
             page.until_has("#budget-facts", "Mount\nnot included").await;
             let near = page.text("#budget-facts").await;
             page.choose("#budget-at", "50").await;

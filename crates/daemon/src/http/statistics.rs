@@ -6,7 +6,6 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use analysis::cloud_statistics::CloudStatistics;
 use analysis::plan::ErrorBudget;
 use axum::extract::{Path, State};
 use axum::http::StatusCode;
@@ -14,7 +13,7 @@ use axum::response::Response;
 use engine::capture::scan_plan::ScanPlanner;
 use engine::failure::Failure;
 use engine::reconstruct::source::Source;
-use engine::reconstruct::statistics::statistics;
+use engine::reconstruct::statistics::{LogStatistics, statistics};
 use engine::service::LeaseError;
 use engine::service::scan_record::ScanRecord;
 use engine::service::status::AxisTask;
@@ -45,15 +44,18 @@ const POLL: Duration = Duration::from_millis(50);
     "gap_deg": {"p50": 0.142, "p95": 0.649, "p99": 0.890, "worst": 2.102},
     "ranges": [{"from_m": 1.0, "to_m": 1.5, "points": 244}],
     "sd_mm": {"p50": 0.693, "p95": 0.881, "p99": 0.958},
+    "residuals": [{
+        "at_s": 0.011, "delay_us": 24.1, "most_delay_us": 102.6, "angle_rms_deg": 0.0083, "most_angle_deg": 0.021,
+    }],
     "budget": [{"at_m": 2.0, "error_mm": {
         "range": 0.0, "range_step": 0.577, "azimuth": 0.082, "tilt": 0.030, "clock": 0.004,
         "delay": 0.489, "mount": null, "column_sd": 0.584, "total": 1.493,
     }}],
 }))]
 pub struct ScanStatistics {
-    /// Of its cloud.
+    /// Of its cloud and its residuals.
     #[serde(flatten)]
-    cloud: CloudStatistics,
+    log: LogStatistics,
     /// Errors to expect, as a plan of its request states them; empty where the request is not known
     /// or the axis does not permit it any more.
     budget: Vec<BudgetAt>,
@@ -116,17 +118,18 @@ fn of_log(
     record: &ScanRecord,
     interrupt: &AtomicBool,
 ) -> Result<ScanStatistics, Refusal> {
-    let log = io::files::open_regular(&state.log(&record.id)).map_err(|_| Refusal::no_file(LOG))?;
+    let file =
+        io::files::open_regular(&state.log(&record.id)).map_err(|_| Refusal::no_file(LOG))?;
     // The name may belong to another file by now; this one leads to the open file (proc(5)).
-    let path = format!("/proc/self/fd/{}", log.as_raw_fd());
+    let path = format!("/proc/self/fd/{}", file.as_raw_fd());
     let named = |failure: Failure| Failure {
         message: failure.message.replace(&path, LOG),
         ..failure
     };
     let source = Source::open(FilePath::new(&path), None).map_err(named)?;
-    let cloud = statistics(&source, record.accuracy(), interrupt).map_err(named)?;
+    let log = statistics(&source, record.accuracy(), interrupt).map_err(named)?;
     Ok(ScanStatistics {
-        cloud,
+        log,
         budget: budget(state, record).unwrap_or_default(),
     })
 }

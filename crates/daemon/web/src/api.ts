@@ -144,7 +144,21 @@ export interface ScanStatistics {
   ranges: { from_m: number; to_m: number; points: number }[];
   /** Standard deviations that the points state. */
   sd_mm?: { p50: number; p95: number; p99: number } | null;
+  /** Residuals of clock and angle in equal parts of the recording. */
+  residuals: Residuals[];
   budget: { at_m: number; error_mm: ErrorBudget }[];
+}
+
+/** Residuals within a part of the recording, null without packets or positions. */
+export interface Residuals {
+  /** Middle of the part, seconds. */
+  at_s: number;
+  /** Median and greatest delay of the packets beyond the least, microseconds. */
+  delay_us: number | null;
+  most_delay_us: number | null;
+  /** Deviation of the drive's positions from the curve: root mean square, and the greatest, degrees. */
+  angle_rms_deg: number | null;
+  most_angle_deg: number | null;
 }
 
 /** Errors of a point at a distance, millimetres; the total is of 95 % of points. */

@@ -10,7 +10,7 @@ import * as picked from "./panels/picks.ts";
 import { Player } from "./panels/player.ts";
 import * as picture from "./picture.ts";
 import { type Field, type Range, type Ranges, tiltAt } from "./sample.ts";
-import { Live, Loaded } from "./view/cloud.ts";
+import { Live, Loaded, draw } from "./view/cloud.ts";
 import { type ViewState, fromHash, toHash } from "./view/link.ts";
 import { scaleBar } from "./view/measure.ts";
 import { type MapName, MARKS, css, table } from "./view/maps.ts";
@@ -77,10 +77,7 @@ export class Viewer {
     const linked = fromHash(location.hash);
     this.linked = Object.keys(linked).length > 0 ? linked : null;
     this.stage = new Stage(canvas);
-    this.stage.share = (share) => {
-      this.loaded?.share(share);
-      this.other_points?.share(share);
-    };
+    this.stage.detail = (eye, budget) => draw([this.loaded, this.other_points].filter((cloud) => cloud !== null), eye, budget);
     this.stage.drawn = () => this.overlay.draw(this.stage, this.picks);
     this.stage.orbit.tapped = (event) => {
       const { left, top } = canvas.getBoundingClientRect();
@@ -233,17 +230,19 @@ export class Viewer {
     worker.onmessage = ({ data }: MessageEvent<LoadEvent>) => {
       if (worker !== this.worker) return;
       if (data.kind === "other") {
-        other_points?.add(data.columns, null);
+        for (const part of data.parts) other_points?.add(part, null);
         attribute(progress, "value", String(data.read / Math.max(1, 2 * data.total)));
       } else if (data.kind === "points") {
-        this.learn(data.columns);
-        cloud.add(data.columns, data.ranges);
+        for (const part of data.parts) {
+          this.learn(part);
+          cloud.add(part, data.ranges);
+        }
         const share = data.read / Math.max(1, data.total);
         attribute(progress, "value", String(other === null ? share : (1 + share) / 2));
         if (this.loaded !== cloud) return;
         this.describe(data.read, `of ${count(data.total)}`);
         this.range(data.ranges);
-        this.stage.draw();
+        this.stage.animate();
       } else {
         show(progress, false);
         worker.terminate();
@@ -267,7 +266,7 @@ export class Viewer {
       }
     };
     worker.onerror = () => this.failed("the cloud cannot be read");
-    const order: LoadRequest = { url: new URL(source.url(uncertainty), location.href).href, most: small.matches ? 3_000_000 : 12_000_000 };
+    const order: LoadRequest = { url: new URL(source.url(uncertainty), location.href).href, most: small.matches ? 3_000_000 : 24_000_000 };
     if (other !== null) order.other = new URL(other.url(false), location.href).href;
     worker.postMessage(order);
   }

@@ -1,10 +1,12 @@
 // Downloads and parses a scan's cloud in a worker, so that the page stays responsive.
 //
-// Each batch is shuffled, so that its first points are an even sample, which the moving view draws.
+// Batches are cut into parts of neighbouring points. Each part is shuffled, so that its first points are an even sample, which
+// the moving view draws.
 
 import type { Problem } from "./api.ts";
 import { MOST_M, PointTree } from "./distance.ts";
 import { COLUMNS, type Columns, placed } from "./frame.ts";
+import { along_curve } from "./order.ts";
 import { PlyReader } from "./ply.ts";
 import { type Ranges, Sample } from "./sample.ts";
 
@@ -24,12 +26,14 @@ export interface Other {
 }
 
 export type LoadEvent =
-  | { kind: "other"; columns: Columns; read: number; total: number }
-  | { kind: "points"; columns: Columns; ranges: Ranges; read: number; total: number; every: number }
+  | { kind: "other"; parts: Columns[]; read: number; total: number }
+  | { kind: "points"; parts: Columns[]; ranges: Ranges; read: number; total: number; every: number }
   | { kind: "done"; read: number; total: number; every: number; origin: [number, number, number]; simulated: boolean; other: Other | null; beyond: number }
   | { kind: "failed"; error: string };
 
-const BATCH = 65_536;
+const BATCH = 262_144;
+/** Points of a part, before some are left out. */
+const PART = 32_768;
 /** Maximum number of points of the other cloud: their search takes 3 s to prepare. */
 const MOST_OTHER = 3_000_000;
 
@@ -56,12 +60,12 @@ async function load(order: LoadRequest): Promise<void> {
       columns.distances = other.tree.distances(columns.positions, [x, y, z]);
       for (const distance of columns.distances) if (distance >= MOST_M) beyond += 1;
     }
-    const kept = shuffled(columns, Math.ceil(columns.count / every));
     sample.add(columns);
     const ranges = sample.ranges();
     if (ranges === null) return;
-    const transfer = [kept.positions, ...COLUMNS.map((name) => kept[name])].map((array) => array.buffer);
-    here.postMessage({ kind: "points", columns: kept, ranges, read: done + columns.count, total: count ?? 0, every }, transfer);
+    const parts = compact(columns, every);
+    const transfer = parts.flatMap((part) => [part.positions, ...COLUMNS.map((name) => part[name])].map((array) => array.buffer));
+    here.postMessage({ kind: "points", parts, ranges, read: done + columns.count, total: count ?? 0, every }, transfer);
   });
   here.postMessage({
     kind: "done", read: ply.done, total: ply.count ?? 0, every: stride(ply.count, order.most), origin: ply.origin, simulated: ply.simulated, beyond,
@@ -73,9 +77,9 @@ async function load(order: LoadRequest): Promise<void> {
 async function readOther(url: string): Promise<Other & { tree: PointTree }> {
   const parts: Float32Array[] = [];
   const ply = await download(url, (columns, { count, done }) => {
-    const { positions } = shuffled(columns, Math.ceil(columns.count / stride(count, MOST_OTHER)));
-    parts.push(positions);
-    here.postMessage({ kind: "other", columns: placed(positions), read: done + columns.count, total: count ?? 0 });
+    const compacted = compact(placed(columns.positions), stride(count, MOST_OTHER)).map((part) => placed(part.positions));
+    parts.push(...compacted.map((part) => part.positions));
+    here.postMessage({ kind: "other", parts: compacted, read: done + columns.count, total: count ?? 0 });
   });
   const all = new Float32Array(parts.reduce((sum, part) => sum + part.length, 0));
   let end = 0;
@@ -108,12 +112,18 @@ async function download(url: string, take: (columns: Columns, ply: PlyReader) =>
   return ply;
 }
 
-/** `keep` of the points in a random order, with a fixed seed. */
-function shuffled(columns: Columns, keep: number): Columns {
-  const { count } = columns;
-  const order = new Uint32Array(count).map((_, i) => i);
+/** Parts of neighbouring points with one of `every` so many, in random order. */
+function compact(columns: Columns, every: number): Columns[] {
+  const order = along_curve(columns.positions);
+  const parts: Columns[] = [];
+  for (let from = 0; from < order.length; from += PART) parts.push(shuffled(columns, order.subarray(from, from + PART), every));
+  return parts;
+}
+
+/** One of `every` so many of the points in `order`, in a random order with a fixed seed. */
+function shuffled(columns: Columns, order: Uint32Array, every: number): Columns {
   let seed = 0x9e3779b9;
-  for (let i = count - 1; i > 0; i -= 1) {
+  for (let i = order.length - 1; i > 0; i -= 1) {
     seed ^= seed << 13;
     seed ^= seed >>> 17;
     seed ^= seed << 5;
@@ -122,6 +132,7 @@ function shuffled(columns: Columns, keep: number): Columns {
     order[j] = order[i] ?? 0;
     order[i] = other;
   }
+  const keep = Math.ceil(order.length / every);
   const pick = <T extends Float32Array | Uint8Array>(from: T): T => {
     const to = new (from.constructor as new (n: number) => T)(from.length > 0 ? keep : 0);
     for (let i = 0; i < to.length; i += 1) to[i] = from[order[i] ?? 0] ?? 0;

@@ -423,6 +423,7 @@ fn report(
         log: path.display().to_string(),
         lost_records: request.lost_records,
         lidar_gaps_s: lidar_gaps_s(first_pass),
+        residuals: alignment.residuals.iter().map(Into::into).collect(),
         incomplete_sweeps: incomplete,
         reception: None,
         truth: None,

@@ -345,6 +345,9 @@ pub struct ScanReport {
     /// packet to the end of the last sweep; 0 if unknown or negative.
     #[serde(skip)]
     pub lidar_gaps_s: [f64; 2],
+    /// Residuals over time.
+    #[serde(skip)]
+    pub residuals: Vec<TimedResiduals>,
     /// Planned sweeps that are incomplete; also in the warnings.
     #[serde(skip)]
     pub incomplete_sweeps: Vec<String>,
@@ -357,6 +360,36 @@ pub struct ScanReport {
     /// The live view, if it was compared.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub live: Option<LiveReport>,
+}
+
+/// Residuals of clock and angle within a part of a recording.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
+pub struct TimedResiduals {
+    /// Middle of the part, seconds since the first packet.
+    pub at_s: f64,
+    /// Median delay of the packets beyond the clock's lower envelope, microseconds; null without
+    /// packets.
+    pub delay_us: Option<f64>,
+    /// Their greatest delay, microseconds.
+    pub most_delay_us: Option<f64>,
+    /// Root mean square deviation of the drive's positions in sweeps from the curve, degrees; null
+    /// without such positions.
+    pub angle_rms_deg: Option<f64>,
+    /// Their greatest deviation, degrees.
+    pub most_angle_deg: Option<f64>,
+}
+
+impl From<&scanner::ResidualInterval> for TimedResiduals {
+    fn from(interval: &scanner::ResidualInterval) -> Self {
+        Self {
+            at_s: interval.at.as_secs_f64(),
+            delay_us: interval.delay.map(|(median, _)| median.as_micros_f64()),
+            most_delay_us: interval.delay.map(|(_, most)| most.as_micros_f64()),
+            angle_rms_deg: interval.angle_deg.map(|(rms, _)| rms),
+            most_angle_deg: interval.angle_deg.map(|(_, most)| most),
+        }
+    }
 }
 
 impl SweepReport {

@@ -6,14 +6,28 @@ use std::sync::atomic::AtomicBool;
 use analysis::cloud_statistics::{CloudStatistics, StatisticsCollector};
 use analysis::density::DensityError;
 use scanner::Accuracy;
+use serde::Serialize;
+use utoipa::ToSchema;
 
 use super::log_view::LogView;
 use super::replay::{self, Reconstruction};
+use super::report::TimedResiduals;
 use super::source::Source;
 use crate::failure::{Failure, Kind};
 
+/// Statistics of a scan.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+#[non_exhaustive]
+pub struct LogStatistics {
+    /// Of its cloud.
+    #[serde(flatten)]
+    pub cloud: CloudStatistics,
+    /// Residuals of clock and angle in equal parts of the recording, in order.
+    pub residuals: Vec<TimedResiduals>,
+}
+
 /// Density and gaps of a log as `velomotion analyze` measures them, with its ranges and stated
-/// standard deviations.
+/// standard deviations, and its residuals.
 ///
 /// # Errors
 /// As [`replay::make`].
@@ -21,7 +35,7 @@ pub fn statistics(
     source: &Source,
     accuracy: Accuracy,
     interrupt: &AtomicBool,
-) -> Result<CloudStatistics, Failure> {
+) -> Result<LogStatistics, Failure> {
     let wrong = |error: DensityError| failure(source.path(), &error);
     let request = Reconstruction::of_log(source, accuracy, interrupt)?;
     let mut collector = StatisticsCollector::new().map_err(wrong)?;
@@ -32,7 +46,10 @@ pub fn statistics(
         Some(seen) => collector.finish(Some(&|direction| seen.view.depth_rad(direction))),
         None => collector.finish(None),
     };
-    made.map_err(wrong)
+    Ok(LogStatistics {
+        cloud: made.map_err(wrong)?,
+        residuals: scan.residuals,
+    })
 }
 
 fn failure(path: &Path, error: &DensityError) -> Failure {

@@ -1,6 +1,6 @@
 // How far the scan in view can be trusted: losses and residuals, and on request density, gaps, ranges and errors.
 
-import { type Scan, type ScanStatistics, type Status, api } from "../api.ts";
+import { type Residuals, type Scan, type ScanStatistics, type Status, api } from "../api.ts";
 import { attribute, h, id, show, text } from "../dom.ts";
 import { count, digits } from "../format.ts";
 import { title } from "../found.ts";
@@ -86,6 +86,8 @@ function draw_measured(found: ScanStatistics): void {
   rows.push(...(sd == null ? [["Stated sd", "none"] as Fact] : [["Stated sd, half of points", `${digits(sd.p50, 2)} mm`] as Fact, ["Stated sd, 99 %", `${digits(sd.p99, 2)} mm`] as Fact]));
   facts(id("measured-facts"), rows);
   draw_ranges(found);
+  draw_residuals("delays", found.residuals, "delay_us", "most_delay_us", "median", " \u00b5s");
+  draw_residuals("deviations", found.residuals, "angle_rms_deg", "most_angle_deg", "RMS", "\u00b0");
   const at = found.budget.map(({ at_m }) => String(at_m));
   if ([...distance.options].map(({ value }) => value).join() !== at.join()) {
     const before = distance.value;
@@ -100,6 +102,19 @@ function draw_measured(found: ScanStatistics): void {
     ["Range", mm(Math.hypot(budget.range, budget.range_step))], ["Azimuth", mm(budget.azimuth)], ["Tilt", mm(budget.tilt)], ["Clock", mm(budget.clock)], ["Delay", mm(budget.delay)],
     ["Mount", budget.mount === null ? "not included" : mm(budget.mount), budget.mount === null ? "warn" : "off"], ["95 % of points within", mm(budget.total)],
   ]);
+}
+
+/** Bars of residuals over time, the greatest behind the usual ones, their heights by the logarithm; and both in words. */
+function draw_residuals(name: "delays" | "deviations", all: Residuals[], usual: "delay_us" | "angle_rms_deg", most: "most_delay_us" | "most_angle_deg", word: string, unit: string): void {
+  const greatest = all.reduce<Residuals | null>((a, b) => ((b[most] ?? 0) > (a?.[most] ?? 0) ? b : a), null);
+  const sorted = all.flatMap((one) => one[usual] ?? []).sort((a, b) => a - b);
+  const middle = sorted[Math.floor(sorted.length / 2)];
+  const high = (value: number) => Math.log1p(value / Math.max(1e-12, middle ?? 0));
+  const scale = 38 / Math.max(1e-12, high(greatest?.[most] ?? 0));
+  const width = 120 / Math.max(1, all.length);
+  const bars = (key: typeof usual | typeof most) => all.map((one, i) => `M${(i * width).toFixed(2)} 40v${(-scale * high(one[key] ?? 0)).toFixed(2)}h${width.toFixed(2)}V40z`).join("");
+  [most, usual].forEach((key, i) => attribute(id(name).children[i] as Element, "d", bars(key)));
+  text(id(`${name}-words`), middle === undefined || greatest === null ? "none" : `${word} ${digits(middle, 2)}${unit}, at most ${digits(greatest[most] ?? 0, 2)}${unit} near ${digits(greatest.at_s)} s`);
 }
 
 /** Bars of the points by range, and their middle in words. */

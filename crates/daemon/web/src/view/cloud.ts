@@ -4,6 +4,7 @@ import { BufferAttribute, BufferGeometry, DynamicDrawUsage, Group, Points, type 
 
 import { COLUMNS, type Columns } from "../frame.ts";
 import { type Ranges, Sample } from "../sample.ts";
+import { type Eye, detailed } from "./detail.ts";
 
 /** Points per chunk of a growing cloud. */
 const CHUNK = 65_536;
@@ -42,18 +43,28 @@ export class Loaded {
     this.count += columns.count;
   }
 
-  /** Draws this share of every chunk, whose points are in random order. */
-  share(share: number): void {
-    for (const child of this.group.children) {
-      const points = child as Points;
-      points.geometry.setDrawRange(0, Math.ceil(share * (points.userData["count"] as number)));
-    }
+  /** The chunks, whose points are in random order. */
+  get chunks(): Points[] {
+    return this.group.children as Points[];
   }
 
   dispose(): void {
     for (const child of this.group.children) (child as Points).geometry.dispose();
     this.group.removeFromParent();
   }
+}
+
+/** Draws about so many points of all clouds, where the picture shows them; without an eye all points. */
+export function draw(clouds: Loaded[], eye: Eye | null, budget: number): void {
+  const chunks = clouds.flatMap((cloud) => cloud.chunks);
+  const ball = new Sphere();
+  const parts = chunks.map((points) => {
+    const count = points.userData["count"] as number;
+    points.updateWorldMatrix(true, false);
+    return { count, area_px: eye?.area_px(ball.copy(points.geometry.boundingSphere ?? FAR).applyMatrix4(points.matrixWorld)) ?? 0 };
+  });
+  const counts = eye === null ? parts.map(({ count }) => count) : detailed(parts, budget);
+  chunks.forEach((points, i) => points.geometry.setDrawRange(0, counts[i] ?? 0));
 }
 
 /** Frees the main memory of an uploaded attribute. */
@@ -96,10 +107,6 @@ export class Live {
     this.skip = i - columns.count;
     for (const { columns: c, points } of this.chunks) upload(points, c.count);
     if (this.kept > this.most) this.halve();
-  }
-
-  share(): void {
-    // Always drawn completely: its size is bounded, and its points are in order of time.
   }
 
   dispose(): void {

@@ -7,6 +7,7 @@ import {
 } from "three";
 
 import type { Range } from "../sample.ts";
+import { Eye } from "./detail.ts";
 import { STEPS } from "./maps.ts";
 import { Orbit } from "./orbit.ts";
 import * as shaders from "./shaders.ts";
@@ -15,9 +16,18 @@ import * as shaders from "./shaders.ts";
 ColorManagement.enabled = false;
 
 type Rgb = [number, number, number];
-/** If a picture takes longer while the view moves, the next one has fewer points. */
+/** If a picture waits longer for the ones before it while the view moves, it has fewer points. */
 const SLOW_MS = 45;
 const QUICK_MS = 20;
+/** So many quick pictures in a row are followed by one with more points: the browser queues two on the graphics card. */
+const QUICK_ONES = 3;
+/** The view rests after so long without a move, and so many times the longest wait: moves wait for pictures, too. */
+const REST_MS = 180;
+const REST_WAITS = 2.5;
+/** Points of a picture of a moving view: the first ones, and the limits. */
+const FIRST_BUDGET = 1e6;
+const LEAST_BUDGET = 1e5;
+const MOST_BUDGET = 2e7;
 
 /** A direction to look from. */
 export type Preset = "usual" | "top" | "front" | "side" | "scanner";
@@ -47,8 +57,8 @@ export class Stage {
   readonly scene = new Scene();
   /** The cloud with which another is compared; its points are not picked. */
   readonly other = new Group();
-  /** Called with the share of the points to draw. */
-  share: (share: number) => void = () => {};
+  /** Called with the eye and the number of points to draw; without an eye all are. */
+  detail: (eye: Eye | null, budget: number) => void = () => {};
   /** Called after each picture. */
   drawn: () => void = () => {};
   /** What is drawn besides the points. */
@@ -67,8 +77,10 @@ export class Stage {
   private frame = 0;
   private rest = 0;
   private moving = false;
-  private part = 1;
-  private last_ms = 0;
+  private budget = FIRST_BUDGET;
+  private asked_ms = 0;
+  private quick = 0;
+  private longest_ms = 0;
 
   constructor(private readonly canvas: HTMLCanvasElement) {
     this.renderer = new WebGLRenderer({ canvas, antialias: false, powerPreference: "high-performance" });
@@ -150,7 +162,7 @@ export class Stage {
     const shown = this.furniture.visible;
     const read = new Uint32Array(12 * side * side);
     try {
-      this.share(1);
+      this.detail(null, Infinity);
       this.prepare();
       this.camera.projectionMatrix.premultiply(enlarge);
       this.furniture.visible = this.other.visible = false;
@@ -273,17 +285,25 @@ export class Stage {
 
   /** Schedules a picture. */
   draw(): void {
-    if (this.frame === 0) this.frame = requestAnimationFrame(() => this.render());
+    if (this.frame !== 0) return;
+    this.asked_ms = performance.now();
+    this.frame = requestAnimationFrame(() => this.render());
   }
 
   private moved(): void {
     this.moving = true;
+    this.wait_for_rest();
+    this.draw();
+  }
+
+  private wait_for_rest(): void {
     clearTimeout(this.rest);
     this.rest = window.setTimeout(() => {
+      // More moves may wait for this picture.
+      if (this.frame !== 0) return this.wait_for_rest();
       this.moving = false;
       this.draw();
-    }, 180);
-    this.draw();
+    }, Math.max(REST_MS, REST_WAITS * this.longest_ms));
   }
 
   private resize(): void {
@@ -302,8 +322,9 @@ export class Stage {
   private render(): void {
     this.frame = 0;
     this.adapt();
-    this.share(this.moving ? this.part : 1);
     this.prepare();
+    const size = this.renderer.getDrawingBufferSize(new Vector2());
+    this.detail(this.moving ? new Eye(this.camera, size.y, this.orbit.parallel ? this.orbit.pose.distance_m : 0) : null, this.budget);
     (this.shade.uniforms["clip"] as { value: Vector2 }).value.set(this.camera.near, this.camera.far);
     const [r, g, b] = this.background;
     const context = this.renderer.getContext();
@@ -326,14 +347,14 @@ export class Stage {
     for (const material of [this.points, this.shade]) (material.uniforms["parallel_m"] as { value: number }).value = parallel ? pose.distance_m : 0;
   }
 
-  /** Draws fewer points while pictures are slow, more while they are fast. */
+  /** Draws fewer points while pictures wait, more while they do not. */
   private adapt(): void {
-    const now_ms = performance.now();
-    const took_ms = now_ms - this.last_ms;
-    this.last_ms = now_ms;
-    if (!this.moving || took_ms > 500) return;
-    if (took_ms > SLOW_MS) this.part = Math.max(0.02, this.part / 1.6);
-    else if (took_ms < QUICK_MS) this.part = Math.min(1, this.part * 1.15);
+    const waited_ms = performance.now() - this.asked_ms;
+    if (!this.moving) return;
+    this.longest_ms = Math.max(waited_ms, 0.8 * this.longest_ms);
+    this.quick = waited_ms < QUICK_MS ? this.quick + 1 : 0;
+    if (waited_ms > SLOW_MS) this.budget = Math.max(LEAST_BUDGET, this.budget * Math.min(1 / 1.6, Math.max(1 / 8, SLOW_MS / waited_ms)));
+    else if (this.quick >= QUICK_ONES) this.budget = Math.min(MOST_BUDGET, this.budget * 1.15);
   }
 }
 
