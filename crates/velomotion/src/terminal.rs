@@ -21,6 +21,8 @@ const QUEUE: usize = 1024;
 /// Longest wait for stderr at the end of the program.
 const FLUSH_TIMEOUT: Duration = Duration::from_secs(1);
 const MILLISECONDS: i64 = 1_000_000;
+/// Between two pictures of a bar without a length.
+const TICK: Duration = Duration::from_millis(200);
 
 /// The queue of the thread that writes to stderr.
 static STDERR: LazyLock<SyncSender<StderrMessage>> = LazyLock::new(|| {
@@ -36,7 +38,7 @@ static STDERR: LazyLock<SyncSender<StderrMessage>> = LazyLock::new(|| {
 enum StderrMessage {
     /// Writes these bytes, above the bar if there is one.
     Text(Vec<u8>),
-    /// Draws a new bar of a length with a template.
+    /// Draws a new bar of a length with a template; one without a length ticks by itself.
     Begin(u64, &'static str),
     /// Moves the bar to a position; changes its message if there is a new one.
     Update(u64, Option<String>),
@@ -55,6 +57,9 @@ fn write_messages(messages: &Receiver<StderrMessage>) {
             (StderrMessage::Begin(length, template), _) => {
                 let target = ProgressDrawTarget::stderr_with_hz(20);
                 let new = ProgressBar::with_draw_target(Some(length.max(1)), target);
+                if length == 0 {
+                    new.enable_steady_tick(TICK);
+                }
                 bar = Some(match ProgressStyle::with_template(template) {
                     Ok(style) => new.with_style(style),
                     Err(_) => new,
@@ -201,6 +206,13 @@ impl Progress {
     pub fn begin_run(&mut self, seconds: f64) {
         self.end_run();
         let begun = self.begin_bar((seconds * 1e3) as u64, "{bar:40} {msg}, {eta} left");
+        self.run = begun.then_some(0);
+    }
+
+    /// Shows that a comparison of effects runs, whose end is not known.
+    pub fn begin_comparison(&mut self) {
+        self.end_run();
+        let begun = self.begin_bar(0, "{spinner} comparing effects, {elapsed}");
         self.run = begun.then_some(0);
     }
 

@@ -54,6 +54,8 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, 
         None => None,
     };
     let stdout_taken = truth.as_ref().is_some_and(Target::is_stdout);
+    let mut progress = Progress::new(common);
+    progress.begin_comparison();
     let choice = choose_effects(
         &mut scene,
         &name,
@@ -80,7 +82,6 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, 
     if arguments.tolerance.is_some() && choice.is_none() {
         warnings.push("--tolerance: no effect is left to choose from".to_owned());
     }
-    let mut progress = Progress::new(common);
     progress.begin_run(scene.simulation.motion.end_s);
     let (has_objects, range) = (scene.has_objects(), scene.simulation.sensor.range());
     let request = SimulationRequest {
