@@ -26,9 +26,11 @@ pub struct ResidualInterval {
     pub angle_deg: Option<(f64, f64)>,
 }
 
-/// Residuals from the first packet to the last.
+/// Residuals from the first packet to the last: `recorded` are the packets before steps of the
+/// host's clock were undone.
 pub(crate) fn over_time(
     arrivals: &[Arrival],
+    recorded: &[Arrival],
     clock: &LidarClock,
     trajectory: &Trajectory,
     spans: &[(Stamp<Host>, Stamp<Host>)],
@@ -48,18 +50,18 @@ pub(crate) fn over_time(
             .filter(|number| *number < INTERVALS)
     };
     let mut delays: Vec<Vec<Span>> = vec![Vec::new(); INTERVALS];
-    for arrival in arrivals {
+    for (arrival, recorded) in arrivals.iter().zip(recorded) {
         let sent: Stamp<Lidar> = arrival.device;
-        let host = clock.moment_near(sent, Some(arrival.host)).host;
+        let host = clock.moment_near(sent, Some(recorded.host)).host;
         if let Some(of) = interval(arrival.host).and_then(|number| delays.get_mut(number)) {
             of.push(arrival.host.saturating_since(host));
         }
     }
     let mut angles: Vec<(f64, f64, usize)> = vec![(0.0, 0.0, 0); INTERVALS];
-    for (from, to) in spans {
-        let samples = trajectory.samples().iter();
-        let inside = samples.filter(|sample| *from <= sample.host && sample.host <= *to);
-        for (host, off_deg) in without_shared_delay(inside, trajectory) {
+    // A curve through the samples has no residuals.
+    let fitted = (!trajectory.fits().is_empty()).then_some(spans);
+    for span in fitted.unwrap_or_default() {
+        for (host, off_deg) in without_shared_delay(trajectory.samples_within(*span), trajectory) {
             if let Some((squares, most, count)) =
                 interval(host).and_then(|number| angles.get_mut(number))
             {
@@ -71,11 +73,12 @@ pub(crate) fn over_time(
     }
     let intervals = delays.into_iter().zip(angles).enumerate();
     let intervals = intervals.map(|(number, (mut delays, (squares, most, count)))| {
-        delays.sort_unstable();
-        let median = delays.get(delays.len() / 2).copied();
+        let latest = delays.iter().max().copied();
+        let middle = delays.len() / 2;
+        let median = latest.map(|_| *delays.select_nth_unstable(middle).1);
         ResidualInterval {
             at: Span::from_nanos(length_ns * number as i64 + length_ns / 2),
-            delay: median.zip(delays.last().copied()),
+            delay: median.zip(latest),
             angle_deg: (count > 0).then(|| ((squares / count as f64).sqrt(), most)),
         }
     });
@@ -83,11 +86,11 @@ pub(crate) fn over_time(
 }
 
 /// Deviations of samples from the curve, degrees, without a delay that all share.
-fn without_shared_delay<'a>(
-    samples: impl Iterator<Item = &'a AngleSample>,
+fn without_shared_delay(
+    samples: &[AngleSample],
     trajectory: &Trajectory,
 ) -> Vec<(Stamp<Host>, f64)> {
-    let rows = samples.filter_map(|sample| {
+    let rows = samples.iter().filter_map(|sample| {
         let at = Moment::at(sample.host);
         let off_deg = sample.angle.0 - trajectory.angle(at)?.0;
         let piece = trajectory.piece(at)?;
@@ -109,6 +112,7 @@ mod tests {
 
     use super::*;
     use crate::clock::{Joint, Stretch};
+    use crate::steps::{ClockSteps, Timeline};
     use crate::trajectory::Method;
 
     const SECOND: i64 = 1_000_000_000;
@@ -152,7 +156,13 @@ mod tests {
     fn delays_are_those_of_their_time() {
         let arrivals = packets();
         let clock = clock(&arrivals);
-        let found = over_time(&arrivals, &clock, &Trajectory::fixed(Degrees(0.0)), &[]);
+        let found = over_time(
+            &arrivals,
+            &arrivals,
+            &clock,
+            &Trajectory::fixed(Degrees(0.0)),
+            &[],
+        );
         assert_eq!(found.len(), INTERVALS);
         for interval in &found {
             let (median, most) = interval.delay.unwrap();
@@ -163,7 +173,7 @@ mod tests {
             assert_eq!(interval.angle_deg, None);
         }
         assert_eq!(
-            over_time(&[], &clock, &Trajectory::fixed(Degrees(0.0)), &[]),
+            over_time(&[], &[], &clock, &Trajectory::fixed(Degrees(0.0)), &[]),
             []
         );
     }
@@ -175,10 +185,6 @@ mod tests {
             bound: Span::from_micros(500),
             angle: Degrees(10.0 * at_s),
         }
-    }
-
-    fn joined(samples: Vec<AngleSample>) -> Trajectory {
-        Trajectory::through(samples, Degrees(0.0015), &[], Some(Method::Nearest)).unwrap()
     }
 
     /// Samples that are all late by 2 ms are off by 0.02 deg, one that is late by 6 ms has a
@@ -194,7 +200,7 @@ mod tests {
         let late: Vec<AngleSample> = (400..4_400)
             .map(|i| sample(i, if i == 2_000 { 6 } else { 2 }))
             .collect();
-        let found = without_shared_delay(late.iter(), &curve.unwrap());
+        let found = without_shared_delay(&late, &curve.unwrap());
         assert_eq!(found.len(), 4_000);
         for (at, off_deg) in found {
             let truth = if at == late[1_600].host { -0.04 } else { 0.0 };
@@ -202,24 +208,42 @@ mod tests {
         }
     }
 
-    /// Only samples in sweeps count, in their interval.
+    /// A curve that connects the samples has their angles.
     #[test]
-    fn angles_are_those_of_the_sweeps() {
+    fn connected_samples_have_no_residuals() {
         let arrivals = packets();
         let clock = clock(&arrivals);
-        let curve = joined((0..4_800).map(|i| sample(i, 0)).collect());
+        let samples = (0..4_800).map(|i| sample(i, 0)).collect();
+        let curve = Trajectory::through(samples, Degrees(0.0015), &[], Some(Method::Linear));
         let span = (host(SECOND), host(11 * SECOND));
-        for interval in over_time(&arrivals, &clock, &curve, &[span]) {
-            let at_s = interval.at.as_secs_f64();
-            let is_inside = (1.06..10.94).contains(&at_s);
-            let is_outside = !(0.94..11.06).contains(&at_s);
-            match interval.angle_deg {
-                None => assert!(!is_inside, "{at_s}"),
-                // The curve has the angles of its samples there.
-                Some((rms, most)) => {
-                    assert!(!is_outside && rms <= most && most < 1e-9, "{interval:?}")
-                }
-            }
+        let found = over_time(&arrivals, &arrivals, &clock, &curve.unwrap(), &[span]);
+        assert!(found.iter().all(|interval| interval.angle_deg.is_none()));
+    }
+
+    /// After steps of both clocks a device time occurs twice: the stamp of the recording tells
+    /// which.
+    #[test]
+    fn delays_after_steps_of_both_clocks_are_small() {
+        let mut packets = packets();
+        packets.truncate(6_000);
+        let seen: Vec<Arrival> = packets
+            .iter()
+            .enumerate()
+            .map(|(i, packet)| Arrival {
+                device: packet.device - Span::from_secs(if i >= 4_000 { 2 } else { 0 }),
+                host: packet.host - Span::from_secs(if i >= 2_000 { 3_600 } else { 0 }),
+            })
+            .collect();
+        let clock_steps = ClockSteps::default();
+        let line = Timeline::new(&seen, &[], &clock_steps).unwrap();
+        assert_eq!(line.steps.len(), 2);
+        let still = Trajectory::fixed(Degrees(0.0));
+        for interval in over_time(&line.arrivals, &seen, &line.clock, &still, &[]) {
+            let (median, most) = interval.delay.unwrap();
+            assert!(
+                median.as_nanos().abs() < 20_000 && most.as_nanos().abs() < 20_000,
+                "{interval:?}"
+            );
         }
     }
 }

@@ -50,7 +50,7 @@ impl Survey {
     /// hold no angle or no sweep; [`ScanError::UnreachableTolerance`] if no method is accurate
     /// enough.
     pub fn solve(
-        self,
+        mut self,
         config: &ScanConfig,
         tilt: &TiltSource,
         accuracy: Accuracy,
@@ -63,6 +63,7 @@ impl Survey {
             drive,
             arrivals,
         } = self.timeline().ok_or(ScanError::NoLidarPackets)?;
+        let recorded = self.take_arrivals();
         // `survey`: stamps of the drive's records on the same host clock.
         let shaft = self.into_shaft_records(&drive);
         // `angles`: encoder positions at the middle of their polls, or by the drive's own clock.
@@ -86,7 +87,7 @@ impl Survey {
         let sample_gaps = angles.gaps(&sweeps);
         // `trajectory`: the commanded profile or a spline, by least squares (Levenberg-Marquardt).
         let (trajectory, choice) = angles.trajectory(&sweeps, &spans, accuracy, clock.bound())?;
-        let residuals = residuals::over_time(&arrivals, &clock, &trajectory, &spans);
+        let residuals = residuals::over_time(&arrivals, &recorded, &clock, &trajectory, &spans);
         Ok(Alignment {
             clock,
             steps,

@@ -14,7 +14,7 @@
 //! from 1 ms to 10 ms are found where neither device was recorded for half a second, as on a host
 //! that sleeps, and where the samples show them: by the drive's own clock (`drive_clock`), or by
 //! the motion of the axis (`motion`). On a quiet network these show steps from 0.1 ms on. Where
-//! they do not, the change of the delay is reported. Others, and steps undone within six seconds,
+//! nothing shows the cause, the change of the delay is reported. Others, and steps undone within six seconds,
 //! are not found; the clock's bound contains all of them. `lidar` unwraps hours.
 
 mod drive_clock;
@@ -29,7 +29,7 @@ use drive::ShaftSample;
 use units::{Host, Span, Stamp};
 
 use crate::clock::{Arrival, Joint, LidarClock, Stretch};
-use jumps::{Evidence, Jump, shifted};
+use jumps::{Evidence, Jump, Regular, shifted};
 use monotonic::before;
 pub(crate) use monotonic::{ClockSteps, HostTimeline};
 
@@ -80,8 +80,9 @@ impl fmt::Display for ClockStep {
     }
 }
 
-/// A lasting change of the packets' delay of which nothing shows the cause: the network's delay, or
-/// a step of the host's clock that is too small for the samples. The clock's bound contains it.
+/// A sudden and lasting change of the packets' delay of which nothing shows the cause: the network's
+/// delay, or a step of the host's clock that is too small for the samples. The clock's bound
+/// contains it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct DelayChange {
@@ -116,15 +117,12 @@ impl Timeline {
         let found = jumps::find(arrivals);
         let begin = arrivals.first()?.host;
         let mut cuts: Vec<Cut> = Vec::new();
-        let mut delay_changes = Vec::new();
+        let mut changed = Vec::new();
         for jump in &found.jumps {
             match attribute(*jump, &found, samples, clock_steps) {
                 Cause::Set(cut) => cuts.push(cut),
                 Cause::Delay => {}
-                Cause::Unknown => delay_changes.push(DelayChange {
-                    after: arrivals.get(jump.at)?.host.saturating_since(begin),
-                    by: jump.by,
-                }),
+                Cause::Unknown { at, by } => changed.push((at, by)),
             }
         }
         cuts.sort_by_key(|cut| (cut.at, cut.clock == SetClock::Host));
@@ -161,15 +159,20 @@ impl Timeline {
                 },
             });
         }
+        let arrivals = shifted(arrivals, host_steps, |arrival, by| Arrival {
+            host: before(arrival.host, by),
+            ..arrival
+        });
+        let delay_changes = changed.into_iter().filter_map(|(at, by)| {
+            let after = arrivals.get(at)?.host.saturating_since(begin);
+            Some(DelayChange { after, by })
+        });
         Some(Self {
             clock,
             steps,
-            delay_changes,
+            delay_changes: delay_changes.collect(),
             drive: line,
-            arrivals: shifted(arrivals, host_steps, |arrival, by| Arrival {
-                host: before(arrival.host, by),
-                ..arrival
-            }),
+            arrivals,
         })
     }
 }
@@ -212,9 +215,10 @@ fn separate(cuts: &mut Vec<Cut>, packets: usize) {
 enum Cause {
     /// A clock was set.
     Set(Cut),
-    /// Packets were delayed: the records of the drive show that the host's clock was not set.
+    /// Packets were delayed, or chance.
     Delay,
-    Unknown,
+    /// The delays change from this packet on, by so much.
+    Unknown { at: usize, by: Span },
 }
 
 impl From<Option<Cut>> for Cause {
@@ -247,35 +251,50 @@ fn attribute(
         Evidence::Spacing => return Cause::Set(cut(SetClock::Lidar)),
         Evidence::Silence(silence) => {
             let sleeps = clock_steps.sleeps(jump.at, silence);
-            return sleeps.then(|| cut(SetClock::Host)).into();
+            return match sleeps {
+                true => Cause::Set(cut(SetClock::Host)),
+                false => Cause::Unknown {
+                    at: jump.at,
+                    by: jump.by,
+                },
+            };
         }
         // No delay puts the records of the drive back.
-        Evidence::Regular
+        Evidence::Regular(_)
             if jump.by <= Span::from_nanos(-jumps::SMALLEST_OF_HOST_NS)
                 && clock_steps.shows(jump.at, jump.by, Span::ZERO) =>
         {
             return Cause::Set(cut(SetClock::Host));
         }
-        Evidence::Regular => {
+        Evidence::Regular(regular) => {
             let next = clock_steps.next_sample(jump.at);
-            if drive_clock::is_known(samples, next) {
-                let around = drive_clock::step(samples, next, jump.by);
-                return around
-                    .map(|around| Cut {
-                        boundary: samples.get(around.start).map(|sample| sample.request),
-                        samples: Some(around),
-                        ..cut(SetClock::Host)
-                    })
-                    .into();
-            }
-            return motion::step(samples, next, jump.by).map_or(Cause::Unknown, |first| {
-                Cause::Set(Cut {
-                    boundary: samples.get(first).map(|sample| sample.request),
-                    // After a step back stamps are those of samples before it, too.
-                    samples: (jump.by < Span::ZERO).then(|| first.saturating_sub(1)..first + 1),
+            let has_device_time = drive_clock::is_known(samples, next);
+            let around = match has_device_time {
+                true => drive_clock::step(samples, next, jump.by),
+                // After a step back stamps are those of samples before it, too.
+                false => motion::step(samples, next, jump.by).map(|first| first..first + 1),
+            };
+            let excluded = || match has_device_time {
+                true => drive_clock::excludes(samples, next, jump.by),
+                false => motion::excludes(samples, next, jump.by),
+            };
+            return match around {
+                Some(around) if has_device_time => Cause::Set(Cut {
+                    boundary: samples.get(around.start).map(|sample| sample.request),
+                    samples: Some(around),
                     ..cut(SetClock::Host)
-                })
-            });
+                }),
+                Some(around) => Cause::Set(Cut {
+                    boundary: samples.get(around.start).map(|sample| sample.request),
+                    samples: (jump.by < Span::ZERO)
+                        .then(|| around.start.saturating_sub(1)..around.end),
+                    ..cut(SetClock::Host)
+                }),
+                None => match regular {
+                    Regular::Certain { at, by } if !excluded() => Cause::Unknown { at, by },
+                    _ => Cause::Delay,
+                },
+            };
         }
         Evidence::Delays => {}
     }

@@ -125,6 +125,11 @@ impl Survey {
         Timeline::new(&self.arrivals, &self.samples, &self.clock_steps)
     }
 
+    /// The packets as they were recorded.
+    pub(crate) fn take_arrivals(&mut self) -> Vec<Arrival> {
+        core::mem::take(&mut self.arrivals)
+    }
+
     /// The drive's records, on the host clock as it was at the beginning.
     pub(crate) fn into_shaft_records(mut self, timeline: &HostTimeline) -> ShaftRecords {
         timeline.convert(&mut self.samples);

@@ -317,6 +317,11 @@ impl Trajectory {
         &self.samples
     }
 
+    /// The samples within a span.
+    pub(crate) fn samples_within(&self, span: (Stamp<Host>, Stamp<Host>)) -> &[AngleSample] {
+        within(&self.samples, span)
+    }
+
     /// The method; of several sweeps that of the first.
     #[must_use]
     pub const fn method(&self) -> Method {

@@ -142,7 +142,10 @@ fn a_scan_is_started_displayed_and_counted() {
         page.fill("#to", "-30").await;
         let plan = page.until_has("#plan", "vertical resolution").await;
         // 5.625 deg at 600 rpm; slightly different once the lidar's own speed is known.
-        assert!(plan.contains("5.6") && plan.contains("1125 rpm"), "{plan}");
+        assert!(
+            plan.contains("5.6") && plan.contains("motor at 1125 rpm"),
+            "{plan}"
+        );
 
         page.run(WATCH).await;
         start(&page, "hall", "56.25", "-30").await;
@@ -169,7 +172,7 @@ fn a_scan_is_started_displayed_and_counted() {
             most.unwrap_or(0) > printed / 2,
             "{most:?} of {printed} live"
         );
-        let residual = page.until_has("#last-facts", "Clock residual").await;
+        let residual = page.until_has("#last-facts", "Packet delay").await;
         assert!(
             residual.contains("Angle method") && residual.contains("\u{b5}s"),
             "{residual}"
@@ -230,7 +233,10 @@ fn a_sweep_is_displayed_and_stopped_by_key_and_by_touch() {
                 "by-key" => page.keys(ESCAPE).await,
                 _ => page.click("#stop").await,
             }
+            page.until_has("#doing", "Stopped").await;
             page.until_has(".scan .badge[data-state]", "partial").await;
+            page.until_has("#view-partial", "PARTIAL").await;
+            page.until_has("#doing", "Ready").await;
             let stopped = scan(&page, name).await;
             assert_eq!(stopped["why"]["kind"], "interrupted", "{stopped}");
             let swept = stopped["report"]["sweeps"][0]["to_deg"].as_f64().unwrap();

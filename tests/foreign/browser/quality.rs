@@ -19,7 +19,7 @@ fn the_scan_in_view_is_measured_on_request() {
     for screen in [DESKTOP, DESKTOP.light(), PHONE, NARROW.light()] {
         driver.test(screen, async |page| {
             ready(&page, &url).await;
-            page.until_has("#quality-facts", "Clock residual").await;
+            page.until_has("#quality-facts", "Packet delay").await;
             page.run(TOO_MANY).await;
             page.click("#measure").await;
             page.until_has("#quality-error", "Measure: too many").await;

@@ -187,6 +187,8 @@ fn a_fault_is_shown_with_advice_and_cleared() {
             fault.contains("Following Error") && fault.contains("moves freely"),
             "{fault}"
         );
+        // It stays beside the buttons when the fault is over.
+        page.until_has("#control-error", "Following Error").await;
         page.until_has(".scan .badge[data-state]", "partial").await;
         page.until("#view-title", "held", |text| text == "held")
             .await;

@@ -25,8 +25,8 @@ let connected = false;
 
 /** The cloud of a scan. */
 function source(scan: Scan): CloudSource {
-  const { id, simulated } = scan;
-  return { id, title: title(scan), simulated, url: (uncertainty) => cloudUrl(id, "ply", uncertainty), certain: true, scanner: true, plays: false };
+  const { id, simulated, state } = scan;
+  return { id, title: title(scan), simulated, partial: state === "partial", url: (uncertainty) => cloudUrl(id, "ply", uncertainty), certain: true, scanner: true, plays: false };
 }
 
 const listener: Listener = {
@@ -87,6 +87,8 @@ const listener: Listener = {
   },
   message(message) {
     note(message.level, message.text, message.help);
+    // A fault may be over before it is seen in the state of the devices.
+    if (message.level === "error") control.showError(message.text, message.help ?? null);
   },
   points(frame) {
     viewer?.frame(frame, events.every);

@@ -63,6 +63,9 @@ export function parseHeader(text: string): Header {
 /** Turns bytes into batches of points. */
 export class PlyReader {
   private rest: Uint8Array = new Uint8Array(0);
+  private pieces: Uint8Array[] = [];
+  /** Bytes of the rest and the pieces. */
+  private waiting = 0;
   private header: Header | null = null;
   private start_s: number | null = null;
   private shift: [number, number, number] | null = null;
@@ -92,19 +95,33 @@ export class PlyReader {
 
   /** Takes bytes and yields the complete batches. */
   *push(piece: Uint8Array): Generator<Columns> {
-    const bytes = new Uint8Array(this.rest.length + piece.length);
-    bytes.set(this.rest);
-    bytes.set(piece, this.rest.length);
-    this.rest = bytes;
+    this.pieces.push(piece);
+    this.waiting += piece.length;
+    // Pieces are joined once they have a batch.
+    if (this.header !== null && this.waiting < this.batch * this.header.rowBytes) return;
+    this.join();
     if (this.header === null && !this.takeHeader()) return;
     yield* this.batches(this.batch);
   }
 
   /** Yields the rows after the last complete batch; throws if the file is cut off. */
   *end(): Generator<Columns> {
+    this.join();
     if (this.header === null) throw new Error("PLY: no header");
     yield* this.batches(1);
     if (this.read < this.header.count) throw new Error(`PLY: ${this.read} of ${this.header.count} points, then the file ends`);
+  }
+
+  /** Appends the pieces to the rest. */
+  private join(): void {
+    const bytes = new Uint8Array(this.waiting);
+    let end = 0;
+    for (const piece of [this.rest, ...this.pieces]) {
+      bytes.set(piece, end);
+      end += piece.length;
+    }
+    this.rest = bytes;
+    this.pieces = [];
   }
 
   private takeHeader(): boolean {
@@ -117,6 +134,7 @@ export class PlyReader {
     if (!start.startsWith("ply")) throw new Error("not a PLY file");
     this.header = parseHeader(start.slice(0, end.index));
     this.rest = this.rest.subarray(end.index + end[0].length);
+    this.waiting = this.rest.length;
     return true;
   }
 
@@ -130,6 +148,7 @@ export class PlyReader {
       if (take === 0 || (take < least && !last)) return;
       yield this.rows(header, take);
       this.rest = this.rest.subarray(take * header.rowBytes);
+      this.waiting = this.rest.length;
       this.read += take;
     }
   }

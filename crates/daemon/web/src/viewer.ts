@@ -37,6 +37,8 @@ export interface CloudSource {
   url: (uncertainty: boolean) => string;
   /** Whether the column sd can be requested. */
   certain: boolean;
+  /** Whether a part of the scan is missing. */
+  partial: boolean;
   /** Whether the origin is on velomotion's tilt axis. */
   scanner: boolean;
   /** Whether it plays once it is loaded. */
@@ -59,6 +61,8 @@ export class Viewer {
   /** The cloud with which the opened one is compared. */
   private other: CloudSource | null = null;
   private other_points: Loaded | null = null;
+  /** What was loaded of the opened cloud. */
+  private whole: (LoadEvent & { kind: "done" }) | null = null;
   private field: Field = "height";
   /** The field before the comparison. */
   private field_before: Field = "height";
@@ -161,6 +165,7 @@ export class Viewer {
     this.stage.setScanner(source.scanner);
     this.stage.uniform("cutaway", source.scanner && id<HTMLInputElement>("cutaway").checked);
     this.head(this.title, source.simulated || other?.simulated === true);
+    show(id("view-partial"), source.partial);
     if (other !== null) {
       text(id("view-points"), "");
       this.colour();
@@ -176,6 +181,8 @@ export class Viewer {
     if (renamed === null) return;
     renamed.title = title;
     text(id("view-title"), this.title);
+    if (this.whole !== null) this.describe_whole(this.whole);
+    this.colour();
   }
 
   /** Removes a deleted scan from the view. */
@@ -251,7 +258,8 @@ export class Viewer {
         this.origin = data.origin;
         if (data.simulated) show(id("view-simulated"), true);
         this.range(cloud.ranges);
-        this.describe(data.total, [this.distance_note(data), data.every > 1 ? `every ${data.every}th drawn` : ""].filter(Boolean).join("; "));
+        this.whole = data;
+        this.describe_whole(data);
         if (data.other !== null && other_points !== null) {
           const from = data.other.origin;
           other_points.group.position.fromArray(from.map((m, axis) => m - (data.origin[axis] ?? 0)));
@@ -269,6 +277,10 @@ export class Viewer {
     const order: LoadRequest = { url: new URL(source.url(uncertainty), location.href).href, most: small.matches ? 3_000_000 : 24_000_000 };
     if (other !== null) order.other = new URL(other.url(false), location.href).href;
     worker.postMessage(order);
+  }
+
+  private describe_whole(whole: LoadEvent & { kind: "done" }): void {
+    this.describe(whole.total, [this.distance_note(whole), whole.every > 1 ? `every ${whole.every}th drawn` : ""].filter(Boolean).join("; "));
   }
 
   /** How far the points are from the other cloud; empty without a comparison. */
@@ -309,6 +321,7 @@ export class Viewer {
     this.other_points = null;
     this.compare(null, this.field === "distance" ? this.field_before : this.field);
     this.opened = null;
+    this.whole = null;
     this.ranges = null;
     this.origin = [0, 0, 0];
     this.unpick();
@@ -316,6 +329,7 @@ export class Viewer {
     this.player.setEnd(0);
     show(id("view-progress"), false);
     show(id("view-failed"), false);
+    show(id("view-partial"), false);
     if (!this.stage.orbit.touched) this.fitted = false;
   }
 
@@ -401,7 +415,7 @@ export class Viewer {
     const of = { low: low === null ? automatic.low : scale * low - shift, high: high === null ? automatic.high : scale * high - shift };
     this.stage.setField(FIELDS.indexOf(this.field), of.high > of.low ? of : { low: of.low, high: of.low + 1e-6 });
     this.stage.setMarks([low === null ? null : MARKS[0], high === null ? null : MARKS[1]]);
-    const note = this.field === "distance" ? `${NOTES.distance} of ${this.other?.title ?? ""}` : this.field === "range" && this.origin.some((m) => m !== 0) ? `from ${this.origin.join(", ")} m` : NOTES[this.field];
+    const note = this.field === "distance" ? `${NOTES.distance} of ${this.other?.title ?? ""}, gaps between its lines included` : this.field === "range" && this.origin.some((m) => m !== 0) ? `from ${this.origin.join(", ")} m` : NOTES[this.field];
     text(id("legend-note"), `${note} \u00b7 rings ${RING_STEP_M} m apart`);
     this.stage.uniform("ceiling_m", this.ranges.ceiling_m ?? 1e6);
     const words = (value: number) => {

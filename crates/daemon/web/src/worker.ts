@@ -32,7 +32,7 @@ export type LoadEvent =
   | { kind: "failed"; error: string };
 
 const BATCH = 262_144;
-/** Points of a part, before some are left out. */
+/** Points of a part. */
 const PART = 32_768;
 /** Maximum number of points of the other cloud: their search takes 3 s to prepare. */
 const MOST_OTHER = 3_000_000;
@@ -116,7 +116,7 @@ async function download(url: string, take: (columns: Columns, ply: PlyReader) =>
 function compact(columns: Columns, every: number): Columns[] {
   const order = along_curve(columns.positions);
   const parts: Columns[] = [];
-  for (let from = 0; from < order.length; from += PART) parts.push(shuffled(columns, order.subarray(from, from + PART), every));
+  for (let from = 0; from < order.length; from += PART * every) parts.push(shuffled(columns, order.subarray(from, from + PART * every), every));
   return parts;
 }
 

@@ -81,7 +81,7 @@ fn delay_change_warning(alignment: &Alignment) -> Option<String> {
     };
     let ms = |span: Span| span.as_secs_f64() * 1e3;
     Some(format!(
-        "from {:.3} s into the recording on packets arrive {:.2} ms {way}{more}: the host's clock was set {set}, or the network's delay became {became}; times may be wrong by {:.2} ms",
+        "{:.3} s into the recording packets begin to arrive {:.2} ms {way}{more}: the host's clock was set {set}, or the network's delay became {became}; times may be wrong by {:.2} ms",
         change.after.as_secs_f64(),
         ms(change.by).abs(),
         ms(alignment.clock.bound())

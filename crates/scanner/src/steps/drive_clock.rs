@@ -30,25 +30,9 @@ pub(super) fn is_known(samples: &[ShaftSample], at: usize) -> bool {
 /// The samples near the index `at` of which a stamp may precede or follow a step of the host's
 /// clock by `by`, if the drive's clock shows it. Those before precede it, those after follow it.
 pub(super) fn step(samples: &[ShaftSample], at: usize, by: Span) -> Option<Range<usize>> {
-    let origin = samples.get(at)?;
-    let late = |i: usize| {
-        let sample = samples.get(i)?;
-        since(
-            sample.answer.saturating_since(origin.answer),
-            sample,
-            origin,
-        )
-    };
-    let (from, to) = (at.saturating_sub(NEAR), (at + NEAR).min(samples.len()));
-    let sides = [
-        from.saturating_sub(SIDE)..from,
-        to..(to + SIDE).min(samples.len()),
-    ];
-    if sides.iter().any(|side| side.len() < MIN_SIDE) {
-        return None;
-    }
-    let least = |side: &Range<usize>| side.clone().filter_map(late).min();
-    let [before, after] = [least(&sides[0])?, least(&sides[1])?];
+    let late = |i: usize| late_by(samples, at, i);
+    let (from, to) = near(samples, at);
+    let (sides, [before, after]) = least_delays(samples, at)?;
     let (rise, by) = (after.saturating_sub(before), by.as_nanos());
     let difference = rise.saturating_sub(by).saturating_abs() as f64;
     if difference >= DIFFERENCE * by.saturating_abs() as f64 {
@@ -78,6 +62,42 @@ pub(super) fn step(samples: &[ShaftSample], at: usize, by: Span) -> Option<Range
         }
     };
     Some(first.max(from)..(last + UNDER_WAY).min(to))
+}
+
+/// Whether the drive's clock shows that the host's was not set by `by`.
+pub(super) fn excludes(samples: &[ShaftSample], at: usize, by: Span) -> bool {
+    least_delays(samples, at).is_some_and(|(_, [before, after])| {
+        let rise = after.saturating_sub(before).saturating_abs() as f64;
+        rise < DIFFERENCE * by.as_nanos().saturating_abs() as f64
+    })
+}
+
+/// How late the answer of a sample is by the drive's clock, relative to that at the index `at`,
+/// nanoseconds.
+fn late_by(samples: &[ShaftSample], at: usize, i: usize) -> Option<i64> {
+    let (origin, sample) = (samples.get(at)?, samples.get(i)?);
+    let answer = sample.answer.saturating_since(origin.answer);
+    since(answer, sample, origin)
+}
+
+/// The samples near the index `at`, which may belong to either side.
+fn near(samples: &[ShaftSample], at: usize) -> (usize, usize) {
+    (at.saturating_sub(NEAR), (at + NEAR).min(samples.len()))
+}
+
+/// Samples on either side of the index `at`, and the least delay of the answers there.
+fn least_delays(samples: &[ShaftSample], at: usize) -> Option<([Range<usize>; 2], [i64; 2])> {
+    let (from, to) = near(samples, at);
+    let sides = [
+        from.saturating_sub(SIDE)..from,
+        to..(to + SIDE).min(samples.len()),
+    ];
+    if sides.iter().any(|side| side.len() < MIN_SIDE) {
+        return None;
+    }
+    let least = |side: &Range<usize>| side.clone().filter_map(|i| late_by(samples, at, i)).min();
+    let least = [least(&sides[0])?, least(&sides[1])?];
+    Some((sides, least))
 }
 
 /// Matches samples after a step with earlier SYNCs, if they were matched with later ones than

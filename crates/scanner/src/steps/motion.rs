@@ -19,6 +19,8 @@ const NEAR: usize = 6;
 const DIFFERENCE: f64 = 0.3;
 /// Least jump of the positions, in its standard deviations.
 const MIN_SDS: f64 = 4.0;
+/// A step is excluded if half of it is so many standard deviations beyond the jump that fits.
+const EXCLUDED_SDS: f64 = 3.0;
 
 /// The index of the first sample after a step of the host's clock by `by`, if the samples show it
 /// near the index `at`.
@@ -43,10 +45,21 @@ pub(super) fn step(samples: &[ShaftSample], at: usize, by: Span) -> Option<usize
     })
 }
 
+/// Whether the samples show that the host's clock was not set by `by` near the index `at`.
+pub(super) fn excludes(samples: &[ShaftSample], at: usize, by: Span) -> bool {
+    let by_s = by.as_secs_f64().abs();
+    [SIDE, LONG_SIDE]
+        .into_iter()
+        .filter_map(|side| JumpFit::new(samples, at, side))
+        .any(|fit| fit.sd_s.is_finite() && fit.by_s.abs() + EXCLUDED_SDS * fit.sd_s < 0.5 * by_s)
+}
+
 /// A parabola through the positions, with a jump.
 struct JumpFit {
     /// The step of the clock.
     by_s: f64,
+    /// Its standard deviation.
+    sd_s: f64,
     /// The jump in its standard deviations.
     sds: f64,
     /// Sum of the squared residuals.
@@ -91,6 +104,7 @@ impl JumpFit {
         let variance = (squares / ((to - from) as f64 - 4.0)).max(1.0 / 12.0);
         Some(Self {
             by_s: -found.w / found.y,
+            sd_s: ((variance * inverse.m44).sqrt() / found.y).abs(),
             sds: found.w.abs() / (variance * inverse.m44).sqrt(),
             squares,
             variance,

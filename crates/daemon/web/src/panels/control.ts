@@ -18,6 +18,9 @@ const WORDS: Record<string, string> = {
   idle: "Ready", connecting: "Connecting", homing: "Homing", moving: "Moving", capturing: "Sweeping", stopping: "Stopping",
 };
 
+/** For so long the state says that the axis was stopped. */
+const STOPPED_MS = 5_000;
+
 /** Called when it changes whether the axis may be moved by hand. */
 let ready: (ready: boolean) => void = () => {};
 let status: Status | null = null;
@@ -25,6 +28,8 @@ let connected = false;
 let asking = false;
 /** Ends the repetition of a stop. */
 let stopping: AbortController | null = null;
+/** Whether a stop was acknowledged a moment ago. */
+let stopped = false;
 /** Duration of the move, seconds. */
 let whole_s = 0;
 let stepped = 0;
@@ -66,6 +71,12 @@ export async function command(what: string, go: () => Promise<unknown>, at: HTML
   }
 }
 
+/** Shows an error beside the buttons, until a motion begins or is stopped. */
+export function showError(words: string, help: string | null): void {
+  text(id("control-error"), help ? `${words}\n${help}` : words);
+  show(id("control-error"), true);
+}
+
 /** Adds an error to the messages, and shows it at the control that caused it. */
 export function refused(what: string, error: unknown, at: HTMLElement): void {
   const help = error instanceof RequestError ? error.help : null;
@@ -91,7 +102,14 @@ async function halt(): Promise<void> {
     show(banner, true);
   };
   try {
-    if (await repeatStop(api.stop, unacknowledged, stopping.signal)) announce("Stopped");
+    if (await repeatStop(api.stop, unacknowledged, stopping.signal)) {
+      announce("Stopped");
+      stopped = true;
+      setTimeout(() => {
+        stopped = false;
+        draw();
+      }, STOPPED_MS);
+    }
   } finally {
     show(banner, false);
     stopping = null;
@@ -159,7 +177,7 @@ function draw(): void {
   attribute(doing, "data-moving", String(moving));
   if (stopping !== null) text(doing, "Stopping");
   else if (!connected) text(doing, "No connection");
-  else if (status !== null) text(doing, obstacle_now !== null && !moving ? "Not ready" : activityText(status, status.activity.left_s ?? null));
+  else if (status !== null) text(doing, obstacle_now !== null && !moving ? "Not ready" : stopped && !moving ? "Stopped" : activityText(status, status.activity.left_s ?? null));
   show(progress, moving);
   const title = !connected ? "No connection" : moving ? (WORDS[status?.activity.doing ?? ""] ?? "Moving") : obstacle_now !== null ? "Not ready" : null;
   const full = title === null ? "velomotion" : `${title} \u2013 velomotion`;

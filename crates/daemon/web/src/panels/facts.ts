@@ -31,7 +31,7 @@ export function residuals({ report }: Scan): Fact[] {
     if (typeof value === "number") rows.push([name, `${digits(value * scale)} ${unit}`]);
   };
   const sync = report?.sync;
-  add("Clock residual", sync?.clock_residual_us, "\u00b5s");
+  add("Packet delay, median", sync?.clock_residual_us, "\u00b5s");
   add("Clock error at most", sync?.clock_bound_us, "\u00b5s");
   add("Angle residual", sync?.angle_rms_deg, "\u00b0 RMS");
   add("Angle error at most", sync?.angle_bound_deg, "\u00b0");

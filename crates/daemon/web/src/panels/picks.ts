@@ -24,7 +24,7 @@ export function draw(picks: Picked[], known: Known, origin: [number, number, num
     const along = found.along_m.map((m) => fixed(m, 3)).join(", ");
     parts.push(
       h("p", { class: "distance" }, h("b", {}, `${found.m.toFixed(3)} m`), found.sd_m === null ? "" : ` \u00b1 ${mm(found.sd_m)}`),
-      h("p", { class: "hint" }, `x, y, z: ${along} m \u00b7 ${found.sd_m === null ? "uncertainty: colour by it first" : "standard error, at most: sd of both points, independent"}`),
+      h("p", { class: "hint" }, `x, y, z: ${along} m \u00b7 ${found.sd_m === null ? "for its standard error, colour by uncertainty" : "at most, by the errors of both points; not by where you point"}`),
     );
   }
   parts.push(table(picks, known, origin));

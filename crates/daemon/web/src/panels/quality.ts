@@ -86,8 +86,8 @@ function draw_measured(found: ScanStatistics): void {
   rows.push(...(sd == null ? [["Stated sd", "none"] as Fact] : [["Stated sd, half of points", `${digits(sd.p50, 2)} mm`] as Fact, ["Stated sd, 99 %", `${digits(sd.p99, 2)} mm`] as Fact]));
   facts(id("measured-facts"), rows);
   draw_ranges(found);
-  draw_residuals("delays", found.residuals, "delay_us", "most_delay_us", "median", " \u00b5s");
-  draw_residuals("deviations", found.residuals, "angle_rms_deg", "most_angle_deg", "RMS", "\u00b0");
+  draw_residuals("delays", found.residuals, "delay_us", "most_delay_us", "median", " \u00b5s", 1);
+  draw_residuals("deviations", found.residuals, "angle_rms_deg", "most_angle_deg", "RMS", "\u00b0", 1e-4);
   const at = found.budget.map(({ at_m }) => String(at_m));
   if ([...distance.options].map(({ value }) => value).join() !== at.join()) {
     const before = distance.value;
@@ -104,17 +104,17 @@ function draw_measured(found: ScanStatistics): void {
   ]);
 }
 
-/** Bars of residuals over time, the greatest behind the usual ones, their heights by the logarithm; and both in words. */
-function draw_residuals(name: "delays" | "deviations", all: Residuals[], usual: "delay_us" | "angle_rms_deg", most: "most_delay_us" | "most_angle_deg", word: string, unit: string): void {
-  const greatest = all.reduce<Residuals | null>((a, b) => ((b[most] ?? 0) > (a?.[most] ?? 0) ? b : a), null);
+/** Bars of residuals over time, the greatest behind the usual ones, their heights by the logarithm; and both in words. `least` is the least value that counts. */
+function draw_residuals(name: "delays" | "deviations", all: Residuals[], usual: "delay_us" | "angle_rms_deg", most: "most_delay_us" | "most_angle_deg", word: string, unit: string, least: number): void {
+  const greatest = all.reduce<Residuals | null>((a, b) => ((b[most] ?? -Infinity) > (a?.[most] ?? -Infinity) ? b : a), null);
   const sorted = all.flatMap((one) => one[usual] ?? []).sort((a, b) => a - b);
   const middle = sorted[Math.floor(sorted.length / 2)];
-  const high = (value: number) => Math.log1p(value / Math.max(1e-12, middle ?? 0));
-  const scale = 38 / Math.max(1e-12, high(greatest?.[most] ?? 0));
+  const high = (value: number) => Math.log1p(Math.max(0, value) / Math.max(least, middle ?? 0));
+  const scale = 38 / Math.max(1e-6, high(greatest?.[most] ?? 0));
   const width = 120 / Math.max(1, all.length);
   const bars = (key: typeof usual | typeof most) => all.map((one, i) => `M${(i * width).toFixed(2)} 40v${(-scale * high(one[key] ?? 0)).toFixed(2)}h${width.toFixed(2)}V40z`).join("");
   [most, usual].forEach((key, i) => attribute(id(name).children[i] as Element, "d", bars(key)));
-  text(id(`${name}-words`), middle === undefined || greatest === null ? "none" : `${word} ${digits(middle, 2)}${unit}, at most ${digits(greatest[most] ?? 0, 2)}${unit} near ${digits(greatest.at_s)} s`);
+  text(id(`${name}-words`), middle === undefined || greatest === null ? "none" : `${word} ${digits(middle, 2)}${unit}, at most ${digits(greatest[most] ?? 0, 2)}${unit} near ${greatest.at_s.toFixed(2)} s`);
 }
 
 /** Bars of the points by range, and their middle in words. */

@@ -162,11 +162,12 @@ async function download(scan: Scan, name: string, choice: string, wrong: HTMLEle
   const more = choice.endsWith(MORE);
   const format = choice.replace(MORE, "");
   show(wrong, false);
-  announce(`Downloading ${name} as ${format}`);
+  const file = `${scan.id}.${format === "log" ? "pcapng" : format}`;
+  announce(`Downloading ${name}: ${file}`);
   try {
     const [url, exists] = format === "log" ? [logUrl(scan.id), true] : [cloudUrl(scan.id, format, more, more), format === "ply" && !more];
     const href = await fileUrl(url, exists);
-    h("a", { href, download: `${scan.id}.${format === "log" ? "pcapng" : format}` }).click();
+    h("a", { href, download: file }).click();
     // The browser has begun to read it by then.
     if (!exists) setTimeout(() => URL.revokeObjectURL(href), 60_000);
   } catch (error) {

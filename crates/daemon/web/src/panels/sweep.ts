@@ -141,6 +141,6 @@ function draw(found: CaptureEstimate): void {
     h("p", {}, all),
     ...seen,
     ...warned,
-    h("p", {}, `${step_words}${digits(found.motor_rpm, 4)} rpm \u00b7 ${bytes(found.bytes)} at most`),
+    h("p", {}, `${step_words}motor at ${digits(found.motor_rpm, 4)} rpm \u00b7 ${bytes(found.bytes)} at most`),
   );
 }

@@ -54,9 +54,9 @@ export class Loaded {
   }
 }
 
-/** Draws about so many points of all clouds, where the picture shows them; without an eye all points. */
+/** Draws about so many points of all clouds that are shown, where the picture shows them; without an eye all points. */
 export function draw(clouds: Loaded[], eye: Eye | null, budget: number): void {
-  const chunks = clouds.flatMap((cloud) => cloud.chunks);
+  const chunks = clouds.filter(({ group }) => group.visible && group.parent !== null).flatMap((cloud) => cloud.chunks);
   const ball = new Sphere();
   const parts = chunks.map((points) => {
     const count = points.userData["count"] as number;

@@ -35,11 +35,11 @@ export class Eye {
     this.screen_px = height_px * height_px * camera.aspect;
   }
 
-  /** Pixels that a ball covers, at most those of the picture; 0 out of view. */
+  /** Pixels that a ball covers, from 1 to those of the picture; 0 out of view. */
   area_px(ball: Sphere): number {
     if (!this.frustum.intersectsSphere(ball)) return 0;
     const square = this.parallel_m > 0 ? this.parallel_m ** 2 : this.camera.position.distanceToSquared(ball.center) - ball.radius ** 2;
     const radius_px = (ball.radius * this.focal_px) / Math.sqrt(Math.max(1e-6, square));
-    return Math.min(this.screen_px, Math.PI * radius_px ** 2);
+    return Math.min(this.screen_px, Math.max(1, Math.PI * radius_px ** 2));
   }
 }

@@ -16,14 +16,17 @@ import * as shaders from "./shaders.ts";
 ColorManagement.enabled = false;
 
 type Rgb = [number, number, number];
-/** If a picture waits longer for the ones before it while the view moves, it has fewer points. */
+/** If the browser can draw again only after longer while the view moves, the next picture has fewer points. */
 const SLOW_MS = 45;
 const QUICK_MS = 20;
-/** So many quick pictures in a row are followed by one with more points: the browser queues two on the graphics card. */
+/** After so many quick pictures in a row one has more points: the browser queues two on the graphics card. */
 const QUICK_ONES = 3;
-/** The view rests after so long without a move, and so many times the longest wait: moves wait for pictures, too. */
+/** The view rests after so long without a move, and so many times the longest picture up to a limit: moves wait for pictures, too. */
 const REST_MS = 180;
-const REST_WAITS = 2.5;
+const REST_PICTURES = 2.5;
+const MOST_REST_MS = 2_000;
+/** Pictures after a rest that wait for the whole one. */
+const WAITING = 3;
 /** Points of a picture of a moving view: the first ones, and the limits. */
 const FIRST_BUDGET = 1e6;
 const LEAST_BUDGET = 1e5;
@@ -78,9 +81,9 @@ export class Stage {
   private rest = 0;
   private moving = false;
   private budget = FIRST_BUDGET;
-  private asked_ms = 0;
   private quick = 0;
   private longest_ms = 0;
+  private waiting = 0;
 
   constructor(private readonly canvas: HTMLCanvasElement) {
     this.renderer = new WebGLRenderer({ canvas, antialias: false, powerPreference: "high-performance" });
@@ -213,6 +216,7 @@ export class Stage {
 
   /** The picture as it is now. */
   picture(): HTMLCanvasElement {
+    this.moving = false;
     this.render();
     return this.canvas;
   }
@@ -285,12 +289,11 @@ export class Stage {
 
   /** Schedules a picture. */
   draw(): void {
-    if (this.frame !== 0) return;
-    this.asked_ms = performance.now();
-    this.frame = requestAnimationFrame(() => this.render());
+    if (this.frame === 0) this.frame = requestAnimationFrame(() => this.render());
   }
 
   private moved(): void {
+    if (!this.moving) this.waiting = WAITING;
     this.moving = true;
     this.wait_for_rest();
     this.draw();
@@ -302,8 +305,9 @@ export class Stage {
       // More moves may wait for this picture.
       if (this.frame !== 0) return this.wait_for_rest();
       this.moving = false;
+      this.longest_ms = 0;
       this.draw();
-    }, Math.max(REST_MS, REST_WAITS * this.longest_ms));
+    }, Math.max(REST_MS, Math.min(MOST_REST_MS, REST_PICTURES * this.longest_ms)));
   }
 
   private resize(): void {
@@ -321,7 +325,6 @@ export class Stage {
 
   private render(): void {
     this.frame = 0;
-    this.adapt();
     this.prepare();
     const size = this.renderer.getDrawingBufferSize(new Vector2());
     this.detail(this.moving ? new Eye(this.camera, size.y, this.orbit.parallel ? this.orbit.pose.distance_m : 0) : null, this.budget);
@@ -336,6 +339,8 @@ export class Stage {
     this.renderer.setRenderTarget(null);
     this.renderer.render(this.screen, this.flat);
     this.drawn();
+    const begun_ms = performance.now();
+    if (this.moving) requestAnimationFrame(() => this.adapt(performance.now() - begun_ms));
   }
 
   /** Passes the camera to the shaders. */
@@ -347,14 +352,19 @@ export class Stage {
     for (const material of [this.points, this.shade]) (material.uniforms["parallel_m"] as { value: number }).value = parallel ? pose.distance_m : 0;
   }
 
-  /** Draws fewer points while pictures wait, more while they do not. */
-  private adapt(): void {
-    const waited_ms = performance.now() - this.asked_ms;
+  /** Draws fewer points if the browser could draw again only after long, more if soon. */
+  private adapt(took_ms: number): void {
     if (!this.moving) return;
-    this.longest_ms = Math.max(waited_ms, 0.8 * this.longest_ms);
-    this.quick = waited_ms < QUICK_MS ? this.quick + 1 : 0;
-    if (waited_ms > SLOW_MS) this.budget = Math.max(LEAST_BUDGET, this.budget * Math.min(1 / 1.6, Math.max(1 / 8, SLOW_MS / waited_ms)));
-    else if (this.quick >= QUICK_ONES) this.budget = Math.min(MOST_BUDGET, this.budget * 1.15);
+    if (this.waiting > 0) {
+      this.waiting -= 1;
+      return;
+    }
+    this.longest_ms = Math.max(took_ms, 0.8 * this.longest_ms);
+    this.quick = took_ms < QUICK_MS ? this.quick + 1 : 0;
+    if (took_ms > SLOW_MS) this.budget = Math.max(LEAST_BUDGET, this.budget * Math.min(1 / 1.6, Math.max(1 / 8, SLOW_MS / took_ms)));
+    if (this.quick < QUICK_ONES) return;
+    this.quick = 0;
+    this.budget = Math.min(MOST_BUDGET, this.budget * 1.5);
   }
 }
 

@@ -3,35 +3,61 @@
 //! On a quiet network, whose least delays hardly vary from window to window and whose packets are
 //! usually hardly later than the least delayed ones, jumps from 0.1 ms on count.
 
-use super::{SMALL_WINDOW, SMALLEST_OF_HOST_NS};
+use super::{MAX_LOST, SMALL_WINDOW, SMALLEST_OF_HOST_NS, steps};
+use crate::clock::Arrival;
 
 /// The smallest jump on a quiet network: steps by 0.1 ms, less the drift that is not known.
 const SMALLEST_ON_QUIET_NS: i64 = 75_000;
 /// Spreads of the least delays that a jump must exceed.
 pub(super) const MIN_SPREADS: i64 = 3;
+/// The same without anything that confirms it: the spread is a median, about two thirds of the
+/// standard deviation of normal ones.
+const CERTAIN_SPREADS: i64 = 6;
 /// Windows that show the spread of the least delays, and the packets of one in a short recording.
 const MIN_SPREAD_WINDOWS: usize = 8;
 const SHORT_WINDOW: usize = 64;
 
-/// The offsets without the mean drift of the clocks, and the smallest jump that is no chance: the
-/// least delays of windows of packets vary by less.
-pub(super) fn without_drift(offsets: &[i64]) -> (Vec<i64>, i64) {
-    let windows = [SMALL_WINDOW, SMALL_WINDOW / 2, SHORT_WINDOW];
-    let found = windows
-        .into_iter()
-        .find_map(|window| Some((window, spread(offsets, window)?)));
-    let Some((window, (drift, spread))) = found else {
-        return (offsets.to_vec(), SMALLEST_OF_HOST_NS);
-    };
-    let smallest = (MIN_SPREADS.saturating_mul(spread))
-        .max(usual_excess(offsets))
-        .clamp(SMALLEST_ON_QUIET_NS, SMALLEST_OF_HOST_NS);
-    let per_packet = drift as f64 / window as f64;
-    let level = offsets
-        .iter()
-        .enumerate()
-        .map(|(at, offset)| offset.saturating_sub((at as f64 * per_packet) as i64));
-    (level.collect(), smallest)
+/// The delays without drift, and how small a jump of them may be.
+pub(super) struct Level {
+    /// The offsets without the mean drift of the clocks.
+    pub offsets: Vec<i64>,
+    /// The smallest jump to look for, if something else confirms it.
+    pub smallest_ns: i64,
+    /// The smallest jump that is no chance by itself.
+    pub certain_ns: i64,
+}
+
+impl Level {
+    /// Of packets with these offsets.
+    pub(super) fn new(arrivals: &[Arrival], offsets: &[i64], spacing_ns: i64) -> Self {
+        let windows = [SMALL_WINDOW, SMALL_WINDOW / 2, SHORT_WINDOW];
+        let found = windows
+            .into_iter()
+            .find_map(|window| Some((window, spread(offsets, window)?)));
+        let Some((window, (drift, spread))) = found else {
+            return Self {
+                offsets: offsets.to_vec(),
+                smallest_ns: SMALLEST_OF_HOST_NS,
+                certain_ns: i64::MAX,
+            };
+        };
+        let quiet = SMALLEST_ON_QUIET_NS.max(usual_excess(offsets));
+        let spreads = |count: i64| count.saturating_mul(spread).max(quiet);
+        // Drift goes on while packets are lost, but not while the lidar's clock is set.
+        let longest_ns = MAX_LOST.saturating_mul(spacing_ns);
+        let slope = drift as f64 / (window as f64 * spacing_ns.max(1) as f64);
+        let mut elapsed_ns = 0;
+        let level = offsets.iter().enumerate().map(|(at, offset)| {
+            let step_ns = steps(arrivals, at).map_or(0, |(device, _)| device.as_nanos());
+            elapsed_ns += step_ns.clamp(0, longest_ns);
+            offset.saturating_sub((elapsed_ns as f64 * slope) as i64)
+        });
+        Self {
+            offsets: level.collect(),
+            smallest_ns: spreads(MIN_SPREADS).min(SMALLEST_OF_HOST_NS),
+            certain_ns: spreads(CERTAIN_SPREADS),
+        }
+    }
 }
 
 /// By how much a packet is later than the least delayed of its window: the median.
