@@ -14,8 +14,8 @@
 //! from 1 ms to 10 ms are found where neither device was recorded for half a second, as on a host
 //! that sleeps, and where the samples show them: by the drive's own clock (`drive_clock`), or by
 //! the motion of the axis (`motion`). On a quiet network these show steps from 0.1 ms on. Where
-//! nothing shows the cause, the change of the delay is reported. Others, and steps undone within six seconds,
-//! are not found; the clock's bound contains all of them. `lidar` unwraps hours.
+//! nothing shows the cause, the change of the delay is reported. Others, and steps undone within
+//! six seconds, are not found; the clock's bound contains all of them. `lidar` unwraps hours.
 
 mod drive_clock;
 mod jumps;
@@ -80,9 +80,9 @@ impl fmt::Display for ClockStep {
     }
 }
 
-/// A sudden and lasting change of the packets' delay of which nothing shows the cause: the network's
-/// delay, or a step of the host's clock that is too small for the samples. The clock's bound
-/// contains it.
+/// A sudden and lasting change of the packets' delay of which nothing shows the cause: the
+/// network's delay, or a step of the host's clock that is too small for the samples. The clock's
+/// bound contains it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct DelayChange {

@@ -20,7 +20,7 @@ use units::Span;
 
 use crate::clock::Arrival;
 pub(super) use grid::shifted;
-use quiet::Level;
+use quiet::{Level, certain};
 
 /// The smallest jump to look for.
 pub(crate) const LEAST: Span = Span::from_millis(10);
@@ -31,8 +31,6 @@ const SMALLEST_NS: i64 = 90_000;
 const MIN_IRREGULAR_NS: i64 = 20_000;
 /// Packets on either side that confirm a small jump.
 const SMALL_WINDOW: usize = 256;
-/// Packets on either side within which a sudden jump happens.
-const SUDDEN_WINDOW: usize = 48;
 /// Shortest silence of a host that slept.
 const SILENCE: Span = Span::from_millis(500);
 /// The smallest jump of the host's clock to look for: the delays of most networks vary by less.
@@ -393,43 +391,6 @@ impl JumpReport {
         let reordered = device_ns <= 0 && count <= NEAR as i64;
         (ordered || reordered) && off <= QUANTUM_NS + count * 10
     }
-}
-
-/// Where and by how much the delays jump near a jump that is no chance and happens at once, between
-/// levels on both sides.
-fn certain(offsets: &[i64], jump: &Jump, certain_ns: i64) -> Option<Regular> {
-    let rise = |at: usize, window: usize, level: fn(&[i64]) -> Option<i64>| {
-        let before = offsets.get(at.checked_sub(window)?..at)?;
-        let after = offsets.get(at..at + window)?;
-        Some(level(after)?.saturating_sub(level(before)?))
-    };
-    let sign = jump.by.as_nanos().signum();
-    let most = |place: usize, within: usize, window: usize, level| {
-        let near = place.saturating_sub(within)..=place + within;
-        let rises = near.filter_map(|at| Some((at, rise(at, window, level)?)));
-        rises.max_by_key(|(_, by)| by * sign)
-    };
-    // Medians jump most at the place itself, least delays around it.
-    let (at, usual) = most(jump.at, SUDDEN_WINDOW, SUDDEN_WINDOW, median)?;
-    let (_, by) = most(at, NEAR, SMALL_WINDOW, least)?;
-    let (_, at_once) = most(at, NEAR, SUDDEN_WINDOW, least)?;
-    // A backlog that is made up has a least delay that falls at once, too, but no level.
-    let is_alike = |rise: i64| (rise - by).abs() < by.abs() * 3 / 10;
-    let is_certain = by.abs() >= certain_ns && is_alike(usual) && is_alike(at_once);
-    is_certain.then_some(Regular::Certain {
-        at,
-        by: Span::from_nanos(by),
-    })
-}
-
-fn least(offsets: &[i64]) -> Option<i64> {
-    offsets.iter().min().copied()
-}
-
-fn median(offsets: &[i64]) -> Option<i64> {
-    let mut sorted = offsets.to_vec();
-    sorted.sort_unstable();
-    sorted.get(sorted.len() / 2).copied()
 }
 
 /// Whether a spacing occurs in other places too, within the tolerance.

@@ -3,7 +3,9 @@
 //! On a quiet network, whose least delays hardly vary from window to window and whose packets are
 //! usually hardly later than the least delayed ones, jumps from 0.1 ms on count.
 
-use super::{MAX_LOST, SMALL_WINDOW, SMALLEST_OF_HOST_NS, steps};
+use units::Span;
+
+use super::{Jump, MAX_LOST, NEAR, Regular, SMALL_WINDOW, SMALLEST_OF_HOST_NS, steps};
 use crate::clock::Arrival;
 
 /// The smallest jump on a quiet network: steps by 0.1 ms, less the drift that is not known.
@@ -16,6 +18,8 @@ const CERTAIN_SPREADS: i64 = 6;
 /// Windows that show the spread of the least delays, and the packets of one in a short recording.
 const MIN_SPREAD_WINDOWS: usize = 8;
 const SHORT_WINDOW: usize = 64;
+/// Packets on either side within which a sudden jump happens.
+const SUDDEN_WINDOW: usize = 48;
 
 /// The delays without drift, and how small a jump of them may be.
 pub(super) struct Level {
@@ -58,6 +62,43 @@ impl Level {
             certain_ns: spreads(CERTAIN_SPREADS),
         }
     }
+}
+
+/// Where and by how much the delays jump near a jump that is no chance and happens at once, between
+/// levels on both sides.
+pub(super) fn certain(offsets: &[i64], jump: &Jump, certain_ns: i64) -> Option<Regular> {
+    let rise = |at: usize, window: usize, level: fn(&[i64]) -> Option<i64>| {
+        let before = offsets.get(at.checked_sub(window)?..at)?;
+        let after = offsets.get(at..at + window)?;
+        Some(level(after)?.saturating_sub(level(before)?))
+    };
+    let sign = jump.by.as_nanos().signum();
+    let most = |place: usize, within: usize, window: usize, level| {
+        let near = place.saturating_sub(within)..=place + within;
+        let rises = near.filter_map(|at| Some((at, rise(at, window, level)?)));
+        rises.max_by_key(|(_, by)| by * sign)
+    };
+    // Medians jump most at the place itself, least delays around it.
+    let (at, usual) = most(jump.at, SUDDEN_WINDOW, SUDDEN_WINDOW, median)?;
+    let (_, by) = most(at, NEAR, SMALL_WINDOW, least)?;
+    let (_, at_once) = most(at, NEAR, SUDDEN_WINDOW, least)?;
+    // A backlog that is made up has a least delay that falls at once, too, but no level.
+    let is_alike = |rise: i64| (rise - by).abs() < by.abs() * 3 / 10;
+    let is_certain = by.abs() >= certain_ns && is_alike(usual) && is_alike(at_once);
+    is_certain.then_some(Regular::Certain {
+        at,
+        by: Span::from_nanos(by),
+    })
+}
+
+fn least(offsets: &[i64]) -> Option<i64> {
+    offsets.iter().min().copied()
+}
+
+fn median(offsets: &[i64]) -> Option<i64> {
+    let mut sorted = offsets.to_vec();
+    sorted.sort_unstable();
+    sorted.get(sorted.len() / 2).copied()
 }
 
 /// By how much a packet is later than the least delayed of its window: the median.
