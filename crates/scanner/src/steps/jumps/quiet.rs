@@ -48,12 +48,13 @@ impl Level {
         let quiet = SMALLEST_ON_QUIET_NS.max(usual_excess(offsets));
         let spreads = |count: i64| count.saturating_mul(spread).max(quiet);
         // Drift goes on while packets are lost, but not while the lidar's clock is set.
+        let spacing_ns = spacing_ns.max(1);
         let longest_ns = MAX_LOST.saturating_mul(spacing_ns);
-        let slope = drift as f64 / (window as f64 * spacing_ns.max(1) as f64);
-        let mut elapsed_ns = 0;
+        let slope = drift as f64 / (window as f64 * spacing_ns as f64);
+        let mut elapsed_ns = 0_i64;
         let level = offsets.iter().enumerate().map(|(at, offset)| {
             let step_ns = steps(arrivals, at).map_or(0, |(device, _)| device.as_nanos());
-            elapsed_ns += step_ns.clamp(0, longest_ns);
+            elapsed_ns = elapsed_ns.saturating_add(step_ns.clamp(0, longest_ns));
             offset.saturating_sub((elapsed_ns as f64 * slope) as i64)
         });
         Self {
@@ -76,15 +77,16 @@ pub(super) fn certain(offsets: &[i64], jump: &Jump, certain_ns: i64) -> Option<R
     let most = |place: usize, within: usize, window: usize, level| {
         let near = place.saturating_sub(within)..=place + within;
         let rises = near.filter_map(|at| Some((at, rise(at, window, level)?)));
-        rises.max_by_key(|(_, by)| by * sign)
+        rises.max_by_key(|(_, by)| by.saturating_mul(sign))
     };
     // Medians jump most at the place itself, least delays around it.
     let (at, usual) = most(jump.at, SUDDEN_WINDOW, SUDDEN_WINDOW, median)?;
     let (_, by) = most(at, NEAR, SMALL_WINDOW, least)?;
     let (_, at_once) = most(at, NEAR, SUDDEN_WINDOW, least)?;
     // A backlog that is made up has a least delay that falls at once, too, but no level.
-    let is_alike = |rise: i64| (rise - by).abs() < by.abs() * 3 / 10;
-    let is_certain = by.abs() >= certain_ns && is_alike(usual) && is_alike(at_once);
+    let size = by.saturating_abs();
+    let is_alike = |rise: i64| rise.saturating_sub(by).saturating_abs() < size / 10 * 3;
+    let is_certain = size >= certain_ns && is_alike(usual) && is_alike(at_once);
     is_certain.then_some(Regular::Certain {
         at,
         by: Span::from_nanos(by),

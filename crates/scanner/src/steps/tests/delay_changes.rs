@@ -102,6 +102,21 @@ fn lost_packets_and_earlier_steps_do_not_move_a_change() {
     assert_changed_once(&timeline, 20.0, 300_000);
 }
 
+/// Damaged stamps: the lidar's clock runs backwards, or leaps by half an hour with each packet.
+/// There is no spacing to go by then, and no change is certain.
+#[test]
+fn impossible_stamps_are_no_changes() {
+    for leap_ns in [-2 * PACKET_NS, 1_700 * S, -1_700 * S] {
+        let mut recorded = Recorded::new(3, Some(2_500));
+        for (i, packet) in (0_i64..).zip(&mut recorded.packets) {
+            let leaps = if leap_ns.abs() > S { i % 2 } else { i };
+            packet.device = Stamp::from_nanos(EPOCH + i * PACKET_NS + leaps * leap_ns);
+        }
+        let changes = recorded.stepped(&[]).timeline().delay_changes;
+        assert_eq!(changes, [], "{leap_ns} ns");
+    }
+}
+
 /// In a recording of a second, too.
 #[test]
 fn a_small_step_in_a_short_recording_changes_the_delay() {
