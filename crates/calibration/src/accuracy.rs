@@ -127,7 +127,7 @@ pub fn study(request: &StudyRequest<'_>) -> Result<AccuracyStudy, CalibrationRef
         });
         let (rays, incidences): (Vec<_>, Vec<Incidence>) = rays.unzip();
         let cut = CUT_SD * patches.scale;
-        let Some(fit) = frame.fit(&incidences, cut) else {
+        let Some(fit) = frame.fit(&incidences, patch.coefficients, cut) else {
             continue;
         };
         let freedom = fit.used.saturating_sub(COEFFICIENTS).max(1) as f64;

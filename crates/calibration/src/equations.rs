@@ -187,7 +187,7 @@ impl Equations {
             frame.incidence(&ray, weight)
         }));
         let cut = CUT_SD * scale;
-        let Some(fit) = frame.fit(incidences, cut) else {
+        let Some(fit) = frame.fit(incidences, patch.coefficients, cut) else {
             return;
         };
         work.mixed.fill(0.0);

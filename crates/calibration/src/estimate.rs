@@ -2,8 +2,6 @@
 
 mod stage_two;
 
-use std::ops::Range;
-
 use cloud::mount::Mount;
 
 use crate::calibration::{
@@ -37,8 +35,6 @@ pub struct CalibrationRequest<'a> {
 /// Steps of Gauss-Newton on the same elements: they are a guess until the parameters fit.
 const COARSE_STEPS: usize = 2;
 const FINE_STEPS: usize = 1;
-/// Steps without some parameters, of which the others take the place.
-const RATIO_STEPS: usize = 3;
 /// The loops end when nothing moves by more than this, standard deviations.
 const SETTLED_SD: f64 = 0.3;
 /// Results of two starts agree within this many standard deviations, and the last loop moves
@@ -59,15 +55,23 @@ const DRIFT_SD: f64 = 8.0;
 const DRIFT_MM_S: f64 = 1.0;
 /// Distance at which a rotating base moves points, metres.
 const DRIFT_AT_M: f64 = 20.0;
+/// How a base that stands may creep, one standard deviation: 72 mm in an hour.
+const CREEP_M_S: f64 = 2e-5;
+/// A base stands if chi-squared of its six drifts is at most this: it is larger for 1 % of the
+/// bases that stand.
+const STANDING: f64 = 16.8;
 
 /// A solution on the elements of the last loop.
 struct Solution {
     values: Vec<f64>,
     covariance: Matrix,
+    /// The last equations, and the values before their step.
     equations: Equations,
+    before: Vec<f64>,
     loops: usize,
     moves: Vec<f64>,
     noise_m: Vec<f64>,
+    priors: Vec<f64>,
 }
 
 /// One calibration in progress.
@@ -76,7 +80,8 @@ pub(crate) struct Estimator<'a> {
     pub layout: Layout,
     fixed: Fixed,
     parameters: Vec<Parameter>,
-    is_fixed: Vec<bool>,
+    /// Standard deviations before the scan, where any base may move; 0 for fixed parameters.
+    pub priors: Vec<f64>,
     pub start: Vec<f64>,
     noise_m: Vec<f64>,
 }
@@ -109,9 +114,9 @@ pub fn calibrate(
         });
     }
     let before = estimator.residuals(&estimator.start)?;
-    let mut solution = estimator.solve(&estimator.start, None, progress)?;
-    estimator.judge(&solution)?;
-    let second = estimator.solve(&estimator.second_start(), Some(&solution), progress)?;
+    let mut solution = estimator.first(progress)?;
+    let second = estimator.second_start();
+    let second = estimator.solve(&second, &solution.priors, Some(&solution), progress)?;
     estimator.compare(&solution, &second.values)?;
     estimator.flatten(&mut solution)?;
     Ok(estimator.result(solution, before))
@@ -131,15 +136,13 @@ impl<'a> Estimator<'a> {
         start[ROTATION_Z] = about_z;
         start[POSITION_X] = x;
         start[POSITION_Z] = z;
-        let is_fixed = parameters
-            .iter()
-            .map(|p| {
-                request
-                    .fixed
-                    .iter()
-                    .any(|name| p.name.starts_with(name.as_str()))
-            })
-            .collect();
+        let is_fixed = |p: &Parameter| {
+            let mut names = request.fixed.iter();
+            names.any(|name| p.name.starts_with(name.as_str()))
+        };
+        let priors = parameters.iter();
+        let priors = priors.map(|p| if is_fixed(p) { 0.0 } else { p.prior_sd });
+        let priors = priors.collect();
         Self {
             request,
             layout,
@@ -150,7 +153,7 @@ impl<'a> Estimator<'a> {
                 lasers: request.lasers.to_vec(),
             },
             parameters,
-            is_fixed,
+            priors,
             start,
             noise_m: noise_of_all_m(request.scans, request.lasers.len()),
         }
@@ -160,7 +163,7 @@ impl<'a> Estimator<'a> {
     fn second_start(&self) -> Vec<f64> {
         let mut values = self.start.clone();
         for (index, off) in SECOND_START {
-            if !self.is_fixed[index] {
+            if self.priors[index] > 0.0 {
                 values[index] += off;
             }
         }
@@ -197,10 +200,49 @@ impl<'a> Estimator<'a> {
         Ok(self.equations(&patches, values, &self.noise_m))
     }
 
+    /// The solution from the first start: of bases that stand, where the residuals do not say that
+    /// they move. A drift that no base has would be a part of delay, scale and elevations.
+    fn first(
+        &self,
+        progress: &mut dyn FnMut(usize, f64) -> bool,
+    ) -> Result<Solution, CalibrationRefusal> {
+        let mut priors = self.priors.clone();
+        for log in 0..self.layout.logs {
+            let first = self.layout.drift(log);
+            for (axis, prior) in priors[first..first + 6].iter_mut().enumerate() {
+                let lever = if axis < 3 { 1.0 } else { DRIFT_AT_M };
+                *prior = prior.min(CREEP_M_S / lever);
+            }
+        }
+        let standing = self.solve(&self.start, &priors, None, progress)?;
+        let logs = 0..self.layout.logs;
+        let moved = logs.map(|log| self.moved(&standing, log));
+        let moved: Vec<f64> = moved.collect::<Result<_, _>>()?;
+        if moved.iter().all(|chi2| *chi2 <= STANDING) {
+            self.settled(&standing)?;
+            self.fits(&standing)?;
+            return Ok(standing);
+        }
+        for log in (0..moved.len()).filter(|&log| moved[log] > STANDING) {
+            let drift = self.layout.drift(log)..self.layout.drift(log) + 6;
+            priors[drift.clone()].copy_from_slice(&self.priors[drift]);
+        }
+        let solution = self.solve(&self.start, &priors, None, progress)?;
+        self.settled(&solution)?;
+        for (log, chi2) in moved.into_iter().enumerate() {
+            if chi2 > DRIFT_SD * DRIFT_SD {
+                self.stands(&solution, log)?;
+            }
+        }
+        self.fits(&solution)?;
+        Ok(solution)
+    }
+
     /// Loops from `start` until nothing moves, or until the values agree with another solution.
     fn solve(
         &self,
         start: &[f64],
+        priors: &[f64],
         other: Option<&Solution>,
         progress: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<Solution, CalibrationRefusal> {
@@ -217,13 +259,15 @@ impl<'a> Estimator<'a> {
             }
             let begin = values.clone();
             let mut last = None;
+            let mut before = Vec::new();
             let steps = match patches.scale > 1.0 {
                 true => COARSE_STEPS,
                 false => FINE_STEPS,
             };
             for _ in 0..steps {
                 let equations = self.equations(&patches, &values, &noise_m);
-                let (step, covariance) = self.step(&equations, &values)?;
+                let (step, covariance) = self.step(&equations, &values, priors)?;
+                before.clone_from(&values);
                 for (value, step) in values.iter_mut().zip(step) {
                     *value += step;
                 }
@@ -253,9 +297,11 @@ impl<'a> Estimator<'a> {
                     values,
                     covariance,
                     equations,
+                    before,
                     loops,
                     moves,
                     noise_m,
+                    priors: priors.to_vec(),
                 });
             }
         }
@@ -268,30 +314,22 @@ impl<'a> Estimator<'a> {
         &self,
         equations: &Equations,
         values: &[f64],
-    ) -> Result<(Vec<f64>, Matrix), CalibrationRefusal> {
-        self.step_of(equations, values, &self.is_fixed)
-    }
-
-    /// The same with other parameters fixed.
-    fn step_of(
-        &self,
-        equations: &Equations,
-        values: &[f64],
-        is_fixed: &[bool],
+        priors: &[f64],
     ) -> Result<(Vec<f64>, Matrix), CalibrationRefusal> {
         let size = self.layout.len();
         // In units of the priors, which keeps the matrix well scaled.
-        let unit = |i: usize| self.parameters[i].prior_sd;
+        let unit = |i: usize| priors[i];
+        let is_fixed = |i: usize| priors[i] == 0.0;
         let mut hessian = Matrix::zero(size);
         let mut scatter = Matrix::zero(size);
         let mut right = vec![0.0; size];
         for i in 0..size {
-            if is_fixed[i] {
+            if is_fixed(i) {
                 *hessian.at_mut(i, i) = 1.0;
                 continue;
             }
             right[i] = -equations.gradient[i] * unit(i) - (values[i] - self.start[i]) / unit(i);
-            for j in (0..size).filter(|&j| !is_fixed[j]) {
+            for j in (0..size).filter(|&j| !is_fixed(j)) {
                 let units = unit(i) * unit(j);
                 *hessian.at_mut(i, j) = equations.hessian.at(i, j) * units;
                 *scatter.at_mut(i, j) = equations.scatter.at(i, j) * units;
@@ -301,11 +339,11 @@ impl<'a> Estimator<'a> {
         }
         let azimuths = self.layout.azimuths();
         let mean: f64 = values[azimuths.clone()].iter().sum();
-        for i in azimuths.clone().filter(|&i| !is_fixed[i]) {
+        for i in azimuths.clone().filter(|&i| !is_fixed(i)) {
             let count = self.layout.lasers as f64;
             let weight = 1.0 / (GAUGE_SD_RAD * count).powi(2);
             right[i] -= weight * mean * unit(i);
-            for j in azimuths.clone().filter(|&j| !is_fixed[j]) {
+            for j in azimuths.clone().filter(|&j| !is_fixed(j)) {
                 *hessian.at_mut(i, j) += weight * unit(i) * unit(j);
             }
         }
@@ -322,7 +360,7 @@ impl<'a> Estimator<'a> {
         for i in 0..size {
             for j in 0..size {
                 let grow = |i: usize| (robust[i] / inverse.at(i, i)).max(1.0).sqrt();
-                let free = !is_fixed[i] && !is_fixed[j];
+                let free = !is_fixed(i) && !is_fixed(j);
                 let units = if free {
                     unit(i) * unit(j) * grow(i) * grow(j)
                 } else {
@@ -337,34 +375,41 @@ impl<'a> Estimator<'a> {
     /// Whether a parameter must settle and agree. A drift along all surfaces, as over a bare floor,
     /// moves with the noise of their normals, and is not part of the result.
     fn is_compared(&self, index: usize) -> bool {
-        !self.is_fixed[index] && index < self.layout.drift(0)
+        self.priors[index] > 0.0 && index < self.layout.drift(0)
     }
 
-    /// Refuses what the scans do not support.
-    fn judge(&self, solution: &Solution) -> Result<(), CalibrationRefusal> {
+    /// Refuses parameters that still move.
+    fn settled(&self, solution: &Solution) -> Result<(), CalibrationRefusal> {
         let moves = solution.moves.iter().copied().enumerate();
-        if let Some((index, moves_sd)) = moves.max_by(|a, b| a.1.total_cmp(&b.1))
-            && moves_sd >= STARTS_AGREE_SD
-        {
-            let name = self.parameters[index].name.clone();
-            return Err(CalibrationRefusal::NotSettled { name, moves_sd });
+        match moves.max_by(|a, b| a.1.total_cmp(&b.1)) {
+            Some((index, moves_sd)) if moves_sd >= STARTS_AGREE_SD => {
+                Err(CalibrationRefusal::NotSettled {
+                    name: self.parameters[index].name.clone(),
+                    moves_sd,
+                })
+            }
+            _ => Ok(()),
         }
-        for log in 0..self.layout.logs {
-            let first = self.layout.drift(log);
-            for index in first..first + 6 {
-                let sd = solution.covariance.at(index, index).sqrt();
-                let value = solution.values[index].abs();
-                let lever = if index < first + 3 { 1.0 } else { DRIFT_AT_M };
-                let (mm_s, sds) = (value * lever * 1e3, value / sd);
-                if sds > DRIFT_SD
-                    && mm_s > DRIFT_MM_S
-                    && self.is_needed(solution, first..first + 6)?
-                {
-                    let log = log + 1;
-                    return Err(CalibrationRefusal::Drift { log, mm_s, sds });
-                }
+    }
+
+    /// Refuses a base that moves.
+    fn stands(&self, solution: &Solution, log: usize) -> Result<(), CalibrationRefusal> {
+        let first = self.layout.drift(log);
+        for index in first..first + 6 {
+            let sd = solution.covariance.at(index, index).sqrt();
+            let value = solution.values[index].abs();
+            let lever = if index < first + 3 { 1.0 } else { DRIFT_AT_M };
+            let (mm_s, sds) = (value * lever * 1e3, value / sd);
+            if sds > DRIFT_SD && mm_s > DRIFT_MM_S {
+                let log = log + 1;
+                return Err(CalibrationRefusal::Drift { log, mm_s, sds });
             }
         }
+        Ok(())
+    }
+
+    /// Refuses residuals that the model does not describe.
+    fn fits(&self, solution: &Solution) -> Result<(), CalibrationRefusal> {
         let chi2 = self.chi2(&solution.equations);
         match (CHI2[0]..=CHI2[1]).contains(&chi2) {
             true => Ok(()),
@@ -372,32 +417,27 @@ impl<'a> Estimator<'a> {
         }
     }
 
-    /// Whether residuals are worse without some parameters, by the likelihood ratio. A drift along
-    /// all surfaces, as over a bare floor, follows the noise of their normals, which its standard
-    /// deviation does not contain: without it the residuals are as good.
-    fn is_needed(
-        &self,
-        solution: &Solution,
-        some: Range<usize>,
-    ) -> Result<bool, CalibrationRefusal> {
-        let noise_m = &solution.noise_m;
-        let patches = self.patches(&solution.values, noise_m)?;
-        let squares = |without: Range<usize>| {
-            let (mut values, mut is_fixed) = (solution.values.clone(), self.is_fixed.clone());
-            for index in without {
-                values[index] = self.start[index];
-                is_fixed[index] = true;
+    /// Chi-squared of the drift of a log that one step finds from a base that stands, where it may
+    /// be any (Wald's test). Over a bare floor it stays small, though steps that follow one another
+    /// drift along the floor with the noise of the elements' normals.
+    fn moved(&self, standing: &Solution, log: usize) -> Result<f64, CalibrationRefusal> {
+        let mut priors = standing.priors.clone();
+        let drift = self.layout.drift(log)..self.layout.drift(log) + 6;
+        priors[drift.clone()].copy_from_slice(&self.priors[drift.clone()]);
+        let free: Vec<usize> = drift.filter(|&index| priors[index] > 0.0).collect();
+        let (step, covariance) = self.step(&standing.equations, &standing.before, &priors)?;
+        let sd = |index: usize| covariance.at(index, index).sqrt();
+        let found = |index: usize| (standing.before[index] + step[index]) / sd(index);
+        let mut correlation = Matrix::zero(free.len());
+        for (i, &row) in free.iter().enumerate() {
+            for (j, &column) in free.iter().enumerate() {
+                *correlation.at_mut(i, j) = covariance.at(row, column) / (sd(row) * sd(column));
             }
-            for _ in 0..RATIO_STEPS {
-                let equations = self.equations(&patches, &values, noise_m);
-                let (step, _) = self.step_of(&equations, &values, &is_fixed)?;
-                for (value, step) in values.iter_mut().zip(step) {
-                    *value += step;
-                }
-            }
-            Ok(self.equations(&patches, &values, noise_m).squares)
-        };
-        Ok(squares(some)? - squares(0..0)? > DRIFT_SD * DRIFT_SD)
+        }
+        let factor = Cholesky::new(&correlation).ok_or(CalibrationRefusal::Singular)?;
+        let mut root: Vec<f64> = free.into_iter().map(found).collect();
+        factor.forward(&mut root);
+        Ok(root.iter().map(|part| part * part).sum())
     }
 
     /// Refuses results that depend on the start.
@@ -420,7 +460,7 @@ impl<'a> Estimator<'a> {
     }
 
     fn chi2(&self, equations: &Equations) -> f64 {
-        let free = self.is_fixed.iter().filter(|fixed| !**fixed).count() as f64;
+        let free = self.priors.iter().filter(|prior| **prior > 0.0).count() as f64;
         equations.squares / (equations.freedom - free).max(1.0)
     }
 
@@ -432,6 +472,8 @@ impl<'a> Estimator<'a> {
             loops,
             moves,
             noise_m,
+            priors,
+            ..
         } = solution;
         let size = values.len();
         let unit = |i: usize| self.parameters[i].si_per_unit;
@@ -457,7 +499,11 @@ impl<'a> Estimator<'a> {
                 name: p.name.clone(),
                 value: values[i] / unit(i),
                 sd: sd(i) / unit(i),
-                posterior_over_prior: sd(i) / p.prior_sd,
+                posterior_over_prior: if priors[i] > 0.0 {
+                    sd(i) / priors[i]
+                } else {
+                    0.0
+                },
                 correlation: correlation(i),
                 at_20_m: [values[i] - self.start[i], sd(i)].map(|error| error.abs() * p.m_at_20_m),
             });

@@ -3,7 +3,7 @@
 use crate::linear::{Vec3, apply};
 use crate::model::{ScannerModel, ShotRay};
 use crate::shots::{RangeShot, Scan, noise_m};
-use crate::surface::{Fit, Frame, Incidence, MIN_SHOTS};
+use crate::surface::{COEFFICIENTS, Coefficients, Fit, Frame, Incidence, MIN_SHOTS};
 
 /// Width of the voxels, metres. One that holds more than a smooth surface is divided once.
 const VOXEL_M: f64 = 0.5;
@@ -20,6 +20,8 @@ pub(crate) trait Weigh {
 pub(crate) struct SurfacePatch {
     pub log: usize,
     pub frame: Frame,
+    /// Those of all shots of its voxel.
+    pub coefficients: Coefficients,
     /// Indices of its shots.
     pub shots: Vec<u32>,
 }
@@ -154,7 +156,8 @@ impl VoxelShots {
     fn fit(&self, rays: &[ShotRay], weigh: &impl Weigh) -> Option<(Frame, Fit)> {
         let ends = self.shots.iter().map(|&shot| rays[shot as usize].end);
         let frame = Frame::of(ends, self.width_m / 2.0)?;
-        let fit = frame.fit(&self.incidences(&frame, rays, weigh), 1e3)?;
+        let incidences = self.incidences(&frame, rays, weigh);
+        let fit = frame.fit(&incidences, [0.0; COEFFICIENTS], 1e3)?;
         Some((frame, fit))
     }
 
@@ -206,6 +209,7 @@ impl VoxelShots {
         (shots.len() >= MIN_SHOTS).then_some(SurfacePatch {
             log: self.log,
             frame,
+            coefficients: fit.coefficients,
             shots,
         })
     }

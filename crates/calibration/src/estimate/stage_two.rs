@@ -12,7 +12,7 @@ impl Estimator<'_> {
     pub(super) fn flatten(&self, solution: &mut Solution) -> Result<(), CalibrationRefusal> {
         let size = self.layout.len();
         let ranges = self.layout.range(0)..self.layout.range(self.layout.lasers);
-        if ranges.clone().any(|index| self.is_fixed[index]) {
+        if ranges.clone().any(|index| self.priors[index] == 0.0) {
             return Ok(());
         }
         // Covariance of the mean range with every parameter, and its variance.

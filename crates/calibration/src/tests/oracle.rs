@@ -13,7 +13,7 @@ use crate::estimate::{CalibrationRequest, Estimator};
 use crate::model::ScannerModel;
 use crate::patches::{Patches, SurfacePatch, Weigh};
 use crate::shots::{NominalLaser, RangeShot, Scan};
-use crate::surface::{Frame, Incidence};
+use crate::surface::{COEFFICIENTS, Frame, Incidence};
 use crate::tests::{draws, fixed};
 
 /// Parameters in the order of the names that the estimator reports.
@@ -204,18 +204,24 @@ fn a_step_is_that_of_dense_equations_with_numeric_derivatives() {
                 .iter()
                 .map(|shot| frame.incidence(&ray(shot), weight(shot)))
                 .collect();
-            coefficients.extend(frame.fit(&incidences, 120.0).unwrap().coefficients);
+            let fit = frame.fit(&incidences, [0.0; COEFFICIENTS], 120.0).unwrap();
+            // The equations begin with these, too.
+            let again = frame.fit(&incidences, fit.coefficients, 120.0).unwrap();
+            coefficients.extend(again.coefficients);
             weights.extend(shots.iter().map(weight));
             patches.list.push(SurfacePatch {
                 log,
                 frame,
+                coefficients: fit.coefficients,
                 shots: shots.clone(),
             });
         }
     }
     let equations = Equations::new(&scans, &patches, layout, &model, &weigh);
     assert_eq!((equations.patches, equations.shots), (16, 1024));
-    let (step, _) = estimator.step(&equations, &values).unwrap();
+    let (step, _) = estimator
+        .step(&equations, &values, &estimator.priors)
+        .unwrap();
 
     let oracle = Oracle {
         lasers: fixed.lasers.clone(),

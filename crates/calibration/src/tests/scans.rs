@@ -224,6 +224,28 @@ fn a_moving_base_is_refused() {
     );
 }
 
+/// Below what is refused: fixed at 0 it would be a part of delay, scale and position.
+#[test]
+fn a_slow_drift_is_estimated() {
+    let mut truth = truth(&mut draws(8));
+    truth[LAYOUT.drift(0)] = 0.000_8;
+    let made = of(&points(&truth, room, 0.01, 2, 8), &[]).unwrap();
+    let found = made.parameter("drift_1_velocity_x_m_s").unwrap();
+    assert!(
+        (found.value - 0.000_8).abs() < 4.0 * found.sd && found.sd < 2e-4,
+        "{found:?}"
+    );
+}
+
+/// A drift that no scan shows would double the errors of delay.
+#[test]
+fn a_base_that_stands_is_known_to_stand() {
+    let truth = truth(&mut draws(8));
+    let made = of(&points(&truth, room, 0.01, 2, 8), &[]).unwrap();
+    let creep = made.parameter("drift_1_velocity_x_m_s").unwrap();
+    assert!(creep.value.abs() < 2e-5 && creep.sd < 2.1e-5, "{creep:?}");
+}
+
 /// A drift along the floor changes nothing that the lidar sees, and refuses nothing.
 #[test]
 fn a_bare_floor_is_accepted() {
