@@ -39,7 +39,7 @@ pub struct CloudJob {
     pub id: String,
     /// Accuracy of the cloud.
     pub accuracy: Accuracy,
-    /// The simulator's truth, where the devices were software.
+    /// The simulator's truth, where the devices were simulated.
     pub truth: Option<Truth>,
     /// Records lost on the way to the log.
     pub lost_records: u64,

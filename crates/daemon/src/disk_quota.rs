@@ -15,9 +15,10 @@ use crate::state::DaemonState;
 const RECORDS_RESERVE: u64 = 1 << 20;
 /// Bytes written between two checks of the disk.
 const CHECK_INTERVAL: u64 = 1 << 20;
-/// Most bytes of a point with all columns: as text, about 8 columns of 20 characters.
+/// Most bytes of a point with all 11 columns as text: 20 characters of its four longest, 10 of the
+/// others.
 const TEXT_ROW_BYTES: u64 = 160;
-/// The same in binary: 11 columns of at most 8 bytes, most of them shorter.
+/// The same in binary: at most 8 bytes a column, most of them shorter.
 const ROW_BYTES: u64 = 64;
 /// Most bytes of a file's header.
 const HEAD_BYTES: u64 = 64 << 10;

@@ -46,7 +46,7 @@ impl LocalService {
         interrupt: &Arc<AtomicBool>,
         environment: Environment,
     ) -> Result<Self, Failure> {
-        // Software devices belong to their command alone. A command that only reads ends at once,
+        // Simulated devices belong to their command alone. A command that only reads ends at once,
         // and others wait for the port.
         let socket = match task == LocalTask::Read || profile::simulated(&device) {
             true => None,

@@ -90,7 +90,7 @@ pub fn looking(device: &Device) -> Vec<PathBuf> {
 }
 
 /// Existing trusted sockets with these names in all socket folders. A port may be held by a process
-/// with another environment (sudo, systemd, cron); software devices belong to one environment.
+/// with another environment (sudo, systemd, cron); simulated devices belong to one environment.
 fn trusted(kind: DeviceKind, names: Vec<String>) -> Vec<PathBuf> {
     let mut folders = vec![folder(), PathBuf::from(SERVICE)];
     if kind != DeviceKind::Sim {

@@ -34,6 +34,7 @@ use engine::failure::{Failure, Kind};
 use engine::output::BufferedFile;
 use engine::reconstruct::replay::{self, Reconstruction};
 use engine::reconstruct::source::Source;
+use engine::service::scan_record::ScanRecord;
 
 /// Bytes that are read at once.
 const PIECE: usize = 256 << 10;
@@ -80,10 +81,11 @@ pub async fn cloud(
         && plain
         && let Ok(stored) = open(api.state.cloud(&id)).await?
     {
-        return Ok(send(stored, &id, "ply", permit, Some(&headers)));
+        return Ok(send(stored, &stem(&record), "ply", permit, Some(&headers)));
     }
     let making = Arc::clone(&api.making).try_acquire_owned();
     let making = making.map_err(|_| Refusal::too_many("clouds being made"))?;
+    let stem = stem(&record);
     let (points, state) = (record.points, Arc::clone(&api.state));
     let accuracy = record.accuracy();
     let mut fields = Fields::FILE;
@@ -112,7 +114,7 @@ pub async fn cloud(
     });
     let file = made.await.map_err(|_| defect())??;
     drop(client);
-    Ok(send(file, &id, format.extension(), permit, None))
+    Ok(send(file, &stem, format.extension(), permit, None))
 }
 
 /// The refusal of what needs a finished scan.
@@ -211,11 +213,11 @@ async fn stored(
     headers: &HeaderMap,
 ) -> Result<Response, Refusal> {
     let record = api.state.scans.record(id);
-    record.ok_or_else(|| Refusal::no_scan(id))?;
+    let stem = stem(&record.ok_or_else(|| Refusal::no_scan(id))?);
     let permit = downloading(api)?;
     let file = open(api.state.scans.place(id).join(name)).await?;
     let file = file.map_err(|_| Refusal::no_file(name))?;
-    Ok(send(file, id, extension, permit, Some(headers)))
+    Ok(send(file, &stem, extension, permit, Some(headers)))
 }
 
 fn downloading(api: &Api) -> Result<OwnedSemaphorePermit, Refusal> {
@@ -240,6 +242,12 @@ async fn open(path: PathBuf) -> Result<std::io::Result<OpenFile>, Refusal> {
     .await
 }
 
+/// Name of a scan's files without extension: the user's name and the id, which no two share.
+fn stem(record: &ScanRecord) -> String {
+    let name = record.name.as_deref().unwrap_or("velomotion");
+    format!("{name}-{}", record.id)
+}
+
 /// The header for a file of this name (RFC 6266): folders renamed by hand may have any.
 fn attachment(name: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
@@ -261,7 +269,7 @@ fn attachment(name: &str) -> String {
 /// the client may ask, by the headers of its request, for a part.
 pub(super) fn send(
     (mut file, metadata): OpenFile,
-    id: &str,
+    stem: &str,
     extension: &str,
     permit: OwnedSemaphorePermit,
     request_headers: Option<&HeaderMap>,
@@ -280,8 +288,10 @@ pub(super) fn send(
         _ => "application/octet-stream",
     };
     set(header::CONTENT_TYPE, content.to_owned());
-    let name = format!("velomotion-{id}.{extension}");
-    set(header::CONTENT_DISPOSITION, attachment(&name));
+    set(
+        header::CONTENT_DISPOSITION,
+        attachment(&format!("{stem}.{extension}")),
+    );
     // A token may protect it: only the client itself may keep it, and asks each time.
     let cache = request_headers.map_or("no-store", |_| "private, no-cache");
     set(header::CACHE_CONTROL, cache.to_owned());

@@ -273,7 +273,7 @@ async fn cloud_of(
         Ok::<_, std::io::Error>((file, metadata))
     });
     let opened = opened.await?.map_err(|_| no_cloud())?;
-    let name = index.to_string();
+    let name = format!("velomotion-{index}");
     Ok(download::send(opened, &name, "ply", permit, Some(headers)))
 }
 

@@ -34,6 +34,7 @@ const budget = (at_m) => ({ at_m, error_mm: { range: 9, range_step: 0.6, azimuth
 const statistics = {
   points: 243_311, of: "view", density: { bins: 3_120, mean: 77.98, sd: 41.2, empty: 3 }, gap_deg: { p50: 0.21, p95: 0.61, p99: 0.93, worst: 2.4 },
   ranges: Array.from({ length: 30 }, (_, i) => ({ from_m: i / 2, to_m: (i + 1) / 2, points: i < 3 ? 0 : Math.round(20_000 * Math.exp(-(((i - 11) / 6) ** 2))) })),
+  residuals: Array.from({ length: 28 }, (_, i) => ({ at_s: i / 10, delay_us: 18 + i % 3, most_delay_us: i === 11 ? 410 : 60, angle_rms_deg: 0.0007, most_angle_deg: 0.002 })),
   sd_mm: { p50: 9.1, p95: 10.4, p99: 12.8 }, budget: [2, 5, 10, 20, 50, 100].map(budget),
 };
 const sync = { clock_method: "hull", clock_residual_us: 18.4, clock_bound_us: 36.2, clock_drift_ppm: 12.02, angle_method: "profile", angle_rms_deg: 0.00071, angle_bound_deg: 0.0021 };

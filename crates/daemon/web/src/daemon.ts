@@ -9,7 +9,7 @@ import { REFUSAL_MS, outage } from "./outage.ts";
 import * as axis from "./panels/axis.ts";
 import * as control from "./panels/control.ts";
 import * as devices from "./panels/devices.ts";
-import { alarm, announce, note } from "./panels/messages.ts";
+import { alarm, announce, note, restore } from "./panels/messages.ts";
 import { setFormats } from "./panels/scan_parts.ts";
 import * as quality from "./panels/quality.ts";
 import * as scans from "./panels/scans.ts";
@@ -193,6 +193,7 @@ export function start(view: Viewer | null): void {
   viewer = view;
   // The browser takes the Escape key that ends the full screen: it stops the axis too.
   if (viewer !== null) viewer.left_full_screen = control.stop_motion;
+  restore();
   control.wire(() => {
     const capture = sweep.capture_request();
     if (capture !== null) void control.command("Start", () => api.capture(capture));

@@ -69,6 +69,19 @@ export class Rows<T> {
     again?.focus({ preventScroll: true });
   }
 
+  /** Scrolls to an item. */
+  reveal(name: string): void {
+    const { items } = this;
+    const i = items?.findIndex((item) => this.of.key(item) === name) ?? -1;
+    const { scroller } = this.of;
+    if (items === null || i < 0 || scroller.offsetParent === null) return;
+    const [start, size] = [this.starts[i] ?? 0, this.size(items[i] as T)];
+    const [low, high] = this.sight();
+    if (start >= low && start + size <= high) return;
+    if (this.across) scroller.scrollLeft += start - low;
+    else if (scroller.scrollHeight > scroller.clientHeight) scroller.scrollTop += start - low;
+  }
+
   private later(): void {
     if (this.frame === 0) this.frame = requestAnimationFrame(() => this.update());
   }

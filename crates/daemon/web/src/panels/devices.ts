@@ -16,6 +16,8 @@ function chip(name: string, words: string, tone: Tone): void {
 }
 
 const TONES: Record<string, Tone> = { connected: "good", absent: "warn", fault: "bad" };
+/** What the drive's state means for the motor (CiA 402). */
+const POWERED: Record<string, string> = { "switch-on disabled": "motor off", "ready to switch on": "motor off", "switched on": "motor off", "operation enabled": "motor powered", "quick stop active": "stopping" };
 const STATES: Record<string, string> = { connected: "ready", absent: "absent", fault: "fault" };
 
 export function setLink(words: string, tone: Tone): void {
@@ -46,7 +48,7 @@ export function setStatus(status: Status): void {
   spark(lidar.packets_per_s ?? 0);
   const faults = drive.faults.map(faultWords);
   const rows: Fact[] = [
-    ["State", drive.cia402 ?? STATES[drive.state] ?? drive.state, drive.state === "fault" ? "bad" : "off"],
+    ["State", state_words(drive.cia402) ?? STATES[drive.state] ?? drive.state, drive.state === "fault" ? "bad" : "off"],
     ["Link", [drive.link, drive.port].filter(Boolean).join(", ") || "\u2013"],
     ["Angle known", drive.referenced === true ? "yes" : drive.referenced === false ? "no, homing required" : "\u2013"],
   ];
@@ -56,6 +58,12 @@ export function setStatus(status: Status): void {
     rows.push(["Disk free", bytes(disk.free_bytes), near ? "warn" : "off"]);
   }
   facts(id("drive-facts"), rows);
+}
+
+/** The drive's state as it names it, after what it means. */
+function state_words(name: string | null | undefined): string | null {
+  const means = POWERED[name?.toLowerCase() ?? ""];
+  return means === undefined ? (name ?? null) : `${means} (${name})`;
 }
 
 /** Formats an entry of the drive's error history. */

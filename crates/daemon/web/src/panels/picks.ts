@@ -18,12 +18,13 @@ export function draw(picks: Picked[], known: Known, origin: [number, number, num
   show(box, picks.length > 0);
   if (picks.length === 0) return;
   const [a, b] = picks;
-  const parts: Node[] = [];
+  const parts: (Node | string)[] = [];
   if (a !== undefined && b !== undefined) {
     const found = distance(a, b);
     const along = found.along_m.map((m) => fixed(m, 3)).join(", ");
     parts.push(
       h("p", { class: "distance" }, h("b", {}, `${found.m.toFixed(3)} m`), found.sd_m === null ? "" : ` \u00b1 ${mm(found.sd_m)}`),
+      apart(a, b) > found.m / 2 ? h("p", { class: "hint", "data-tone": "warn" }, `Point B is ${length(apart(a, b))} ${Math.hypot(...b.position) > Math.hypot(...a.position) ? "farther" : "nearer"} than A: look whether both are on what you measure.`) : "",
       h("p", { class: "hint" }, `x, y, z: ${along} m \u00b7 ${found.sd_m === null ? "for its standard error, colour by uncertainty" : "at most, by the errors of both points; not by where you point"}`),
     );
   }
@@ -32,6 +33,9 @@ export function draw(picks: Picked[], known: Known, origin: [number, number, num
   parts.push(h("button", { type: "button", id: "unpick", click: clear }, "Clear"));
   box.replaceChildren(...parts);
 }
+
+/** Difference of the distances of two points from the scanner, metres: large if one beam missed what the other met. */
+const apart = (a: Picked, b: Picked): number => Math.abs(Math.hypot(...a.position) - Math.hypot(...b.position));
 
 function table(picks: Picked[], known: Known, origin: [number, number, number]): HTMLElement {
   const axis = (i: 0 | 1 | 2) => (pick: Picked) => `${fixed(pick.position[i] + origin[i], 3)} m`;

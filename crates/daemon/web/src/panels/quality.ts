@@ -2,7 +2,7 @@
 
 import { type Residuals, type Scan, type ScanStatistics, type Status, api } from "../api.ts";
 import { attribute, h, id, show, text } from "../dom.ts";
-import { count, digits } from "../format.ts";
+import { compact, count, digits } from "../format.ts";
 import { title } from "../found.ts";
 import { refused } from "./control.ts";
 import { type Fact, facts, residuals } from "./facts.ts";
@@ -76,7 +76,7 @@ function draw_measured(found: ScanStatistics): void {
   const { density, gap_deg: gap, sd_mm: sd } = found;
   const where = found.of === "view" ? "in view" : "on the sphere";
   const rows: Fact[] = [
-    [`Bins ${where}`, `${count(density.bins)} of 5,120`],
+    [`Bins of 3\u00b0 ${where}`, `${count(density.bins)} of 5,120`],
     ["Points per bin", `${digits(density.mean)} \u00b1 ${digits(density.sd)}`],
     ["Without a point", density.empty === 0 ? "none" : `${count(density.empty)} bins`, density.empty === 0 ? "off" : "warn"],
     ["Gap, half of directions", `${digits(gap.p50)}\u00b0`],
@@ -114,17 +114,25 @@ function draw_residuals(name: "delays" | "deviations", all: Residuals[], usual: 
   const width = 120 / Math.max(1, all.length);
   const bars = (key: typeof usual | typeof most) => all.map((one, i) => `M${(i * width).toFixed(2)} 40v${(-scale * high(one[key] ?? 0)).toFixed(2)}h${width.toFixed(2)}V40z`).join("");
   [most, usual].forEach((key, i) => attribute(id(name).children[i] as Element, "d", bars(key)));
+  ends(name, all.length === 0 || greatest === null ? [] : [`${(all[0]?.at_s ?? 0).toFixed(1)} s`, `to ${digits(greatest[most] ?? 0, 2)}${unit}`, `${(all.at(-1)?.at_s ?? 0).toFixed(1)} s`]);
   text(id(`${name}-words`), middle === undefined || greatest === null ? "none" : `${word} ${digits(middle, 2)}${unit}, at most ${digits(greatest[most] ?? 0, 2)}${unit} near ${greatest.at_s.toFixed(2)} s`);
+}
+
+/** Writes below a plot where its axis begins, what its height is, and where it ends. */
+function ends(name: string, words: string[]): void {
+  id(`${name}-axis`).replaceChildren(...words.map((one) => h("span", {}, one)));
 }
 
 /** Bars of the points by range, and their middle in words. */
 function draw_ranges({ ranges, points }: ScanStatistics): void {
   const most = Math.max(1, ...ranges.map((one) => one.points));
   const width = 120 / Math.max(1, ranges.length);
+  const last_bin = ranges.at(-1);
   const bars = ranges.map((one, i) => `M${(i * width).toFixed(2)} 40v${(-38 * one.points / most).toFixed(2)}h${(0.9 * width).toFixed(2)}V40z`);
   attribute(id("ranges").firstElementChild as Element, "d", bars.join(""));
   const [first, last] = [ranges.find((one) => one.points > 0), ranges.at(-1)];
   let below = 0;
   const middle = ranges.find((one) => (below += one.points) >= points / 2);
+  ends("ranges", ranges.length === 0 ? [] : [`${digits(ranges[0]?.from_m ?? 0)} m`, `at most ${compact(most)} points in ${digits((last_bin?.to_m ?? 0) - (last_bin?.from_m ?? 0))} m`, `${digits(last_bin?.to_m ?? 0)} m`]);
   text(id("ranges-words"), first === undefined || last === undefined || middle === undefined ? "" : `${digits(first.from_m)} to ${digits(last.to_m)} m, half of the points within ${digits(middle.to_m)} m`);
 }

@@ -162,7 +162,7 @@ async function download(scan: Scan, name: string, choice: string, wrong: HTMLEle
   const more = choice.endsWith(MORE);
   const format = choice.replace(MORE, "");
   show(wrong, false);
-  const file = `${scan.id}.${format === "log" ? "pcapng" : format}`;
+  const file = `${scan.name || "velomotion"}-${scan.id}.${format === "log" ? "pcapng" : format}`;
   announce(`Downloading ${name}: ${file}`);
   try {
     const [url, exists] = format === "log" ? [logUrl(scan.id), true] : [cloudUrl(scan.id, format, more, more), format === "ply" && !more];

@@ -153,6 +153,9 @@ export function setCurrent(name: string | null): void {
   current = name;
   strip.update();
   table.update();
+  if (name === null) return;
+  strip.reveal(name);
+  table.reveal(name);
 }
 
 function sort(now: Order): void {

@@ -2,7 +2,7 @@
 
 import { type CaptureRequest, type CaptureEstimate, type Status, RequestError, api } from "../api.ts";
 import { attribute, h, id } from "../dom.ts";
-import { bytes, digits, duration } from "../format.ts";
+import { bytes, digits, duration, sentence } from "../format.ts";
 
 const form = id<HTMLFormElement>("sweep");
 const input = (name: string) => id<HTMLInputElement>(name);
@@ -134,7 +134,7 @@ function draw(found: CaptureEstimate): void {
   const step_words = step === null ? "" : `${digits(step)}\u00b0 of tilt per revolution \u00b7 `;
   const { gap_deg: gap, error_mm: error, warning } = found;
   const seen = gap == null || error == null ? [] : [h("p", {}, `99 % of directions have a point within ${digits(gap)}\u00b0 \u00b7 95 % of points within ${digits(error)} mm at 20 m`)];
-  const warned = warning == null ? [] : [h("p", { class: "wrong" }, warning)];
+  const warned = warning == null ? [] : [h("p", { class: "wrong" }, sentence(warning))];
   out.replaceChildren(
     cell(duration(found.sweep_s), "per sweep"),
     resolution === null ? cell("\u2013", "mean vertical resolution") : cell(`${digits(resolution)}\u00b0`, "mean vertical resolution"),
