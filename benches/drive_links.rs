@@ -1,5 +1,5 @@
 //! Rate and cost of reading the drive's position over each link, in real time with pseudo-terminals
-//! and the software drive in its own process.
+//! and the simulated drive in its own process.
 //!
 //! `cargo bench -p velomotion-tests --bench drive_links` prints the tables of docs/src/links.md.
 //! `-- --seconds N` sets the duration of each row (10 s; 60 s for the stream at SYNC), `-- --can
@@ -30,11 +30,11 @@ use protocol::record::{Direction, DriveLink, Record, Wire};
 use units::{Host, Quadcounts, Span, Stamp};
 use velomotion::cli::{Common, FirmwareSim};
 
-/// First argument of the process that is the software drive.
-const SOFTWARE_DRIVE: &str = "--software-drive";
+/// First argument of the process that is the simulated drive.
+const SIMULATED_DRIVE: &str = "--simulated-drive";
 
 /// `velomotion firmware-sim` with these arguments.
-fn software_drive(interface: &[String]) {
+fn simulated_drive(interface: &[String]) {
     let is = |name: &str| interface.first().is_some_and(|first| first == name);
     let arguments = FirmwareSim {
         usb: is("--usb"),
@@ -60,16 +60,16 @@ fn software_drive(interface: &[String]) {
         .unwrap();
 }
 
-/// The software drive in its own process.
-struct SoftwareDrive {
+/// The simulated drive in its own process.
+struct DriveProcess {
     process: Child,
     port: String,
 }
 
-impl SoftwareDrive {
+impl DriveProcess {
     fn start(interface: &[&str]) -> Self {
         let mut process = Process::new(std::env::current_exe().unwrap())
-            .arg(SOFTWARE_DRIVE)
+            .arg(SIMULATED_DRIVE)
             .args(interface)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
@@ -84,7 +84,7 @@ impl SoftwareDrive {
     }
 }
 
-impl Drop for SoftwareDrive {
+impl Drop for DriveProcess {
     fn drop(&mut self) {
         // It ends when its standard input closes.
         drop(self.process.stdin.take());
@@ -124,7 +124,7 @@ fn device(kind: DeviceKind) -> Device {
 }
 
 /// Samples for a duration at the axis's poll period.
-fn measure(kind: DeviceKind, drive: &SoftwareDrive, axis: AxisConfig, seconds: f64) -> Measured {
+fn measure(kind: DeviceKind, drive: &DriveProcess, axis: AxisConfig, seconds: f64) -> Measured {
     let opened = ports::open(&device(kind), drive.port.as_ref(), None).unwrap();
     // As in a log: sent and received bytes count, not the client's interpretation.
     let received = RefCell::new(ReceivedTraffic::new(&axis));
@@ -162,7 +162,7 @@ fn measure(kind: DeviceKind, drive: &SoftwareDrive, axis: AxisConfig, seconds: f
 
 /// Reads the position by SDO for a duration, one read after the other, at most one per period: the
 /// fallback on a bus whose drive refuses the mapping.
-fn ask(kind: DeviceKind, drive: &SoftwareDrive, period: Span, seconds: f64) -> Measured {
+fn ask(kind: DeviceKind, drive: &DriveProcess, period: Span, seconds: f64) -> Measured {
     let mut bus: Box<dyn CanPort> = match kind {
         DeviceKind::Can => Box::new(SocketCan::open(&drive.port).unwrap()),
         _ => {
@@ -189,7 +189,7 @@ fn ask(kind: DeviceKind, drive: &SoftwareDrive, period: Span, seconds: f64) -> M
             answer,
             position,
             trigger: SampleTrigger::Request,
-            device_us: None,
+            drive_us: None,
         });
         // Like the client: no burst of late requests.
         due = (due + period).max(answer);
@@ -250,10 +250,10 @@ impl ReceivedTraffic {
     }
 
     fn receive(&mut self, record: &Record<'_>) {
-        if is_frame(record, Direction::ToDevice, CobId::SYNC) {
+        if is_frame(record, Direction::ToDrive, CobId::SYNC) {
             self.beats.push(record.host);
         }
-        if is_frame(record, Direction::FromDevice, self.stream) {
+        if is_frame(record, Direction::FromDrive, self.stream) {
             self.answers.push(record.host);
         }
         let Wire::Drive {
@@ -308,11 +308,7 @@ fn row(name: &str, pace: &str, measured: &Measured) {
 
 /// The stream at SYNC, 1 kHz: by the drive's time no sample is missing.
 fn stream(name: &str, measured: &Measured) {
-    let times: Vec<u32> = measured
-        .samples
-        .iter()
-        .filter_map(|s| s.device_us)
-        .collect();
+    let times: Vec<u32> = measured.samples.iter().filter_map(|s| s.drive_us).collect();
     let spacings: Vec<f64> = times
         .windows(2)
         .map(|w| f64::from(w[1].wrapping_sub(w[0])) / 1e3)
@@ -342,11 +338,11 @@ fn option(name: &str) -> Option<String> {
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    if let Some((SOFTWARE_DRIVE, interface)) = arguments
+    if let Some((SIMULATED_DRIVE, interface)) = arguments
         .split_first()
         .map(|(first, rest)| (first.as_str(), rest))
     {
-        software_drive(interface);
+        simulated_drive(interface);
         return;
     }
     let seconds = option("--seconds").map(|text| text.parse::<f64>().unwrap());
@@ -361,14 +357,14 @@ fn main() {
     }
     let axis = || devices::axis(&AxisSettings::default()).unwrap();
     println!(
-        "| link | poll period | samples/s | round trip us: median | 99 % | worst | client, of a core | software drive |"
+        "| link | poll period | samples/s | round trip us: median | 99 % | worst | client, of a core | simulated drive |"
     );
     println!("|---|---|---|---|---|---|---|---|");
     let [polled, polled_s, streamed] = [10.0, 10.0, 60.0].map(|usual| seconds.unwrap_or(usual));
     let paces = [("1 ms", Span::from_millis(1)), ("none", Span::ZERO)];
     for (name, kind, interface) in links.iter().take(2) {
         for (pace, period) in paces {
-            let drive = SoftwareDrive::start(interface);
+            let drive = DriveProcess::start(interface);
             let mut axis = axis();
             axis.timing.poll_period = period;
             row(name, pace, &measure(*kind, &drive, axis, polled));
@@ -376,18 +372,18 @@ fn main() {
     }
     for (name, kind, interface) in links.iter().skip(2) {
         for (pace, period) in paces {
-            let drive = SoftwareDrive::start(interface);
+            let drive = DriveProcess::start(interface);
             let name = format!("{name}, by SDO");
             row(&name, pace, &ask(*kind, &drive, period, polled_s));
         }
     }
     println!();
     println!(
-        "| stream at 1 kHz SYNC | time | SYNCs due | sent | answered | lost | instants | worst spacing | SYNC to sample us: median | 99 % | client, of a core | software drive |"
+        "| stream at 1 kHz SYNC | time | SYNCs due | sent | answered | lost | instants | worst spacing | SYNC to sample us: median | 99 % | client, of a core | simulated drive |"
     );
     println!("|---|---|---|---|---|---|---|---|---|---|---|---|");
     for (name, kind, interface) in links.iter().skip(2) {
-        let drive = SoftwareDrive::start(interface);
+        let drive = DriveProcess::start(interface);
         stream(name, &measure(*kind, &drive, axis(), streamed));
     }
 }

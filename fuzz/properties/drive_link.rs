@@ -13,7 +13,9 @@ use drive::{
     AxisConfig, DriveClient, DriveCommand, DriveEvent, DriveListener, MoveCommand, Observation,
     ShaftSample,
 };
-use firmware_sim::epos2::{CanServer, Node, NodeConfig, Rs232Server, UsbServer};
+use firmware_sim::epos2::{
+    CanServer, Rs232Server, SimulatedDrive, SimulatedDriveConfig, UsbServer,
+};
 use protocol::canopen::{CanFrame, SOCKETCAN_LEN};
 use protocol::epos2::message::{ReadObject, SerialAnswer};
 use protocol::epos2::usb::{self, UsbDecoder};
@@ -57,7 +59,7 @@ struct World {
     link: DriveLink,
     client: DriveClient,
     listener: DriveListener,
-    node: Node,
+    node: SimulatedDrive,
     server: Server,
     now: Stamp<Host>,
     ticks: u64,
@@ -93,7 +95,7 @@ impl World {
             link,
             listener: DriveListener::new(axis.node),
             client: DriveClient::new(axis, link),
-            node: Node::new(NodeConfig::default()),
+            node: SimulatedDrive::new(SimulatedDriveConfig::default()),
             server: match link {
                 DriveLink::Usb => Server::Usb(UsbServer::new(7)),
                 DriveLink::Rs232 => Server::Rs232(Rs232Server::new(7)),
@@ -260,7 +262,7 @@ impl World {
     fn transmit(&mut self) {
         while let Some(bytes) = self.client.poll_transmit(self.now) {
             self.handed_out.push(self.now);
-            self.observe(Direction::ToDevice, &bytes);
+            self.observe(Direction::ToDrive, &bytes);
             self.to_node.push_back((self.now, bytes));
         }
     }
@@ -323,7 +325,7 @@ impl World {
             DriveLink::Usb | DriveLink::Rs232 => bytes.len().max(1),
         };
         for record in bytes.chunks(piece) {
-            self.observe(Direction::FromDevice, record);
+            self.observe(Direction::FromDrive, record);
         }
         self.client.handle_input(bytes, self.now);
         self.compare();
@@ -399,7 +401,7 @@ const fn rs232_memory() -> usize {
 }
 
 /// The current shaft position, read over a separate interface.
-fn position(node: &mut Node) -> i32 {
+fn position(node: &mut SimulatedDrive) -> i32 {
     let read = ReadObject {
         node: node.node_id(),
         address: objects::POSITION_ACTUAL.address,

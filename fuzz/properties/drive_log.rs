@@ -9,7 +9,7 @@ use drive::{DriveListener, Observation, ShaftSample};
 use protocol::canopen::sdo::{Expedited, Initiate, SdoRequest, SdoResponse};
 use protocol::canopen::{NodeId, SOCKETCAN_LEN};
 use protocol::epos2::message::ReadObject;
-use protocol::epos2::{CommError, SerialFrame, objects, usb};
+use protocol::epos2::{AbortCode, SerialFrame, objects, usb};
 use protocol::record::{Direction, DriveLink};
 use units::{Span, Stamp};
 
@@ -34,17 +34,17 @@ pub fn holds(input: &mut Input<'_>) {
             _ => Stamp::from_nanos(input.i64()),
         };
         let link = [DriveLink::Usb, DriveLink::Rs232, DriveLink::Can][usize::from(head % 3)];
-        let direction = [Direction::ToDevice, Direction::FromDevice][usize::from(head >> 5 & 1)];
+        let direction = [Direction::ToDrive, Direction::FromDrive][usize::from(head >> 5 & 1)];
         let record = match head >> 3 & 3 {
             0 => input.short().to_vec(),
             1 => valid_message(link, direction, input.u32()),
             _ => frame(link, input),
         };
         match direction {
-            Direction::ToDevice => {
+            Direction::ToDrive => {
                 sent.insert(now);
             }
-            Direction::FromDevice => {
+            Direction::FromDrive => {
                 answered.insert(now);
                 received.extend(&record);
             }
@@ -80,10 +80,10 @@ fn valid_message(link: DriveLink, direction: Direction, value: u32) -> Vec<u8> {
     let address = objects::POSITION_ACTUAL.address;
     let node = NodeId::new(1).expect("an id");
     let message = match direction {
-        Direction::ToDevice => ReadObject { node: 1, address }.to_frame(),
-        Direction::FromDevice => {
+        Direction::ToDrive => ReadObject { node: 1, address }.to_frame(),
+        Direction::FromDrive => {
             let [low, high] = [value as u16, (value >> 16) as u16];
-            let none = CommError::NONE.to_words();
+            let none = AbortCode::NONE.to_words();
             SerialFrame::new(SerialFrame::ANSWER, &[none[0], none[1], low, high])
                 .expect("few words")
         }
@@ -95,11 +95,11 @@ fn valid_message(link: DriveLink, direction: Direction, value: u32) -> Vec<u8> {
             protocol::epos2::rs232::encode_body(&message, &mut body).expect("it has words");
             body
         }
-        (DriveLink::Can, Direction::ToDevice) => {
+        (DriveLink::Can, Direction::ToDrive) => {
             let request = SdoRequest::InitiateUpload { address };
             request.to_frame(node).to_socketcan().to_vec()
         }
-        (DriveLink::Can, Direction::FromDevice) => {
+        (DriveLink::Can, Direction::FromDrive) => {
             let transfer = Initiate::Expedited(Expedited::of(value));
             let answer = SdoResponse::InitiateUpload { address, transfer };
             answer.to_frame(node).to_socketcan().to_vec()

@@ -8,7 +8,7 @@ use protocol::epos2::message::{ReadObject, SerialAnswer};
 use protocol::epos2::objects::POSITION_ACTUAL;
 use protocol::epos2::rs232::{self, BodyDecoder};
 use protocol::epos2::usb::{self, UsbDecoder};
-use protocol::epos2::{CommError, SerialFrame};
+use protocol::epos2::{AbortCode, SerialFrame};
 use protocol::record::DriveLink;
 
 /// Counts position reads.
@@ -118,7 +118,7 @@ fn decode_body(opcode: u8, bytes: &[u8]) -> Option<SerialFrame> {
 /// The answer with another position.
 fn marked(answer: &SerialFrame, qc: i32) -> SerialFrame {
     match SerialAnswer::parse(answer) {
-        Ok(parsed) if parsed.error == CommError::NONE && parsed.value().is_ok() => {
+        Ok(parsed) if parsed.error == AbortCode::NONE && parsed.value().is_ok() => {
             let [a, b, c, d] = qc.to_le_bytes();
             let words = [0, 0, u16::from_le_bytes([a, b]), u16::from_le_bytes([c, d])];
             SerialFrame::new(SerialFrame::ANSWER, &words).expect("few words")

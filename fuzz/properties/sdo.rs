@@ -1,7 +1,7 @@
 //! SDO on both ends: a transfer accepts only answers to its request, the simulated unit answers
 //! every request, and both survive any frame of the bus at any time.
 
-use firmware_sim::epos2::{CanServer, Node, NodeConfig, UsbServer};
+use firmware_sim::epos2::{CanServer, SimulatedDrive, SimulatedDriveConfig, UsbServer};
 use protocol::BoundedVec;
 use protocol::canopen::sdo::{
     Expedited, Initiate, SEGMENT_LEN, SdoRequest, SdoResponse, SdoSegment, SdoTransfer,
@@ -11,7 +11,7 @@ use protocol::canopen::{BusMessage, CanFrame, CommunicationObject, NodeId};
 use protocol::epos2::message::{ReadObject, SerialAnswer as UsbAnswer, WriteObject};
 use protocol::epos2::objects::{self, Address};
 use protocol::epos2::usb::{self, UsbDecoder};
-use protocol::epos2::{CommError, SerialFrame};
+use protocol::epos2::{AbortCode, SerialFrame};
 
 use super::can_frames;
 use super::input::Input;
@@ -163,7 +163,7 @@ impl TransferUnderTest {
             6 => SdoResponse::DownloadSegment { toggle },
             _ => SdoResponse::Abort {
                 address,
-                error: CommError(input.u32()),
+                error: AbortCode(input.u32()),
             },
         };
         answer.to_frame(node_1())
@@ -263,7 +263,7 @@ impl TransferUnderTest {
 
 /// The unit between any frames and any time spans.
 fn server(input: &mut Input<'_>) {
-    let mut node = Node::new(NodeConfig::default());
+    let mut node = SimulatedDrive::new(SimulatedDriveConfig::default());
     let mut server = CanServer::new();
     // Other services may use the identifier of the answers; from then on they cannot be
     // distinguished.
@@ -309,7 +309,7 @@ fn request(input: &mut Input<'_>) -> SdoRequest {
         }
         5 => SdoRequest::Abort {
             address,
-            error: CommError::GENERAL,
+            error: AbortCode::GENERAL,
         },
         _ => {
             let len = usize::from(choice >> 3 & 3) + 1;
@@ -322,7 +322,7 @@ fn request(input: &mut Input<'_>) -> SdoRequest {
     }
 }
 
-fn pass_time(node: &mut Node, server: &mut CanServer, choice: u8) {
+fn pass_time(node: &mut SimulatedDrive, server: &mut CanServer, choice: u8) {
     let cycles = match choice {
         long @ 0xF0.. => 100 * u32::from(long & 0xF),
         few => u32::from(few),
@@ -340,7 +340,7 @@ fn is_whole(frame: &CanFrame) {
 
 /// A request has at most one answer, about its object.
 fn check_request(
-    node: &mut Node,
+    node: &mut SimulatedDrive,
     server: &mut CanServer,
     request: &SdoRequest,
     distinguishable: &mut bool,
@@ -405,7 +405,7 @@ fn check_request(
 
 /// Transfers with the unit: each object equals that of the unit's USB interface.
 fn dialogue(input: &mut Input<'_>) {
-    let mut node = Node::new(NodeConfig::default());
+    let mut node = SimulatedDrive::new(SimulatedDriveConfig::default());
     let mut server = CanServer::new();
     while !input.is_empty() {
         pass_time(&mut node, &mut server, input.u8() & 0x3F);
@@ -433,7 +433,7 @@ type Exchanged = Option<Result<BoundedVec<u8, ROOM>, TransferError>>;
 
 fn exchange(
     (mut transfer, mut request): (SdoTransfer<ROOM>, SdoRequest),
-    node: &mut Node,
+    node: &mut SimulatedDrive,
     server: &mut CanServer,
 ) -> Exchanged {
     let mut send = |request: SdoRequest| {
@@ -464,7 +464,7 @@ fn exchange(
     }
 }
 
-fn usb(node: &mut Node, request: &SerialFrame) -> UsbAnswer {
+fn usb(node: &mut SimulatedDrive, request: &SerialFrame) -> UsbAnswer {
     let mut answer = None;
     let mut decoder = UsbDecoder::new();
     UsbServer::new(0).input(node, &usb::to_bytes(request), &mut |bytes| {
@@ -475,12 +475,12 @@ fn usb(node: &mut Node, request: &SerialFrame) -> UsbAnswer {
     answer.expect("an answer")
 }
 
-fn read_is_the_same(node: &mut Node, address: Address, got: &Exchanged) {
+fn read_is_the_same(node: &mut SimulatedDrive, address: Address, got: &Exchanged) {
     let request = ReadObject { node: 0, address }.to_frame();
     let answer = usb(node, &request);
     match got {
         Some(Ok(value)) if value.len() <= 4 => {
-            assert_eq!(answer.error, CommError::NONE, "{address:?}");
+            assert_eq!(answer.error, AbortCode::NONE, "{address:?}");
             let words = answer.value().expect("a value").to_le_bytes();
             assert_eq!(**value, words[..value.len()], "{address:?}");
         }
@@ -492,7 +492,7 @@ fn read_is_the_same(node: &mut Node, address: Address, got: &Exchanged) {
     }
 }
 
-fn write_is_the_same(twin: &mut Node, address: Address, data: &[u8], got: &Exchanged) {
+fn write_is_the_same(twin: &mut SimulatedDrive, address: Address, data: &[u8], got: &Exchanged) {
     if !matches!(got, Some(Ok(_))) || data.len() > 4 || data.is_empty() {
         return;
     }
@@ -505,7 +505,7 @@ fn write_is_the_same(twin: &mut Node, address: Address, data: &[u8], got: &Excha
         value,
     }
     .to_frame();
-    assert_eq!(usb(twin, &request).error, CommError::NONE, "{address:?}");
+    assert_eq!(usb(twin, &request).error, AbortCode::NONE, "{address:?}");
     if address == objects::TARGET_POSITION.address {
         let read = ReadObject { node: 0, address }.to_frame();
         assert_eq!(usb(twin, &read).value(), Ok(value));

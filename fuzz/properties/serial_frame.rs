@@ -2,7 +2,7 @@
 //! frame, the simulated unit answers with complete frames. Client and listener agree with the bytes
 //! on the line ([`super::drive_link`], [`super::drive_log`]).
 
-use firmware_sim::epos2::{Node, NodeConfig, Rs232Server, UsbServer};
+use firmware_sim::epos2::{Rs232Server, SimulatedDrive, SimulatedDriveConfig, UsbServer};
 use protocol::epos2::message::{SerialAnswer, SerialRequest};
 use protocol::epos2::rs232::{self, BodyDecoder};
 use protocol::epos2::usb::{self, UsbDecoder};
@@ -114,7 +114,7 @@ fn rs232_frame(input: &mut Input<'_>) {
 }
 
 /// Events of a simulated unit between bytes.
-fn pass_time(node: &mut Node, input: &mut Input<'_>) {
+fn pass_time(node: &mut SimulatedDrive, input: &mut Input<'_>) {
     match input.u8() {
         long @ 0xF0.. => (0..50 * u32::from(long & 0xF)).for_each(|_| node.tick()),
         0x80.. => node.tick(),
@@ -124,7 +124,7 @@ fn pass_time(node: &mut Node, input: &mut Input<'_>) {
 
 /// Requests of any content and framing: at most one answer per request, each a complete frame.
 fn usb_server(input: &mut Input<'_>) {
-    let mut node = Node::new(NodeConfig::default());
+    let mut node = SimulatedDrive::new(SimulatedDriveConfig::default());
     let mut server = UsbServer::new(1);
     while !input.is_empty() {
         pass_time(&mut node, input);
@@ -152,7 +152,7 @@ fn usb_server(input: &mut Input<'_>) {
 
 /// Any bytes: the unit sends handshakes, announcements of an answer, and complete bodies only.
 fn rs232_server(input: &mut Input<'_>) {
-    let mut node = Node::new(NodeConfig::default());
+    let mut node = SimulatedDrive::new(SimulatedDriveConfig::default());
     let mut server = Rs232Server::new(1);
     while !input.is_empty() {
         pass_time(&mut node, input);
@@ -172,7 +172,7 @@ fn rs232_server(input: &mut Input<'_>) {
     }
 }
 
-fn say_rs232(server: &mut Rs232Server, node: &mut Node, bytes: &[u8]) {
+fn say_rs232(server: &mut Rs232Server, node: &mut SimulatedDrive, bytes: &[u8]) {
     let mut decoded = 0;
     server.input(node, bytes, &mut |chunk| {
         decoded += 1;

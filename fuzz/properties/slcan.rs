@@ -1,7 +1,7 @@
 //! SLCAN lines in both directions, and the simulated adapter: lines decode to what was encoded,
 //! noise never destroys a frame after a CR, and every command is answered.
 
-use firmware_sim::epos2::{Node, NodeConfig, SlcanServer};
+use firmware_sim::epos2::{SimulatedDrive, SimulatedDriveConfig, SlcanServer};
 use protocol::canopen::slcan::{CommandDecoder, ReplyDecoder, SlcanCommand, SlcanReply};
 
 use super::can_frames::frame;
@@ -63,7 +63,7 @@ fn frame_behind_noise(input: &mut Input<'_>) {
 }
 
 fn adapter(input: &mut Input<'_>) {
-    let mut node = Node::new(NodeConfig::default());
+    let mut node = SimulatedDrive::new(SimulatedDriveConfig::default());
     let mut server = SlcanServer::new();
     // A second decoder of the same bytes counts the expected answers.
     let mut shadow = CommandDecoder::new();
@@ -89,7 +89,12 @@ fn adapter(input: &mut Input<'_>) {
 }
 
 /// Passes bytes to the adapter; each command is answered once, in addition to frames of the bus.
-fn feed(server: &mut SlcanServer, node: &mut Node, shadow: &mut CommandDecoder, bytes: &[u8]) {
+fn feed(
+    server: &mut SlcanServer,
+    node: &mut SimulatedDrive,
+    shadow: &mut CommandDecoder,
+    bytes: &[u8],
+) {
     let commands = bytes.iter().filter_map(|&byte| shadow.push(byte)).count();
     let mut answered = 0;
     server.input(node, bytes, &mut |line| {

@@ -111,12 +111,12 @@ fn log(link: DriveLink, ports: &[u16]) -> Vec<u8> {
     let mut wires = vec![
         Wire::Drive {
             link,
-            direction: Direction::ToDevice,
+            direction: Direction::ToDrive,
             frame: &frame,
         },
         Wire::Drive {
             link,
-            direction: Direction::FromDevice,
+            direction: Direction::FromDrive,
             frame: &frame,
         },
     ];

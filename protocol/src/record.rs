@@ -7,13 +7,13 @@ use units::{Host, Stamp};
 /// Direction of drive traffic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
-    /// From the host to the device.
-    ToDevice,
-    /// From the device to the host.
-    FromDevice,
+    /// From the host to the drive.
+    ToDrive,
+    /// From the drive to the host.
+    FromDrive,
 }
 
-/// Connection of the drive; it determines the framing of drive records.
+/// Connection of the drive; it determines the framing of drive records. SLCAN counts as CAN.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DriveLink {
     /// EPOS2 USB frames (`90 02 ...`), one per record.
@@ -41,7 +41,7 @@ pub enum Wire<'a> {
     Drive {
         /// How the bytes are framed.
         link: DriveLink,
-        /// Its direction.
+        /// To or from the drive.
         direction: Direction,
         /// One frame as on the wire, stuffing included.
         frame: &'a [u8],

@@ -1,4 +1,4 @@
-"""A CANopen master that is not ours (PyPI canopen and python-can, over SLCAN) runs the software EPOS2.
+"""A CANopen master that is not ours (PyPI canopen and python-can, over SLCAN) runs the simulated EPOS2.
 
 usage: canopen_master.py PORT QC_OF_TARGET
 Prints one JSON object with what it saw.

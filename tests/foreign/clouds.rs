@@ -1,5 +1,5 @@
-//! Clouds in foreign readers: MCAP in mcap and rosbags, E57 in pye57, PLY and PCD in Open3D, LAZ in
-//! laspy.
+//! Clouds in foreign readers: MCAP in mcap and rosbags, E57 in pye57, PLY and PCD in Open3D. LAZ
+//! in laspy is in `main.rs`.
 
 use cloud::Summary;
 use serde_json::{Value, json};

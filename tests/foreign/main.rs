@@ -16,7 +16,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use engine::config::AxisSettings;
 use engine::devices::profile as devices;
 use engine::devices::simulated;
-use engine::devices::simulated_drive::{self as software_drive, SoftwarePort};
+use engine::devices::simulated_drive::{self, SimulatedPort};
 use engine::reconstruct::lidar_copy;
 use engine::reconstruct::source::Source;
 use serde_json::Value;
@@ -229,7 +229,7 @@ fn laspy_reads_our_laz_with_the_right_count_and_bounds() {
 
 #[test]
 #[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
-fn python_canopen_runs_our_software_drive_over_slcan() {
+fn python_canopen_runs_our_simulated_drive_over_slcan() {
     let pty = io::port::Pty::open().unwrap();
     let port = pty.path().to_owned();
     let stop = Arc::new(AtomicBool::new(false));
@@ -237,10 +237,10 @@ fn python_canopen_runs_our_software_drive_over_slcan() {
     let axis = devices::axis(&AxisSettings::default()).unwrap();
     let node = simulated::node(&axis);
     let drive = std::thread::spawn(move || {
-        software_drive::run(
+        simulated_drive::run(
             node,
             Attachment::Slcan,
-            SoftwarePort::Serial(pty),
+            SimulatedPort::Serial(pty),
             &stopping,
         )
     });

@@ -9,7 +9,7 @@ use velomotion_tests::bench::Bench;
 /// Requests that are always valid and move or stop the axis.
 const COMMANDS: &str = "home$|stop$|clear$";
 
-/// A daemon on a software scanner with its own folders.
+/// A daemon on a simulated scanner with its own folders.
 fn daemon(bench: &Bench, folder: &Path) -> Daemon {
     let mut config = bench.config();
     config.daemon.scans = Some(folder.join("scans"));

@@ -1,4 +1,4 @@
-//! `velomotion doctor` with a software drive in its own process.
+//! `velomotion doctor` with a simulated drive in its own process.
 
 use std::net::UdpSocket;
 

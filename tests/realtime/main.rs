@@ -1,4 +1,4 @@
-//! The program in real time: commands, the daemon on loopback, software devices in processes of
+//! The program in real time: commands, the daemon on loopback, simulated devices in processes of
 //! their own.
 #![allow(clippy::unwrap_used, clippy::panic)] // helpers outside #[test] functions
 
@@ -7,5 +7,5 @@ mod daemon;
 mod doctor;
 mod generator;
 mod network;
-mod software_drive;
+mod simulated_drive;
 mod tilt;

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use crate::software_drive::Drive;
+use crate::simulated_drive::Drive;
 use sim::{Rig, RigConfig};
 use units::{Span, Stamp};
 
@@ -38,7 +38,7 @@ fn json(output: &Output) -> serde_json::Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// A software lidar and another sender of the same packets, running until dropped.
+/// A simulated lidar and another sender of the same packets, running until dropped.
 struct Lidar(Arc<AtomicBool>, Option<JoinHandle<()>>);
 
 impl Lidar {

@@ -1,4 +1,4 @@
-//! A software drive in its own process, for tests that plug and unplug one.
+//! A simulated drive in its own process, for tests that plug and unplug one.
 
 use std::io::{BufRead, BufReader};
 use std::path::Path;

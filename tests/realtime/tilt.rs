@@ -1,4 +1,4 @@
-//! `velomotion tilt` with the software drive in its own process.
+//! `velomotion tilt` with the simulated drive in its own process.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::UdpSocket;
@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// A software drive that runs until dropped, and a configuration that names it.
+/// A simulated drive that runs until dropped, and a configuration that names it.
 pub struct Bench {
     pub folder: tempfile::TempDir,
     drive: Child,
@@ -480,7 +480,7 @@ fn moves_begin_while_other_commands_read_the_state() {
 }
 
 #[test]
-fn the_software_drive_exits_and_removes_its_link_when_stdin_closes() {
+fn firmware_sim_exits_and_removes_its_link_when_stdin_closes() {
     let bench = Bench::new("--rs232");
     let link = bench.folder.path().join("epos");
     assert!(link.is_symlink());
@@ -491,7 +491,7 @@ fn the_software_drive_exits_and_removes_its_link_when_stdin_closes() {
 
 /// A service or a script in the background has /dev/null for stdin.
 #[test]
-fn the_software_drive_runs_on_without_a_stdin() {
+fn firmware_sim_runs_on_without_a_stdin() {
     let folder = tempfile::tempdir().unwrap();
     let mut drive = velomotion()
         .args(["firmware-sim", "--usb"])

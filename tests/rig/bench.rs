@@ -1,4 +1,4 @@
-//! A software scanner in real time that a daemon takes for hardware: a drive on a pseudo-terminal,
+//! A simulated scanner in real time that a daemon takes for hardware: a drive on a pseudo-terminal,
 //! a lidar on loopback, and faults on demand.
 //!
 //! It lives in the test's process. Killing a daemon does not end it, its cable can be unplugged

@@ -1,4 +1,4 @@
-//! The virtual-time rig: the program's drive client and session with software devices, and a clock
+//! The virtual-time rig: the program's drive client and session with simulated devices, and a clock
 //! that the test advances.
 //!
 //! Seconds of the program take a test milliseconds, and every run gives the same result.

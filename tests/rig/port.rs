@@ -113,7 +113,7 @@ impl VirtualPort {
     }
 
     /// Changes the drive in a way that no client can.
-    pub fn with_drive(&self, act: impl FnOnce(&mut firmware_sim::epos2::Node)) {
+    pub fn with_drive(&self, act: impl FnOnce(&mut firmware_sim::epos2::SimulatedDrive)) {
         act(self.0.borrow_mut().rig.drive_mut());
     }
 

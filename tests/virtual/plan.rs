@@ -17,7 +17,7 @@ use units::{DegPerS, DegPerS2, Span};
 use velomotion_tests::capture::{Captured, Setting};
 use velomotion_tests::random::Random;
 
-/// Where the software axis is at power-on, degrees.
+/// Where the simulated axis is at power-on, degrees.
 const REST_DEG: f64 = -11.25;
 
 fn planner(at_m: f64, limits: PlanLimits) -> ScanPlanner {

@@ -26,7 +26,7 @@ macro_rules! for_each_column {
             /// Time of the firing on the lidar's own clock.
             DeviceTime DEVICE_TIME "device_time"
                 (device_time: Stamp<Lidar>) (device_time: Stamp<Lidar>) identity, identity;
-            /// Expected error of the point, root mean square, metres.
+            /// Standard error of the point in three dimensions, metres.
             Sd SD "sd" (sd_m: f64) (sd_m: f64) identity, identity;
             /// Return of its pulse: 1 strongest, 2 last, 3 both at one distance, 4 second return, 0
             /// unknown. The second return of dual mode is the strongest, or the second strongest if

@@ -32,7 +32,7 @@ impl Metadata {
     pub fn lines(&self) -> Vec<String> {
         let mut text = Vec::new();
         if self.simulated {
-            text.push("SIMULATED: software devices, not a scan of anything real".to_owned());
+            text.push("SIMULATED: simulated devices, not a scan of anything real".to_owned());
         }
         let named = [
             ("software", &self.software),

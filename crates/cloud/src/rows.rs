@@ -81,7 +81,7 @@ pub(crate) fn fill<const N: usize>(
     }
 }
 
-/// Writes `range` of a column as numbers of `number`, times by `seconds` of their nanoseconds.
+/// Writes `range` of a column as numbers of `number`; `seconds` converts the nanoseconds of times.
 pub(crate) fn fill_values(
     rows: &mut [u8],
     row_bytes: usize,

@@ -12,7 +12,7 @@ use protocol::canopen::sdo::SdoRequest;
 use protocol::canopen::sync::SyncMessage;
 use protocol::canopen::{BusMessage, CanFrame, CommunicationObject, NodeId, PdoNumber};
 use protocol::epos2::objects::{Address, POSITION_ACTUAL, TIMESTAMP};
-use protocol::epos2::{CommError, DeviceError};
+use protocol::epos2::{AbortCode, DeviceError};
 use units::{Host, Quadcounts, Span, Stamp};
 
 use crate::config::CanHeartbeats;
@@ -122,7 +122,7 @@ impl CanServices {
     }
 
     /// Aborts an SDO transfer.
-    pub fn abort_transfer(&mut self, address: Address, error: CommError) {
+    pub fn abort_transfer(&mut self, address: Address, error: AbortCode) {
         let abort = SdoRequest::Abort { address, error };
         self.out.push_back(abort.to_frame(self.node));
     }
@@ -245,9 +245,9 @@ impl CanServices {
         }
         let layout = layout();
         let position = layout.get(POSITION_ACTUAL, data).ok()??;
-        let device_us = layout.get(TIMESTAMP, data).ok()??;
+        let drive_us = layout.get(TIMESTAMP, data).ok()??;
         let was_started = self.syncs.is_started();
-        let request = self.syncs.handle_pdo(device_us, now)?;
+        let request = self.syncs.handle_pdo(drive_us, now)?;
         if !was_started && self.next_sync.is_some() {
             // The single first SYNC is matched: the next may follow in sequence.
             self.next_sync = Some(now);
@@ -257,7 +257,7 @@ impl CanServices {
             answer: now,
             position: Quadcounts(position),
             trigger: SampleTrigger::Sync,
-            device_us: Some(device_us),
+            drive_us: Some(drive_us),
         };
         self.stalled = false;
         self.latest = Some(sample);

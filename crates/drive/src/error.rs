@@ -8,7 +8,7 @@ use protocol::canopen::nmt::NmtState;
 use protocol::canopen::sdo::TransferError;
 use protocol::epos2::cia402::DeviceState;
 use protocol::epos2::objects::Address;
-use protocol::epos2::{CommError, DeviceError};
+use protocol::epos2::{AbortCode, DeviceError};
 use units::{DegPerS, DegPerS2, Degrees, Rpm, ShortNumber, Span};
 
 use crate::command::CommandKind;
@@ -168,7 +168,7 @@ pub enum DriveError {
         /// The operation.
         operation: Operation,
         /// The drive's error code.
-        error: CommError,
+        error: AbortCode,
     },
     /// The drive confirmed a value but holds another.
     #[error("object {address} read back: expected {expected:#X}, got {got:#X}")]

@@ -20,11 +20,11 @@ pub struct ShaftSample {
     pub answer: Stamp<Host>,
     /// Position actual value (6064).
     pub position: Quadcounts,
-    /// The trigger of a position sample.
+    /// What made the drive sample.
     pub trigger: SampleTrigger,
     /// The drive's clock at the sample (1013) in us, with an arbitrary zero, wrapping every 71
     /// minutes; `None` if the reply does not contain it.
-    pub device_us: Option<u32>,
+    pub drive_us: Option<u32>,
 }
 
 /// The trigger of a sample, which determines where between its two stamps it lies.
@@ -202,7 +202,7 @@ pub struct ConnectionReport {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MoveReport {
-    /// The plan.
+    /// The move as planned.
     pub plan: MovePlan,
     /// Final position.
     pub position: Quadcounts,

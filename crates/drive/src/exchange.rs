@@ -8,7 +8,7 @@ use protocol::canopen::sdo::{
 };
 use protocol::epos2::message::{SegmentedRead, SerialAnswer};
 use protocol::epos2::objects::Address;
-use protocol::epos2::{CommError, SerialFrame, SerialFrameError};
+use protocol::epos2::{AbortCode, SerialFrame, SerialFrameError};
 
 /// Bytes of the longest segment: those of the serial links (a length of six bits).
 pub(crate) const MAX_SEGMENT: usize = 63;
@@ -73,7 +73,7 @@ pub(crate) enum Reply {
 /// The possible meanings of a serial reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct SerialReply {
-    pub error: CommError,
+    pub error: AbortCode,
     /// Data words after the error code.
     pub words: usize,
     /// Exactly two words as a number; bits above the object's width are undefined.
@@ -103,15 +103,15 @@ impl Reply {
         }))
     }
 
-    /// The error code; [`CommError::NONE`] for success.
-    pub fn error(&self) -> CommError {
+    /// The error code; [`AbortCode::NONE`] for success.
+    pub fn error(&self) -> AbortCode {
         match self {
             // An abort without a code is an error all the same.
             Self::Sdo(TransferResponse::Abort { error, .. }) if error.is_none() => {
-                CommError::GENERAL
+                AbortCode::GENERAL
             }
             Self::Sdo(TransferResponse::Abort { error, .. }) => *error,
-            Self::Sdo(_) => CommError::NONE,
+            Self::Sdo(_) => AbortCode::NONE,
             Self::Serial(reply) => reply.error,
         }
     }

@@ -55,6 +55,6 @@ pub use link::LinkStats;
 pub use listener::{DriveListener, Observation};
 pub use plan::MovePlan;
 pub use protocol::canopen::nmt::NmtState;
-pub use protocol::epos2::{CommError, DeviceError, cia402, objects};
+pub use protocol::epos2::{AbortCode, DeviceError, cia402, objects};
 pub use protocol::record::{self, DriveLink};
 pub use request_matcher::PROBES;

@@ -1,11 +1,11 @@
 //! Matches replies to requests.
 //!
 //! A serial reply of the EPOS2 names neither object nor request. Order and format must do: replies
-//! come in the order of the requests, and some are lost. The reply to a read has four words, two of
-//! them the error code; that to a write has these two. An SDO response names its object (segments
-//! do not), but not which of two reads of one object it belongs to. A reply that fits more than one
-//! outstanding request is matched to none and retires the oldest of them: the replies to the
-//! others, and to probes between them, may still arrive.
+//! come in the order of the requests, and some are lost. The reply to a read is the error code and
+//! the value, two words each; that to a write is the error code. An SDO response names its object
+//! (segments do not), but not which of two reads of one object it belongs to. A reply that fits
+//! more than one outstanding request is matched to none and retires the oldest of them: the replies
+//! to the others, and to probes between them, may still arrive.
 //!
 //! After a loss the client sends a probe request, a read of an object that does not exist. Its
 //! error arrives after everything still under way and so resynchronises both sides. Two probes with
@@ -16,7 +16,7 @@
 use std::collections::VecDeque;
 
 use protocol::canopen::sdo::GenericSdoRequest;
-use protocol::epos2::CommError;
+use protocol::epos2::AbortCode;
 use protocol::epos2::objects::Address;
 use units::{Host, Span, Stamp};
 
@@ -24,9 +24,9 @@ use crate::exchange::{ObjectAccess, Reply};
 
 /// Objects that no EPOS2 has, with the errors of reading them: an index at the end of the
 /// manufacturer-specific range (CiA 301), and a subindex of the mandatory identity object.
-pub const PROBES: [(Address, CommError); 2] = [
-    (Address::new(0x5FFF, 0), CommError::NO_OBJECT),
-    (Address::new(0x1018, 0xFF), CommError::NO_SUB),
+pub const PROBES: [(Address, AbortCode); 2] = [
+    (Address::new(0x5FFF, 0), AbortCode::NO_OBJECT),
+    (Address::new(0x1018, 0xFF), AbortCode::NO_SUB),
 ];
 
 /// A request on the wire.
@@ -188,7 +188,7 @@ impl RequestMatcher {
 }
 
 /// The expected error of a probe; `None` for any other request.
-fn probe_error(request: &SentRequest) -> Option<CommError> {
+fn probe_error(request: &SentRequest) -> Option<AbortCode> {
     let is_read = matches!(
         request.access,
         ObjectAccess::Read | ObjectAccess::Transfer(GenericSdoRequest::InitiateUpload { .. })
@@ -206,13 +206,13 @@ mod tests {
     use super::*;
     use crate::exchange::{SerialReply, TransferResponse};
 
-    const READ_OK: Reply = serial(CommError::NONE, 2, Some(7));
-    const WRITE_OK: Reply = serial(CommError::NONE, 0, None);
-    const NO_OBJECT: Reply = serial(CommError::NO_OBJECT, 0, None);
-    const NO_SUB: Reply = serial(CommError::NO_SUB, 0, None);
+    const READ_OK: Reply = serial(AbortCode::NONE, 2, Some(7));
+    const WRITE_OK: Reply = serial(AbortCode::NONE, 0, None);
+    const NO_OBJECT: Reply = serial(AbortCode::NO_OBJECT, 0, None);
+    const NO_SUB: Reply = serial(AbortCode::NO_SUB, 0, None);
     const WRITE: ObjectAccess = ObjectAccess::Write { value: 0, width: 4 };
 
-    const fn serial(error: CommError, words: usize, value: Option<u32>) -> Reply {
+    const fn serial(error: AbortCode, words: usize, value: Option<u32>) -> Reply {
         Reply::Serial(SerialReply {
             error,
             words,
@@ -343,7 +343,7 @@ mod tests {
 
     #[test]
     fn an_unexpected_error_answers_a_probe_only_if_no_other_request_is_outstanding() {
-        let other = serial(CommError::GENERAL, 0, None);
+        let other = serial(AbortCode::GENERAL, 0, None);
         assert_eq!(
             matcher(&[probe(1, 1)]).handle_reply(&other),
             ReplyMatch::Probe(PROBES[1].0)
@@ -367,7 +367,7 @@ mod tests {
     }
 
     fn aborted(address: Address) -> Reply {
-        let error = CommError::NO_OBJECT;
+        let error = AbortCode::NO_OBJECT;
         Reply::Sdo(TransferResponse::Abort { address, error })
     }
 

@@ -34,7 +34,7 @@ pub(crate) struct SyncMatcher {
 #[derive(Clone, Copy, Debug)]
 struct SyncMatch {
     sync: Stamp<Host>,
-    device_us: u32,
+    drive_us: u32,
     /// Lower bound of the host time of the sample.
     sampled: Stamp<Host>,
     /// Skipped SYNCs whose PDOs may still arrive.
@@ -106,7 +106,7 @@ impl SyncMatcher {
     }
 
     /// The SYNC that triggered a PDO with this drive time; `None` where that is not certain.
-    pub fn handle_pdo(&mut self, device_us: u32, arrival: Stamp<Host>) -> Option<Stamp<Host>> {
+    pub fn handle_pdo(&mut self, drive_us: u32, arrival: Stamp<Host>) -> Option<Stamp<Host>> {
         self.observe(arrival);
         self.expire(arrival);
         let Some(last) = self.last else {
@@ -114,14 +114,14 @@ impl SyncMatcher {
             self.last_open = None;
             self.last = Some(SyncMatch {
                 sync,
-                device_us,
+                drive_us,
                 sampled: sync,
                 skipped: 0,
             });
             return Some(sync);
         };
         // The drive's counter wraps every 71 minutes.
-        let elapsed_us = i64::from(device_us.wrapping_sub(last.device_us).cast_signed());
+        let elapsed_us = i64::from(drive_us.wrapping_sub(last.drive_us).cast_signed());
         if elapsed_us == 0 {
             // The bus repeated the frame.
             return None;
@@ -131,7 +131,7 @@ impl SyncMatcher {
             self.restart();
             return None;
         }
-        Some(self.next_match(last, device_us, elapsed_us, arrival))
+        Some(self.next_match(last, drive_us, elapsed_us, arrival))
     }
 
     /// Whether a first match exists, so that further SYNCs may follow in sequence.
@@ -155,7 +155,7 @@ impl SyncMatcher {
     fn next_match(
         &mut self,
         mut last: SyncMatch,
-        device_us: u32,
+        drive_us: u32,
         elapsed_us: i64,
         arrival: Stamp<Host>,
     ) -> Stamp<Host> {
@@ -197,7 +197,7 @@ impl SyncMatcher {
         }
         self.last = Some(SyncMatch {
             sync,
-            device_us,
+            drive_us,
             // A SYNC reached by skipping was compared with the bound and cannot raise it.
             sampled: if skips == 0 {
                 sampled.max(sync)

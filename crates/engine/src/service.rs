@@ -61,7 +61,7 @@ const SHORTEST_SUSPENSION: Span = Span::from_millis(500);
 pub struct CaptureEnd {
     /// Result of the recording.
     pub outcome: Outcome,
-    /// The simulator's truth, where the devices are software.
+    /// The simulator's truth, where the devices are simulated.
     pub truth: Option<Truth>,
 }
 
@@ -144,7 +144,7 @@ impl DeviceService {
         (&self.name, &self.device)
     }
 
-    /// Whether the devices are software.
+    /// Whether the devices are simulated.
     #[must_use]
     pub fn simulated(&self) -> bool {
         profile::simulated(&self.device)

@@ -1,6 +1,6 @@
 //! Discovery of connected devices: serial ports, and EPOS2 units on USB.
 //!
-//! Linux's `ftdi_sio` driver does not know the EPOS2's product number. A unit may therefore be on
+//! Linux's `ftdi_sio` driver does not know the EPOS2's product number. A drive may therefore be on
 //! the bus without a serial port, which only sysfs shows. Devices are not opened.
 
 use std::fs;

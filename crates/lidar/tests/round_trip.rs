@@ -1,4 +1,4 @@
-//! Packets of the software sensor decode to firings that encode to the same packets, and every
+//! Packets of the simulated sensor decode to firings that encode to the same packets, and every
 //! laser's azimuth is that of the rotor when it fired.
 //!
 //! The packets come from `firmware-sim`, which implements the manual without code of this crate.

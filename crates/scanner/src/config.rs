@@ -17,7 +17,7 @@ pub struct ScanConfig {
     pub velomotion: String,
     /// Name of the device profile.
     pub device: String,
-    /// Whether the devices were software.
+    /// Whether the devices were simulated.
     pub simulated: bool,
     /// Mount of the lidar on the tilt axis.
     pub mount: MountConfig,

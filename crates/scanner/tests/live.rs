@@ -62,11 +62,11 @@ fn sdo(command: u8, object: u16, value: i32) -> [u8; 8] {
 fn exchange(log: &mut Vec<(i64, Traffic)>, at: [i64; 2], request: [u8; 8], answer: [u8; 8]) {
     log.push((
         at[0],
-        Traffic::Drive(Direction::ToDevice, can(0x601, request)),
+        Traffic::Drive(Direction::ToDrive, can(0x601, request)),
     ));
     log.push((
         at[1],
-        Traffic::Drive(Direction::FromDevice, can(0x581, answer)),
+        Traffic::Drive(Direction::FromDrive, can(0x581, answer)),
     ));
 }
 

@@ -1,8 +1,8 @@
 //! The effects, one file each, and the configuration that a scene file's `[effects]` maps to.
 //!
 //! Effects act in the order of [`EffectsConfig`], not of the file: light before noise,
-//! the servo before the gear. A new effect needs a file, a line in `effects_config!` and one in
-//! `settings_of`.
+//! the servo before the gear. A new effect needs a file, its `mod`, a line in `effects_config!`
+//! and, if a fact of a scene calls for it, one in `settings_of`.
 
 /// Implements what the effects have in common: the name, the reason for inactivity, and the
 /// settings that add the effect to its list.
@@ -170,7 +170,7 @@ macro_rules! effects_config {
                 }
             }
 
-            /// Configures what is not configured here, as there.
+            /// Takes the settings of `other` for effects that have none here.
             pub(crate) fn complete(&mut self, other: Self) {
                 $(if self.$name.settings().is_none() {
                     self.$name = other.$name;

@@ -6,7 +6,7 @@
 //! |---|---|---|
 //! | [`ObjectsEffect`] | positions of objects | per firing, before rays are cast |
 //! | [`ViewEffect`] | which lasers fire, which beams leave the scanner | per block, per firing |
-//! | [`BeamEffect`] | returns of a pulse: footprint, second returns, rain | per firing |
+//! | [`BeamEffect`] | a pulse on its way: footprint, second returns, rain | per firing |
 //! | [`SurfaceEffect`] | what a return reports: range, strength, detection | per firing |
 //! | [`ClockEffect`] | the lidar's time against the host's | per firing and packet |
 //! | [`MechanismEffect`] | from the commanded angle to motor shaft and platform | per [`STEP_S`] |

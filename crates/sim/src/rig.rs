@@ -13,7 +13,7 @@ mod truth;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use firmware_sim::epos2::{Node, NodeConfig};
+use firmware_sim::epos2::{SimulatedDrive, SimulatedDriveConfig};
 use firmware_sim::vlp16::{DATA_PORT, POSITION_PORT, firing_blocks};
 use units::{Degrees, Gearing, Host, Span, Stamp};
 
@@ -37,7 +37,7 @@ pub struct RigConfig {
     /// Mounting of the lidar on the platform.
     pub mount: LidarMount,
     /// The drive.
-    pub drive: NodeConfig,
+    pub drive: SimulatedDriveConfig,
     /// The interface between host and drive.
     pub attached: Attachment,
     /// From motor shaft to platform; tilt 0 (level) is position 0 of the shaft.
@@ -86,7 +86,7 @@ impl RigConfig {
         Self {
             scene: Arc::new(Scene::hall()),
             mount: LidarMount::above(0.06),
-            drive: NodeConfig::default(),
+            drive: SimulatedDriveConfig::default(),
             attached: Attachment::Usb,
             gearing: GEARING,
             ripple: None,
@@ -139,7 +139,7 @@ pub struct Rig {
     /// Data packets so far.
     packets: u64,
     shaft: ShaftCourse,
-    node: Node,
+    node: SimulatedDrive,
     server: DriveServer,
     now: Stamp<Host>,
     datagrams: VecDeque<Datagram>,
@@ -171,7 +171,7 @@ impl Rig {
             surface: (),
             clock,
         };
-        let node = Node::new(config.drive);
+        let node = SimulatedDrive::new(config.drive);
         let mut rig = Self {
             maker: PacketMaker::new(&lidar, effects, surroundings.clone()),
             lidar,
@@ -247,7 +247,7 @@ impl Rig {
     }
 
     /// The drive, for faults that no client can cause: a blocked motor, a power cut, an error.
-    pub const fn drive_mut(&mut self) -> &mut Node {
+    pub const fn drive_mut(&mut self) -> &mut SimulatedDrive {
         &mut self.node
     }
 

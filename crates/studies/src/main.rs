@@ -1,4 +1,5 @@
-//! Measurements behind velomotion's own choices. One file per study; `studies` lists them.
+//! Measurements behind velomotion's own choices. One file per study; `STUDIES` lists them. The
+//! other modules are their parts.
 //!
 //! ```sh
 //! cargo run --release -p studies -- --markdown docs/src

@@ -27,7 +27,7 @@ documents! {
     BringUpReport: "bring-up-1";
     DaemonReport: "daemon-1";
     ServedView: "view-1";
-    SoftwareDrive: "firmware-sim-1";
+    SimulatedDriveReady: "firmware-sim-1";
     HelpText: "help-1";
 }
 
@@ -40,7 +40,7 @@ pub struct DaemonReport {
     pub url: String,
     /// Folder of the scans.
     pub scans: String,
-    /// Whether the devices are software.
+    /// Whether the devices are simulated.
     pub simulated: bool,
 }
 
@@ -56,7 +56,7 @@ pub struct ServedView {
 
 /// Printed by `firmware-sim` once the drive answers.
 #[derive(Clone, Debug, Serialize, ToSchema)]
-pub struct SoftwareDrive {
+pub struct SimulatedDriveReady {
     /// Its terminal, or the CAN interface.
     #[schema(value_type = String)]
     pub port: PathBuf,
@@ -111,7 +111,7 @@ mod tests {
             of::<BringUpReport>(),
             of::<DaemonReport>(),
             of::<ServedView>(),
-            of::<SoftwareDrive>(),
+            of::<SimulatedDriveReady>(),
             of::<HelpText>(),
         ]
         .into()

@@ -8,7 +8,7 @@
 
 use protocol::epos2::objects::{self, Address, TypedObject};
 
-use super::node::{Node, bit};
+use super::node::{SimulatedDrive, bit};
 
 /// State of the holding brake.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,12 +35,12 @@ impl StandstillTimer {
     };
 }
 
-/// Digital outputs of the unit.
+/// Digital outputs of the drive.
 const OUTPUTS: u8 = 5;
 /// Bit of the brake in 2078.
 const BRAKE_BIT: u16 = 1 << objects::OUTPUT_BRAKE;
 
-impl Node {
+impl SimulatedDrive {
     /// State of the brake.
     #[must_use]
     pub fn brake(&self) -> BrakeState {
@@ -51,7 +51,7 @@ impl Node {
         }
     }
 
-    /// Whether an output of the unit holds a brake open.
+    /// Whether an output of the drive holds a brake open.
     pub(super) fn is_brake_energised(&self) -> bool {
         self.brake_released && self.has_brake()
     }
@@ -88,7 +88,7 @@ impl Node {
             || standstill.waited_ms > self.dictionary.get(objects::STANDSTILL_TIMEOUT)
     }
 
-    /// 2078:1: the value written, but with the bit of the brake controlled by the unit. A set bit
+    /// 2078:1: the value written, but with the bit of the brake controlled by the drive. A set bit
     /// is a closed brake: the specification only calls the output active then.
     pub(super) fn output_state(&self) -> u16 {
         let written = self.dictionary.get(objects::OUTPUT_STATE) & !BRAKE_BIT;

@@ -1,4 +1,4 @@
-//! Configuration of a simulated unit: its identity and the mechanics of its axis.
+//! Configuration of a simulated drive: its identity and the mechanics of its axis.
 //!
 //! Positions are world positions: quadcounts of the motor shaft from a fixed zero, independent of
 //! power-on and homing.
@@ -10,9 +10,9 @@ pub use super::servo::Servo;
 /// Largest number of switches.
 pub const MAX_SWITCHES: usize = 4;
 
-/// A unit and its axis.
+/// A drive and its axis.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct NodeConfig {
+pub struct SimulatedDriveConfig {
     /// CANopen node id, 1..=127.
     pub node_id: u8,
     /// Identity data in the dictionary.
@@ -20,7 +20,7 @@ pub struct NodeConfig {
     /// Quadcounts in one revolution of the motor (four per encoder line), up to 10,000,000; the
     /// initial value of 2210:1 follows from it.
     pub qc_per_turn: u32,
-    /// Position of the shaft at power-on, world qc. The unit counts from there.
+    /// Position of the shaft at power-on, world qc. The drive counts from there.
     pub initial_position: i32,
     /// World position of one index pulse of the encoder, qc; the others are whole revolutions away.
     pub index_position: i32,
@@ -49,11 +49,11 @@ pub struct AxisLoad {
     pub gravity_rpm_s: i32,
     /// Deceleration by friction. An axis at rest stays so while friction is not below gravity.
     pub friction_rpm_s: u32,
-    /// The holding brake; `None`: not fitted, whatever the outputs of the unit say.
+    /// The holding brake; `None`: not fitted, whatever the outputs of the drive say.
     pub brake: Option<HoldingBrake>,
 }
 
-/// A brake that a spring closes. It opens while a digital output of the unit is configured for it
+/// A brake that a spring closes. It opens while a digital output of the drive is configured for it
 /// and released, and holds the axis otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HoldingBrake {
@@ -122,11 +122,11 @@ impl Default for UnitIdentity {
     }
 }
 
-impl Default for NodeConfig {
+impl Default for SimulatedDriveConfig {
     /// A tilt axis with 500 encoder lines and a gear of 120:1 (0.0015 deg/qc), level at world zero:
     /// limit switches at 65 degrees on either side on their factory inputs (6 negative, 5
-    /// positive), no hard stops, no lag, 4.5 degrees down at power-on, and the fault of a unit used
-    /// over USB alone.
+    /// positive), no hard stops, no lag, 4.5 degrees down at power-on, and the fault of a drive
+    /// used over USB alone.
     fn default() -> Self {
         let limit = |input, pressed| {
             Some(Switch {

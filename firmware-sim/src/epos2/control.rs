@@ -9,7 +9,7 @@ use protocol::epos2::device_error::Reaction;
 use protocol::epos2::objects::{self, TypedObject};
 
 use super::brake::StandstillTimer;
-use super::node::Node;
+use super::node::SimulatedDrive;
 use super::position_mode::PositionMode;
 use super::ramp::RampShape;
 
@@ -79,7 +79,7 @@ impl ControlCommand {
     }
 }
 
-impl Node {
+impl SimulatedDrive {
     /// Handles a write of the controlword.
     pub(super) fn command(&mut self, word: u16) {
         let old = core::mem::replace(&mut self.controlword, word);

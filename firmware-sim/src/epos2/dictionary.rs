@@ -3,7 +3,7 @@
 
 use protocol::epos2::objects::{Address, Scalar, TypedObject};
 
-use super::Abort;
+use super::AbortCode;
 use super::entry::DictionaryEntry;
 use super::table::{COUNT, TABLE};
 
@@ -42,19 +42,19 @@ impl Dictionary {
     }
 
     /// The entry at `address`.
-    pub fn entry(address: Address) -> Result<&'static DictionaryEntry, Abort> {
+    pub fn entry(address: Address) -> Result<&'static DictionaryEntry, AbortCode> {
         Self::place(address).map(|(_, entry)| entry)
     }
 
-    fn place(address: Address) -> Result<(usize, &'static DictionaryEntry), Abort> {
+    fn place(address: Address) -> Result<(usize, &'static DictionaryEntry), AbortCode> {
         let found = TABLE.binary_search_by_key(&address, |entry| entry.address);
         // An address that is missing sorts after the other subindices of its index; each index has
         // subindex 0.
         let before = found.unwrap_or_else(|at| at.saturating_sub(1));
         match (found, TABLE.get(before)) {
             (Ok(i), Some(entry)) => Ok((i, entry)),
-            (_, Some(entry)) if entry.address.index == address.index => Err(Abort::NO_SUB),
-            _ => Err(Abort::NO_OBJECT),
+            (_, Some(entry)) if entry.address.index == address.index => Err(AbortCode::NO_SUB),
+            _ => Err(AbortCode::NO_OBJECT),
         }
     }
 
@@ -128,15 +128,15 @@ mod tests {
     fn missing_index_and_missing_sub_have_different_codes() {
         assert_eq!(
             Dictionary::entry(Address::new(0x6041, 1)).unwrap_err(),
-            Abort::NO_SUB
+            AbortCode::NO_SUB
         );
         assert_eq!(
             Dictionary::entry(Address::new(0x60F9, 3)).unwrap_err(),
-            Abort::NO_SUB
+            AbortCode::NO_SUB
         );
         assert_eq!(
             Dictionary::entry(Address::new(0x6042, 0)).unwrap_err(),
-            Abort::NO_OBJECT
+            AbortCode::NO_OBJECT
         );
     }
 

@@ -2,7 +2,7 @@
 
 use protocol::epos2::objects::Address;
 
-use super::Abort;
+use super::AbortCode;
 
 /// Data types of entries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -129,38 +129,38 @@ impl DictionaryEntry {
         (self.default + plus) as u32
     }
 
-    pub fn check_read(&self) -> Result<(), Abort> {
+    pub fn check_read(&self) -> Result<(), AbortCode> {
         match self.access {
-            EntryAccess::Wo => Err(Abort::WRITE_ONLY),
+            EntryAccess::Wo => Err(AbortCode::WRITE_ONLY),
             EntryAccess::Ro | EntryAccess::Rw | EntryAccess::Rww => Ok(()),
         }
     }
 
-    pub fn check_access(&self) -> Result<(), Abort> {
+    pub fn check_access(&self) -> Result<(), AbortCode> {
         match self.access {
-            EntryAccess::Ro => Err(Abort::READ_ONLY),
+            EntryAccess::Ro => Err(AbortCode::READ_ONLY),
             EntryAccess::Rw | EntryAccess::Rww | EntryAccess::Wo => Ok(()),
         }
     }
 
     /// Checks the length of a value.
-    pub fn check_length(&self, bytes: usize) -> Result<(), Abort> {
+    pub fn check_length(&self, bytes: usize) -> Result<(), AbortCode> {
         match self.ty.bytes() {
             // Texts and domains are rejected elsewhere.
             0 => Ok(()),
-            wanted if bytes > wanted => Err(Abort::TOO_LONG),
-            wanted if bytes < wanted => Err(Abort::TOO_SHORT),
+            wanted if bytes > wanted => Err(AbortCode::TOO_LONG),
+            wanted if bytes < wanted => Err(AbortCode::TOO_SHORT),
             _ => Ok(()),
         }
     }
 
     /// Checks the limits of a write; bits above the type are ignored.
-    pub fn check_limits(&self, raw: u32) -> Result<(), Abort> {
+    pub fn check_limits(&self, raw: u32) -> Result<(), AbortCode> {
         let value = self.ty.number(raw);
         if value > self.high {
-            Err(Abort::TOO_HIGH)
+            Err(AbortCode::TOO_HIGH)
         } else if value < self.low {
-            Err(Abort::TOO_LOW)
+            Err(AbortCode::TOO_LOW)
         } else {
             Ok(())
         }

@@ -7,7 +7,7 @@ const DEPTH: usize = 5;
 /// Capacity of pending emergency messages.
 const PENDING: usize = 8;
 
-/// Errors of the unit.
+/// Errors of the drive.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Errors {
     register: u8,

@@ -5,9 +5,9 @@ use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::{DeviceState, mode};
 use protocol::epos2::objects;
 
-use super::node::Node;
+use super::node::SimulatedDrive;
 
-impl Node {
+impl SimulatedDrive {
     /// A deviation above 6065 is an error in all modes with position control.
     pub(super) fn watch_following(&mut self) {
         let controlled = matches!(

@@ -1,4 +1,4 @@
-//! The garbage in unused words of a real unit, seeded for repeatable runs.
+//! The garbage in unused words of a real drive, seeded for repeatable runs.
 
 /// A generator of arbitrary numbers (SplitMix64).
 #[derive(Clone, Debug)]

@@ -1,4 +1,4 @@
-//! Serial requests for other nodes: the unit is alone on its bus.
+//! Serial requests for other nodes: the drive is alone on its bus.
 
 extern crate std;
 use std::vec::Vec;
@@ -10,24 +10,24 @@ use protocol::epos2::message::{
 };
 use protocol::epos2::objects;
 use protocol::epos2::usb::{UsbDecoder, to_bytes};
-use protocol::epos2::{BoundedVec, CommError, SerialFrame};
+use protocol::epos2::{AbortCode, BoundedVec, SerialFrame};
 
-use super::super::{Node, NodeConfig, UsbServer};
+use super::super::{SimulatedDrive, SimulatedDriveConfig, UsbServer};
 
 struct Bench {
     usb: UsbServer,
-    near: Node,
+    near: SimulatedDrive,
 }
 
 impl Bench {
     fn new() -> Self {
         Self {
             usb: UsbServer::new(1),
-            near: Node::new(NodeConfig::default()),
+            near: SimulatedDrive::new(SimulatedDriveConfig::default()),
         }
     }
 
-    fn error(&mut self, request: &SerialFrame) -> CommError {
+    fn error(&mut self, request: &SerialFrame) -> AbortCode {
         let mut out = Vec::new();
         self.usb
             .input(&mut self.near, &to_bytes(request), &mut |frame: &[u8]| {
@@ -59,10 +59,10 @@ fn other_nodes_are_a_timeout() {
         ]
         .map(|request| bench.error(&request))
     };
-    assert_eq!(errors(0), [CommError::NONE; 3]);
-    assert_eq!(errors(1), [CommError::NONE; 3]);
-    assert_eq!(errors(4), [CommError::TIMEOUT; 3]);
-    assert_eq!(errors(200), [CommError::CAN_ID; 3]);
+    assert_eq!(errors(0), [AbortCode::NONE; 3]);
+    assert_eq!(errors(1), [AbortCode::NONE; 3]);
+    assert_eq!(errors(4), [AbortCode::TIMEOUT; 3]);
+    assert_eq!(errors(200), [AbortCode::CAN_ID; 3]);
 }
 
 #[test]
@@ -70,14 +70,14 @@ fn a_long_write_to_another_node_ends_in_a_timeout() {
     let mut bench = Bench::new();
     let address = objects::TARGET_POSITION.address;
     let begin = |node, len| InitiateSegmentedWrite { node, address, len }.to_frame();
-    assert_eq!(bench.error(&begin(3, 9)), CommError::MEMORY);
-    assert_eq!(bench.error(&begin(3, 4)), CommError::NONE);
+    assert_eq!(bench.error(&begin(3, 9)), AbortCode::MEMORY);
+    assert_eq!(bench.error(&begin(3, 4)), AbortCode::NONE);
     let segment = |toggle, bytes: &[u8]| {
         let bytes = BoundedVec::from_slice(bytes).unwrap();
         SegmentedWrite(WriteSegment { toggle, bytes }).to_frame()
     };
-    assert_eq!(bench.error(&segment(false, &[1, 2, 3])), CommError::NONE);
-    assert_eq!(bench.error(&segment(true, &[4])), CommError::TIMEOUT);
+    assert_eq!(bench.error(&segment(false, &[1, 2, 3])), AbortCode::NONE);
+    assert_eq!(bench.error(&segment(true, &[4])), AbortCode::TIMEOUT);
 }
 
 #[test]
@@ -86,7 +86,7 @@ fn network_management_reaches_the_addressed_node() {
     let mut send_nmt = |node, command: NmtCommand| {
         let specifier = u16::from(command.to_u8());
         let error = bench.error(&GatewayNmt { node, specifier }.to_frame());
-        assert_eq!(error, CommError::NONE);
+        assert_eq!(error, AbortCode::NONE);
         bench.near.nmt_state()
     };
     assert_eq!(send_nmt(2, NmtCommand::Start), NmtState::PreOperational);
@@ -103,11 +103,11 @@ fn can_frames_are_sent_and_requested() {
         let data = [0; 8];
         SendCanFrame { cob_id, len, data }.to_frame()
     };
-    assert_eq!(bench.error(&send(0, 2)), CommError::NONE);
-    assert_eq!(bench.error(&send(0x800, 2)), CommError::CAN_ID);
-    assert_eq!(bench.error(&send(0x100, 9)), CommError::LENGTH);
+    assert_eq!(bench.error(&send(0, 2)), AbortCode::NONE);
+    assert_eq!(bench.error(&send(0x800, 2)), AbortCode::CAN_ID);
+    assert_eq!(bench.error(&send(0x100, 9)), AbortCode::LENGTH);
     let request = |cob_id, len| RequestCanFrame { cob_id, len }.to_frame();
-    assert_eq!(bench.error(&request(0x704, 1)), CommError::TIMEOUT);
-    assert_eq!(bench.error(&request(0x702, 9)), CommError::LENGTH);
-    assert_eq!(bench.error(&request(0x800, 1)), CommError::CAN_ID);
+    assert_eq!(bench.error(&request(0x704, 1)), AbortCode::TIMEOUT);
+    assert_eq!(bench.error(&request(0x702, 9)), AbortCode::LENGTH);
+    assert_eq!(bench.error(&request(0x800, 1)), AbortCode::CAN_ID);
 }

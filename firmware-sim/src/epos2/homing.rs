@@ -10,7 +10,7 @@ use protocol::epos2::objects::{self, input};
 
 use super::fixed::{Speed, fine, floor_qc};
 use super::homing_method::{HomingMethod, ReferenceSearch, method};
-use super::node::{Node, bit};
+use super::node::{SimulatedDrive, bit};
 use super::profile::MotionLimits;
 use super::ramp::RampShape;
 
@@ -66,7 +66,7 @@ impl HomingState {
     }
 }
 
-impl Node {
+impl SimulatedDrive {
     /// Handles a change of the controlword while operation is enabled: the rising edge of bit 4
     /// starts, its falling edge or a halt interrupts.
     pub(super) fn homing_command(&mut self, old: u16, word: u16) {

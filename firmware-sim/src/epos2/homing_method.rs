@@ -31,7 +31,7 @@ impl HomingMethod {
     }
 }
 
-/// The method of a number; `None` if the unit does not have it.
+/// The method of a number; `None` if the drive does not have it.
 pub(super) fn method(number: i8) -> Option<HomingMethod> {
     let switch = |bit, direction| Some(ReferenceSearch::Switch { bit, direction });
     let stop = |direction| Some(ReferenceSearch::Stop { direction });

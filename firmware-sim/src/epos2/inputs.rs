@@ -6,12 +6,12 @@ use protocol::epos2::cia402::DeviceState;
 use protocol::epos2::objects::{self, Address, input};
 
 use super::fixed::floor_qc;
-use super::node::Node;
+use super::node::SimulatedDrive;
 
-/// Digital inputs of the unit.
+/// Digital inputs of the drive.
 const INPUTS: u8 = 9;
 
-impl Node {
+impl SimulatedDrive {
     /// 2071:1 at the present position. A purpose without an input stays inactive, at either
     /// polarity.
     pub(super) fn sense(&self) -> u16 {
@@ -42,8 +42,8 @@ impl Node {
     /// Updates the inputs and runs the error routines that are enabled (2071:4).
     ///
     /// A limit switch is an error when it becomes active, and when the axis moves further into it,
-    /// so that a unit can leave it after a fault reset; during the ramp of a fault only once. While
-    /// homing, limit switches are no errors.
+    /// so that a drive can leave it after a fault reset; during the ramp of a fault only once.
+    /// While homing, limit switches are no errors.
     pub(super) fn watch_inputs(&mut self) {
         let before = self.inputs;
         self.inputs = self.sense();

@@ -3,9 +3,9 @@
 //! Absent unless the configuration has an [`AxisLoad`]: an unpowered shaft then stays in place.
 
 use super::config::AxisLoad;
-use super::node::Node;
+use super::node::SimulatedDrive;
 
-/// Position of the brake's armature, which follows the output of the unit with a delay.
+/// Position of the brake's armature, which follows the output of the drive with a delay.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct BrakeArmature {
     open: bool,
@@ -13,7 +13,7 @@ pub(super) struct BrakeArmature {
     moving_ms: u16,
 }
 
-impl Node {
+impl SimulatedDrive {
     /// Advances the brake by one millisecond.
     pub(super) fn advance_brake(&mut self) {
         let Some(brake) = self.config.load.and_then(|load| load.brake) else {

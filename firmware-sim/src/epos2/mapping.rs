@@ -3,14 +3,14 @@
 //!
 //! A PDO must be disabled (bit 31 of its identifier) while its mapping changes, and the count of
 //! the mapping must be 0 while its entries change; the count then activates them. The strictness of
-//! a real unit is not documented.
+//! a real drive is not documented.
 
 use protocol::canopen::CanId;
 use protocol::canopen::pdo::{CommunicationId, LayoutError, MAX_ENTRIES, MappedObject, PdoLayout};
 use protocol::epos2::BoundedVec;
 use protocol::epos2::objects::Address;
 
-use super::Abort;
+use super::AbortCode;
 use super::dictionary::Dictionary;
 
 /// First indices; each object exists four times.
@@ -50,30 +50,30 @@ fn entries(
 }
 
 /// Checks a write to one of these objects.
-pub(super) fn check(dictionary: &Dictionary, address: Address, raw: u32) -> Result<(), Abort> {
+pub(super) fn check(dictionary: &Dictionary, address: Address, raw: u32) -> Result<(), AbortCode> {
     let Address { index, sub } = address;
     match (index & !3, sub) {
         (RECEIVE | TRANSMIT, 1) => check_identifier(identifier(dictionary, index), raw),
         // 241 to 251 are reserved.
-        (RECEIVE | TRANSMIT, 2) if (241..=251).contains(&raw) => Err(Abort::RANGE),
+        (RECEIVE | TRANSMIT, 2) if (241..=251).contains(&raw) => Err(AbortCode::RANGE),
         (RECEIVE | TRANSMIT, _) => Ok(()),
-        _ if identifier(dictionary, index - TO_MAPPING).valid => Err(Abort::STATE),
+        _ if identifier(dictionary, index - TO_MAPPING).valid => Err(AbortCode::STATE),
         (_, 0) => {
             let entries = entries(dictionary, index, raw as u8);
             match PdoLayout::new(&entries) {
                 Ok(_) => Ok(()),
-                Err(LayoutError::Empty { .. }) => Err(Abort::PDO_MAPPING),
-                Err(_) => Err(Abort::PDO_LENGTH),
+                Err(LayoutError::Empty { .. }) => Err(AbortCode::PDO_MAPPING),
+                Err(_) => Err(AbortCode::PDO_LENGTH),
             }
         }
-        _ if dictionary.raw(Address::new(index, 0)) != 0 => Err(Abort::STATE),
+        _ if dictionary.raw(Address::new(index, 0)) != 0 => Err(AbortCode::STATE),
         (direction, _) => check_entry(MappedObject::from_u32(raw), direction == TRANSMIT_MAPPING),
     }
 }
 
 /// The identifier of a PDO in use does not change, and identifiers that CiA 301 reserves for other
 /// services are rejected.
-fn check_identifier(old: CommunicationId, raw: u32) -> Result<(), Abort> {
+fn check_identifier(old: CommunicationId, raw: u32) -> Result<(), AbortCode> {
     let new = CommunicationId::from_u32(raw);
     let is_free = match new.id {
         CanId::Standard(id) => {
@@ -85,12 +85,12 @@ fn check_identifier(old: CommunicationId, raw: u32) -> Result<(), Abort> {
     if (is_free || !new.valid) && !moves && new.to_u32() == raw {
         Ok(())
     } else {
-        Err(Abort::RANGE)
+        Err(AbortCode::RANGE)
     }
 }
 
 /// Checks that an object may be mapped, in its whole length; 0 is no object.
-fn check_entry(mapping: MappedObject, sent: bool) -> Result<(), Abort> {
+fn check_entry(mapping: MappedObject, sent: bool) -> Result<(), AbortCode> {
     if mapping.to_u32() == 0 {
         return Ok(());
     }
@@ -103,6 +103,6 @@ fn check_entry(mapping: MappedObject, sent: bool) -> Result<(), Abort> {
     if allowed && usize::from(mapping.bits) == 8 * entry.ty.bytes() {
         Ok(())
     } else {
-        Err(Abort::PDO_MAPPING)
+        Err(AbortCode::PDO_MAPPING)
     }
 }

@@ -1,11 +1,11 @@
 //! A maxon EPOS2 positioning controller with its motor, encoder, limit switches and brake, as a
 //! state machine without I/O.
 //!
-//! [`Node`] is the unit: an object dictionary, the CiA 402 state machine and a profile generator at
-//! 1 kHz in integer arithmetic, one [`Node::tick`] per millisecond. [`UsbServer`] and
-//! [`Rs232Server`] answer the frames of its serial interfaces, [`CanServer`] those of a CAN bus,
-//! [`SlcanServer`] the same through a serial CAN adapter. Sources are the EPOS2 Firmware
-//! Specification and Communication Guide; comments mark behaviour that they leave open.
+//! [`SimulatedDrive`] is the drive: an object dictionary, the CiA 402 state machine and a profile
+//! generator at 1 kHz in integer arithmetic, one [`SimulatedDrive::tick`] per millisecond.
+//! [`UsbServer`] and [`Rs232Server`] answer the frames of its serial interfaces, [`CanServer`]
+//! those of a CAN bus, [`SlcanServer`] the same through a serial CAN adapter. Sources are the EPOS2
+//! Firmware Specification and Communication Guide; comments mark behaviour that they leave open.
 //!
 //! Not simulated: the modes of current, interpolation and encoder following, and the electrical
 //! side. The shaft follows its demand exactly unless the configuration has a servo with a lag
@@ -52,9 +52,9 @@ mod velocity_mode;
 pub use brake::BrakeState;
 pub use can::CanServer;
 pub use config::{
-    AxisLoad, HoldingBrake, MAX_SWITCHES, NodeConfig, Region, Servo, Switch, UnitIdentity,
+    AxisLoad, HoldingBrake, MAX_SWITCHES, Region, Servo, SimulatedDriveConfig, Switch, UnitIdentity,
 };
-pub use node::{Node, ShaftSegment};
+pub use node::{ShaftSegment, SimulatedDrive};
 pub use protocol::canopen::{CanFrame, SOCKETCAN_LEN};
 pub use rs232::Rs232Server;
 pub use slcan::SlcanServer;
@@ -62,7 +62,7 @@ pub use usb::UsbServer;
 pub use value::ObjectValue;
 
 /// Code of a rejected access, in a serial answer or an SDO abort.
-pub type Abort = protocol::epos2::CommError;
+pub use protocol::epos2::AbortCode;
 
 #[cfg(test)]
 mod tests;

@@ -3,7 +3,7 @@
 use protocol::canopen::nmt::NmtCommand;
 use protocol::canopen::nmt::NmtState;
 
-use super::node::Node;
+use super::node::SimulatedDrive;
 
 /// NMT state and restarts of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,7 +23,7 @@ impl NetworkState {
     }
 }
 
-impl Node {
+impl SimulatedDrive {
     /// NMT state: pre-operational after a start.
     #[must_use]
     pub const fn nmt_state(&self) -> NmtState {

@@ -1,11 +1,11 @@
-//! The whole unit: its parts, its clock, and its shaft.
+//! The whole drive: its parts, its clock, and its shaft.
 
 use protocol::canopen::nmt::NmtState;
 use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::{DeviceState, mode, status};
 use protocol::epos2::objects;
 
-use super::config::NodeConfig;
+use super::config::SimulatedDriveConfig;
 use super::control::Sequence;
 use super::dictionary::Dictionary;
 use super::errors::Errors;
@@ -31,11 +31,11 @@ pub struct ShaftSegment {
 
 /// A simulated EPOS2 with its axis.
 ///
-/// [`Node::tick`] advances time; all other methods act at the present instant, which
-/// [`Node::set_phase_us`] refines.
+/// [`SimulatedDrive::tick`] advances time; all other methods act at the present instant, which
+/// [`SimulatedDrive::set_phase_us`] refines.
 #[derive(Clone, Debug)]
-pub struct Node {
-    pub(super) config: NodeConfig,
+pub struct SimulatedDrive {
+    pub(super) config: SimulatedDriveConfig,
     pub(super) dictionary: Dictionary,
     /// Parameters that survive power-off.
     pub(super) saved: Dictionary,
@@ -51,7 +51,7 @@ pub struct Node {
     pub(super) armature: BrakeArmature,
     /// Mode in effect (6061).
     pub(super) mode: i8,
-    /// World qc of the unit's position 0.
+    /// World qc of the drive's position 0.
     pub(super) origin: i64,
     pub(super) referenced: bool,
     /// Bit 13 in profile position mode: the last fault was a following error.
@@ -70,10 +70,10 @@ pub struct Node {
     timestamp_base_us: u32,
 }
 
-impl Node {
-    /// A unit after booting: "switch-on disabled", or "fault" with the configured error.
+impl SimulatedDrive {
+    /// A drive after booting: "switch-on disabled", or "fault" with the configured error.
     #[must_use]
-    pub fn new(config: NodeConfig) -> Self {
+    pub fn new(config: SimulatedDriveConfig) -> Self {
         let saved = factory(&config);
         let shaft = MotorShaft::new(
             fine(config.initial_position.into()),
@@ -84,7 +84,7 @@ impl Node {
     }
 
     fn boot(
-        config: NodeConfig,
+        config: SimulatedDriveConfig,
         saved: Dictionary,
         shaft: MotorShaft,
         network: NetworkState,
@@ -164,7 +164,7 @@ impl Node {
         self.segment = ShaftSegment { start, end };
     }
 
-    /// Motion of the shaft in the millisecond that the last [`Node::tick`] began.
+    /// Motion of the shaft in the millisecond that the last [`SimulatedDrive::tick`] began.
     #[must_use]
     pub const fn segment(&self) -> ShaftSegment {
         self.segment
@@ -195,12 +195,12 @@ impl Node {
         self.state
     }
 
-    /// Raises a device error, as a fault in the environment of the unit would.
+    /// Raises a device error, as a fault in the environment of the drive would.
     pub fn inject(&mut self, error: DeviceError) {
         self.fail(error);
     }
 
-    /// Blocks the shaft in place until [`Node::unblock`], through power-off too.
+    /// Blocks the shaft in place until [`SimulatedDrive::unblock`], through power-off too.
     pub fn block(&mut self) {
         self.shaft.jammed = true;
     }
@@ -210,7 +210,7 @@ impl Node {
         self.shaft.jammed = false;
     }
 
-    /// 6041.
+    /// Statusword (6041).
     pub(super) fn statusword(&self) -> u16 {
         let of_mode = match self.mode {
             mode::HOMING => self.homing.status_bits(),
@@ -256,7 +256,7 @@ impl Node {
         (floor_qc(self.generator.position) - self.origin) as i32
     }
 
-    /// 1013.
+    /// Clock of the drive (1013).
     pub(super) fn timestamp_us(&self) -> u32 {
         (self.time_us() as u32).wrapping_add(self.timestamp_base_us)
     }

@@ -5,10 +5,10 @@
 use protocol::epos2::cia402::DeviceState;
 use protocol::epos2::objects::{self, Address};
 
-use super::Abort;
+use super::AbortCode;
 use super::dictionary::Dictionary;
 use super::entry::Type;
-use super::node::Node;
+use super::node::SimulatedDrive;
 use super::storage::{RESTORE_COB_IDS, RESTORE_FACTORY};
 use super::value::ObjectValue;
 
@@ -24,22 +24,21 @@ const FOLLOWING_ERROR: Address = Address::new(0x20F4, 0);
 const VELOCITY_SENSOR: Address = Address::new(0x6069, 0);
 /// 1010:1 reads as "saves on command" (CiA 301).
 const SAVES_ON_COMMAND: u32 = 1;
-/// 6502: of the modes of a real unit (003F0065) those simulated: profile position, profile
+/// 6502: of the modes of a real drive (003F0065) those simulated: profile position, profile
 /// velocity, homing; position and velocity mode (-1, -2) are the first two of bits 16 to 21.
 const MODES: u32 = 1 << 0 | 1 << 2 | 1 << 5 | 1 << 16 | 1 << 17;
 
-impl Node {
+impl SimulatedDrive {
     /// Reads an object.
     ///
-    /// # Errors
-    /// [`Abort::NO_OBJECT`], [`Abort::NO_SUB`], [`Abort::WRITE_ONLY`]; [`Abort::STATE`] for the
-    /// data recorder's buffer, as nothing is ever recorded.
-    pub fn read(&self, address: Address) -> Result<ObjectValue, Abort> {
+    /// # Errors [`AbortCode::NO_OBJECT`], [`AbortCode::NO_SUB`], [`AbortCode::WRITE_ONLY`];
+    /// [`AbortCode::STATE`] for the data recorder's buffer, as nothing is ever recorded.
+    pub fn read(&self, address: Address) -> Result<ObjectValue, AbortCode> {
         let entry = Dictionary::entry(address)?;
         entry.check_read()?;
         match entry.ty {
             Type::Text => Ok(ObjectValue::text("EPOS2")),
-            Type::Domain => Err(Abort::STATE),
+            Type::Domain => Err(AbortCode::STATE),
             ty => {
                 let raw = self
                     .computed(address)
@@ -101,8 +100,8 @@ impl Node {
     /// Writes an object; what is above its width is ignored.
     ///
     /// # Errors
-    /// [`Abort`] with the code that the unit would answer; nothing is changed then.
-    pub fn write(&mut self, address: Address, raw: u32) -> Result<(), Abort> {
+    /// [`AbortCode`] with the code that the drive would answer; nothing is changed then.
+    pub fn write(&mut self, address: Address, raw: u32) -> Result<(), AbortCode> {
         let entry = Dictionary::entry(address)?;
         entry.check_access()?;
         self.check_storable(entry)?;
@@ -116,10 +115,9 @@ impl Node {
 
     /// Writes an object from bytes, low byte first.
     ///
-    /// # Errors
-    /// As [`Node::write`]; [`Abort::TOO_LONG`], [`Abort::TOO_SHORT`] unless they are as many as the
-    /// object has.
-    pub fn write_bytes(&mut self, address: Address, bytes: &[u8]) -> Result<(), Abort> {
+    /// # Errors As [`SimulatedDrive::write`]; [`AbortCode::TOO_LONG`], [`AbortCode::TOO_SHORT`]
+    /// unless they are as many as the object has.
+    pub fn write_bytes(&mut self, address: Address, bytes: &[u8]) -> Result<(), AbortCode> {
         self.check_download(address, bytes.len())?;
         let mut raw = [0; 4];
         for (to, from) in raw.iter_mut().zip(bytes) {

@@ -6,7 +6,7 @@ use protocol::epos2::cia402::{DeviceState, control, mode, status};
 use protocol::epos2::objects;
 
 use super::fixed::{Speed, fine, floor_qc};
-use super::node::{Node, bit};
+use super::node::{SimulatedDrive, bit};
 use super::profile::MotionLimits;
 
 /// State of the mode.
@@ -18,7 +18,7 @@ pub(super) struct PositionMode {
     reached: bool,
     /// Starts after the present move.
     queued: Option<Setpoint>,
-    /// The target in qc of the unit.
+    /// The target in qc of the drive.
     target: Option<i64>,
     in_window_ms: u16,
 }
@@ -42,7 +42,7 @@ impl PositionMode {
     }
 }
 
-impl Node {
+impl SimulatedDrive {
     /// Handles a change of the controlword while operation is enabled.
     ///
     /// A halt cancels the move: the specification does not say whether it resumes, and an
@@ -112,7 +112,7 @@ impl Node {
         Speed::from_rpm(rpm as i32)
     }
 
-    /// Whether a position of the unit lies within the software limits (607D).
+    /// Whether a position of the drive lies within the software limits (607D).
     pub(super) fn is_allowed(&self, position: i64) -> bool {
         let lowest = self.dictionary.get(objects::MIN_POSITION).into();
         let highest = self.dictionary.get(objects::MAX_POSITION).into();

@@ -1,14 +1,14 @@
-//! The RS232 interface of the unit: request and answer with their handshake bytes, half duplex
+//! The RS232 interface of the drive: request and answer with their handshake bytes, half duplex
 //! (Communication Guide, "RS232 Communication"). The link models wire time.
 
 use protocol::epos2::message::{GatewayNmt, SendCanFrame, SerialRequest};
 use protocol::epos2::rs232::{BodyDecoder, Bytes, FAILED, OKAY, encode_body};
 use protocol::epos2::{SerialFrame, objects};
 
-use super::node::Node;
+use super::node::SimulatedDrive;
 use super::service::CommandService;
 
-/// The RS232 side of a unit.
+/// The RS232 side of a drive.
 #[derive(Clone, Debug)]
 pub struct Rs232Server {
     state: HandshakeState,
@@ -41,11 +41,11 @@ impl Rs232Server {
         }
     }
 
-    /// Takes bytes from the master at the present instant of the node; the bytes of the unit go to
+    /// Takes bytes from the master at the present instant of the node; the bytes of the drive go to
     /// `out`.
     ///
     /// A silence above the frame timeout (2005) resets the handshake.
-    pub fn input(&mut self, node: &mut Node, bytes: &[u8], out: &mut impl FnMut(&[u8])) {
+    pub fn input(&mut self, node: &mut SimulatedDrive, bytes: &[u8], out: &mut impl FnMut(&[u8])) {
         let now_us = node.time_us();
         let timeout_us = 1000 * u64::from(node.dictionary.get(objects::RS232_FRAME_TIMEOUT));
         if now_us.saturating_sub(self.last_byte_us) > timeout_us {
@@ -62,7 +62,7 @@ impl Rs232Server {
         &mut self,
         state: HandshakeState,
         byte: u8,
-        node: &mut Node,
+        node: &mut SimulatedDrive,
         out: &mut impl FnMut(&[u8]),
     ) -> HandshakeState {
         match state {
@@ -103,7 +103,7 @@ impl Rs232Server {
     fn answer(
         &mut self,
         request: &SerialFrame,
-        node: &mut Node,
+        node: &mut SimulatedDrive,
         out: &mut impl FnMut(&[u8]),
     ) -> HandshakeState {
         let answer = self.service.execute(node, request);

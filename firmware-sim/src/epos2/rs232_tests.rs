@@ -9,17 +9,17 @@ use protocol::epos2::message::{GatewayNmt, ReadObject, WriteObject};
 use protocol::epos2::rs232::{BodyDecoder, encode_body};
 use protocol::epos2::{DeviceError, SerialFrame, objects};
 
-use super::super::{Node, NodeConfig};
+use super::super::{SimulatedDrive, SimulatedDriveConfig};
 use super::Rs232Server;
 
-fn node() -> Node {
-    Node::new(NodeConfig {
+fn node() -> SimulatedDrive {
+    SimulatedDrive::new(SimulatedDriveConfig {
         fault_at_power_on: DeviceError::NONE,
-        ..NodeConfig::default()
+        ..SimulatedDriveConfig::default()
     })
 }
 
-fn send(server: &mut Rs232Server, node: &mut Node, bytes: &[u8]) -> Vec<u8> {
+fn send(server: &mut Rs232Server, node: &mut SimulatedDrive, bytes: &[u8]) -> Vec<u8> {
     let mut out = Vec::new();
     server.input(node, bytes, &mut |bytes: &[u8]| {
         out.extend_from_slice(bytes)
@@ -28,7 +28,11 @@ fn send(server: &mut Rs232Server, node: &mut Node, bytes: &[u8]) -> Vec<u8> {
 }
 
 /// The master's side of one exchange.
-fn exchange(server: &mut Rs232Server, node: &mut Node, request: &SerialFrame) -> SerialFrame {
+fn exchange(
+    server: &mut Rs232Server,
+    node: &mut SimulatedDrive,
+    request: &SerialFrame,
+) -> SerialFrame {
     assert_eq!(send(server, node, &[request.opcode]), b"O");
     let mut body = Vec::new();
     encode_body(request, &mut body).unwrap();

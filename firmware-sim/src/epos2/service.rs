@@ -1,7 +1,7 @@
 //! Executes the commands of the serial interfaces on the node. Those for other nodes go to the
 //! gateway.
 //!
-//! Unused words of an answer are garbage, as on a real unit, and errors come in two words or in
+//! Unused words of an answer are garbage, as on a real drive, and errors come in two words or in
 //! four.
 
 use protocol::canopen::nmt::NmtCommand;
@@ -10,12 +10,11 @@ use protocol::epos2::message::{
     SegmentedRead, SegmentedWrite, SerialAnswer, SerialRequest, WriteObject, WriteSegment,
 };
 use protocol::epos2::objects::Address;
-use protocol::epos2::{BoundedVec, CommError, SerialFrame};
+use protocol::epos2::{AbortCode, BoundedVec, SerialFrame};
 
-use super::Abort;
 use super::garbage::GarbageGenerator;
 use super::gateway;
-use super::node::Node;
+use super::node::SimulatedDrive;
 use super::value::{LONGEST, ObjectValue};
 
 /// State of a serial interface between commands.
@@ -47,21 +46,21 @@ impl CommandService {
     }
 
     /// Executes a request and returns its answer.
-    pub fn execute(&mut self, node: &mut Node, frame: &SerialFrame) -> SerialFrame {
+    pub fn execute(&mut self, node: &mut SimulatedDrive, frame: &SerialFrame) -> SerialFrame {
         let outcome = match SerialRequest::parse(frame) {
             Ok(Some(request)) => self.answer(node, request),
-            Ok(None) => Err(CommError::ILLEGAL_COMMAND),
+            Ok(None) => Err(AbortCode::ILLEGAL_COMMAND),
             // The guide names no code for a known command of a wrong length.
-            Err(_) => Err(CommError::LENGTH),
+            Err(_) => Err(AbortCode::LENGTH),
         };
         outcome.unwrap_or_else(|error| self.refuse(error))
     }
 
     fn answer(
         &mut self,
-        node: &mut Node,
+        node: &mut SimulatedDrive,
         request: SerialRequest,
-    ) -> Result<SerialFrame, CommError> {
+    ) -> Result<SerialFrame, AbortCode> {
         match request {
             SerialRequest::ReadObject(it) => return self.read(node, it),
             SerialRequest::WriteObject(it) => {
@@ -78,13 +77,13 @@ impl CommandService {
             }
             SerialRequest::GatewayNmt(it) => nmt(node, it),
             SerialRequest::SendCanFrame(it) => gateway::send(&it)?,
-            SerialRequest::RequestCanFrame(it) => return Err(gateway::request(&it)),
+            SerialRequest::RequestCanFrame(it) => return Err(gateway::request_error(&it)),
         }
-        Ok(SerialAnswer::bare(CommError::NONE).to_frame())
+        Ok(SerialAnswer::bare(AbortCode::NONE).to_frame())
     }
 
     /// The answer to a request that is not executed, two words or four.
-    pub fn refuse(&mut self, error: CommError) -> SerialFrame {
+    pub fn refuse(&mut self, error: AbortCode) -> SerialFrame {
         let mut answer = SerialAnswer::bare(error);
         let garbage = self.garbage.next();
         if garbage & 1 != 0 {
@@ -95,29 +94,37 @@ impl CommandService {
         answer.to_frame()
     }
 
-    fn read(&mut self, node: &Node, request: ReadObject) -> Result<SerialFrame, CommError> {
+    fn read(
+        &mut self,
+        node: &SimulatedDrive,
+        request: ReadObject,
+    ) -> Result<SerialFrame, AbortCode> {
         check_local(node, request.node)?;
         let value = node.read(request.address)?;
         // A longer value does not fit the answer.
-        let raw = value.raw().ok_or(Abort::TOO_LONG)?;
+        let raw = value.raw().ok_or(AbortCode::TOO_LONG)?;
         let used = 8 * value.bytes().len() as u32;
         let unused = u32::MAX.checked_shl(used).unwrap_or(0);
         let garbage = self.garbage.next() as u32 & unused;
         Ok(ReadObject::answer(Ok(raw | garbage)))
     }
 
-    fn begin_read(&mut self, node: &Node, request: InitiateSegmentedRead) -> Result<(), CommError> {
+    fn begin_read(
+        &mut self,
+        node: &SimulatedDrive,
+        request: InitiateSegmentedRead,
+    ) -> Result<(), AbortCode> {
         self.upload = None;
         check_local(node, request.node)?;
         self.upload = Some(node.read(request.address)?);
         Ok(())
     }
 
-    fn read_segment(&mut self, request: SegmentedRead) -> Result<SerialFrame, CommError> {
-        let value = self.upload.take().ok_or(CommError::COMMAND)?;
+    fn read_segment(&mut self, request: SegmentedRead) -> Result<SerialFrame, AbortCode> {
+        let value = self.upload.take().ok_or(AbortCode::COMMAND)?;
         if request.toggle {
             // The first segment is also the last and has the toggle bit clear.
-            return Err(CommError::TOGGLE);
+            return Err(AbortCode::TOGGLE);
         }
         let mut bytes = BoundedVec::new();
         bytes.extend(value.bytes().iter().copied());
@@ -130,15 +137,15 @@ impl CommandService {
 
     fn begin_write(
         &mut self,
-        node: &Node,
+        node: &SimulatedDrive,
         request: InitiateSegmentedWrite,
-    ) -> Result<(), CommError> {
+    ) -> Result<(), AbortCode> {
         self.download = None;
         // The request to another node follows when the value is complete.
         if is_local(node, request.node) {
             node.check_download(request.address, request.len as usize)?;
         } else if request.len as usize > LONGEST {
-            return Err(Abort::MEMORY);
+            return Err(AbortCode::MEMORY);
         }
         self.download = Some(Download {
             node: request.node,
@@ -150,14 +157,18 @@ impl CommandService {
         Ok(())
     }
 
-    fn write_segment(&mut self, node: &mut Node, segment: &WriteSegment) -> Result<(), CommError> {
-        let mut download = self.download.take().ok_or(CommError::COMMAND)?;
+    fn write_segment(
+        &mut self,
+        node: &mut SimulatedDrive,
+        segment: &WriteSegment,
+    ) -> Result<(), AbortCode> {
+        let mut download = self.download.take().ok_or(AbortCode::COMMAND)?;
         if segment.toggle != download.toggle {
-            return Err(CommError::TOGGLE);
+            return Err(AbortCode::TOGGLE);
         }
         let len = download.bytes.len() + segment.bytes.len();
         if len > download.len as usize {
-            return Err(CommError::TOO_LONG);
+            return Err(AbortCode::TOO_LONG);
         }
         download.bytes.extend(segment.bytes.iter().copied());
         download.toggle = !download.toggle;
@@ -170,20 +181,20 @@ impl CommandService {
     }
 }
 
-/// Node 0 and the id of the unit are the unit itself; others are on the CAN bus.
-const fn is_local(node: &Node, id: u8) -> bool {
+/// Node 0 and the id of the drive are the drive itself; others are on the CAN bus.
+const fn is_local(node: &SimulatedDrive, id: u8) -> bool {
     id == 0 || id == node.node_id()
 }
 
-fn check_local(node: &Node, id: u8) -> Result<(), Abort> {
+fn check_local(node: &SimulatedDrive, id: u8) -> Result<(), AbortCode> {
     match is_local(node, id) {
         true => Ok(()),
-        false => Err(gateway::transfer(id)),
+        false => Err(gateway::transfer_error(id)),
     }
 }
 
-/// Network management is broadcast on the bus and has no errors; the unit receives it too.
-fn nmt(node: &mut Node, request: GatewayNmt) {
+/// Network management is broadcast on the bus and has no errors; the drive receives it too.
+fn nmt(node: &mut SimulatedDrive, request: GatewayNmt) {
     if let Ok(specifier) = u8::try_from(request.specifier)
         && (request.node == 0 || request.node == u16::from(node.node_id()))
     {

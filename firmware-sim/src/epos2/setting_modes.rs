@@ -2,14 +2,14 @@
 //! (Firmware Specification, "Position Mode", "Velocity Mode").
 //!
 //! The setting value applies as long as operation is enabled. The facts at hand do not say whether
-//! a real unit waits for a first write; an old value that moves the axis is the greater hazard.
+//! a real drive waits for a first write; an old value that moves the axis is the greater hazard.
 //! Neither mode has bits of its own in the statusword, nor a halt.
 
 use protocol::epos2::DeviceError;
 use protocol::epos2::objects::{self, TypedObject};
 
 use super::fixed::{Speed, fine};
-use super::node::Node;
+use super::node::SimulatedDrive;
 use super::profile::MotionLimits;
 use super::ramp::RampShape;
 
@@ -20,7 +20,7 @@ const POSITION_SETTING: TypedObject<i32> =
 const VELOCITY_SETTING: TypedObject<i32> =
     TypedObject::new(0x206B, 0, "Velocity Mode Setting Value");
 
-impl Node {
+impl SimulatedDrive {
     /// Advances position mode by one millisecond. A step above 6065 is a following error at once:
     /// no motor covers it in a control cycle. A value beyond 607D is a software limit.
     pub(super) fn advance_position_setting(&mut self) {

@@ -1,7 +1,7 @@
-//! A serial CAN adapter (SLCAN, Lawicel ASCII) with the unit on its bus.
+//! A serial CAN adapter (SLCAN, Lawicel ASCII) with the drive on its bus.
 //!
-//! Answers are those of a CANUSB: CR, BEL for a rejected command, `z` for a sent frame. The unit is
-//! alone on the bus and accepts any bit rate. Not simulated: filters, bit timing registers, the
+//! Answers are those of a CANUSB: CR, BEL for a rejected command, `z` for a sent frame. The drive
+//! is alone on the bus and accepts any bit rate. Not simulated: filters, bit timing registers, the
 //! queue of the adapter.
 
 use protocol::canopen::CanFrame;
@@ -10,14 +10,14 @@ use protocol::canopen::slcan::{CommandDecoder, Line, SlcanCommand, SlcanReply};
 use protocol::epos2::BoundedVec;
 
 use super::can::CanServer;
-use super::node::Node;
+use super::node::SimulatedDrive;
 
 /// Period of the time stamps of an adapter in milliseconds.
 const STAMP_PERIOD_MS: u64 = 60_000;
 /// Bytes of the longest reply: a line and its CR.
 const LONGEST_REPLY: usize = 128;
 
-/// The adapter and the unit's CAN interface behind it.
+/// The adapter and the drive's CAN interface behind it.
 #[derive(Clone, Debug, Default)]
 pub struct SlcanServer {
     decoder: CommandDecoder,
@@ -37,7 +37,7 @@ enum AdapterChannel {
 }
 
 impl SlcanServer {
-    /// An adapter with a closed channel. Frames that the unit sends meanwhile, such as its boot-up
+    /// An adapter with a closed channel. Frames that the drive sends meanwhile, such as its boot-up
     /// message, are lost.
     #[must_use]
     pub fn new() -> Self {
@@ -46,7 +46,7 @@ impl SlcanServer {
 
     /// Takes bytes from the host at the present instant of the node; each reply goes to `out` as
     /// one line.
-    pub fn input(&mut self, node: &mut Node, bytes: &[u8], out: &mut impl FnMut(&[u8])) {
+    pub fn input(&mut self, node: &mut SimulatedDrive, bytes: &[u8], out: &mut impl FnMut(&[u8])) {
         for &byte in bytes {
             match self.decoder.push(byte) {
                 None => {}
@@ -56,16 +56,21 @@ impl SlcanServer {
         }
     }
 
-    /// Forwards the frames that the unit sends at its present instant. Call it after each
-    /// [`Node::tick`].
-    pub fn poll(&mut self, node: &mut Node, out: &mut impl FnMut(&[u8])) {
+    /// Forwards the frames that the drive sends at its present instant. Call it after each
+    /// [`SimulatedDrive::tick`].
+    pub fn poll(&mut self, node: &mut SimulatedDrive, out: &mut impl FnMut(&[u8])) {
         let stamp_ms = self.stamp_ms(node);
         let channel = self.channel;
         self.can
             .poll(node, &mut |frame| receive(channel, frame, stamp_ms, out));
     }
 
-    fn execute(&mut self, node: &mut Node, command: &SlcanCommand, out: &mut impl FnMut(&[u8])) {
+    fn execute(
+        &mut self,
+        node: &mut SimulatedDrive,
+        command: &SlcanCommand,
+        out: &mut impl FnMut(&[u8]),
+    ) {
         let closed = self.channel == AdapterChannel::Closed;
         let answer = match command {
             SlcanCommand::Empty => SlcanReply::Done,
@@ -100,14 +105,19 @@ impl SlcanServer {
         SlcanReply::Done
     }
 
-    fn transmit(&mut self, node: &mut Node, frame: &CanFrame, out: &mut impl FnMut(&[u8])) {
+    fn transmit(
+        &mut self,
+        node: &mut SimulatedDrive,
+        frame: &CanFrame,
+        out: &mut impl FnMut(&[u8]),
+    ) {
         let stamp_ms = self.stamp_ms(node);
         self.can.input(node, frame, &mut |frame| {
             receive(AdapterChannel::Open, frame, stamp_ms, out);
         });
     }
 
-    fn stamp_ms(&self, node: &Node) -> Option<u16> {
+    fn stamp_ms(&self, node: &SimulatedDrive) -> Option<u16> {
         // Below a minute, so it fits 16 bits.
         let ms = node.time_us() / 1000 % STAMP_PERIOD_MS;
         self.stamps.then_some(ms as u16)

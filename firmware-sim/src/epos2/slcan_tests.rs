@@ -1,4 +1,4 @@
-//! The adapter and its unit, as text.
+//! The adapter and its drive, as text.
 
 extern crate std;
 use std::string::String;
@@ -7,21 +7,21 @@ use std::vec::Vec;
 use proptest::prelude::*;
 use protocol::epos2::DeviceError;
 
-use super::super::{Node, NodeConfig};
+use super::super::{SimulatedDrive, SimulatedDriveConfig};
 use super::SlcanServer;
 
 struct Port {
-    node: Node,
+    node: SimulatedDrive,
     server: SlcanServer,
 }
 
 impl Port {
     fn new() -> Self {
         let mut port = Self {
-            node: Node::new(NodeConfig {
+            node: SimulatedDrive::new(SimulatedDriveConfig {
                 fault_at_power_on: DeviceError::NONE,
                 initial_position: 0,
-                ..NodeConfig::default()
+                ..SimulatedDriveConfig::default()
             }),
             server: SlcanServer::new(),
         };

@@ -2,11 +2,11 @@
 
 use protocol::epos2::objects::{self, Address};
 
-use super::Abort;
-use super::config::NodeConfig;
+use super::AbortCode;
+use super::config::SimulatedDriveConfig;
 use super::dictionary::Dictionary;
 use super::fixed::MAX_QC_PER_TURN;
-use super::node::Node;
+use super::node::SimulatedDrive;
 
 /// Restore of factory defaults, as 1011:1.
 pub(super) const RESTORE_FACTORY: Address = Address::new(0x1011, 4);
@@ -27,7 +27,7 @@ const VOLATILE: [Address; 8] = [
 ];
 
 /// Factory values, with the configured encoder.
-pub(super) fn factory(config: &NodeConfig) -> Dictionary {
+pub(super) fn factory(config: &SimulatedDriveConfig) -> Dictionary {
     let mut dictionary = Dictionary::factory(config.node_id);
     let qc_per_turn = config.qc_per_turn.clamp(4, MAX_QC_PER_TURN);
     dictionary.set(objects::ENCODER_LINES.address, qc_per_turn / 4);
@@ -35,7 +35,7 @@ pub(super) fn factory(config: &NodeConfig) -> Dictionary {
 }
 
 /// Checks the signature in a write to one of these objects.
-pub(super) fn check_signature(address: Address, number: i64) -> Option<Result<(), Abort>> {
+pub(super) fn check_signature(address: Address, number: i64) -> Option<Result<(), AbortCode>> {
     const SAVES: Address = objects::STORE_ALL.address;
     const LOADS: [Address; 3] = [
         objects::RESTORE_ALL.address,
@@ -50,11 +50,11 @@ pub(super) fn check_signature(address: Address, number: i64) -> Option<Result<()
     Some(if number == i64::from(signature) {
         Ok(())
     } else {
-        Err(Abort::STORE)
+        Err(AbortCode::STORE)
     })
 }
 
-impl Node {
+impl SimulatedDrive {
     /// 1010:1.
     pub(super) fn save(&mut self) {
         self.saved = self.dictionary.clone();

@@ -2,7 +2,7 @@
 //! mappability, all 430 of them.
 //!
 //! They follow the device description (EDS) of an EPOS2 70/10 with firmware 2126h, in the order of
-//! addresses. Where it gives no factory value, the value of a real unit is used. Objects of
+//! addresses. Where it gives no factory value, the value of a real drive is used. Objects of
 //! functions that are not simulated (data recorder, interpolation buffer, autotuning, analogue
 //! inputs) are plain storage.
 
@@ -296,7 +296,7 @@ const ENTRIES: &[DictionaryEntry] = &[
     entry(0x2FFF, 5, U32, Ro, 0x6620), // Internal Download Serial Number HighWord
     entry(0x2FFF, 6, U32, Ro, 0), // Internal Download Serial Number LowWord
     // Objects of the device profile, 6000 to 6FFF (CiA 402).
-    entry(0x6007, 0, I16, Rw, 3), // Abort Connection Option Code
+    entry(0x6007, 0, I16, Rw, 3), // AbortCode Connection Option Code
     entry(0x6040, 0, U16, Rww, 0).mappable(), // Controlword
     entry(0x6041, 0, U16, Ro, 0).mappable(), // Statusword
     entry(0x605B, 0, I16, Rw, 0), // Shutdown Option Code

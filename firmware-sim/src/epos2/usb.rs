@@ -1,13 +1,13 @@
-//! The USB interface of the unit: one answer per request frame. The link models the timing of FTDI
+//! The USB interface of the drive: one answer per request frame. The link models the timing of FTDI
 //! chip and USB.
 
 use protocol::epos2::usb::{UsbDecoder, to_bytes};
-use protocol::epos2::{CommError, SerialFrameError, objects};
+use protocol::epos2::{AbortCode, SerialFrameError, objects};
 
-use super::node::Node;
+use super::node::SimulatedDrive;
 use super::service::CommandService;
 
-/// The USB side of a unit.
+/// The USB side of a drive.
 #[derive(Clone, Debug)]
 pub struct UsbServer {
     decoder: UsbDecoder,
@@ -32,7 +32,7 @@ impl UsbServer {
     ///
     /// A frame with a wrong checksum is answered with communication error 05040004; an incomplete
     /// frame is dropped after the frame timeout (2006).
-    pub fn input(&mut self, node: &mut Node, bytes: &[u8], out: &mut impl FnMut(&[u8])) {
+    pub fn input(&mut self, node: &mut SimulatedDrive, bytes: &[u8], out: &mut impl FnMut(&[u8])) {
         let now_us = node.time_us();
         let timeout_us = 1000 * u64::from(node.dictionary.get(objects::USB_FRAME_TIMEOUT));
         if now_us.saturating_sub(self.last_byte_us) > timeout_us {
@@ -42,7 +42,7 @@ impl UsbServer {
         for &byte in bytes {
             let answer = match self.decoder.push(byte) {
                 Some(Ok(request)) => self.service.execute(node, &request),
-                Some(Err(SerialFrameError::Crc { .. })) => self.service.refuse(CommError::CRC),
+                Some(Err(SerialFrameError::Crc { .. })) => self.service.refuse(AbortCode::CRC),
                 Some(Err(_)) | None => continue,
             };
             out(&to_bytes(&answer));

@@ -11,19 +11,19 @@ use protocol::epos2::message::{
 };
 use protocol::epos2::objects::{self, Address};
 use protocol::epos2::usb::{UsbDecoder, to_bytes};
-use protocol::epos2::{BoundedVec, CommError, DeviceError, SerialFrame};
+use protocol::epos2::{AbortCode, BoundedVec, DeviceError, SerialFrame};
 
-use super::super::{Node, NodeConfig};
+use super::super::{SimulatedDrive, SimulatedDriveConfig};
 use super::UsbServer;
 
-fn node() -> Node {
-    Node::new(NodeConfig {
+fn node() -> SimulatedDrive {
+    SimulatedDrive::new(SimulatedDriveConfig {
         fault_at_power_on: DeviceError::NONE,
-        ..NodeConfig::default()
+        ..SimulatedDriveConfig::default()
     })
 }
 
-fn send(server: &mut UsbServer, node: &mut Node, bytes: &[u8]) -> Vec<Vec<u8>> {
+fn send(server: &mut UsbServer, node: &mut SimulatedDrive, bytes: &[u8]) -> Vec<Vec<u8>> {
     let mut out = Vec::new();
     server.input(node, bytes, &mut |frame: &[u8]| out.push(frame.to_vec()));
     out
@@ -40,7 +40,11 @@ fn decode(bytes: &[u8]) -> SerialFrame {
 }
 
 /// Sends a request and returns its only answer.
-fn exchange(server: &mut UsbServer, node: &mut Node, request: &SerialFrame) -> SerialFrame {
+fn exchange(
+    server: &mut UsbServer,
+    node: &mut SimulatedDrive,
+    request: &SerialFrame,
+) -> SerialFrame {
     let answers = send(server, node, &to_bytes(request));
     assert_eq!(answers.len(), 1);
     decode(&answers[0])
@@ -50,7 +54,7 @@ fn read(id: u8, address: Address) -> SerialFrame {
     ReadObject { node: id, address }.to_frame()
 }
 
-fn refusal(frame: &SerialFrame) -> CommError {
+fn refusal(frame: &SerialFrame) -> AbortCode {
     let answer = SerialAnswer::parse(frame).unwrap();
     assert!(
         matches!(answer.data.len(), 0 | 2),
@@ -118,27 +122,27 @@ fn error_codes_are_sent_in_two_words_or_four() {
         .to_frame()
     };
     for (request, code) in [
-        (missing, CommError::NO_OBJECT),
-        (read(1, Address::new(0x6041, 9)), CommError::NO_SUB),
-        (read(1, objects::DEVICE_NAME), CommError::TOO_LONG),
-        (read(1, objects::SERIAL_NUMBER_64), CommError::TOO_LONG),
-        (read(2, objects::STATUSWORD.address), CommError::TIMEOUT),
-        (write(objects::STATUSWORD.address, 0), CommError::READ_ONLY),
+        (missing, AbortCode::NO_OBJECT),
+        (read(1, Address::new(0x6041, 9)), AbortCode::NO_SUB),
+        (read(1, objects::DEVICE_NAME), AbortCode::TOO_LONG),
+        (read(1, objects::SERIAL_NUMBER_64), AbortCode::TOO_LONG),
+        (read(2, objects::STATUSWORD.address), AbortCode::TIMEOUT),
+        (write(objects::STATUSWORD.address, 0), AbortCode::READ_ONLY),
         (
             write(objects::MAX_PROFILE_VELOCITY.address, 25_001),
-            CommError::TOO_HIGH,
+            AbortCode::TOO_HIGH,
         ),
         (
             SerialFrame::new(0x60, &[1, 2]).unwrap(),
-            CommError::ILLEGAL_COMMAND,
+            AbortCode::ILLEGAL_COMMAND,
         ),
         (
             SerialFrame::new(0x10, &[1, 2, 3]).unwrap(),
-            CommError::LENGTH,
+            AbortCode::LENGTH,
         ),
         (
             SegmentedRead { toggle: false }.to_frame(),
-            CommError::COMMAND,
+            AbortCode::COMMAND,
         ),
         (
             RequestCanFrame {
@@ -146,7 +150,7 @@ fn error_codes_are_sent_in_two_words_or_four() {
                 len: 1,
             }
             .to_frame(),
-            CommError::TIMEOUT,
+            AbortCode::TIMEOUT,
         ),
     ] {
         assert_eq!(
@@ -168,7 +172,7 @@ fn a_damaged_request_gets_a_crc_error_and_is_not_executed() {
     let mut bytes = to_bytes(&request.to_frame()).to_vec();
     bytes[8] ^= 1;
     let answers = send(&mut server, &mut node, &bytes);
-    assert_eq!(refusal(&decode(&answers[0])), CommError::CRC);
+    assert_eq!(refusal(&decode(&answers[0])), AbortCode::CRC);
     assert_eq!(
         node.read(objects::PROFILE_VELOCITY.address).unwrap().raw(),
         Some(1000)
@@ -202,7 +206,7 @@ fn the_device_name_is_read_in_a_segment() {
     }
     .to_frame();
     let answer = exchange(&mut server, &mut node, &begin);
-    assert_eq!(refusal(&answer), CommError::NONE);
+    assert_eq!(refusal(&answer), AbortCode::NONE);
     let segment = exchange(
         &mut server,
         &mut node,
@@ -219,7 +223,7 @@ fn the_device_name_is_read_in_a_segment() {
         &mut node,
         &SegmentedRead { toggle: true }.to_frame(),
     );
-    assert_eq!(refusal(&wrong), CommError::TOGGLE);
+    assert_eq!(refusal(&wrong), AbortCode::TOGGLE);
 }
 
 #[test]
@@ -236,11 +240,11 @@ fn a_number_is_written_in_segments() {
     };
     assert_eq!(
         refusal(&exchange(&mut server, &mut node, &begin(5))),
-        CommError::TOO_LONG
+        AbortCode::TOO_LONG
     );
     assert_eq!(
         refusal(&exchange(&mut server, &mut node, &begin(3))),
-        CommError::TOO_SHORT
+        AbortCode::TOO_SHORT
     );
     let segment = |toggle, bytes: &[u8]| {
         SegmentedWrite(WriteSegment {
@@ -258,12 +262,12 @@ fn a_number_is_written_in_segments() {
     exchange(&mut server, &mut node, &begin(4));
     assert_eq!(
         refusal(&exchange(&mut server, &mut node, &segment(true, &[1]))),
-        CommError::TOGGLE
+        AbortCode::TOGGLE
     );
     exchange(&mut server, &mut node, &begin(4));
     assert_eq!(
         refusal(&exchange(&mut server, &mut node, &segment(false, &[1; 5]))),
-        CommError::TOO_LONG
+        AbortCode::TOO_LONG
     );
 }
 
@@ -277,7 +281,7 @@ fn network_management_and_can_frames_are_answered_on_usb() {
     .to_frame();
     assert_eq!(
         refusal(&exchange(&mut server, &mut node, &start)),
-        CommError::NONE
+        AbortCode::NONE
     );
     assert_eq!(
         node.read(objects::STATUSWORD.address).unwrap().raw(),
@@ -301,7 +305,7 @@ fn network_management_and_can_frames_are_answered_on_usb() {
     .to_frame();
     assert_eq!(
         refusal(&exchange(&mut server, &mut node, &frame)),
-        CommError::NONE
+        AbortCode::NONE
     );
 }
 

@@ -2,7 +2,7 @@
 //! ramp and held.
 //!
 //! As in CiA 402 the target (60FF) applies while operation is enabled and the halt bit is clear.
-//! Whether a real unit waits for a controlword after a new target is not documented; clients write
+//! Whether a real drive waits for a controlword after a new target is not documented; clients write
 //! one.
 
 use protocol::epos2::DeviceError;
@@ -10,7 +10,7 @@ use protocol::epos2::cia402::{control, status};
 use protocol::epos2::objects::{self, TypedObject};
 
 use super::fixed::Speed;
-use super::node::{Node, bit};
+use super::node::{SimulatedDrive, bit};
 use super::profile::MotionLimits;
 
 /// Tolerance of the target speed, rpm; FFFFFFFF: reached at the end of the ramp.
@@ -43,7 +43,7 @@ impl VelocityMode {
     }
 }
 
-impl Node {
+impl SimulatedDrive {
     /// Advances the mode by one millisecond.
     pub(super) fn advance_velocity_mode(&mut self) {
         let target = self.velocity_target();

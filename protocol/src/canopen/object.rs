@@ -31,7 +31,7 @@ impl fmt::Display for Address {
 pub trait Scalar: Copy {
     /// Bytes of the object.
     const BYTES: u8;
-    /// The value in the low bytes of `raw`; the others are ignored (a real unit leaves garbage
+    /// The value in the low bytes of `raw`; the others are ignored (a real drive leaves garbage
     /// there).
     fn from_raw(raw: u32) -> Self;
     /// The value in the low bytes, sign-extended to 32 bits.

@@ -16,7 +16,7 @@ pub mod rs232;
 pub mod usb;
 
 /// The error code of a serial answer, equal to an SDO abort code.
-pub use crate::canopen::AbortCode as CommError;
+pub use crate::canopen::AbortCode;
 pub use crate::{BoundedVec, CapacityError};
 pub use device_error::DeviceError;
 pub use error::{SerialFrameError, SerialLayer};

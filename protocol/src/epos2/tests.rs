@@ -1,4 +1,4 @@
-//! Frames captured from a real unit and from maxon's guide, both ways, and properties of the
+//! Frames captured from a real drive and from maxon's guide, both ways, and properties of the
 //! framing.
 
 extern crate std;
@@ -14,7 +14,7 @@ use super::message::{
 use super::objects::{self, Address};
 use super::rs232::{self, BodyDecoder};
 use super::usb::{self, UsbDecoder};
-use super::{BoundedVec, CommError, MAX_WORDS, SerialFrame, SerialFrameError, SerialLayer};
+use super::{AbortCode, BoundedVec, MAX_WORDS, SerialFrame, SerialFrameError, SerialLayer};
 
 fn hex(text: &str) -> Vec<u8> {
     text.split_whitespace()
@@ -40,7 +40,7 @@ fn answer(value: u32) -> SerialFrame {
 
 /// Each golden USB frame with the message it is.
 fn usb_frames() -> Vec<(&'static str, SerialFrame)> {
-    let refused = CommError::NO_OBJECT;
+    let refused = AbortCode::NO_OBJECT;
     let mut in_four = SerialAnswer::bare(refused);
     in_four.data.extend([0, 0]);
     std::vec![
@@ -125,11 +125,11 @@ fn golden_answers_are_interpreted_correctly() {
     for (_, frame) in [refused, in_four] {
         assert_eq!(
             ReadObject::parse_answer(&frame),
-            Ok(Err(CommError::NO_OBJECT))
+            Ok(Err(AbortCode::NO_OBJECT))
         );
         assert_eq!(
             WriteObject::parse_answer(&frame),
-            Ok(Err(CommError::NO_OBJECT))
+            Ok(Err(AbortCode::NO_OBJECT))
         );
     }
     assert_eq!(ReadObject::parse_answer(&stuffed.1), Ok(Ok(0x8090_0000)));
@@ -390,7 +390,7 @@ proptest! {
 
     #[test]
     fn answers_round_trip(value: u32, toggle: bool, more: bool, bytes in segment_bytes(), data: [u8; 8], code in 1u32..) {
-        let error = CommError(code);
+        let error = AbortCode(code);
         prop_assert_eq!(ReadObject::parse_answer(&ReadObject::answer(Ok(value))), Ok(Ok(value)));
         prop_assert_eq!(ReadObject::parse_answer(&ReadObject::answer(Err(error))), Ok(Err(error)));
         prop_assert_eq!(WriteObject::parse_answer(&WriteObject::answer(Err(error))), Ok(Err(error)));

@@ -1,5 +1,5 @@
-//! The daemon's page in Debian's Chromium with the real daemon and software devices: scans, faults,
-//! a lost connection.
+//! The daemon's page in Debian's Chromium with the real daemon and simulated devices: scans,
+//! faults, a lost connection.
 //!
 //! The tests need `chromedriver` and `chromium`. `VELOMOTION_SCREENSHOTS=FOLDER` keeps the
 //! pictures, as for docs/src/page.
@@ -57,7 +57,7 @@ fn simulator(folder: &Path) -> Daemon {
     daemon(Config::default(), Some("sim"), folder, 0)
 }
 
-/// A browser, and a daemon with software devices in a folder of its own.
+/// A browser, and a daemon with simulated devices in a folder of its own.
 fn browser_and_simulator() -> (Driver, tempfile::TempDir, Daemon, String) {
     let driver = Driver::start();
     let folder = tempfile::tempdir().unwrap();

@@ -45,7 +45,7 @@ impl<W: std::io::Write> SweepFrames<W> {
         self.listener
             .observe(link, direction, frame, record.host, &mut |seen| {
                 if let Observation::Sample(sample) = seen
-                    && sample.device_us.is_some()
+                    && sample.drive_us.is_some()
                 {
                     samples.push(sample);
                 }

@@ -47,7 +47,7 @@ fn frames_of_log(path: &Path) -> Passed {
         };
         let frame = CanFrame::from_socketcan(frame).unwrap();
         let is_sync = frame.cob_id() == Some(CobId::SYNC);
-        assert_eq!(is_sync, is_sync && direction == Direction::ToDevice);
+        assert_eq!(is_sync, is_sync && direction == Direction::ToDrive);
         *passed.entry(frame.to_socketcan()).or_default() += 1;
     }
     assert!(recording.end().is_some());
@@ -56,7 +56,7 @@ fn frames_of_log(path: &Path) -> Passed {
     // More than a second of the sweep at 1 kHz.
     assert!(syncs > 1_000, "{syncs}");
     // On an idle machine every SYNC has its sample; the test prints how many. On a busy one the
-    // software drive misses a few, and it never sends an unsolicited sample.
+    // simulated drive misses a few, and it never sends an unsolicited sample.
     let lost = syncs.checked_sub(samples).unwrap();
     assert!(lost <= 3 + syncs / 50, "{lost} of {syncs}");
     passed

@@ -1,5 +1,5 @@
-//! The software EPOS2 on a CAN interface of the kernel (`velomotion firmware-sim --can vcan0`) with
-//! two CANopen masters: one written for the test and the project's client.
+//! The simulated EPOS2 on a CAN interface of the kernel (`velomotion firmware-sim --can vcan0`)
+//! with two CANopen masters: one written for the test and the project's client.
 //!
 //! If the kernel has no CAN, `in-vm` runs this test program in an emulated machine. The logs of the
 //! client and of `candump` are then read outside, by tshark too.
@@ -19,7 +19,7 @@ use std::thread::JoinHandle;
 use engine::config::AxisSettings;
 use engine::devices::profile as devices;
 use engine::devices::simulated;
-use engine::devices::simulated_drive::{self as software_drive, SoftwareDriveError, SoftwarePort};
+use engine::devices::simulated_drive::{self, SimulatedDriveError, SimulatedPort};
 use io::can::SocketCan;
 use io::clock;
 use protocol::canopen::emcy::Emergency;
@@ -29,7 +29,7 @@ use protocol::canopen::sdo::TransferError;
 use protocol::canopen::{CanFrame, CommunicationObject, NodeId, PdoNumber};
 use protocol::epos2::cia402::{DeviceState, control};
 use protocol::epos2::objects::{self, Address};
-use protocol::epos2::{CommError, DeviceError};
+use protocol::epos2::{AbortCode, DeviceError};
 use sim::Attachment;
 use tempfile::TempDir;
 use units::Span;
@@ -49,11 +49,11 @@ const OUT: &str = "VELOMOTION_VCAN_OUT";
 
 #[test]
 #[ignore = "needs QEMU or the CAN interface vcan0, candump, tshark"]
-fn the_software_drive_and_a_master_communicate_on_vcan() {
+fn the_simulated_drive_and_a_master_communicate_on_vcan() {
     if std::env::var_os(INSIDE).is_some() {
         drive_and_master();
     } else {
-        run_inside("the_software_drive_and_a_master_communicate_on_vcan");
+        run_inside("the_simulated_drive_and_a_master_communicate_on_vcan");
     }
 }
 
@@ -103,10 +103,10 @@ fn candump() -> PathBuf {
         .expect("candump, of the Debian package can-utils")
 }
 
-/// The software drive on the bus, in a thread.
+/// The simulated drive on the bus, in a thread.
 struct SoftwareDrive {
     stop: Arc<AtomicBool>,
-    thread: JoinHandle<Result<(), SoftwareDriveError>>,
+    thread: JoinHandle<Result<(), SimulatedDriveError>>,
 }
 
 impl SoftwareDrive {
@@ -114,8 +114,8 @@ impl SoftwareDrive {
         let stop = Arc::new(AtomicBool::new(false));
         let stopping = Arc::clone(&stop);
         let node = simulated::node(&devices::axis(&AxisSettings::default()).unwrap());
-        let port = SoftwarePort::Can(SocketCan::open(BUS).unwrap());
-        let run = move || software_drive::run(node, Attachment::Can, port, &stopping);
+        let port = SimulatedPort::Can(SocketCan::open(BUS).unwrap());
+        let run = move || simulated_drive::run(node, Attachment::Can, port, &stopping);
         let thread = std::thread::spawn(run);
         Self { stop, thread }
     }
@@ -184,10 +184,10 @@ fn identity(master: &mut Master) {
 fn aborts(master: &mut Master) {
     let refused = |error| Err(TransferError::Aborted(error));
     let read = master.read_raw(Address::new(0x5FFF, 0)).map(drop);
-    assert_eq!(read, refused(CommError::NO_OBJECT));
+    assert_eq!(read, refused(AbortCode::NO_OBJECT));
     let device_type = objects::DEVICE_TYPE.address;
     let written = master.write_raw(device_type, &[0; 4]);
-    assert_eq!(written, refused(CommError::READ_ONLY));
+    assert_eq!(written, refused(AbortCode::READ_ONLY));
     let written = master.write_raw(device_type, &[0; 12]);
     assert!(
         matches!(written, Err(TransferError::Aborted(_))),

@@ -11,7 +11,7 @@ use units::Span;
 
 use super::events::connect;
 use super::rig::{Rig, printed, run, wait};
-use crate::software_drive::Drive;
+use crate::simulated_drive::Drive;
 
 /// The device `bench` with these keys and a lidar port without a sender.
 pub fn bench(options: &mut Options, keys: &str) {

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::Instant;
 
-use firmware_sim::epos2::{Node, NodeConfig, UsbServer};
+use firmware_sim::epos2::{SimulatedDrive, SimulatedDriveConfig, UsbServer};
 use io::port::{Port, Pty};
 use protocol::epos2::cia402::DeviceState;
 use serde_json::json;
@@ -17,7 +17,7 @@ use units::Span;
 use super::devices::{bench, drive};
 use super::rig::{Rig, post, wait};
 
-/// A software drive in this process whose cable can be cut.
+/// A simulated drive in this process whose cable can be cut.
 struct Cable {
     cut: Arc<AtomicBool>,
     end: Arc<AtomicBool>,
@@ -27,10 +27,10 @@ struct Cable {
 }
 
 impl Cable {
-    fn plug(link: &Path, config: NodeConfig) -> Self {
+    fn plug(link: &Path, config: SimulatedDriveConfig) -> Self {
         let mut pty = Pty::open().unwrap();
         symlink(pty.path(), link).unwrap();
-        let mut node = Node::new(config);
+        let mut node = SimulatedDrive::new(config);
         let cut = Arc::new(AtomicBool::new(false));
         let end = Arc::new(AtomicBool::new(false));
         let seen = Arc::new(Mutex::new((node.state(), 0)));

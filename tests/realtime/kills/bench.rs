@@ -1,4 +1,4 @@
-//! A software drive in this process, with a record of its true motion, and a lidar that sends the
+//! A simulated drive in this process, with a record of its true motion, and a lidar that sends the
 //! same packet again and again. Both survive any death of the program under test.
 
 use std::fs;
@@ -13,8 +13,8 @@ use std::time::{Duration, Instant};
 use engine::config::AxisSettings;
 use engine::devices::profile;
 use engine::devices::simulated;
-use engine::devices::simulated_drive::{SoftwarePort, run_observed};
-use firmware_sim::epos2::{BrakeState, Node};
+use engine::devices::simulated_drive::{SimulatedPort, run_observed};
+use firmware_sim::epos2::{BrakeState, SimulatedDrive};
 use io::can::SocketCan;
 use io::port::Pty;
 use protocol::epos2::cia402::DeviceState;
@@ -80,12 +80,12 @@ impl Bench {
         let (port, name) = match transport {
             "can" => {
                 let bus = SocketCan::open(BUS).unwrap();
-                (SoftwarePort::Can(bus), format!("interface = '{BUS}'"))
+                (SimulatedPort::Can(bus), format!("interface = '{BUS}'"))
             }
             _ => {
                 let pty = Pty::open().unwrap();
                 let port = format!("port = '{}'", pty.path().display());
-                (SoftwarePort::Serial(pty), port)
+                (SimulatedPort::Serial(pty), port)
             }
         };
         let lidar = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
@@ -113,7 +113,8 @@ impl Bench {
         );
         let (shared, stopping) = (Arc::clone(&record), Arc::clone(&stop));
         let drive = std::thread::spawn(move || {
-            let mut observe = |at, node: &Node| observe(&mut shared.lock().unwrap(), at, node);
+            let mut observe =
+                |at, node: &SimulatedDrive| observe(&mut shared.lock().unwrap(), at, node);
             run_observed(node, attachment, port, &stopping, &mut observe).unwrap();
         });
         let stopping = Arc::clone(&stop);
@@ -268,7 +269,7 @@ impl Drop for Bench {
     }
 }
 
-fn observe(record: &mut AxisRecord, at: Stamp<Host>, node: &Node) {
+fn observe(record: &mut AxisRecord, at: Stamp<Host>, node: &SimulatedDrive) {
     let state = AxisState {
         at,
         position: node.segment().end.into(),

@@ -71,7 +71,7 @@ fn under_load(bench: &Bench) -> Result<(), String> {
         let line = format!("tilt goto {to} --speed 10");
         let output = bench.command(&line).output().map_err(|e| e.to_string())?;
         let printed = String::from_utf8_lossy(&output.stderr);
-        // The software drive may be silent, and a machine that stops for longer than half of what
+        // The simulated drive may be silent, and a machine that stops for longer than half of what
         // the guardian waits is no loaded one.
         let stalled = bench.longest_stall() > STALL;
         if printed.contains("guardian") && !stalled {

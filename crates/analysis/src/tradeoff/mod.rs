@@ -11,7 +11,7 @@ pub mod html;
 mod json;
 mod machine;
 mod markdown;
-mod panel;
+mod plot;
 mod report;
 mod study;
 pub mod svg;

@@ -1,13 +1,13 @@
 //! The figure of a study: one plot per trade with its Pareto front.
 //!
 //! Plain SVG with a style sheet for light and dark colour schemes, without scripts, fonts or
-//! external resources. `plotters` 0.3 draws the plot of `panel.rs` in 30 lines instead of 170, but
+//! external resources. `plotters` 0.3 draws the plot of `plot.rs` in 30 lines instead of 170, but
 //! not as well: its SVG backend writes fixed colours and no CSS classes, so a figure cannot follow
 //! the colour scheme of the page. It has no tooltips (`title`), no place for zero on a logarithmic
 //! axis and no labels that avoid each other, and its file is 1.6 times as large (10,771 bytes for a
 //! plot of 6 rows, ours 6,696 for 8).
 
-use super::{Measurement, StudyFindings, panel};
+use super::{Measurement, StudyFindings, plot};
 use crate::draw::{STYLE, escaped, labels, marks};
 
 /// Width of a figure. Text has its reading size at this width.
@@ -30,9 +30,9 @@ pub fn figure(findings: &StudyFindings) -> String {
 pub fn titled(findings: &StudyFindings, title: &str) -> String {
     let groups = findings.groups();
     let lines = wrapped(title);
-    let panels_top = TITLE + TITLE_LINE * (lines.len().max(1) - 1) as f64;
-    let panels_end = panels_top + panel::HEIGHT * findings.study.trades.len() as f64;
-    let (legend, legend_end) = legend(findings, &groups, panels_end);
+    let plots_top = TITLE + TITLE_LINE * (lines.len().max(1) - 1) as f64;
+    let plots_end = plots_top + plot::HEIGHT * findings.study.trades.len() as f64;
+    let (legend, legend_end) = legend(findings, &groups, plots_end);
     let height = legend_end + MARGIN;
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"tv\" viewBox=\"0 0 {WIDTH} {height}\" width=\"{WIDTH}\" height=\"{height}\" \
@@ -46,8 +46,8 @@ pub fn titled(findings: &StudyFindings, title: &str) -> String {
     }
     for (number, trade) in findings.study.trades.iter().enumerate() {
         let number = (findings.study.trades.len() > 1).then_some(number + 1);
-        let top = panels_top + panel::HEIGHT * number.map_or(0.0, |n| (n - 1) as f64);
-        svg += &panel::draw(findings, trade, number, &groups, top);
+        let top = plots_top + plot::HEIGHT * number.map_or(0.0, |n| (n - 1) as f64);
+        svg += &plot::draw(findings, trade, number, &groups, top);
     }
     svg + &legend + "</svg>\n"
 }

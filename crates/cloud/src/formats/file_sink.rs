@@ -1,5 +1,5 @@
-//! Parts of the writers of all formats: the order of calls, the number of points, and errors that
-//! name the format.
+//! Parts of the writers of all formats but MCAP: the order of calls, the number of points, and
+//! errors that name the format.
 
 use std::error::Error;
 use std::io;
@@ -17,14 +17,14 @@ pub trait FormatEncoder {
         None
     }
 
-    /// Columns beyond those of the file from which it fills fields of its own, such as the return
-    /// numbers of LAS.
+    /// Columns that the file does not have but that its values follow from, such as those of the
+    /// return numbers of LAS.
     fn extra_columns(&self) -> Fields {
         Fields::NONE
     }
 
-    /// Writes the header of a file with these columns. The lines of the metadata stand in the file
-    /// as plain text: `velomotion view` finds the mark SIMULATED and the frame there.
+    /// Writes the header. It must contain `metadata.lines()` as plain text, such as comments:
+    /// `velomotion view` finds the mark SIMULATED and the frame there.
     ///
     /// # Errors
     /// [`EncodeError`] if the output or the library fails.
@@ -64,7 +64,7 @@ impl EncodeError {
     }
 
     /// The error after `points` whole points.
-    pub(super) fn after(self, points: u64, format: &'static str) -> SinkError {
+    pub(super) fn into_sink_error(self, points: u64, format: &'static str) -> SinkError {
         match self {
             Self::Output(source) => SinkError::Write {
                 format,
@@ -100,8 +100,8 @@ impl<E: FormatEncoder> FileSink<E> {
         }
     }
 
-    fn error(&self, fault: EncodeError) -> SinkError {
-        fault.after(self.summary.points, self.encoder.format())
+    fn error(&self, error: EncodeError) -> SinkError {
+        error.into_sink_error(self.summary.points, self.encoder.format())
     }
 }
 

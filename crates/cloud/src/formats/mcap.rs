@@ -121,11 +121,12 @@ impl<W: Write + Seek> McapWriter<W> {
 impl<W: Write + Seek> McapLog<W> {
     fn outcome<T>(&self, result: mcap::McapResult<T>) -> Result<T, SinkError> {
         let outcome = self.fault.outcome(result);
-        outcome.map_err(|fault| fault.after(self.points, FORMAT))
+        outcome.map_err(|fault| fault.into_sink_error(self.points, FORMAT))
     }
 
     fn time(&self, stamp: Stamp<Host>) -> Result<Time, SinkError> {
-        Time::of(stamp).map_err(|error| EncodeError::library(error).after(self.points, FORMAT))
+        Time::of(stamp)
+            .map_err(|error| EncodeError::library(error).into_sink_error(self.points, FORMAT))
     }
 
     /// Writes the message in `self.cdr`.

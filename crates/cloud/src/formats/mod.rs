@@ -118,7 +118,7 @@ impl Format {
         Self::from_extension(&extension.to_string_lossy())
     }
 
-    /// A writer of this format with the columns `fields` into `output`, which should be buffered:
+    /// Writes this format with the columns `fields` into `output`, which should be buffered:
     /// LAZ and E57 write in small pieces. E57 reads what it wrote.
     pub fn writer<W>(self, output: W, fields: Fields) -> Box<dyn Sink + Send>
     where
@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn every_format_writes_the_points_of_its_writer() {
+    fn every_format_writes_all_points_and_the_mark() {
         for format in Format::ALL {
             let file = samples::SharedOutput::default();
             let mut sink = format.writer(file.clone(), Fields::FILE);

@@ -17,7 +17,8 @@ pub(super) enum Stage {
 }
 
 impl Stage {
-    /// Begins; nothing else may follow before it is [`Stage::Open`].
+    /// Begins. It counts as closed until the header is written, so that a failed header ends the
+    /// file.
     pub(super) fn begin(&mut self, format: &'static str) -> Result<(), SinkError> {
         match self {
             Self::New => {

@@ -17,10 +17,10 @@ use crate::formats::Format;
 
 pub use source::{Positions, ReadError};
 
-/// Contents of a file.
+/// The points of a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
-pub struct Read {
+pub struct CloudPositions {
     /// Positions of the points.
     pub positions: Positions,
     /// Rows left out for a coordinate that is not finite, such as shots without a return in
@@ -32,7 +32,7 @@ pub struct Read {
 ///
 /// # Errors
 /// [`ReadError`] if the bytes are not of the format, or end too early.
-pub fn positions(format: Format, bytes: Vec<u8>) -> Result<Read, ReadError> {
+pub fn positions(format: Format, bytes: Vec<u8>) -> Result<CloudPositions, ReadError> {
     let mut positions = match format {
         Format::Ply => ply::positions(&bytes),
         Format::Pcd => pcd::positions(&bytes),
@@ -43,7 +43,7 @@ pub fn positions(format: Format, bytes: Vec<u8>) -> Result<Read, ReadError> {
     }?;
     let rows = positions.len();
     positions.retain(|position| position.iter().all(|axis| axis.is_finite()));
-    Ok(Read {
+    Ok(CloudPositions {
         without_numbers: (rows - positions.len()) as u64,
         positions,
     })

@@ -1,4 +1,4 @@
-//! PLY: text, little-endian or big-endian, any properties of the vertices.
+//! PLY: source, little-endian or big-endian, any properties of the vertices.
 
 use super::source::{Positions, ReadError, SourceFile, SourceNumber, shown};
 use crate::formats::Format;
@@ -27,51 +27,51 @@ struct PlyElement {
 #[derive(Clone, Copy)]
 enum PlyProperty {
     One(SourceNumber),
-    /// So many of the second as the first says.
+    /// A count, and that many items: the types of both.
     List(SourceNumber, SourceNumber),
 }
 
 pub(super) fn positions(bytes: &[u8]) -> Result<Positions, ReadError> {
-    let text = SourceFile {
+    let source = SourceFile {
         format: Format::Ply,
         bytes,
     };
-    let header = header(&text)?;
+    let header = header(&source)?;
     let mut offset = header.start;
     for element in &header.elements {
         if element.name == "vertex" {
             return match header.data {
-                PlyEncoding::Text => text_vertices(&text, element, offset),
+                PlyEncoding::Text => text_vertices(&source, element, offset),
                 PlyEncoding::Little | PlyEncoding::Big => {
-                    vertices(&text, element, offset, header.data == PlyEncoding::Big)
+                    vertices(&source, element, offset, header.data == PlyEncoding::Big)
                 }
             };
         }
-        // So many as nothing has no end.
+        // Elements without bytes: a forged count of them would take forever.
         let is_nothing = element.properties.is_empty() && header.data != PlyEncoding::Text;
         let count = if is_nothing { 0 } else { element.count };
         for _ in 0..count {
             offset = match header.data {
-                PlyEncoding::Text => text.line(offset)?.map(|(_, next)| next),
+                PlyEncoding::Text => source.line(offset)?.map(|(_, next)| next),
                 PlyEncoding::Little | PlyEncoding::Big => {
                     skip(bytes, element, offset, header.data == PlyEncoding::Big)
                 }
             }
-            .ok_or_else(|| text.wrong(bytes.len(), format!("a {}", element.name), "the end"))?;
+            .ok_or_else(|| source.wrong(bytes.len(), format!("a {}", element.name), "the end"))?;
         }
     }
-    Err(text.wrong(0, "an element vertex", "none"))
+    Err(source.wrong(0, "an element vertex", "none"))
 }
 
-fn header(text: &SourceFile<'_>) -> Result<PlyHeader, ReadError> {
+fn header(source: &SourceFile<'_>) -> Result<PlyHeader, ReadError> {
     let mut offset = 0;
     let mut data = None;
     let mut elements: Vec<PlyElement> = Vec::new();
     loop {
-        let end = || text.wrong(text.bytes.len(), "end_header", "the end of the file");
-        let (line, next) = text.line(offset)?.ok_or_else(end)?;
+        let end = || source.wrong(source.bytes.len(), "end_header", "the end of the file");
+        let (line, next) = source.line(offset)?.ok_or_else(end)?;
         let words: Vec<&str> = line.split_ascii_whitespace().collect();
-        let wrong = |expected: &str| text.wrong(offset, expected, shown(line));
+        let wrong = |expected: &str| source.wrong(offset, expected, shown(line));
         match (offset, words.as_slice()) {
             (0, ["ply"]) | (_, ["comment" | "obj_info", ..] | []) => {}
             (0, _) => return Err(wrong("ply")),
@@ -133,7 +133,7 @@ fn number(name: &str) -> Option<SourceNumber> {
     })
 }
 
-/// Where what follows one of an element begins.
+/// Offset after one element.
 fn skip(bytes: &[u8], element: &PlyElement, mut offset: usize, big_endian: bool) -> Option<usize> {
     for (_, property) in &element.properties {
         offset = match property {
@@ -148,42 +148,46 @@ fn skip(bytes: &[u8], element: &PlyElement, mut offset: usize, big_endian: bool)
     (offset <= bytes.len()).then_some(offset)
 }
 
-/// Which property is this one.
-fn place(text: &SourceFile<'_>, element: &PlyElement, name: &str) -> Result<usize, ReadError> {
+/// Index of a property.
+fn property_index(
+    source: &SourceFile<'_>,
+    element: &PlyElement,
+    name: &str,
+) -> Result<usize, ReadError> {
     let found = element.properties.iter().position(|(own, _)| own == name);
-    found.ok_or_else(|| text.wrong(0, format!("a property {name} of the vertices"), "none"))
+    found.ok_or_else(|| source.wrong(0, format!("a property {name} of the vertices"), "none"))
 }
 
 fn text_vertices(
-    text: &SourceFile<'_>,
+    source: &SourceFile<'_>,
     element: &PlyElement,
     offset: usize,
 ) -> Result<Positions, ReadError> {
-    let at = |name: &str| place(text, element, name);
+    let at = |name: &str| property_index(source, element, name);
     let places = [at("x")?, at("y")?, at("z")?];
-    let positions = text.rows(offset, places, |c| c.is_ascii_whitespace(), element.count)?;
+    let positions = source.rows(offset, places, |c| c.is_ascii_whitespace(), element.count)?;
     if positions.len() < element.count {
         let expected = format!("{} vertices", element.count);
-        return Err(text.wrong(text.bytes.len(), expected, positions.len().to_string()));
+        return Err(source.wrong(source.bytes.len(), expected, positions.len().to_string()));
     }
     Ok(positions)
 }
 
 fn vertices(
-    text: &SourceFile<'_>,
+    source: &SourceFile<'_>,
     element: &PlyElement,
     start: usize,
     big_endian: bool,
 ) -> Result<Positions, ReadError> {
     const AXES: [&str; 3] = ["x", "y", "z"];
     for name in AXES {
-        place(text, element, name)?;
+        property_index(source, element, name)?;
     }
     let mut columns = [None; 3];
     let mut row = 0_usize;
     for (own, property) in &element.properties {
         let PlyProperty::One(number) = property else {
-            return Err(text.wrong(0, "vertices without lists", format!("a list {own}")));
+            return Err(source.wrong(0, "vertices without lists", format!("a list {own}")));
         };
         for (column, name) in columns.iter_mut().zip(AXES) {
             if own == name {
@@ -194,9 +198,9 @@ fn vertices(
     }
     // Every axis has been found above.
     let columns = columns.map(|column| column.unwrap_or((0, SourceNumber::F32)));
-    let table = text.table(start, (element.count, row), columns, big_endian);
+    let table = source.table(start, (element.count, row), columns, big_endian);
     table.map_err(|got| {
         let expected = format!("{} vertices of {row} bytes", element.count);
-        text.wrong(start, expected, format!("{got} bytes"))
+        source.wrong(start, expected, format!("{got} bytes"))
     })
 }

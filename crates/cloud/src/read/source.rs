@@ -133,13 +133,13 @@ impl<'a> SourceFile<'a> {
             .collect())
     }
 
-    /// Points as text, one per line from `offset` on, separated by `separated`, with the columns of
-    /// x, y and z. Empty lines and `#` are skipped.
+    /// At most `most` points as text, one per line from `offset` on, with the columns of x, y and
+    /// z. Empty lines and `#` are skipped.
     pub(super) fn rows(
         &self,
         mut offset: usize,
-        places: [usize; 3],
-        separated: impl Fn(char) -> bool + Copy,
+        columns: [usize; 3],
+        is_separator: impl Fn(char) -> bool + Copy,
         most: usize,
     ) -> Result<Positions, ReadError> {
         let mut positions = Positions::new();
@@ -147,9 +147,9 @@ impl<'a> SourceFile<'a> {
             && let Some((line, next)) = self.line(offset)?
         {
             if !line.is_empty() && !line.starts_with('#') {
-                let fields = || line.split(separated).filter(|field| !field.is_empty());
+                let fields = || line.split(is_separator).filter(|field| !field.is_empty());
                 let mut position = [0.0; 3];
-                for (axis, place) in position.iter_mut().zip(places) {
+                for (axis, place) in position.iter_mut().zip(columns) {
                     let field = fields().nth(place).unwrap_or("the end of the line");
                     *axis = field
                         .parse()

@@ -1,5 +1,5 @@
 use proptest::prelude::*;
-use protocol::epos2::CommError;
+use protocol::epos2::AbortCode;
 use protocol::epos2::rs232::{FAILED, OKAY};
 
 use super::*;
@@ -231,7 +231,7 @@ fn can_frames_match_golden_bytes() {
     let Some(DecodedFrame::Reply(reply)) = codec.push(&abort, at(0)) else {
         panic!()
     };
-    assert_eq!((reply.error(), reply.value()), (CommError::NO_OBJECT, None));
+    assert_eq!((reply.error(), reply.value()), (AbortCode::NO_OBJECT, None));
     let other_node = frame([5, 0x82], [0x4B, 0x41, 0x60, 0, 0x40, 1, 0, 0]);
     assert!(matches!(
         codec.push(&other_node, at(0)),
@@ -259,7 +259,7 @@ fn can_segments_match_golden_bytes() {
         }
     };
     let opened = push(&mut codec, [0x41, 8, 0x10, 0, 5, 0, 0, 0]);
-    assert_eq!((opened.value(), opened.error()), (None, CommError::NONE));
+    assert_eq!((opened.value(), opened.error()), (None, AbortCode::NONE));
     let next = encode(
         &mut codec,
         name,

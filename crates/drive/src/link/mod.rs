@@ -13,7 +13,7 @@ mod resync_budget;
 use std::collections::VecDeque;
 
 use protocol::canopen::CanFrame;
-use protocol::epos2::CommError;
+use protocol::epos2::AbortCode;
 use protocol::epos2::objects::Address;
 use units::{Host, Span, Stamp};
 
@@ -323,7 +323,7 @@ impl RequestLink {
     fn complete(&mut self, sent: &SentRequest, reply: &Reply, now: Stamp<Host>) {
         self.stats.answers += 1;
         if let Some(active) = self.active.as_mut()
-            && reply.error() == CommError::CRC
+            && reply.error() == AbortCode::CRC
             && active.retry_rejected(now)
         {
             active.id = None;
@@ -332,8 +332,8 @@ impl RequestLink {
         self.active = None;
         self.result = Some(Ok(TimedReply {
             reply: *reply,
-            request: sent.sent,
-            answer: now,
+            sent: sent.sent,
+            received: now,
         }));
     }
 }

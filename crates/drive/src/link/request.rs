@@ -28,14 +28,14 @@ pub(crate) struct LinkRequest {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TimedReply {
     pub reply: Reply,
-    pub request: Stamp<Host>,
-    pub answer: Stamp<Host>,
+    pub sent: Stamp<Host>,
+    pub received: Stamp<Host>,
 }
 
 impl TimedReply {
-    /// From request to answer.
+    /// From request to reply.
     pub fn took(&self) -> Span {
-        self.answer.saturating_since(self.request)
+        self.received.saturating_since(self.sent)
     }
 }
 
@@ -51,7 +51,7 @@ pub(crate) enum RequestFailure {
     /// Nothing arrived for this span, probes included.
     LinkLost { silent: Span },
     /// The drive refused every attempt (RS232 handshake).
-    Refused { attempts: u8 },
+    HandshakeRefused { attempts: u8 },
 }
 
 /// Counters of the link.

@@ -121,7 +121,7 @@ impl RequestLink {
         };
         if !active.retry_rejected(now) {
             let attempts = active.attempts.saturating_add(active.rejections);
-            self.fail(RequestFailure::Refused { attempts });
+            self.fail(RequestFailure::HandshakeRefused { attempts });
         }
     }
 

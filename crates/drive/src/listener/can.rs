@@ -135,9 +135,8 @@ impl CanListener {
         emit: &mut impl FnMut(Observation),
     ) -> Option<CanEvent> {
         let layout = self.layout(frame)?;
-        let device_us = layout.get(TIMESTAMP, data).ok()??;
-        let (Some(sync), Ok(values)) =
-            (self.syncs.handle_pdo(device_us, host), layout.unpack(data))
+        let drive_us = layout.get(TIMESTAMP, data).ok()??;
+        let (Some(sync), Ok(values)) = (self.syncs.handle_pdo(drive_us, host), layout.unpack(data))
         else {
             return Some(CanEvent::Noise);
         };
@@ -145,7 +144,7 @@ impl CanListener {
             request: sync,
             answer: host,
             trigger: SampleTrigger::Sync,
-            device_us: Some(device_us),
+            drive_us: Some(drive_us),
         };
         // The drive's time goes first, so that it is known when the sample arrives.
         let entries = || layout.entries().iter().zip(values.iter());

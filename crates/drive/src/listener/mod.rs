@@ -13,7 +13,7 @@ mod slow_polls;
 use protocol::canopen::sdo::Initiate;
 use protocol::epos2::objects::{self, Address};
 use protocol::epos2::usb::UsbDecoder;
-use protocol::epos2::{CommError, DeviceError, SerialFrame, SerialFrameError};
+use protocol::epos2::{AbortCode, DeviceError, SerialFrame, SerialFrameError};
 use protocol::record::{Direction, DriveLink};
 use units::{Host, Quadcounts, Span, Stamp};
 
@@ -70,7 +70,7 @@ pub enum Observation {
         /// The object.
         address: Address,
         /// The drive's error code.
-        error: CommError,
+        error: AbortCode,
         /// When the request was sent.
         request: Stamp<Host>,
         /// When the reply was complete.
@@ -175,8 +175,8 @@ impl DriveListener {
         for &byte in bytes {
             let event = match (link, direction) {
                 (DriveLink::Rs232, _) => self.rs232.push(direction, byte),
-                (_, Direction::ToDevice) => self.to_device.push(byte).map(SerialEvent::Request),
-                (_, Direction::FromDevice) => self.from_device.push(byte).map(SerialEvent::Answer),
+                (_, Direction::ToDrive) => self.to_device.push(byte).map(SerialEvent::Request),
+                (_, Direction::FromDrive) => self.from_device.push(byte).map(SerialEvent::Answer),
             };
             match event {
                 None => {}
@@ -341,7 +341,7 @@ impl DriveListener {
         emit: &mut impl FnMut(Observation),
     ) {
         let noise = Observation::Noise {
-            direction: Direction::FromDevice,
+            direction: Direction::FromDrive,
             host,
         };
         let Ok(Ok(reply)) = frame.as_ref().map(Reply::parse) else {
@@ -402,7 +402,7 @@ fn observation(sent: &SentRequest, reply: &Reply, answer: Stamp<Host>) -> Option
         request,
         answer,
         trigger: SampleTrigger::Request,
-        device_us: None,
+        drive_us: None,
     };
     Some(origin.observation(address, reply.value()?))
 }
@@ -414,7 +414,7 @@ struct ValueOrigin {
     answer: Stamp<Host>,
     trigger: SampleTrigger,
     /// The drive's time in the same frame.
-    device_us: Option<u32>,
+    drive_us: Option<u32>,
 }
 
 impl ValueOrigin {
@@ -427,7 +427,7 @@ impl ValueOrigin {
                 answer,
                 position: Quadcounts(objects::POSITION_ACTUAL.decode(value)),
                 trigger: self.trigger,
-                device_us: self.device_us,
+                drive_us: self.drive_us,
             })
         } else if address == objects::STATUSWORD.address {
             Observation::Statusword {

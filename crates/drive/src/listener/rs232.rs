@@ -62,8 +62,8 @@ pub(super) enum SerialEvent {
 impl Rs232Listener {
     pub fn push(&mut self, direction: Direction, byte: u8) -> Option<SerialEvent> {
         match direction {
-            Direction::ToDevice => self.push_from_master(byte),
-            Direction::FromDevice => self.push_from_drive(byte),
+            Direction::ToDrive => self.push_from_master(byte),
+            Direction::FromDrive => self.push_from_drive(byte),
         }
     }
 

@@ -267,20 +267,20 @@ impl Ops {
         }
         let (position, reply) = self.read_timed(objects::POSITION_ACTUAL).await?;
         let sample = ShaftSample {
-            request: reply.request,
-            answer: reply.answer,
+            request: reply.sent,
+            answer: reply.received,
             position: Quadcounts(position),
             trigger: SampleTrigger::Request,
-            device_us: None,
+            drive_us: None,
         };
         let period = self.config.timing.poll_period;
-        let due = self.next_sample.unwrap_or(reply.request);
+        let due = self.next_sample.unwrap_or(reply.sent);
         let on_grid = due.saturating_add(period);
         // After a delay of more than a period a new grid begins, so that no burst follows.
-        self.next_sample = Some(if on_grid > reply.request {
+        self.next_sample = Some(if on_grid > reply.sent {
             on_grid
         } else {
-            reply.request.saturating_add(period)
+            reply.sent.saturating_add(period)
         });
         let event = DriveEvent::Sample(sample);
         lock(&self.core).events.push_back(event);
@@ -410,7 +410,7 @@ impl Ops {
             Err(RequestFailure::LinkLost { silent }) => {
                 Err(DriveError::LinkLost { operation, silent })
             }
-            Err(RequestFailure::Refused { attempts }) => Err(DriveError::Handshake {
+            Err(RequestFailure::HandshakeRefused { attempts }) => Err(DriveError::Handshake {
                 operation,
                 attempts,
             }),

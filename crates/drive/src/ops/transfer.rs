@@ -2,7 +2,7 @@
 
 use protocol::BoundedVec;
 use protocol::canopen::sdo::{Expedited, SdoTransfer, TransferStep};
-use protocol::epos2::CommError;
+use protocol::epos2::AbortCode;
 use protocol::epos2::objects::Address;
 
 use crate::command::ObjectBytes;
@@ -56,7 +56,7 @@ impl Ops {
             .map_err(|error| DriveError::Transfer { operation, error })?;
         let written = self.run_transfer(operation, transfer, request).await;
         if let Err(DriveError::NoAnswer { .. }) = written {
-            self.abort_transfer(address, CommError::TIMEOUT);
+            self.abort_transfer(address, AbortCode::TIMEOUT);
         }
         written.map(drop)
     }
@@ -85,7 +85,7 @@ impl Ops {
     }
 
     /// Aborts a transfer on CAN. On a serial link the next transfer does that.
-    fn abort_transfer(&self, address: Address, error: CommError) {
+    fn abort_transfer(&self, address: Address, error: AbortCode) {
         self.on_can(|can, _| can.abort_transfer(address, error));
     }
 }

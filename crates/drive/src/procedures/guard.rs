@@ -149,7 +149,7 @@ mod tests {
             answer: at,
             position: Quadcounts(0),
             trigger: SampleTrigger::Request,
-            device_us: None,
+            drive_us: None,
         }
     }
 
@@ -273,7 +273,7 @@ mod tests {
             answer: Stamp::from_nanos(500_000_000),
             position: Quadcounts(0),
             trigger: SampleTrigger::Request,
-            device_us: None,
+            drive_us: None,
         };
         for ms in [300, 400, 500] {
             let angle = Degrees(-45.0 + guard.plan.travelled(Span::from_millis(ms)).0);

@@ -113,22 +113,22 @@ async fn wait_until_attained(ops: &mut Ops) -> Result<(), DriveError> {
             Ok((demand, reply)) => {
                 travel
                     .demand
-                    .add(&ops.config, demand, reply.request, reply.answer);
+                    .add(&ops.config, demand, reply.sent, reply.received);
                 if let Ok((position, later)) = ops.read_timed(objects::POSITION_ACTUAL).await {
                     travel.add_position(
                         &ops.config,
                         position,
-                        [reply.request, later.request, later.answer],
+                        [reply.sent, later.sent, later.received],
                     );
                 }
                 ops.report(CommandProgress::Searching {
-                    at: reply.answer,
+                    at: reply.received,
                     demand: Quadcounts(demand),
                 });
             }
             Err(DriveError::Refused { .. }) => {
                 if let Ok((position, reply)) = ops.read_timed(objects::POSITION_ACTUAL).await {
-                    (travel.position).add(&ops.config, position, reply.request, reply.answer);
+                    (travel.position).add(&ops.config, position, reply.sent, reply.received);
                 }
             }
             Err(_) => {}

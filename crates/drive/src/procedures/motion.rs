@@ -95,7 +95,7 @@ async fn arrived_in_silence(
         position: Quadcounts(position),
         angle,
         started,
-        arrived: reply.answer,
+        arrived: reply.received,
     })
 }
 

@@ -96,7 +96,7 @@ mod tests {
                 answer: at,
                 position: Quadcounts((angle / 0.0015).round() as i32),
                 trigger: SampleTrigger::Request,
-                device_us: None,
+                drive_us: None,
             })
             .then_some((ms, angle))
         })

@@ -3,7 +3,7 @@
 use protocol::canopen::sdo::TransferError;
 use protocol::epos2::cia402::DeviceState;
 use protocol::epos2::objects::{self, error_history};
-use protocol::epos2::{CommError, DeviceError};
+use protocol::epos2::{AbortCode, DeviceError};
 use units::Quadcounts;
 
 use crate::error::DriveError;
@@ -31,7 +31,7 @@ pub(super) async fn identify(ops: &Ops) -> Result<DriveIdentity, DriveError> {
     let device_type = ops.read(objects::DEVICE_TYPE).await;
     let device_type = device_type.map_err(|error| match error {
         // A gateway waits for the node.
-        DriveError::Refused { error, .. } if error == CommError::TIMEOUT => absent(ops),
+        DriveError::Refused { error, .. } if error == AbortCode::TIMEOUT => absent(ops),
         DriveError::LinkLost { .. } if is_bus => absent(ops),
         error => error,
     })?;

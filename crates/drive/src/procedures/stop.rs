@@ -389,7 +389,7 @@ mod tests {
                 answer: at,
                 position: Quadcounts(position(*ms).round() as i32),
                 trigger: SampleTrigger::Request,
-                device_us: None,
+                drive_us: None,
             })
         })
     }

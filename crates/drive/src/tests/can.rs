@@ -2,7 +2,7 @@
 
 use protocol::canopen::nmt::NmtCommand;
 use protocol::epos2::message::SerialRequest;
-use protocol::epos2::{CommError, DeviceError};
+use protocol::epos2::{AbortCode, DeviceError};
 use protocol::record::DriveLink;
 use units::{Host, Span, Stamp};
 
@@ -70,7 +70,7 @@ fn a_drive_that_refuses_the_mapping_is_polled() {
         let mut rig = can();
         let (index, sub) = refused;
         rig.drive
-            .on_write(index, sub, Fate::Refused(CommError::PDO_MAPPING));
+            .on_write(index, sub, Fate::Refused(AbortCode::PDO_MAPPING));
         let Ok(CommandOutcome::Connected(connected)) = rig.run(DriveCommand::Connect) else {
             panic!("{:?}", rig.events.last())
         };
@@ -86,7 +86,7 @@ fn a_drive_that_refuses_the_mapping_is_polled() {
 fn a_refused_inhibit_time_keeps_the_stream() {
     let mut rig = can();
     rig.drive
-        .on_write(0x1800, 3, Fate::Refused(CommError::PDO_MAPPING));
+        .on_write(0x1800, 3, Fate::Refused(AbortCode::PDO_MAPPING));
     let Ok(CommandOutcome::Connected(connected)) = rig.run(DriveCommand::Connect) else {
         panic!("{:?}", rig.events.last())
     };
@@ -97,7 +97,7 @@ fn a_refused_inhibit_time_keeps_the_stream() {
 fn a_drive_that_does_not_monitor_the_host_is_not_moved() {
     let mut rig = can();
     rig.drive
-        .on_write(0x1016, 1, Fate::Refused(CommError::PDO_MAPPING));
+        .on_write(0x1016, 1, Fate::Refused(AbortCode::PDO_MAPPING));
     let Ok(CommandOutcome::Connected(connected)) = rig.run(DriveCommand::Connect) else {
         panic!("{:?}", rig.events.last())
     };
@@ -178,7 +178,7 @@ fn logged_samples_have_the_drives_time() {
             assert_eq!(address.index, 0x1013);
             assert_eq!(*request, sample.request);
             let latched = sample.request + Span::from_micros(120);
-            assert_eq!(*value, rig.drive.device_us(latched));
+            assert_eq!(*value, rig.drive.drive_us(latched));
             timed += 1;
         }
     }
@@ -340,7 +340,7 @@ fn replies_about_another_object_or_of_another_node_are_ignored() {
 fn a_late_reply_is_not_used_for_the_next_read_of_the_same_object() {
     let mut rig = can();
     rig.drive
-        .on_write(0x1A00, 0, Fate::Refused(CommError::PDO_MAPPING));
+        .on_write(0x1A00, 0, Fate::Refused(AbortCode::PDO_MAPPING));
     rig.run(DriveCommand::Connect).unwrap();
     rig.run(DriveCommand::Home).unwrap();
     rig.forget();

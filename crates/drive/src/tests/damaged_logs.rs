@@ -69,7 +69,7 @@ fn a_clean_log_gives_the_clients_own_samples() {
         let on_can = link == DriveLink::Can;
         for sample in samples {
             assert_eq!(sample.trigger == SampleTrigger::Sync, on_can);
-            assert_eq!(sample.device_us.is_some(), on_can);
+            assert_eq!(sample.drive_us.is_some(), on_can);
         }
     }
 }
@@ -81,8 +81,8 @@ fn a_log_without_handshakes_gives_the_same_positions() {
     let Recorded { log, samples, .. } = recorded(DriveLink::Rs232);
     for (is_of_drive, is_of_master) in [(true, false), (false, true), (true, true)] {
         let is_kept = |(direction, bytes, _): &&Record| match direction {
-            Direction::ToDevice => !is_of_master || *bytes != [OKAY],
-            Direction::FromDevice => !is_of_drive || *bytes != [OKAY],
+            Direction::ToDrive => !is_of_master || *bytes != [OKAY],
+            Direction::FromDrive => !is_of_drive || *bytes != [OKAY],
         };
         let rest: Vec<Record> = log.iter().filter(is_kept).cloned().collect();
         assert!(rest.len() < log.len());
@@ -136,7 +136,7 @@ fn the_drives_time_belongs_to_the_position() {
     for sample in samples {
         let latched = sample.request + Span::from_micros(120);
         let us = (latched - *started).as_nanos() / 1_000;
-        assert_eq!(sample.device_us, Some(us as u32));
+        assert_eq!(sample.drive_us, Some(us as u32));
     }
 }
 
@@ -171,14 +171,14 @@ fn damages() -> impl Strategy<Value = Vec<Distortion>> {
 
 fn way(to_device: bool) -> Direction {
     if to_device {
-        Direction::ToDevice
+        Direction::ToDrive
     } else {
-        Direction::FromDevice
+        Direction::FromDrive
     }
 }
 
 fn damage_log(link: DriveLink, log: &mut Vec<Record>, damage: &Distortion) {
-    let ours = |log: &[Record], at: usize| log[at].0 == Direction::ToDevice;
+    let ours = |log: &[Record], at: usize| log[at].0 == Direction::ToDrive;
     match damage {
         Distortion::Noise(at, bytes, to_device) => {
             let at = at.index(log.len());
@@ -234,7 +234,7 @@ fn is_one_of(link: DriveLink, observed: &ShaftSample, samples: &[ShaftSample]) -
 fn one_missing_reply_costs_one_sample() {
     for link in LINKS {
         let Recorded { log, samples, .. } = recorded(link);
-        let replies = (0..log.len()).filter(|at| log[*at].0 == Direction::FromDevice);
+        let replies = (0..log.len()).filter(|at| log[*at].0 == Direction::FromDrive);
         let middle = replies.clone().count() / 2;
         for missing in replies.skip(middle).take(12) {
             let mut log = log.clone();
@@ -257,8 +257,8 @@ fn slow_polls(period: Span) -> (Vec<Vec<Record>>, Vec<ShaftSample>) {
     for sample in samples {
         let delay = begin - sample.request;
         let exchange = log.iter().filter(|(way, _, host)| match way {
-            Direction::ToDevice => *host == sample.request,
-            Direction::FromDevice => *host > sample.request && *host <= sample.answer,
+            Direction::ToDrive => *host == sample.request,
+            Direction::FromDrive => *host > sample.request && *host <= sample.answer,
         });
         let delayed = exchange.map(|(way, bytes, host)| (*way, bytes.clone(), *host + delay));
         slow.0.push(delayed.collect());
@@ -284,7 +284,7 @@ fn one_missing_reply_costs_at_most_two_slow_polls() {
         let mut twice = 0;
         for missing in cases.clone() {
             let mut exchanges = exchanges.clone();
-            exchanges[missing].retain(|(way, ..)| *way == Direction::ToDevice);
+            exchanges[missing].retain(|(way, ..)| *way == Direction::ToDrive);
             let observed = listen(DriveLink::Usb, &exchanges.concat());
             let lost = samples.len() - observed.len();
             assert!(
@@ -342,7 +342,7 @@ fn a_write_without_its_confirmation_is_reported() {
         let (_, followed) = all.split_last().unwrap();
         assert!(followed.len() > 5, "{link:?}: {}", followed.len());
         for at in 0..log.len() {
-            if log[at].0 == Direction::ToDevice {
+            if log[at].0 == Direction::ToDrive {
                 continue;
             }
             let mut log = log.clone();
@@ -364,7 +364,7 @@ fn a_reply_without_its_last_byte_is_not_completed_by_the_next() {
     let ends = |bytes: &[u8]| bytes.ends_with(&[0x90, 0x90]);
     let at = log
         .iter()
-        .position(|(way, bytes, _)| *way == Direction::FromDevice && ends(bytes));
+        .position(|(way, bytes, _)| *way == Direction::FromDrive && ends(bytes));
     let at = at.unwrap();
     let mut log = log.clone();
     log[at].1.pop();
@@ -384,8 +384,8 @@ fn missing_replies_cost_their_own_samples() {
         let mut missing = 0;
         let mut log = log.clone();
         log.retain(|(way, ..)| {
-            count += usize::from(*way == Direction::FromDevice);
-            let is_dropped = *way == Direction::FromDevice && count % 50 == 0;
+            count += usize::from(*way == Direction::FromDrive);
+            let is_dropped = *way == Direction::FromDrive && count % 50 == 0;
             missing += usize::from(is_dropped);
             !is_dropped
         });
@@ -432,7 +432,7 @@ proptest! {
                     DriveLink::Usb => unstuffed(record),
                     DriveLink::Rs232 | DriveLink::Can => record.clone(),
                 };
-                *way == Direction::FromDevice && plain.windows(4).any(|w| w == bytes)
+                *way == Direction::FromDrive && plain.windows(4).any(|w| w == bytes)
             })
         };
         for observed in listen(link, &log) {

@@ -1,6 +1,6 @@
 //! Faults of the drive, of the axis and of the link.
 
-use protocol::epos2::CommError;
+use protocol::epos2::AbortCode;
 use protocol::epos2::DeviceError;
 use protocol::epos2::message::SerialRequest;
 use protocol::epos2::objects::Address;
@@ -135,12 +135,12 @@ fn another_device_is_refused() {
 fn a_refusal_names_object_and_reason() {
     let mut rig = Rig::new(AxisConfig::default());
     rig.drive
-        .on_write(0x607F, 0, Fate::Refused(CommError::NO_OBJECT));
+        .on_write(0x607F, 0, Fate::Refused(AbortCode::NO_OBJECT));
     let error = rig.run(DriveCommand::Connect).unwrap_err();
     assert!(matches!(
         error,
         DriveError::Refused {
-            error: CommError::NO_OBJECT,
+            error: AbortCode::NO_OBJECT,
             ..
         }
     ));

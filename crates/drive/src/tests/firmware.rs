@@ -3,10 +3,10 @@
 
 mod load;
 
-use firmware_sim::epos2::{BrakeState, NodeConfig, Servo};
+use firmware_sim::epos2::{BrakeState, Servo, SimulatedDriveConfig};
 use protocol::epos2::cia402::DeviceState;
 use protocol::epos2::objects::Address;
-use protocol::epos2::{BoundedVec, CommError, DeviceError};
+use protocol::epos2::{AbortCode, BoundedVec, DeviceError};
 use protocol::record::{Direction, DriveLink};
 use units::{Host, Rpm, Span, Stamp};
 
@@ -19,7 +19,7 @@ use crate::{
 const LINKS: [DriveLink; 3] = [DriveLink::Usb, DriveLink::Rs232, DriveLink::Can];
 
 /// A rig with a drive as it leaves the factory, and the delays of its link.
-pub(super) fn rig_with(link: DriveLink, config: NodeConfig) -> Rig {
+pub(super) fn rig_with(link: DriveLink, config: SimulatedDriveConfig) -> Rig {
     let mut rig = Rig::with(link, AxisConfig::default(), config);
     let delay = match link {
         DriveLink::Usb => Span::from_micros(300),
@@ -35,7 +35,7 @@ pub(super) fn rig_with(link: DriveLink, config: NodeConfig) -> Rig {
 }
 
 fn homed_on(link: DriveLink) -> Rig {
-    let mut rig = rig_with(link, NodeConfig::default());
+    let mut rig = rig_with(link, SimulatedDriveConfig::default());
     rig.run(DriveCommand::Connect).unwrap();
     rig.run(DriveCommand::Home).unwrap();
     rig.forget();
@@ -58,7 +58,7 @@ fn sent_quick_stop(rig: &Rig) -> Option<Stamp<Host>> {
         let has = |wanted: &[u8]| bytes.windows(wanted.len()).any(|w| w == wanted);
         has(&[0x40, 0x60, 0, 1, 0x0B, 0]) || has(&[0x2B, 0x40, 0x60, 0, 0x0B, 0])
     };
-    let mut sent = rig.log.iter().filter(|it| it.0 == Direction::ToDevice);
+    let mut sent = rig.log.iter().filter(|it| it.0 == Direction::ToDrive);
     sent.find(|(_, bytes, _)| is_quick_stop(bytes))
         .map(|it| it.2)
 }
@@ -72,7 +72,7 @@ fn from_home(rig: &Rig, angle_deg: f64) -> MovePlan {
 /// A complete capture, from power-on to the brake.
 #[test]
 fn connect_home_sweep_and_brake_succeed() {
-    let mut rig = rig_with(DriveLink::Usb, NodeConfig::default());
+    let mut rig = rig_with(DriveLink::Usb, SimulatedDriveConfig::default());
     assert_eq!(rig.drive.node.state(), DeviceState::Fault);
     let Ok(CommandOutcome::Connected(connected)) = rig.run(DriveCommand::Connect) else {
         panic!("{:?}", rig.events.last())
@@ -176,7 +176,7 @@ fn stop_in_mid_sweep_keeps_the_position() {
 fn a_limit_switch_in_mid_sweep_is_named() {
     for link in LINKS {
         // The positive switch has slipped to 20 deg.
-        let mut config = NodeConfig::default();
+        let mut config = SimulatedDriveConfig::default();
         if let Some(switch) = &mut config.switches[1] {
             switch.pressed = firmware_sim::epos2::Region::AtLeast(13_333);
         }
@@ -243,9 +243,9 @@ fn a_cut_cable_in_mid_sweep_is_reported_and_stops_the_axis_on_can() {
 /// The simulated EPOS2 has no writable object of that length, but it takes the whole transfer
 /// before it aborts.
 #[test]
-fn long_objects_of_the_software_drive_are_readable_and_refuse_writes() {
+fn long_objects_of_the_simulated_drive_are_readable_and_refuse_writes() {
     for link in LINKS {
-        let mut rig = rig_with(link, NodeConfig::default());
+        let mut rig = rig_with(link, SimulatedDriveConfig::default());
         rig.run(DriveCommand::Connect).unwrap();
         let mut read = |index, sub| match rig.run(DriveCommand::Read(Address::new(index, sub))) {
             Ok(CommandOutcome::Read { bytes, .. }) => bytes,
@@ -260,11 +260,11 @@ fn long_objects_of_the_software_drive_are_readable_and_refuse_writes() {
         assert_eq!(read(0x6041, 0).len(), 2);
         assert_eq!(read(0x6065, 0), 2_000_u32.to_le_bytes());
         for (index, len, expected) in [
-            (0x20C1, 8, CommError::STATE),
-            (0x20C1, 9, CommError::TOO_LONG),
-            (0x20C1, 7, CommError::TOO_SHORT),
-            (0x2004, 8, CommError::READ_ONLY),
-            (0x5000, 8, CommError::NO_OBJECT),
+            (0x20C1, 8, AbortCode::STATE),
+            (0x20C1, 9, AbortCode::TOO_LONG),
+            (0x20C1, 7, AbortCode::TOO_SHORT),
+            (0x2004, 8, AbortCode::READ_ONLY),
+            (0x5000, 8, AbortCode::NO_OBJECT),
         ] {
             let bytes = BoundedVec::from_slice(&vec![0x90; len]).unwrap();
             let address = Address::new(index, 0);
@@ -296,9 +296,9 @@ fn a_lagging_servo_homes_and_arrives() {
                 natural_millihertz,
                 damping_permille,
             };
-            let config = NodeConfig {
+            let config = SimulatedDriveConfig {
                 servo: Some(servo),
-                ..NodeConfig::default()
+                ..SimulatedDriveConfig::default()
             };
             let mut rig = rig_with(link, config);
             rig.run(DriveCommand::Connect).unwrap();

@@ -1,6 +1,6 @@
 //! An axis without a brake that the drive holds: once enabled, its power never goes off.
 
-use firmware_sim::epos2::NodeConfig;
+use firmware_sim::epos2::SimulatedDriveConfig;
 use protocol::epos2::cia402::DeviceState;
 use protocol::record::DriveLink;
 use units::{Degrees, Rpm, RpmPerS, Span};
@@ -50,7 +50,7 @@ fn goto(to: f64) -> DriveCommand {
 
 /// A homed axis, at rest and held.
 fn held_on(link: DriveLink) -> Rig {
-    let mut rig = rig_with(link, NodeConfig::default());
+    let mut rig = rig_with(link, SimulatedDriveConfig::default());
     rig.client = DriveClient::new(config(), link);
     for command in [DriveCommand::Connect, DriveCommand::Home] {
         rig.client.start(command).unwrap();

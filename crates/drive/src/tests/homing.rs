@@ -1,7 +1,7 @@
 //! Faults in homing: a switch that never comes, values that freeze, a wrong end.
 
-use firmware_sim::epos2::NodeConfig;
-use protocol::epos2::CommError;
+use firmware_sim::epos2::SimulatedDriveConfig;
+use protocol::epos2::AbortCode;
 use protocol::epos2::message::SerialRequest;
 use protocol::record::DriveLink;
 use units::{Degrees, Span};
@@ -16,7 +16,7 @@ fn homing_that_never_ends_is_stopped() {
     let mut config = AxisConfig::default();
     config.homing.time_limit = Span::from_secs(5);
     // No switch ever comes.
-    let drive = NodeConfig {
+    let drive = SimulatedDriveConfig {
         switches: [None; 4],
         ..near_its_switch()
     };
@@ -55,7 +55,7 @@ fn a_home_outside_the_limits_is_refused() {
 
 /// Connects and homes a rig whose requests have these fates from the start of homing.
 fn home_with(
-    drive: NodeConfig,
+    drive: SimulatedDriveConfig,
     hand: impl FnMut(usize, &SerialRequest) -> Fate + 'static,
 ) -> Result<CommandOutcome, DriveError> {
     let mut rig = Rig::with(DriveLink::Usb, AxisConfig::default(), drive);
@@ -65,8 +65,8 @@ fn home_with(
 }
 
 /// A drive whose switch never comes.
-fn without_switches() -> NodeConfig {
-    NodeConfig {
+fn without_switches() -> SimulatedDriveConfig {
+    SimulatedDriveConfig {
         switches: [None; 4],
         ..near_its_switch()
     }
@@ -131,7 +131,7 @@ fn an_axis_at_its_home_position_can_be_homed_again() {
 #[test]
 fn homing_of_a_drive_without_a_demand_is_watched_by_its_position() {
     let refused = |_: usize, request: &SerialRequest| match is_read(request, 0x6062) {
-        true => Fate::Refused(CommError::NO_OBJECT),
+        true => Fate::Refused(AbortCode::NO_OBJECT),
         false => Fate::Sent,
     };
     let ended = home_with(near_its_switch(), refused);

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use protocol::canopen::CanFrame;
 use protocol::canopen::sdo::{self, Expedited, Initiate};
-use protocol::epos2::CommError;
+use protocol::epos2::AbortCode;
 use protocol::epos2::message::{ReadObject, SerialAnswer, SerialRequest as Wire, WriteObject};
 use protocol::epos2::objects::Address;
 use protocol::epos2::usb::{self, UsbDecoder};
@@ -78,7 +78,7 @@ fn a_late_reply_does_not_answer_the_next_request() {
     link.handle_input(&answer(2), at(54));
     let answered = link.take_result().unwrap().unwrap();
     assert_eq!(answered.reply.value(), Some(2));
-    assert_eq!((answered.request, answered.answer), (at(53), at(54)));
+    assert_eq!((answered.sent, answered.received), (at(53), at(54)));
 }
 
 #[test]
@@ -261,7 +261,7 @@ fn a_request_rejected_for_its_checksum_is_repeated_even_if_it_writes() {
     link.submit(write);
     let first = link.transmit(at(0)).unwrap();
     link.handle_input(
-        &usb::to_bytes(&WriteObject::answer(Err(CommError::CRC))),
+        &usb::to_bytes(&WriteObject::answer(Err(AbortCode::CRC))),
         at(1),
     );
     assert_eq!(link.take_result(), None);
@@ -373,8 +373,8 @@ proptest! {
                     if let Ok(answered) = end {
                         let value = (access == ObjectAccess::Read).then_some(u32::from(0x6000 + n));
                         prop_assert_eq!(answered.reply.value(), value);
-                        prop_assert_eq!(answered.reply.error(), CommError::NONE);
-                        prop_assert!(answered.request >= began && answered.answer == now);
+                        prop_assert_eq!(answered.reply.error(), AbortCode::NONE);
+                        prop_assert!(answered.sent >= began && answered.received == now);
                     }
                     break;
                 }
@@ -429,8 +429,8 @@ proptest! {
                 if let Some(end) = link.take_result() {
                     if let Ok(answered) = end {
                         let value = answered.reply.value().unwrap() as usize;
-                        prop_assert_eq!(sent[value - 1], answered.request);
-                        prop_assert!(answered.request >= began);
+                        prop_assert_eq!(sent[value - 1], answered.sent);
+                        prop_assert!(answered.sent >= began);
                     }
                     break;
                 }
@@ -459,7 +459,7 @@ proptest! {
                 Just(usb::to_bytes(&WriteObject::answer(Ok(()))).to_vec()),
                 any::<u32>().prop_map(answer),
                 any::<u32>().prop_map(|code| {
-                    usb::to_bytes(&SerialAnswer::bare(CommError(code)).to_frame()).to_vec()
+                    usb::to_bytes(&SerialAnswer::bare(AbortCode(code)).to_frame()).to_vec()
                 }),
             ],
             0..60,

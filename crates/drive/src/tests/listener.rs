@@ -112,13 +112,13 @@ proptest! {
         for index in &missing {
             // Only replies can be missing: a recorder has its own requests.
             let at = index.index(rig.log.len());
-            if rig.log[at].0 == Direction::FromDevice {
+            if rig.log[at].0 == Direction::FromDrive {
                 rig.log.remove(at);
             }
         }
         for (index, bytes, to_device) in &noise {
             let at = index.index(rig.log.len());
-            let direction = if *to_device { Direction::ToDevice } else { Direction::FromDevice };
+            let direction = if *to_device { Direction::ToDrive } else { Direction::FromDrive };
             let host = rig.log[at].2;
             rig.log.insert(at, (direction, bytes.clone(), host));
         }

@@ -1,11 +1,11 @@
-//! An object that is longer than any of the software EPOS2, writable, and with faulty segments on
+//! An object that is longer than any of the simulated EPOS2, writable, and with faulty segments on
 //! request: it replaces the name (1008) of a drive.
 
 use protocol::epos2::message::{
     InitiateSegmentedWrite, ReadSegment, SegmentedRead, SegmentedWrite, SerialAnswer,
     SerialRequest, WriteSegment,
 };
-use protocol::epos2::{BoundedVec, CommError, SerialFrame};
+use protocol::epos2::{AbortCode, BoundedVec, SerialFrame};
 
 /// The longest value that can be written.
 const LONGEST: usize = 20;
@@ -41,7 +41,7 @@ impl LongObject {
         match request {
             SerialRequest::InitiateSegmentedRead(open) if open.address.index == 0x1008 => {
                 self.sent = 0;
-                Some(SerialAnswer::bare(CommError::NONE).to_frame())
+                Some(SerialAnswer::bare(AbortCode::NONE).to_frame())
             }
             SerialRequest::SegmentedRead(SegmentedRead { toggle }) => {
                 Some(SegmentedRead::answer(&Ok(self.next_segment(*toggle))))
@@ -67,27 +67,27 @@ impl LongObject {
         }
     }
 
-    fn open(&mut self, open: &InitiateSegmentedWrite) -> CommError {
+    fn open(&mut self, open: &InitiateSegmentedWrite) -> AbortCode {
         self.writing = None;
         let len = open.len as usize;
         if len > LONGEST {
-            return CommError::TOO_LONG;
+            return AbortCode::TOO_LONG;
         }
         self.writing = Some((Vec::new(), len));
-        CommError::NONE
+        AbortCode::NONE
     }
 
-    fn write(&mut self, segment: &WriteSegment) -> Result<bool, CommError> {
-        let (mut bytes, len) = self.writing.take().ok_or(CommError::COMMAND)?;
+    fn write(&mut self, segment: &WriteSegment) -> Result<bool, AbortCode> {
+        let (mut bytes, len) = self.writing.take().ok_or(AbortCode::COMMAND)?;
         // Earlier segments are complete, which determines the toggle bit.
         if segment.toggle != ((bytes.len() / self.segment.1) % 2 == 1) {
-            return Err(CommError::TOGGLE);
+            return Err(AbortCode::TOGGLE);
         }
         bytes.extend_from_slice(&segment.bytes);
         if bytes.len() < len {
             self.writing = Some((bytes, len));
         } else if self.refuses {
-            return Err(CommError::STATE);
+            return Err(AbortCode::STATE);
         } else {
             self.bytes = bytes;
         }

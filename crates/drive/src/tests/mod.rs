@@ -1,4 +1,4 @@
-//! Tests of the whole client with the software EPOS2 of firmware-sim, in virtual time.
+//! Tests of the whole client with the simulated EPOS2 of firmware-sim, in virtual time.
 
 mod bursts;
 mod can;

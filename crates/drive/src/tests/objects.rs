@@ -3,7 +3,7 @@
 use protocol::canopen::sdo::TransferError;
 use protocol::epos2::message::SerialRequest;
 use protocol::epos2::objects::Address;
-use protocol::epos2::{BoundedVec, CommError};
+use protocol::epos2::{AbortCode, BoundedVec};
 use protocol::record::DriveLink;
 
 use super::long_object::LongObject;
@@ -15,7 +15,7 @@ const LINKS: [DriveLink; 3] = [DriveLink::Usb, DriveLink::Rs232, DriveLink::Can]
 const NAME: Address = Address::new(0x1008, 0);
 const SERIAL: Address = Address::new(0x1018, 4);
 
-/// A drive with a long object, which the software EPOS2 has not, instead of its name.
+/// A drive with a long object, which the simulated EPOS2 has not, instead of its name.
 fn rig(link: DriveLink) -> Rig {
     with_name(Rig::on(link, AxisConfig::default()))
 }
@@ -94,8 +94,8 @@ fn aborts_by_the_drive_are_reported_at_the_start_and_at_the_end() {
         let mut rig = rig(link);
         let absent = Address::new(0x5000, 1);
         for (address, len, expected) in [
-            (absent, 8, CommError::NO_OBJECT),
-            (NAME, 21, CommError::TOO_LONG),
+            (absent, 8, AbortCode::NO_OBJECT),
+            (NAME, 21, AbortCode::TOO_LONG),
         ] {
             let error = rig.run(write(address, &vec![1; len])).unwrap_err();
             assert!(
@@ -111,7 +111,7 @@ fn aborts_by_the_drive_are_reported_at_the_start_and_at_the_end() {
             matches!(
                 error,
                 DriveError::Refused {
-                    error: CommError::STATE,
+                    error: AbortCode::STATE,
                     ..
                 }
             ),
@@ -140,7 +140,7 @@ fn a_wrong_toggle_bit_aborts_a_write() {
             "{link:?}"
         );
         let aborts = if link == DriveLink::Can {
-            vec![CommError::TOGGLE]
+            vec![AbortCode::TOGGLE]
         } else {
             Vec::new()
         };
@@ -170,7 +170,7 @@ fn a_lost_segment_is_not_repeated() {
             );
             rig.drive.hand = Box::new(|_, _| Fate::Sent);
             read(&mut rig, NAME).unwrap();
-            let timed_out = rig.drive.aborts == [CommError::TIMEOUT];
+            let timed_out = rig.drive.aborts == [AbortCode::TIMEOUT];
             assert_eq!(timed_out, link == DriveLink::Can, "{link:?} {lost}");
         }
     }

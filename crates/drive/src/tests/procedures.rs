@@ -1,6 +1,6 @@
 //! Each command from its first frame to its outcome.
 
-use firmware_sim::epos2::NodeConfig;
+use firmware_sim::epos2::SimulatedDriveConfig;
 use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::DeviceState;
 use protocol::epos2::message::SerialRequest;
@@ -98,7 +98,7 @@ fn homing_by_current_writes_its_threshold_and_others_do_not() {
         let mut config = AxisConfig::default();
         (config.homing.method, config.homing.offset) = (method, Degrees(offset));
         // A mechanical stop half a degree above.
-        let drive = NodeConfig {
+        let drive = SimulatedDriveConfig {
             hard_stops: [None, Some(-42_967)],
             switches: [None; 4],
             ..near_its_switch()

@@ -1,6 +1,6 @@
-//! The client with the software EPOS2 in virtual time; records everything on the wire.
+//! The client with the simulated EPOS2 in virtual time; records everything on the wire.
 
-use firmware_sim::epos2::NodeConfig;
+use firmware_sim::epos2::SimulatedDriveConfig;
 use protocol::epos2::message::SerialRequest;
 use protocol::record::{Direction, DriveLink};
 use units::{Degrees, Host, Rpm, RpmPerS, Span, Stamp};
@@ -28,7 +28,7 @@ impl Rig {
         Self::with(link, config, near_its_switch())
     }
 
-    pub fn with(link: DriveLink, config: AxisConfig, drive: NodeConfig) -> Self {
+    pub fn with(link: DriveLink, config: AxisConfig, drive: SimulatedDriveConfig) -> Self {
         let now = Stamp::from_nanos(1_795_000_000_000_000_000);
         Self {
             client: DriveClient::new(config, link),
@@ -99,7 +99,7 @@ impl Rig {
     fn transmit(&mut self) {
         while let Some(frame) = self.client.poll_transmit(self.now) {
             self.drive.input(&frame, self.now);
-            self.log.push((Direction::ToDevice, frame, self.now));
+            self.log.push((Direction::ToDrive, frame, self.now));
         }
     }
 
@@ -129,7 +129,7 @@ impl Rig {
         self.now = next.max(self.now + Span::from_nanos(1));
         while let Some(bytes) = self.drive.take_answer(self.now) {
             self.client.handle_input(&bytes, self.now);
-            self.log.push((Direction::FromDevice, bytes, self.now));
+            self.log.push((Direction::FromDrive, bytes, self.now));
         }
         if self.client.poll_timeout().is_some_and(|t| t <= self.now) {
             self.client.handle_timeout(self.now);

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use protocol::epos2::message::{ReadObject, SerialRequest as Wire, WriteObject};
 use protocol::epos2::objects::Address;
 use protocol::epos2::rs232::{BodyDecoder, FAILED, OKAY, encode_body};
-use protocol::epos2::{CommError, SerialFrame};
+use protocol::epos2::{AbortCode, SerialFrame};
 use protocol::record::DriveLink;
 use units::{Host, Span, Stamp};
 
@@ -226,8 +226,8 @@ proptest! {
                     Some(Ok(answered)) => {
                         let value = (access == ObjectAccess::Read).then_some(u32::from(0x6000 + n));
                         prop_assert_eq!(answered.reply.value(), value);
-                        prop_assert_eq!(answered.reply.error(), CommError::NONE);
-                        prop_assert!(answered.request >= began && answered.answer == now);
+                        prop_assert_eq!(answered.reply.error(), AbortCode::NONE);
+                        prop_assert!(answered.sent >= began && answered.received == now);
                         let ours = |w: &Wire| match w {
                             Wire::ReadObject(r) => r.address.index == 0x6000 + n,
                             Wire::WriteObject(w) => w.address.index == 0x6000 + n,
@@ -236,7 +236,7 @@ proptest! {
                         prop_assert!(drive.executed[executed_before..].iter().any(ours));
                         break;
                     }
-                    Some(Err(RequestFailure::NoReply { .. } | RequestFailure::LinkLost { .. } | RequestFailure::Refused { .. })) => break,
+                    Some(Err(RequestFailure::NoReply { .. } | RequestFailure::LinkLost { .. } | RequestFailure::HandshakeRefused { .. })) => break,
                     None => {}
                 }
                 if abandon && now > began + Span::from_millis(30) {

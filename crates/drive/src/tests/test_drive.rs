@@ -1,14 +1,16 @@
-//! The software EPOS2 of firmware-sim in virtual time, on a link that loses, delays, damages,
+//! The simulated EPOS2 of firmware-sim in virtual time, on a link that loses, delays, damages,
 //! repeats or replaces any reply. Drive and client share only the frames.
 
 use std::collections::VecDeque;
 
-use firmware_sim::epos2::{CanServer, Node, NodeConfig, Rs232Server, UnitIdentity, UsbServer};
+use firmware_sim::epos2::{
+    CanServer, Rs232Server, SimulatedDrive, SimulatedDriveConfig, UnitIdentity, UsbServer,
+};
 use protocol::canopen::CanFrame;
 use protocol::epos2::cia402::DeviceState;
 use protocol::epos2::message::SerialRequest;
 use protocol::epos2::objects::Address;
-use protocol::epos2::{CommError, DeviceError};
+use protocol::epos2::{AbortCode, DeviceError};
 use protocol::record::DriveLink;
 use units::{Host, Span, Stamp};
 
@@ -30,7 +32,7 @@ pub enum Fate {
     /// The drive confirms the request without executing it.
     Ignored,
     /// The drive refuses the request.
-    Refused(CommError),
+    Refused(AbortCode),
     /// The object reads as this value.
     Value(u32),
 }
@@ -58,7 +60,7 @@ impl Server {
     }
 
     /// Takes bytes from the host; returns the drive's.
-    pub fn input(&mut self, node: &mut Node, bytes: &[u8]) -> Vec<Vec<u8>> {
+    pub fn input(&mut self, node: &mut SimulatedDrive, bytes: &[u8]) -> Vec<Vec<u8>> {
         let mut answers = Vec::new();
         match self {
             Self::Usb(server) => server.input(node, bytes, &mut |b| answers.push(b.to_vec())),
@@ -74,7 +76,7 @@ impl Server {
     }
 
     /// The drive's unsolicited frames. Call it after each tick of the node.
-    pub fn poll(&mut self, node: &mut Node) -> Vec<Vec<u8>> {
+    pub fn poll(&mut self, node: &mut SimulatedDrive) -> Vec<Vec<u8>> {
         let mut replies = Vec::new();
         if let Self::Can(server) = self {
             server.poll(node, &mut |f| replies.push(f.to_socketcan().to_vec()));
@@ -88,7 +90,7 @@ const CYCLE: Span = Span::from_millis(1);
 pub const SERIAL: u32 = 0x9090_9090;
 
 pub struct TestDrive {
-    pub node: Node,
+    pub node: SimulatedDrive,
     pub(super) server: Server,
     tap: RequestTap,
     pub link: DriveLink,
@@ -97,7 +99,7 @@ pub struct TestDrive {
     /// Replaces the name (1008).
     pub long_object: Option<LongObject>,
     /// Transfers aborted by the client (CAN).
-    pub aborts: Vec<CommError>,
+    pub aborts: Vec<AbortCode>,
     /// A device error at this time.
     pub fault_at: Option<(Stamp<Host>, DeviceError)>,
     pub hand: Hand,
@@ -120,21 +122,21 @@ pub struct TestDrive {
 
 /// A drive with factory settings that is used without a CAN bus, close to its negative switch so
 /// that homing takes half a second.
-pub fn near_its_switch() -> NodeConfig {
-    NodeConfig {
+pub fn near_its_switch() -> SimulatedDriveConfig {
+    SimulatedDriveConfig {
         initial_position: -43_300,
         identity: UnitIdentity {
             serial_number: 0x5349_4D55_0000_0000 | u64::from(SERIAL),
             ..UnitIdentity::default()
         },
-        ..NodeConfig::default()
+        ..SimulatedDriveConfig::default()
     }
 }
 
 impl TestDrive {
-    pub fn new(link: DriveLink, config: NodeConfig, now: Stamp<Host>) -> Self {
+    pub fn new(link: DriveLink, config: SimulatedDriveConfig, now: Stamp<Host>) -> Self {
         Self {
-            node: Node::new(config),
+            node: SimulatedDrive::new(config),
             server: Server::new(link),
             tap: RequestTap::new(link),
             link,
@@ -243,7 +245,7 @@ impl TestDrive {
     }
 
     /// The drive's clock (1013).
-    pub fn device_us(&self, at: Stamp<Host>) -> u32 {
+    pub fn drive_us(&self, at: Stamp<Host>) -> u32 {
         ((at - self.started).as_nanos() / 1_000) as u32
     }
 

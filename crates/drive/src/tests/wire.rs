@@ -1,7 +1,7 @@
-//! Faults of each link: requests on their way to the software EPOS2, its replies, and the CAN
+//! Faults of each link: requests on their way to the simulated EPOS2, its replies, and the CAN
 //! services other than SDO.
 
-use firmware_sim::epos2::Node;
+use firmware_sim::epos2::SimulatedDrive;
 use protocol::canopen::pdo::Pdo;
 use protocol::canopen::sdo::{self, Expedited, Initiate};
 use protocol::canopen::{BusMessage, CanFrame, CanId, CommunicationObject, NodeId, PdoNumber};
@@ -337,7 +337,7 @@ fn serial_request(request: &sdo::SdoRequest) -> (SerialRequest, Address) {
 
 /// A script's answer on CAN.
 fn sdo_answer(
-    node: &Node,
+    node: &SimulatedDrive,
     request: &SerialRequest,
     address: Address,
     answer: &SerialFrame,

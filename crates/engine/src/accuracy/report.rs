@@ -15,7 +15,7 @@ pub struct AccuracyReport {
     pub logs: Vec<LogReport>,
     /// Model of the lidar.
     pub model: String,
-    /// Whether the devices were software.
+    /// Whether the devices were simulated.
     pub simulated: bool,
     /// Whether the points have a calibration.
     pub calibrated: bool,
@@ -57,7 +57,7 @@ pub struct LaserNoise {
 #[derive(Clone, Debug, Serialize, ToSchema)]
 #[non_exhaustive]
 pub struct ResidualGroup {
-    /// The quantity, with its unit.
+    /// The quantity, with its drive.
     pub by: String,
     /// Its bins.
     pub bins: Vec<ResidualReport>,

@@ -52,7 +52,7 @@ pub fn to_toml(calibrated: &Calibrated, version: &str) -> Result<String, toml::s
         },
     };
     let first = match calibrated.simulated {
-        true => "# SIMULATED: calibrated by logs of software devices\n",
+        true => "# SIMULATED: calibrated by logs of simulated devices\n",
         false => "",
     };
     let text = toml::to_string(&file)?;

@@ -15,7 +15,7 @@ pub struct CalibrateReport {
     pub logs: Vec<LogReport>,
     /// Model of the lidar.
     pub model: String,
-    /// Whether the devices were software.
+    /// Whether the devices were simulated.
     pub simulated: bool,
     /// The calibrated mount.
     pub mount: MountConfig,
@@ -50,7 +50,7 @@ pub struct LogReport {
     pub shots: usize,
 }
 
-/// A parameter, in the unit that its name states.
+/// A parameter, in the drive that its name states.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 #[non_exhaustive]
 pub struct ParameterReport {
@@ -196,7 +196,8 @@ impl ParameterReport {
 const fn help(kind: ParameterKind) -> &'static str {
     match kind {
         ParameterKind::Delay | ParameterKind::Play => "scan both ways, at two speeds",
-        ParameterKind::Drift(_) | ParameterKind::Scale => "scan both ways",
+        ParameterKind::Scale => "scan both ways",
+        ParameterKind::Drift(_) => "the residuals show none",
         ParameterKind::RippleSin | ParameterKind::RippleCos => {
             "scan more turns of the motor, with surfaces beyond 10 m"
         }

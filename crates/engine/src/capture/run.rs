@@ -47,7 +47,7 @@ pub struct CaptureJob<'a> {
     pub port: &'a mut dyn Port,
     /// Stops the axis if this process dies.
     pub guardian: Option<&'a mut Guardian>,
-    /// Whether the machine stays awake while the axis may move: it is no software device.
+    /// Whether the machine stays awake while the axis may move: it is no simulated device.
     pub keeps_awake: bool,
     /// How the drive is attached.
     pub link: DriveLink,

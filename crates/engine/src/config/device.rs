@@ -170,7 +170,7 @@ impl Device {
             let key = port.map(|(key, _)| key).or(address.map(|(key, _)| key));
             return key.map_or(Ok(()), |key| {
                 Err(format!(
-                    "{key}: expected with a real lidar only, got it on software devices"
+                    "{key}: expected with a real lidar only, got it on simulated devices"
                 ))
             });
         }

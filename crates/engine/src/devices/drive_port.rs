@@ -23,7 +23,7 @@ const RS232_BAUD: u32 = 115_200;
 const SLCAN_BAUD: u32 = 115_200;
 /// Longest wait for a port in use.
 const BUSY_WAIT: Duration = Duration::from_secs(2);
-/// Short: a move gets the port between two of the commands that read the drive's state in a loop.
+/// Short, so that a waiting move gets the port between two commands of a loop that reads the state.
 const BUSY_POLL: Duration = Duration::from_millis(2);
 
 /// An open port of the drive.
@@ -121,7 +121,7 @@ fn found(plugged: &ConnectedDevices, search: Search) -> Result<PathBuf, Failure>
     let help = match (plugged.epos2.is_empty(), search) {
         (true, Search::Once) => {
             "plug the EPOS2 in and switch it on, or name its port in a [device.NAME] of the configuration,\n\
-             or use --device sim for software devices"
+             or use --device sim for simulated devices"
         }
         (true, Search::UntilFound) => {
             "plug the EPOS2 in and switch it on: it is connected as soon as it is there\n\
@@ -135,7 +135,7 @@ fn found(plugged: &ConnectedDevices, search: Search) -> Result<PathBuf, Failure>
     Err(Failure::new(Kind::NoDevice, message).help(help))
 }
 
-/// Opens the port of a device at `place`. The software scanner's is a USB drive on a
+/// Opens the port of a device at `place`. The simulated scanner's is a USB drive on a
 /// pseudo-terminal.
 ///
 /// # Errors
@@ -156,7 +156,7 @@ pub fn open(
         warning: None,
     };
     Ok(match device.kind {
-        // Software devices end with this process.
+        // Simulated devices end with this process.
         DeviceKind::Sim => opened(Box::new(serial(USB_BAUD)?), DriveLink::Usb),
         DeviceKind::Usb => {
             let port = serial(USB_BAUD)?;

@@ -123,8 +123,8 @@ impl<'g, P: Port> Session<'g, P> {
         self
     }
 
-    /// Keeps the machine awake while the axis may move or is powered, on every link. An axis of
-    /// software sleeps with its machine.
+    /// Keeps the machine awake while the axis may move or is powered, on every link. Not needed
+    /// for a simulated axis.
     #[must_use]
     pub fn keeping_awake(mut self, keeps_awake: bool) -> Self {
         self.keeps_awake = keeps_awake;

@@ -30,7 +30,7 @@ use crate::config::AxisSettings;
 pub const ARGUMENT: &str = "guard-axis";
 /// Between two heartbeats.
 const HEARTBEAT: Duration = Duration::from_millis(50);
-/// Silence of an armed axis after which the guardian stops it. A quick stop from the highest speed
+/// Silence while armed after which the guardian stops the axis. A quick stop from the highest speed
 /// takes 200 ms more, standstill and brake 100 ms: together less than a second.
 pub const SILENCE_LIMIT: Duration = Duration::from_millis(500);
 /// The same with the time in which the machine did not let the drive loop run: it is neither

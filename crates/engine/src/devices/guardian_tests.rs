@@ -14,7 +14,7 @@ use units::{Degrees, Host, Rpm, RpmPerS, Stamp};
 
 use super::*;
 use crate::devices::simulated;
-use crate::devices::simulated_drive::{SoftwarePort, run_observed};
+use crate::devices::simulated_drive::{SimulatedPort, run_observed};
 
 /// A line that a test writes on and reads from without a drive.
 struct BadLine {
@@ -134,7 +134,7 @@ fn the_guardian_stops_an_axis_though_an_answer_to_its_parent_is_late() {
     let is_over = AtomicBool::new(false);
     std::thread::scope(|scope| {
         scope.spawn(|| {
-            let port = SoftwarePort::Serial(pty);
+            let port = SimulatedPort::Serial(pty);
             let node = simulated::node(&axis);
             run_observed(node, Attachment::Usb, port, &is_over, &mut |_, _| {}).unwrap();
         });
@@ -217,8 +217,8 @@ fn move_with_guardian(answer: &str) -> (SessionError, bool) {
     let error = std::thread::scope(|scope| {
         scope.spawn(|| {
             let node = simulated::node(&axis);
-            let port = SoftwarePort::Serial(pty);
-            let mut observe = |_, node: &firmware_sim::epos2::Node| {
+            let port = SimulatedPort::Serial(pty);
+            let mut observe = |_, node: &firmware_sim::epos2::SimulatedDrive| {
                 let is_on = node.state() == DeviceState::OperationEnabled;
                 powered.store(is_on, Ordering::Relaxed);
             };

@@ -50,6 +50,7 @@ struct Requests {
 
 /// New destination of records, and the receiver of the counts at that moment.
 struct CountsRequest {
+    /// `Some(None)` ends the recording, `None` only asks for the counts.
     log: Option<Option<RecorderHandle>>,
     answer: Sender<Result<ListenCounts, Failure>>,
 }

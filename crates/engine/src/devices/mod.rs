@@ -1,4 +1,4 @@
-//! Drive and lidar: selection, opening, and software devices in their place.
+//! Drive and lidar: selection, opening, and simulated devices in their place.
 
 pub mod drive_port;
 pub mod drive_session;

@@ -1,4 +1,5 @@
-//! Tells a process that the machine delays from one that is stopped or stuck, by its threads.
+//! Distinguishes a process that the machine delays from one that is stopped or stuck, by its
+//! threads.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};

@@ -33,7 +33,7 @@ pub fn choose(config: &Config, requested: Option<&str>) -> Result<(String, Devic
                 format!("no device is called {name}: expected one of {}", known.join(", ")),
             )
             .help(format!(
-                "add a [device.{name}] to the configuration, or use --device sim for software devices"
+                "add a [device.{name}] to the configuration, or use --device sim for simulated devices"
             )))
         }
     }
@@ -104,7 +104,7 @@ pub fn axis(axis: &AxisSettings) -> Result<drive::AxisConfig, Failure> {
     Ok(config)
 }
 
-/// Whether the device is software.
+/// Whether the device is simulated.
 #[must_use]
 pub fn simulated(device: &Device) -> bool {
     device.kind == DeviceKind::Sim

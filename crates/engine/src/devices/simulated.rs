@@ -1,4 +1,4 @@
-//! The software scanner in real time: a thread that advances a [`sim::Rig`] with the host's clock,
+//! The simulated scanner in real time: a thread that advances a [`sim::Rig`] with the host's clock,
 //! answers on a pseudo-terminal and sends lidar packets over loopback.
 
 use std::net::{Ipv4Addr, UdpSocket};
@@ -21,7 +21,7 @@ use crate::devices::lidar_sockets::DATA_PORT;
 pub use crate::devices::simulated_axis::node;
 use crate::failure::{Failure, Kind};
 
-/// Local ports of the software lidar's packets.
+/// Local ports of the simulated lidar's packets.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct LidarPorts {
@@ -31,9 +31,9 @@ pub struct LidarPorts {
     pub position: u16,
 }
 
-/// A running software scanner.
+/// A running simulated scanner.
 pub struct SimulatedDevices {
-    /// Serial port of the software drive.
+    /// Serial port of the simulated drive.
     pub port: PathBuf,
     stop: Arc<AtomicBool>,
     requests: Sender<SimulatorRequest>,
@@ -81,7 +81,7 @@ impl SimulatedDevices {
         let stopping = Arc::clone(&stop);
         let (requests, inbox) = channel();
         let thread = std::thread::Builder::new()
-            .name("software scanner".to_owned())
+            .name("simulated scanner".to_owned())
             .spawn(move || run(Rig::new(config), pty, (&socket, to), &stopping, &inbox))
             .map_err(|error| cannot("a thread", &error))?;
         Ok(Self {
@@ -169,7 +169,7 @@ fn run(
     Ok(rig.truth())
 }
 
-/// The software scanner of an axis: its drive, and the lidar at 10 Hz in the hall, started at
+/// The simulated scanner of an axis: its drive, and the lidar at 10 Hz in the hall, started at
 /// `start`.
 #[must_use]
 pub fn rig(axis: &drive::AxisConfig, scan: &ScanConfig, start: Stamp<Host>) -> RigConfig {
@@ -186,7 +186,7 @@ fn lidar_mount(mount: MountConfig) -> LidarMount {
     LidarMount::at(mount.position_m(), mount.rotation_deg())
 }
 
-/// Accuracy of the software lidar: ranges are quantised and have no other error.
+/// Accuracy of the simulated lidar: ranges are quantised and have no other error.
 #[must_use]
 pub fn lidar() -> LidarConfig {
     let step_m = f64::from(DISTANCE_UNIT_MM) * 1e-3;

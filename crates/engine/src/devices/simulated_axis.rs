@@ -1,4 +1,4 @@
-//! The mechanics around the software drive: where its switches, mechanical stops and index pulses
+//! The mechanics around the simulated drive: where its switches, mechanical stops and index pulses
 //! are, and where the shaft stands at power-on.
 //!
 //! They are placed so that homing as configured finds its reference where the configuration says
@@ -7,7 +7,7 @@
 //! choice), mechanical stops 15 degrees behind the limit switches. Left out: friction, load, play.
 
 use drive::AxisConfig;
-use firmware_sim::epos2::{NodeConfig, Region, Switch};
+use firmware_sim::epos2::{Region, SimulatedDriveConfig, Switch};
 use units::Degrees;
 
 /// Digital input of the home switch (2070:4 from the factory).
@@ -33,10 +33,10 @@ struct Places {
     start: i32,
 }
 
-/// The software drive of an axis: encoder, switches and stops where homing expects them, and the
+/// The simulated drive of an axis: encoder, switches and stops where homing expects them, and the
 /// shaft some way below the upper limit.
 #[must_use]
-pub fn node(axis: &AxisConfig) -> NodeConfig {
+pub fn node(axis: &AxisConfig) -> SimulatedDriveConfig {
     let places = Places::of(axis);
     let switches = axis.limit_switches;
     let switch = |input: Option<u8>, pressed, normally_closed| {
@@ -48,7 +48,7 @@ pub fn node(axis: &AxisConfig) -> NodeConfig {
     };
     let taken = [switches.negative, switches.positive].contains(&Some(HOME_INPUT));
     let (from, to) = places.home;
-    NodeConfig {
+    SimulatedDriveConfig {
         node_id: axis.node,
         qc_per_turn: axis.gearing.qc_per_motor_turn(),
         initial_position: places.start,
@@ -72,7 +72,7 @@ pub fn node(axis: &AxisConfig) -> NodeConfig {
             ),
             None,
         ],
-        ..NodeConfig::default()
+        ..SimulatedDriveConfig::default()
     }
 }
 
@@ -132,7 +132,7 @@ impl Places {
 
 #[cfg(test)]
 mod tests {
-    use firmware_sim::epos2::Node;
+    use firmware_sim::epos2::SimulatedDrive;
     use protocol::epos2::DeviceError;
     use protocol::epos2::cia402::{control, mode, status};
     use protocol::epos2::objects::{self, Scalar, TypedObject};
@@ -141,19 +141,19 @@ mod tests {
     use crate::config::{AxisSettings, HomingSettings};
     use crate::devices::profile as devices;
 
-    fn set<T: Scalar>(node: &mut Node, object: TypedObject<T>, value: T) {
+    fn set<T: Scalar>(node: &mut SimulatedDrive, object: TypedObject<T>, value: T) {
         node.write(object.address, object.encode(value)).unwrap();
     }
 
-    fn get<T: Scalar>(node: &Node, object: TypedObject<T>) -> T {
+    fn get<T: Scalar>(node: &SimulatedDrive, object: TypedObject<T>) -> T {
         object.decode(node.read(object.address).unwrap().raw().unwrap())
     }
 
     /// Homes as the client does, and returns the node.
-    fn homed(axis: &AxisConfig) -> Node {
+    fn homed(axis: &AxisConfig) -> SimulatedDrive {
         let qc = |angle| axis.gearing.position(angle).unwrap().0;
         let homing = axis.homing;
-        let mut node = Node::new(NodeConfig {
+        let mut node = SimulatedDrive::new(SimulatedDriveConfig {
             fault_at_power_on: DeviceError::NONE,
             ..node(axis)
         });

@@ -1,9 +1,9 @@
-//! The software EPOS2 alone in real time: its control cycle follows the host's clock, and its
+//! The simulated EPOS2 alone in real time: its control cycle follows the host's clock, and its
 //! frames pass over a port.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use firmware_sim::epos2::{Node, NodeConfig};
+use firmware_sim::epos2::{SimulatedDrive, SimulatedDriveConfig};
 use io::can::{CanError, CanPort, SocketCan};
 use io::port::{Port, PortError, Pty};
 use protocol::canopen::{CanFrame, SOCKETCAN_LEN};
@@ -13,7 +13,7 @@ use thiserror::Error;
 use units::{Host, Span, Stamp};
 
 /// Port of the drive.
-pub enum SoftwarePort {
+pub enum SimulatedPort {
     /// A pseudo-terminal.
     Serial(Pty),
     /// An interface of the kernel.
@@ -22,7 +22,7 @@ pub enum SoftwarePort {
 
 /// Why the drive stopped.
 #[derive(Debug, Error)]
-pub enum SoftwareDriveError {
+pub enum SimulatedDriveError {
     /// The pseudo-terminal failed.
     #[error(transparent)]
     Port(#[from] PortError),
@@ -45,11 +45,11 @@ const SEED: u64 = 1;
 /// # Errors
 /// Returns the failure of its port.
 pub fn run(
-    config: NodeConfig,
+    config: SimulatedDriveConfig,
     attachment: Attachment,
-    port: SoftwarePort,
+    port: SimulatedPort,
     stop: &AtomicBool,
-) -> Result<(), SoftwareDriveError> {
+) -> Result<(), SimulatedDriveError> {
     run_observed(config, attachment, port, stop, &mut |_, _| {})
 }
 
@@ -58,15 +58,15 @@ pub fn run(
 /// # Errors
 /// Returns the failure of its port.
 pub fn run_observed(
-    config: NodeConfig,
+    config: SimulatedDriveConfig,
     attachment: Attachment,
-    mut port: SoftwarePort,
+    mut port: SimulatedPort,
     stop: &AtomicBool,
-    observe: &mut dyn FnMut(Stamp<Host>, &Node),
-) -> Result<(), SoftwareDriveError> {
+    observe: &mut dyn FnMut(Stamp<Host>, &SimulatedDrive),
+) -> Result<(), SimulatedDriveError> {
     let mut server = DriveServer::new(attachment, SEED);
-    let mut node = Node::new(NodeConfig {
-        // The error of a unit without a CAN bus.
+    let mut node = SimulatedDrive::new(SimulatedDriveConfig {
+        // The error of a drive without a CAN bus.
         fault_at_power_on: match attachment {
             Attachment::Usb | Attachment::Rs232 => DeviceError::CAN_PASSIVE,
             Attachment::Slcan | Attachment::Can => DeviceError::NONE,
@@ -99,9 +99,9 @@ pub fn run_observed(
     Ok(())
 }
 
-impl SoftwarePort {
+impl SimulatedPort {
     /// Waits for bytes of the host; those of a bus are whole frames.
-    fn receive(&mut self, mut wait: Span) -> Result<Vec<u8>, SoftwareDriveError> {
+    fn receive(&mut self, mut wait: Span) -> Result<Vec<u8>, SimulatedDriveError> {
         let mut received = Vec::new();
         match self {
             Self::Serial(pty) => {
@@ -123,7 +123,7 @@ impl SoftwarePort {
     }
 
     /// Sends and clears `bytes`.
-    fn send(&mut self, bytes: &mut Vec<u8>) -> Result<(), SoftwareDriveError> {
+    fn send(&mut self, bytes: &mut Vec<u8>) -> Result<(), SimulatedDriveError> {
         match self {
             Self::Serial(_) if bytes.is_empty() => {}
             Self::Serial(pty) => match pty.write_frame(bytes) {

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use ::io::files::NewFile;
 
-/// Enough for formats that write small pieces (LAZ, E57, CSV), and less than a batch of rows, which
+/// Enough for formats that write small pieces (LAZ, E57), and less than a batch of rows, which
 /// then bypasses the buffer.
 const BUFFER_BYTES: usize = 1 << 16;
 

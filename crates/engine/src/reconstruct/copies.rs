@@ -53,7 +53,7 @@ impl RecordCopies {
             Wire::Drive {
                 direction, frame, ..
             } => {
-                let is_to_device = direction == protocol::record::Direction::ToDevice;
+                let is_to_device = direction == protocol::record::Direction::ToDrive;
                 let ns = record.host.as_nanos();
                 (ns, is_to_device, frame).hash(&mut hasher);
                 let is_again = self.frames.has(hasher.finish());
@@ -170,7 +170,7 @@ mod tests {
         let mut copies = RecordCopies::default();
         let frame = [0x90, 0x02, 0x10, 0x02];
         let mut all = |ns: i64| {
-            let ways = [Direction::ToDevice, Direction::FromDevice];
+            let ways = [Direction::ToDrive, Direction::FromDrive];
             ways.map(|way| copies.has(&drive(ns, way, &frame)))
         };
         for i in 0..1_000 {
@@ -187,15 +187,15 @@ mod tests {
     fn late_answers_that_are_read_at_once_are_no_copies() {
         let mut copies = RecordCopies::default();
         for i in 0..5 {
-            assert!(!copies.has(&drive(2_500_000 * i, Direction::ToDevice, &[1])));
+            assert!(!copies.has(&drive(2_500_000 * i, Direction::ToDrive, &[1])));
         }
         for _ in 0..5 {
-            assert!(!copies.has(&drive(900_000_000, Direction::FromDevice, &[2])));
+            assert!(!copies.has(&drive(900_000_000, Direction::FromDrive, &[2])));
         }
         assert_eq!(copies.doubled_frames, 0);
         // Of two recordings of the same traffic, joined in the order of time, half are copies.
         for i in 400..500 {
-            for (direction, frame) in [(Direction::ToDevice, 1), (Direction::FromDevice, 2)] {
+            for (direction, frame) in [(Direction::ToDrive, 1), (Direction::FromDrive, 2)] {
                 let frame = [frame];
                 let record = drive(2_500_000 * i, direction, &frame);
                 let ways = [copies.has(&record), copies.has(&record)];

@@ -52,7 +52,7 @@ fn check(name: &str, problem: Option<String>, fine: &str, values: NamedValues) -
 fn devices(contents: &Contents) -> Diagnostic {
     let problem = contents
         .simulated
-        .then(|| "SIMULATED: software devices, not a scan of anything real".to_owned());
+        .then(|| "SIMULATED: simulated devices, not a scan of anything real".to_owned());
     let values = NamedValues::new().with("simulated", contents.simulated);
     check("devices", problem, "real devices", values)
 }

@@ -20,7 +20,7 @@ use super::status::AxisTask;
 pub struct AxisReport {
     /// Name of the device's profile.
     pub device: String,
-    /// The unit: name, versions and serial number.
+    /// The drive: name, versions and serial number.
     pub unit: String,
     /// The drive's state (CiA 402).
     pub state: String,
@@ -44,7 +44,7 @@ pub struct AxisReport {
     pub home_switch: bool,
     /// The error history, newest first.
     pub faults: Vec<DriveFault>,
-    /// Whether the drive is software.
+    /// Whether the drive is simulated.
     pub simulated: bool,
     /// Whether the power stage is on.
     pub power: bool,

@@ -32,7 +32,7 @@ use crate::threads::spawn;
 const POLL_INTERVAL: Duration = Duration::from_secs(2);
 /// First and longest wait before a device is tried again.
 const RETRY_WAIT: (Duration, Duration) = (Duration::from_millis(250), Duration::from_secs(5));
-/// Truth of the software devices before a capture.
+/// Truth of the simulated devices before a capture.
 const TRUTH_MEMORY: Span = Span::from_secs(60);
 
 /// A request to the device thread. Requests that move the axis carry its lease.

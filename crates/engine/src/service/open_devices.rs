@@ -1,4 +1,4 @@
-//! Opening the devices: the drive's port, the lidar's sockets, and software devices.
+//! Opening the devices: the drive's port, the lidar's sockets, and simulated devices.
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -18,7 +18,7 @@ use crate::devices::simulated::{self, LidarPorts, SimulatedDevices};
 use crate::failure::{Failure, Kind};
 use crate::reconstruct::contents::link_name;
 
-/// UDP port that nothing reads (discard, RFC 863), for a software lidar that is not needed.
+/// UDP port that nothing reads (discard, RFC 863), for a simulated lidar that is not needed.
 const DISCARD: LidarPorts = LidarPorts {
     data: 9,
     position: 9,
@@ -49,7 +49,7 @@ impl Worker {
         self.open_port(&place)
     }
 
-    /// Makes sure that the lidar's sockets are open and software devices run.
+    /// Makes sure that the lidar's sockets are open and simulated devices run.
     pub(super) fn keep_lidar_open(&mut self) {
         let receiver = self.service.receiver();
         if receiver.is_some_and(|receiver| receiver.is_sound())
@@ -107,7 +107,7 @@ impl Worker {
             Some(devices) => devices.port.clone(),
             None if service.device.kind == DeviceKind::Sim => {
                 return Err(
-                    Failure::new(Kind::NoDevice, "the software devices do not run")
+                    Failure::new(Kind::NoDevice, "the simulated devices do not run")
                         .help("see the status of the lidar"),
                 );
             }
@@ -162,7 +162,7 @@ impl Worker {
         });
     }
 
-    /// Closes the lidar's sockets, which are opened again. Software devices go on.
+    /// Closes the lidar's sockets, which are opened again. Simulated devices go on.
     pub(super) fn forget_lidar(&self) {
         if self.simulated.is_none() && matches!(self.service.lifetime, Lifetime::Resident) {
             self.service.set_receiver(None);

@@ -63,7 +63,7 @@ pub struct ScanHead {
     pub waits_for_room: bool,
     /// Start, Unix seconds.
     pub started_s: f64,
-    /// Whether the devices were software.
+    /// Whether the devices were simulated.
     pub simulated: bool,
     /// The request; absent where it is lost, or was written by a later version.
     #[serde(default, deserialize_with = "if_understood", rename = "asked")]

@@ -219,7 +219,7 @@ pub struct ServiceStatus {
     pub version: &'static str,
     /// Name of the device's profile.
     pub device: String,
-    /// Whether the devices are software.
+    /// Whether the devices are simulated.
     pub simulated: bool,
     /// Start of the service, Unix seconds.
     pub started_s: f64,

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use cloud::{Fields, Point, Points};
-use drive::CommError;
+use drive::AbortCode;
 use drive::cia402::control;
 use io::log::LogWriter;
 use protocol::epos2::message::{ReadObject, WriteObject};
@@ -244,7 +244,7 @@ pub(super) fn frame_of(
     match event {
         SimulationEvent::Datagram { .. } => None,
         SimulationEvent::Request { at, request } => {
-            Some((*at, Direction::ToDevice, frame(*request, gearing?)))
+            Some((*at, Direction::ToDrive, frame(*request, gearing?)))
         }
         SimulationEvent::Answer {
             at,
@@ -256,7 +256,7 @@ pub(super) fn frame_of(
                 DriveRequest::Probe(which) => ReadObject::answer(Err(probe_request(*which).1)),
                 _ => WriteObject::answer(Ok(())),
             };
-            Some((*at, Direction::FromDevice, answer))
+            Some((*at, Direction::FromDrive, answer))
         }
     }
 }
@@ -293,7 +293,7 @@ fn frame(request: DriveRequest, gearing: Gearing) -> SerialFrame {
 }
 
 /// Address and error answer of the two probe requests.
-const fn probe_request(second: bool) -> (Address, CommError) {
+const fn probe_request(second: bool) -> (Address, AbortCode) {
     let [one, other] = drive::PROBES;
     if second { other } else { one }
 }

@@ -76,8 +76,8 @@ pub(super) fn packet(
         }
         pad(out, length as usize);
         let flags: u32 = match direction {
-            Direction::FromDevice => 1, // inbound
-            Direction::ToDevice => 2,   // outbound
+            Direction::FromDrive => 1, // inbound
+            Direction::ToDrive => 2,   // outbound
         };
         option(out, EPB_FLAGS, &flags.to_le_bytes());
         option(out, OPT_END, &[]);
@@ -176,7 +176,7 @@ mod tests {
             &mut out,
             1,
             0x0102_0304_0506_0708,
-            Direction::ToDevice,
+            Direction::ToDrive,
             [&[0xAA], &[0xBB, 0xCC, 0xDD, 0xEE]],
         );
         let expected = [

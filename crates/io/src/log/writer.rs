@@ -237,7 +237,7 @@ impl<W: Write> LogWriter<W> {
                 let parts = [&headers[..], payload];
                 match self.format {
                     LogFormat::Log => {
-                        block::packet(&mut self.buffer, 0, time_ns, Direction::FromDevice, parts);
+                        block::packet(&mut self.buffer, 0, time_ns, Direction::FromDrive, parts);
                     }
                     LogFormat::Pcap => block::pcap_record(&mut self.buffer, time_ns, parts),
                 }

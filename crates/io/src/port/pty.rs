@@ -1,5 +1,5 @@
-//! The device side of a pseudo-terminal, for the software drive. The other side is a serial port by
-//! path. Bytes pass without the delay of a baud rate.
+//! The device side of a pseudo-terminal, for the simulated drive. The other side is a serial port
+//! by path. Bytes pass without the delay of a baud rate.
 
 use std::os::fd::OwnedFd;
 use std::path::{Path, PathBuf};

@@ -58,7 +58,7 @@ impl<P, S: FnMut(&Record<'_>)> RecordingPort<P, S> {
 
     fn received(&mut self, bytes: &[u8], host: Stamp<Host>) {
         if self.link != DriveLink::Usb {
-            let record = self.record(host, Direction::FromDevice, bytes);
+            let record = self.record(host, Direction::FromDrive, bytes);
             (self.sink)(&record);
             return;
         }
@@ -85,7 +85,7 @@ impl<P, S: FnMut(&Record<'_>)> RecordingPort<P, S> {
         let (StreamPiece::Frame(length) | StreamPiece::Noise(length)) = piece;
         let length = length.min(self.pending.len());
         let bytes: Vec<u8> = self.pending.drain(..length).collect();
-        let record = self.record(host, Direction::FromDevice, &bytes);
+        let record = self.record(host, Direction::FromDrive, &bytes);
         (self.sink)(&record);
     }
 
@@ -104,7 +104,7 @@ impl<P, S: FnMut(&Record<'_>)> RecordingPort<P, S> {
 impl<P: Port, S: FnMut(&Record<'_>)> Port for RecordingPort<P, S> {
     fn write_frame(&mut self, frame: &[u8]) -> Result<Stamp<Host>, PortError> {
         let host = self.port.write_frame(frame)?;
-        let record = self.record(host, Direction::ToDevice, frame);
+        let record = self.record(host, Direction::ToDrive, frame);
         (self.sink)(&record);
         Ok(host)
     }

@@ -277,9 +277,9 @@ fn can(data: &[u8], direction: Option<Direction>) -> Result<Content, PacketFault
 /// to the drive.
 fn direction_of_can(id: u32) -> Direction {
     match id & 0x780 {
-        0x080 if id & 0x7F != 0 => Direction::FromDevice,
-        0x000 | 0x080 | 0x100 | 0x200 | 0x300 | 0x400 | 0x500 | 0x600 => Direction::ToDevice,
-        _ => Direction::FromDevice,
+        0x080 if id & 0x7F != 0 => Direction::FromDrive,
+        0x000 | 0x080 | 0x100 | 0x200 | 0x300 | 0x400 | 0x500 | 0x600 => Direction::ToDrive,
+        _ => Direction::FromDrive,
     }
 }
 
@@ -306,16 +306,16 @@ mod tests {
 
     #[test]
     fn the_direction_of_can_messages_follows_from_the_function_code() {
-        use Direction::{FromDevice, ToDevice};
+        use Direction::{FromDrive, ToDrive};
         for (id, expected) in [
-            (0x000, ToDevice),   // NMT
-            (0x080, ToDevice),   // SYNC
-            (0x081, FromDevice), // EMCY of node 1
-            (0x181, FromDevice), // TPDO1
-            (0x201, ToDevice),   // RPDO1
-            (0x581, FromDevice), // SDO answer
-            (0x601, ToDevice),   // SDO request
-            (0x701, FromDevice), // heartbeat
+            (0x000, ToDrive),   // NMT
+            (0x080, ToDrive),   // SYNC
+            (0x081, FromDrive), // EMCY of node 1
+            (0x181, FromDrive), // TPDO1
+            (0x201, ToDrive),   // RPDO1
+            (0x581, FromDrive), // SDO answer
+            (0x601, ToDrive),   // SDO request
+            (0x701, FromDrive), // heartbeat
         ] {
             assert_eq!(direction_of_can(id), expected, "{id:03X}");
         }
@@ -332,7 +332,7 @@ mod tests {
             frame,
             [0, 0, 6, 1, 2, 0, 0, 0, 0xAA, 0xBB, 0, 0, 0, 0, 0, 0]
         );
-        assert_eq!(direction, Direction::ToDevice);
+        assert_eq!(direction, Direction::ToDrive);
         assert!(matches!(
             can(&head, None),
             Err(PacketFault::Short {

@@ -131,7 +131,7 @@ fn describe(start: &[u8]) -> String {
         (b"ply", "a PLY cloud"),
         (b"LASF", "a LAS or LAZ cloud"),
         (b"#ROSBAG", "a ROS 1 bag"),
-        (b"\x89MCAP", "an MCAP recording"),
+        (b"\x89MCAP", "an MCAP bag"),
         (b"# .PCD", "a PCD cloud"),
     ];
     for (magic, name) in known {

@@ -294,8 +294,8 @@ impl PcapngSection {
     fn direction(&self, options: &[PcapNGOption<'_>]) -> Option<Direction> {
         let flags = self.u32(*option(options, EPB_FLAGS)?.first_chunk()?);
         match flags & 3 {
-            1 => Some(Direction::FromDevice),
-            2 => Some(Direction::ToDevice),
+            1 => Some(Direction::FromDrive),
+            2 => Some(Direction::ToDrive),
             _ => None,
         }
     }

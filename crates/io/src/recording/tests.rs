@@ -221,8 +221,8 @@ fn pcapng_sections_reset_interfaces_and_other_blocks_are_skipped() {
         records,
         [
             datagram(1_000, 2368, b"x"),
-            frame(3_000, DriveLink::Can, Direction::FromDevice, &can),
-            frame(4_000, DriveLink::Can, Direction::ToDevice, &can),
+            frame(3_000, DriveLink::Can, Direction::FromDrive, &can),
+            frame(4_000, DriveLink::Can, Direction::ToDrive, &can),
             datagram(5_000, 2368, b"x"),
         ]
     );
@@ -248,7 +248,7 @@ fn can_recordings_in_classic_pcap_are_read() {
         [frame(
             1_000_000_000,
             DriveLink::Can,
-            Direction::FromDevice,
+            Direction::FromDrive,
             &answer
         )]
     );
@@ -441,10 +441,10 @@ fn logs_round_trip_with_their_configuration() {
     let mut writer = LogWriter::create(&path, &config, Overwrite::Refuse).unwrap();
     let records = [
         datagram(5, 2368, b"firing"),
-        frame(6, DriveLink::Usb, Direction::ToDevice, &[0x90, 2, 0x10]),
-        frame(7, DriveLink::Usb, Direction::FromDevice, &[]),
-        frame(8, DriveLink::Rs232, Direction::FromDevice, b"O"),
-        frame(9, DriveLink::Can, Direction::ToDevice, &[0; 16]),
+        frame(6, DriveLink::Usb, Direction::ToDrive, &[0x90, 2, 0x10]),
+        frame(7, DriveLink::Usb, Direction::FromDrive, &[]),
+        frame(8, DriveLink::Rs232, Direction::FromDrive, b"O"),
+        frame(9, DriveLink::Can, Direction::ToDrive, &[0; 16]),
     ];
     for record in &records {
         writer.write(&record.as_record()).unwrap();

@@ -67,12 +67,12 @@ fn runs(stream: &[ShaftSample]) -> Vec<Vec<LatchedSample>> {
     let mut runs: Vec<Vec<LatchedSample>> = Vec::new();
     let mut last: Option<(u32, LatchedSample)> = None;
     for sample in stream {
-        let Some(device_us) = sample.device_us else {
+        let Some(drive_us) = sample.drive_us else {
             continue;
         };
         let went_on = last.and_then(|(before_us, before)| {
             let host = sample.answer.saturating_since(before.sample.answer);
-            Some(before.device_ns + went(before_us, device_us, host)?.as_nanos())
+            Some(before.device_ns + went(before_us, drive_us, host)?.as_nanos())
         });
         let latched = LatchedSample {
             sample: *sample,
@@ -82,7 +82,7 @@ fn runs(stream: &[ShaftSample]) -> Vec<Vec<LatchedSample>> {
             Some(run) if went_on.is_some() => run.push(latched),
             _ => runs.push(vec![latched]),
         }
-        last = Some((device_us, latched));
+        last = Some((drive_us, latched));
     }
     runs
 }
@@ -201,13 +201,13 @@ mod tests {
             let request = EPOCH + i * 1_000_000;
             let taken = request + there(i) * 1_000;
             truth.push(taken);
-            let device_us = first_us + (taken - EPOCH) / 1_000 * 999_940 / 1_000_000;
+            let drive_us = first_us + (taken - EPOCH) / 1_000 * 999_940 / 1_000_000;
             ShaftSample {
                 request: Stamp::from_nanos(request),
                 answer: Stamp::from_nanos(taken + back(i) * 1_000),
                 position: Quadcounts(i as i32),
                 trigger: drive::SampleTrigger::Sync,
-                device_us: Some(device_us as u32),
+                drive_us: Some(drive_us as u32),
             }
         });
         (samples.collect(), truth)
@@ -262,7 +262,7 @@ mod tests {
     #[test]
     fn the_drives_time_wraps_in_mid_stream() {
         let (stream, truth) = stream(3_000, (1 << 32) - 1_500_000, |_| 70, |_| 70);
-        assert!(stream.iter().any(|s| s.device_us.unwrap() < 1_000_000));
+        assert!(stream.iter().any(|s| s.drive_us.unwrap() < 1_000_000));
         assert!(worst_us(&stream, &truth) < 3.0);
     }
 

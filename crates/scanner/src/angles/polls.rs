@@ -19,9 +19,8 @@ const QUICK_QUANTILE: f64 = 0.9;
 /// Angle samples of `samples`, in order of time, and the standard deviation of the error of time
 /// that all of them share, nanoseconds; 0 for polls, whose errors are independent.
 pub(crate) fn with_shared_sd(samples: &[ShaftSample], gearing: Gearing) -> (Vec<AngleSample>, f64) {
-    let (at_sync, polls): (Vec<_>, Vec<_>) = samples
-        .iter()
-        .partition(|sample| sample.device_us.is_some());
+    let (at_sync, polls): (Vec<_>, Vec<_>) =
+        samples.iter().partition(|sample| sample.drive_us.is_some());
     let mut angles: Vec<AngleSample> = polls.iter().map(|poll| sample(poll, gearing)).collect();
     let mut shared_ns = 0.0;
     if !at_sync.is_empty() {
@@ -158,7 +157,7 @@ mod tests {
             answer: Stamp::from_nanos((request_us + round_trip_us) * 1_000),
             position: Quadcounts(-2),
             trigger: SampleTrigger::Request,
-            device_us: None,
+            drive_us: None,
         }
     }
 

@@ -24,7 +24,7 @@ const UNDER_WAY: usize = 8;
 pub(super) fn is_known(samples: &[ShaftSample], at: usize) -> bool {
     let near = samples.get(at.saturating_sub(NEAR)..(at + NEAR).min(samples.len()));
     let near = near.unwrap_or_default();
-    !near.is_empty() && near.iter().all(|sample| sample.device_us.is_some())
+    !near.is_empty() && near.iter().all(|sample| sample.drive_us.is_some())
 }
 
 /// The samples near the index `at` of which a stamp may precede or follow a step of the host's
@@ -165,7 +165,7 @@ fn period(samples: &[ShaftSample], step: &Range<usize>) -> Option<i64> {
 
 /// The host's time since `origin` less the drive's, nanoseconds.
 fn since(host: Span, sample: &ShaftSample, origin: &ShaftSample) -> Option<i64> {
-    let device_us = sample.device_us?.wrapping_sub(origin.device_us?);
-    let device = Span::from_micros(i64::from(device_us.cast_signed()));
+    let drive_us = sample.drive_us?.wrapping_sub(origin.drive_us?);
+    let device = Span::from_micros(i64::from(drive_us.cast_signed()));
     Some(host.saturating_sub(device).as_nanos())
 }

@@ -118,7 +118,7 @@ impl Recorded {
                         answer: sewn.1,
                         position: Quadcounts(position),
                         trigger: SampleTrigger::Request,
-                        device_us: None,
+                        drive_us: None,
                     });
                     seen.monotonic.sample();
                 }

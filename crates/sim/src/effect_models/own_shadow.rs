@@ -1,9 +1,9 @@
-//! View: parts of the scanner block its view. Its frame hides azimuths of the lidar, at all tilts
+//! View: parts of the scanner block its view. Its bracket hides azimuths of the lidar, at all tilts
 //! or at some; its base hides everything below.
 //!
-//! A hidden beam is emitted without a return, because the frame is nearer than the minimum range
-//! (1 m, 63-9243). Sectors are in the lidar's own azimuths, as the frame tilts with it. Scattered
-//! light of the frame is not included.
+//! A hidden beam is emitted without a return, because the bracket is nearer than the minimum range
+//! (1 m, 63-9243). Sectors are in the lidar's own azimuths, as the bracket tilts with it. Scattered
+//! light of the bracket is not included.
 
 use crate::effects::ViewEffect;
 use crate::firing::SimulatedFiring;
@@ -18,7 +18,7 @@ use super::settings::{InvalidSetting, SettingCheck};
 #[serde(deny_unknown_fields, default)]
 #[non_exhaustive]
 pub struct OwnShadowSettings {
-    /// Sectors that the frame hides.
+    /// Sectors that the bracket hides.
     pub sectors: Vec<ShadowSector>,
     /// Beams below this angle to the horizon in the frame of the base are hidden, degrees; absent:
     /// none.

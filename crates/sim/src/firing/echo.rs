@@ -1,11 +1,11 @@
-//! Returns of a firing.
+//! Echoes of a firing.
 
 use glam::DVec3;
 
 use super::surroundings::SurfaceHit;
 use crate::sensor::MAX_LASERS;
 
-/// A return of one laser.
+/// An echo of one pulse, of which the receiver makes a return.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Echo {
     /// Measured distance, metres; infinite without a return.
@@ -23,10 +23,10 @@ pub struct Echo {
     pub specular: f64,
 }
 
-/// The returns of all lasers: the strongest of each, and another.
+/// The echoes of all lasers: the strongest of each, and another.
 #[derive(Clone, Debug)]
 pub struct Echoes {
-    /// The strongest returns.
+    /// The strongest echoes.
     pub strongest: [Echo; MAX_LASERS],
     /// The last return where that is not the strongest, else the second strongest; none for a
     /// single return.

@@ -3,7 +3,7 @@
 //! Transmission times and delays are not included.
 
 use firmware_sim::epos2::{
-    CanFrame, CanServer, Node, Rs232Server, SOCKETCAN_LEN, SlcanServer, UsbServer,
+    CanFrame, CanServer, Rs232Server, SOCKETCAN_LEN, SimulatedDrive, SlcanServer, UsbServer,
 };
 
 /// Interface between host and drive.
@@ -47,7 +47,7 @@ impl DriveServer {
 
     /// Takes bytes from the host at the node's current time. On a CAN bus, anything that is not a
     /// frame is ignored.
-    pub fn input(&mut self, node: &mut Node, bytes: &[u8], out: &mut impl FnMut(&[u8])) {
+    pub fn input(&mut self, node: &mut SimulatedDrive, bytes: &[u8], out: &mut impl FnMut(&[u8])) {
         match self {
             Self::Usb(server) => server.input(node, bytes, out),
             Self::Rs232(server) => server.input(node, bytes, out),
@@ -63,7 +63,7 @@ impl DriveServer {
     }
 
     /// Sends unsolicited frames after a control cycle.
-    pub fn poll(&mut self, node: &mut Node, out: &mut impl FnMut(&[u8])) {
+    pub fn poll(&mut self, node: &mut SimulatedDrive, out: &mut impl FnMut(&[u8])) {
         match self {
             Self::Usb(_) | Self::Rs232(_) => {}
             Self::Slcan(server) => server.poll(node, out),

@@ -323,7 +323,7 @@ impl SceneFacts<'_> {
             }),
             "eccentricity" => config.eccentricity.settings().map(|wheel| {
                 demand(format!(
-                    "the encoder is off centre by {} deg",
+                    "the output wheel is off centre by {} deg",
                     wheel.amplitude_deg
                 ))
                 .displaced(by_angle(wheel.amplitude_deg.abs()))

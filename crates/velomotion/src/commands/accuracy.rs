@@ -252,7 +252,7 @@ fn summary(report: &AccuracyReport) -> String {
 fn text(report: &AccuracyReport, tables: &[TitledTable]) -> String {
     let mut lines = Vec::new();
     if report.simulated {
-        lines.push("SIMULATED: logs of software devices".to_owned());
+        lines.push("SIMULATED: logs of simulated devices".to_owned());
     }
     lines.push(summary(report));
     for titled in tables {
@@ -278,7 +278,7 @@ td:first-child,th:first-child{text-align:left}";
 
 fn html(report: &AccuracyReport, tables: &[TitledTable]) -> String {
     let simulated = match report.simulated {
-        true => "<p><strong>SIMULATED</strong>: logs of software devices.</p>\n",
+        true => "<p><strong>SIMULATED</strong>: logs of simulated devices.</p>\n",
         false => "",
     };
     let mut html = format!(

@@ -110,7 +110,7 @@ fn cannot_write(path: &Path, error: &dyn std::fmt::Display) -> Failure {
 fn text(report: &CalibrateReport) -> String {
     let mut lines = Vec::new();
     if report.simulated {
-        lines.push("SIMULATED: calibrated by logs of software devices".to_owned());
+        lines.push("SIMULATED: calibrated by logs of simulated devices".to_owned());
     }
     lines.push(format!(
         "{}: {} shots on {} surface elements, chi2 {:.2}, {} loops; residuals {:.1} mm before, {:.1} mm after",

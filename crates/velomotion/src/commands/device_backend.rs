@@ -133,8 +133,8 @@ impl DeviceBackend {
     #[must_use]
     pub const fn simulated_drive(&self) -> &'static str {
         match self {
-            Self::Daemon(_) => "a software drive, the daemon's",
-            Self::Local(_) => "a software drive, switched on a moment ago",
+            Self::Daemon(_) => "a simulated drive, the daemon's",
+            Self::Local(_) => "a simulated drive, switched on a moment ago",
         }
     }
 }

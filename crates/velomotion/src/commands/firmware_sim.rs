@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use drive::AxisConfig;
-use firmware_sim::epos2::{AxisLoad, HoldingBrake, NodeConfig};
+use firmware_sim::epos2::{AxisLoad, HoldingBrake, SimulatedDriveConfig};
 use io::can::SocketCan;
 use io::port::Pty;
 use sim::Attachment;
@@ -17,12 +17,12 @@ use units::DegPerS2;
 
 use super::CommandOutput;
 use crate::cli::{self, Common};
-use crate::documents::SoftwareDrive;
+use crate::documents::SimulatedDriveReady;
 use crate::signals;
 use engine::config;
 use engine::devices::profile as devices;
 use engine::devices::simulated;
-use engine::devices::simulated_drive::{self as software_drive, SoftwarePort};
+use engine::devices::simulated_drive::{self, SimulatedPort};
 use engine::document::Document;
 use engine::failure::{Failure, Kind};
 
@@ -40,7 +40,7 @@ pub fn run(arguments: &cli::FirmwareSim, common: &Common) -> Result<CommandOutpu
         Some(name) => {
             let bus = SocketCan::open(name).map_err(|error| failed(&error))?;
             announce(Path::new(name), common)?;
-            (SoftwarePort::Can(bus), None)
+            (SimulatedPort::Can(bus), None)
         }
         None => on_terminal(arguments, common)?,
     };
@@ -50,13 +50,13 @@ pub fn run(arguments: &cli::FirmwareSim, common: &Common) -> Result<CommandOutpu
         cli::FirmwareSim { slcan: true, .. } => Attachment::Slcan,
         _ => Attachment::Usb,
     };
-    let node = NodeConfig {
+    let node = SimulatedDriveConfig {
         load: load(arguments, &axis),
         latches_position: arguments.latch,
         dither_qc: arguments.dither,
         ..simulated::node(&axis)
     };
-    let ended = software_drive::run(node, attachment, port, &stop);
+    let ended = simulated_drive::run(node, attachment, port, &stop);
     drop(link);
     ended.map_err(|error| failed(&error))?;
     Ok(CommandOutput::default())
@@ -87,7 +87,7 @@ fn load(arguments: &cli::FirmwareSim, axis: &AxisConfig) -> Option<AxisLoad> {
 fn on_terminal(
     arguments: &cli::FirmwareSim,
     common: &Common,
-) -> Result<(SoftwarePort, Option<Link>), Failure> {
+) -> Result<(SimulatedPort, Option<Link>), Failure> {
     let pty = Pty::open().map_err(|error| failed(&error))?;
     let link = arguments
         .link
@@ -95,7 +95,7 @@ fn on_terminal(
         .map(|link| Link::make(link, pty.path()))
         .transpose()?;
     announce(pty.path(), common)?;
-    Ok((SoftwarePort::Serial(pty), link))
+    Ok((SimulatedPort::Serial(pty), link))
 }
 
 fn failed(error: &dyn std::fmt::Display) -> Failure {
@@ -107,7 +107,7 @@ fn announce(port: &Path, common: &Common) -> Result<(), Failure> {
     let line = match common.json {
         true => {
             let port = port.to_owned();
-            SoftwareDrive { port }.to_json().to_string()
+            SimulatedDriveReady { port }.to_json().to_string()
         }
         false => port.display().to_string(),
     };

@@ -6,7 +6,7 @@ use protocol::canopen::{CanFrame, CommunicationObject, NodeId};
 use protocol::epos2::DeviceError;
 use protocol::epos2::objects::{self, Address, TypedObject};
 
-use crate::epos2::node::Node;
+use crate::epos2::node::SimulatedDrive;
 
 /// The node's heartbeat.
 #[derive(Clone, Copy, Debug, Default)]
@@ -17,7 +17,7 @@ pub(super) struct HeartbeatTimer {
 
 impl HeartbeatTimer {
     /// The first heartbeat follows one period after the boot-up message.
-    pub fn from_now(node: &Node) -> Self {
+    pub fn from_now(node: &SimulatedDrive) -> Self {
         Self {
             period_ms: node.dictionary.get(objects::PRODUCER_HEARTBEAT),
             last_us: node.time_us(),
@@ -26,7 +26,7 @@ impl HeartbeatTimer {
 
     /// Whether a heartbeat is due: one period after the last, and at once when the period changes
     /// (CiA 301).
-    pub fn is_due(&mut self, node: &Node, now_us: u64) -> bool {
+    pub fn is_due(&mut self, node: &SimulatedDrive, now_us: u64) -> bool {
         let period_ms = node.dictionary.get(objects::PRODUCER_HEARTBEAT);
         let changed = core::mem::replace(&mut self.period_ms, period_ms) != period_ms;
         let next_us = self.last_us + 1000 * u64::from(period_ms);
@@ -57,7 +57,7 @@ pub(super) struct NodeGuarding {
 
 impl NodeGuarding {
     /// The answer to a request; `None` while the heartbeat is on.
-    pub fn answer(&mut self, node: &Node, id: NodeId) -> Option<CanFrame> {
+    pub fn answer(&mut self, node: &SimulatedDrive, id: NodeId) -> Option<CanFrame> {
         if node.dictionary.get(objects::PRODUCER_HEARTBEAT) != 0 {
             return None;
         }
@@ -73,7 +73,7 @@ impl NodeGuarding {
 
     /// Raises error 8130 when requests have been missing for the life time (100C times 100D; 0:
     /// not monitored). The drive reacts by 6007.
-    pub fn watch(&mut self, node: &mut Node, now_us: u64) {
+    pub fn watch(&mut self, node: &mut SimulatedDrive, now_us: u64) {
         let life_ms = u64::from(node.dictionary.get(GUARD_TIME))
             * u64::from(node.dictionary.get(LIFE_TIME_FACTOR));
         if life_ms == 0 || node.dictionary.get(objects::PRODUCER_HEARTBEAT) != 0 {
@@ -89,7 +89,7 @@ impl NodeGuarding {
 }
 
 /// Reacts to a monitored master that is silent.
-fn lose_master(node: &mut Node) {
+fn lose_master(node: &mut SimulatedDrive) {
     node.lose_connection(DeviceError::CAN_LIFE_GUARD);
     node.leave_operational();
 }
@@ -103,7 +103,7 @@ pub(super) struct HeartbeatMonitor {
 }
 
 impl HeartbeatMonitor {
-    pub fn on_heartbeat(&mut self, node: &Node, sub: u8, from: NodeId, now_us: u64) {
+    pub fn on_heartbeat(&mut self, node: &SimulatedDrive, sub: u8, from: NodeId, now_us: u64) {
         self.reload(node, sub);
         if self.entry.is_some_and(|entry| entry.node == from) {
             self.last_us = Some(now_us);
@@ -111,7 +111,7 @@ impl HeartbeatMonitor {
     }
 
     /// Raises error 8130 when the heartbeat has stopped. The drive reacts by 6007.
-    pub fn watch(&mut self, node: &mut Node, sub: u8, now_us: u64) {
+    pub fn watch(&mut self, node: &mut SimulatedDrive, sub: u8, now_us: u64) {
         self.reload(node, sub);
         let (Some(entry), Some(last_us)) = (self.entry, self.last_us) else {
             return;
@@ -123,7 +123,7 @@ impl HeartbeatMonitor {
     }
 
     /// A changed entry restarts the monitoring.
-    fn reload(&mut self, node: &Node, sub: u8) {
+    fn reload(&mut self, node: &SimulatedDrive, sub: u8) {
         let index = objects::CONSUMER_HEARTBEAT.address.index;
         let entry = ConsumerEntry::from_u32(node.dictionary.raw(Address::new(index, sub)));
         if entry != self.entry {

@@ -9,7 +9,7 @@ use protocol::canopen::nmt::NmtState;
 use protocol::canopen::{CanFrame, CobId, NodeId};
 use protocol::epos2::objects::{self, Address};
 
-use crate::epos2::node::Node;
+use crate::epos2::node::SimulatedDrive;
 
 /// From the master, and to it.
 const REQUEST: u16 = 0x7E5;
@@ -48,7 +48,7 @@ pub(super) struct LayerSetting {
 
 impl LayerSetting {
     /// Executes a frame of the bus; returns the answer.
-    pub fn execute(&mut self, node: &mut Node, frame: &CanFrame) -> Option<CanFrame> {
+    pub fn execute(&mut self, node: &mut SimulatedDrive, frame: &CanFrame) -> Option<CanFrame> {
         let id = frame.cob_id()?.get();
         let data: [u8; 8] = frame.data().try_into().ok()?;
         if id != REQUEST || node.nmt_state() != NmtState::Stopped {
@@ -128,7 +128,7 @@ impl LayerSetting {
 }
 
 /// Vendor, product, revision and serial number (1018:1 to 4), counted from 0.
-fn identity(node: &Node, part: u8) -> u32 {
+fn identity(node: &SimulatedDrive, part: u8) -> u32 {
     let read = node.read(Address::new(0x1018, part + 1));
     read.ok().and_then(|value| value.raw()).unwrap_or_default()
 }

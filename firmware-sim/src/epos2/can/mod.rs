@@ -1,4 +1,4 @@
-//! The CAN interface of the unit: a CANopen slave without I/O (CiA 301; Communication Guide,
+//! The CAN interface of the drive: a CANopen slave without I/O (CiA 301; Communication Guide,
 //! "CANopen Communication").
 //!
 //! [`CanServer`] joins the services, one file each: NMT and error control, SDO, transmit and
@@ -24,12 +24,12 @@ use self::lss::LayerSetting;
 use self::receive::ReceivePdo;
 use self::sdo::SdoServer;
 use self::transmit::TransmitPdo;
-use super::node::Node;
+use super::node::SimulatedDrive;
 
 /// Identifier of emergency messages; bit 31 disables them.
 const EMCY_ID: Address = Address::new(0x1014, 0);
 
-/// The CAN side of a unit.
+/// The CAN side of a drive.
 #[derive(Clone, Debug, Default)]
 pub struct CanServer {
     /// The start of the node that was last announced on the bus.
@@ -54,8 +54,8 @@ impl CanServer {
 
     /// Sends what is due at the present instant of the node: boot-up, emergency messages,
     /// heartbeat, changed process data, the abort of a transfer whose client is silent. Call it
-    /// after each [`Node::tick`].
-    pub fn poll(&mut self, node: &mut Node, out: &mut impl FnMut(&CanFrame)) {
+    /// after each [`SimulatedDrive::tick`].
+    pub fn poll(&mut self, node: &mut SimulatedDrive, out: &mut impl FnMut(&CanFrame)) {
         let Some(id) = self.follow_restart(node, out) else {
             return;
         };
@@ -82,9 +82,14 @@ impl CanServer {
         }
     }
 
-    /// Takes any frame of the bus at the present instant of the node; the frames of the unit go to
+    /// Takes any frame of the bus at the present instant of the node; the frames of the drive go to
     /// `out`.
-    pub fn input(&mut self, node: &mut Node, frame: &CanFrame, out: &mut impl FnMut(&CanFrame)) {
+    pub fn input(
+        &mut self,
+        node: &mut SimulatedDrive,
+        frame: &CanFrame,
+        out: &mut impl FnMut(&CanFrame),
+    ) {
         let Some(id) = self.follow_restart(node, out) else {
             return;
         };
@@ -101,7 +106,11 @@ impl CanServer {
     }
 
     /// Resets the interface after a start of the node. `None` for a node without an id.
-    fn follow_restart(&mut self, node: &Node, out: &mut impl FnMut(&CanFrame)) -> Option<NodeId> {
+    fn follow_restart(
+        &mut self,
+        node: &SimulatedDrive,
+        out: &mut impl FnMut(&CanFrame),
+    ) -> Option<NodeId> {
         let id = NodeId::new(node.node_id())?;
         let starts = node.network.starts;
         if self.started != Some(starts) {
@@ -117,7 +126,7 @@ impl CanServer {
     }
 
     /// Resets process data when the NMT state changes.
-    fn follow_state(&mut self, node: &Node) {
+    fn follow_state(&mut self, node: &SimulatedDrive) {
         let state = node.nmt_state();
         if self.state.replace(state) != Some(state) {
             self.transmit = Default::default();
@@ -128,7 +137,7 @@ impl CanServer {
     /// A remote frame.
     fn on_remote_frame(
         &mut self,
-        node: &Node,
+        node: &SimulatedDrive,
         id: NodeId,
         cob_id: CobId,
         out: &mut impl FnMut(&CanFrame),
@@ -147,7 +156,7 @@ impl CanServer {
     /// A data frame; malformed messages are ignored.
     fn on_data_frame(
         &mut self,
-        node: &mut Node,
+        node: &mut SimulatedDrive,
         id: NodeId,
         frame: &CanFrame,
         out: &mut impl FnMut(&CanFrame),
@@ -191,7 +200,7 @@ impl CanServer {
     }
 
     /// SYNC: transmit PDOs are sampled and sent first, then pending receive PDOs take effect.
-    fn sync(&mut self, node: &mut Node, out: &mut impl FnMut(&CanFrame)) {
+    fn sync(&mut self, node: &mut SimulatedDrive, out: &mut impl FnMut(&CanFrame)) {
         if node.nmt_state() != NmtState::Operational {
             return;
         }
@@ -209,7 +218,7 @@ fn heartbeat(node: NodeId, state: NmtState) -> CanFrame {
 }
 
 /// Sends the emergency messages that are pending.
-fn send_emergencies(node: &mut Node, id: NodeId, out: &mut impl FnMut(&CanFrame)) {
+fn send_emergencies(node: &mut SimulatedDrive, id: NodeId, out: &mut impl FnMut(&CanFrame)) {
     const OUT_OF_USE: u32 = 1 << 31;
     let cob_id = node.dictionary.raw(EMCY_ID);
     while let Some(pending) = node.errors.next_pending() {

@@ -8,7 +8,7 @@ use protocol::epos2::{BoundedVec, DeviceError};
 
 use super::parameters;
 use crate::epos2::mapping;
-use crate::epos2::node::Node;
+use crate::epos2::node::SimulatedDrive;
 
 /// Index of the parameters of RPDO 1.
 const FIRST: u16 = 0x1400;
@@ -25,7 +25,7 @@ pub(super) struct ReceivePdo {
 
 impl ReceivePdo {
     /// Takes any data frame of the bus. A frame shorter than the mapping is error 8210.
-    pub fn on_frame(&mut self, node: &mut Node, number: PdoNumber, frame: &CanFrame) {
+    pub fn on_frame(&mut self, node: &mut SimulatedDrive, number: PdoNumber, frame: &CanFrame) {
         let index = parameters(FIRST, number);
         let id = mapping::identifier(&node.dictionary, index);
         if !id.valid || id.id != frame.id() {
@@ -46,7 +46,7 @@ impl ReceivePdo {
     }
 
     /// A SYNC.
-    pub fn on_sync(&mut self, node: &mut Node, number: PdoNumber) {
+    pub fn on_sync(&mut self, node: &mut SimulatedDrive, number: PdoNumber) {
         if let Some(values) = self.pending.take() {
             let layout = mapping::layout(&node.dictionary, parameters(FIRST, number));
             apply(node, &layout, &values);
@@ -55,7 +55,7 @@ impl ReceivePdo {
 }
 
 /// Writes the values in the order of the mapping. A PDO cannot report a rejected value.
-fn apply(node: &mut Node, layout: &PdoLayout, values: &[u64]) {
+fn apply(node: &mut SimulatedDrive, layout: &PdoLayout, values: &[u64]) {
     for (entry, value) in layout.entries().iter().zip(values) {
         let bytes = value.to_le_bytes();
         let len = usize::from(entry.bits / 8);

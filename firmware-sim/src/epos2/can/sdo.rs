@@ -5,19 +5,18 @@ use protocol::canopen::sdo::{
     Expedited, Initiate, SEGMENT_LEN, SdoRequest, SdoResponse, SdoSegment,
 };
 use protocol::epos2::objects::Address;
-use protocol::epos2::{BoundedVec, CommError};
+use protocol::epos2::{AbortCode, BoundedVec};
 
-use crate::epos2::Abort;
 use crate::epos2::dictionary::Dictionary;
-use crate::epos2::node::Node;
+use crate::epos2::node::SimulatedDrive;
 use crate::epos2::value::ObjectValue;
 
-/// Longest silence of a client within a transfer; that of a real unit is not documented.
+/// Longest silence of a client within a transfer; that of a real drive is not documented.
 const TRANSFER_TIMEOUT_US: u64 = 1_000_000;
 /// The longest value that can be written.
 const MAX_BYTES: usize = 8;
 
-/// SDO server of the unit.
+/// SDO server of the drive.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct SdoServer {
     transfer: Option<ServerTransfer>,
@@ -50,7 +49,7 @@ impl SdoServer {
     /// Executes a request; an abort by the client has no answer.
     pub fn execute(
         &mut self,
-        node: &mut Node,
+        node: &mut SimulatedDrive,
         request: &SdoRequest,
         now_us: u64,
     ) -> Option<SdoResponse> {
@@ -72,7 +71,7 @@ impl SdoServer {
             // Block transfer has the address in the same place.
             SdoRequest::Unknown([_, low, high, sub, ..]) => {
                 let index = u16::from_le_bytes([*low, *high]);
-                (Address::new(index, *sub), Err(Abort::COMMAND))
+                (Address::new(index, *sub), Err(AbortCode::COMMAND))
             }
         };
         Some(outcome.unwrap_or_else(|error| SdoResponse::Abort { address, error }))
@@ -84,11 +83,15 @@ impl SdoServer {
         let transfer = self.transfer.take_if(|_| silent)?;
         Some(SdoResponse::Abort {
             address: transfer.address,
-            error: CommError::TIMEOUT,
+            error: AbortCode::TIMEOUT,
         })
     }
 
-    fn upload(&mut self, node: &Node, address: Address) -> Result<SdoResponse, Abort> {
+    fn upload(
+        &mut self,
+        node: &SimulatedDrive,
+        address: Address,
+    ) -> Result<SdoResponse, AbortCode> {
         let value = node.read(address)?;
         let transfer = match Expedited::new(value.bytes()) {
             Some(data) => Initiate::Expedited(data),
@@ -106,13 +109,13 @@ impl SdoServer {
         &mut self,
         transfer: Option<ServerTransfer>,
         toggle: bool,
-    ) -> Result<SdoResponse, Abort> {
-        let mut transfer = transfer.ok_or(Abort::COMMAND)?;
+    ) -> Result<SdoResponse, AbortCode> {
+        let mut transfer = transfer.ok_or(AbortCode::COMMAND)?;
         let TransferContent::Upload { value, sent } = &mut transfer.content else {
-            return Err(Abort::COMMAND);
+            return Err(AbortCode::COMMAND);
         };
         if toggle != transfer.toggle {
-            return Err(Abort::TOGGLE);
+            return Err(AbortCode::TOGGLE);
         }
         let segment = SdoSegment::cut(value.bytes(), *sent, toggle, SEGMENT_LEN);
         *sent += segment.bytes.len();
@@ -133,16 +136,16 @@ impl SdoServer {
 
     fn download(
         &mut self,
-        node: &mut Node,
+        node: &mut SimulatedDrive,
         address: Address,
         transfer: &Initiate,
-    ) -> Result<SdoResponse, Abort> {
+    ) -> Result<SdoResponse, AbortCode> {
         match transfer {
             Initiate::Expedited(data) => node.write_bytes(address, data.as_slice())?,
             // The type of the object determines how many of the four bytes count.
             Initiate::Unsized(bytes) => {
                 let len = Dictionary::entry(address)?.ty.bytes();
-                let bytes = bytes.get(..len).ok_or(Abort::TOO_SHORT)?;
+                let bytes = bytes.get(..len).ok_or(AbortCode::TOO_SHORT)?;
                 node.write_bytes(address, bytes)?;
             }
             Initiate::Segmented { size } => {
@@ -159,26 +162,26 @@ impl SdoServer {
 
     fn download_segment(
         &mut self,
-        node: &mut Node,
+        node: &mut SimulatedDrive,
         transfer: Option<ServerTransfer>,
         segment: &SdoSegment,
-    ) -> Result<SdoResponse, Abort> {
-        let mut transfer = transfer.ok_or(Abort::COMMAND)?;
+    ) -> Result<SdoResponse, AbortCode> {
+        let mut transfer = transfer.ok_or(AbortCode::COMMAND)?;
         let TransferContent::Download { bytes, size } = &mut transfer.content else {
-            return Err(Abort::COMMAND);
+            return Err(AbortCode::COMMAND);
         };
         let toggle = segment.toggle;
         if toggle != transfer.toggle {
-            return Err(Abort::TOGGLE);
+            return Err(AbortCode::TOGGLE);
         }
         let len = bytes.len() + segment.bytes.len();
         if len > size.map_or(MAX_BYTES, |size| size as usize).min(MAX_BYTES) {
-            return Err(Abort::TOO_LONG);
+            return Err(AbortCode::TOO_LONG);
         }
         bytes.extend(segment.bytes.iter().copied());
         if segment.last {
             if size.is_some_and(|size| len < size as usize) {
-                return Err(Abort::TOO_SHORT);
+                return Err(AbortCode::TOO_SHORT);
             }
             node.write_bytes(transfer.address, bytes)?;
         } else {

@@ -11,7 +11,7 @@ use protocol::epos2::objects::Address;
 
 use super::parameters;
 use crate::epos2::mapping;
-use crate::epos2::node::Node;
+use crate::epos2::node::SimulatedDrive;
 
 /// Index of the parameters of TPDO 1.
 const FIRST: u16 = 0x1800;
@@ -40,7 +40,7 @@ struct ConfiguredPdo {
 }
 
 impl ConfiguredPdo {
-    fn of(node: &Node, number: PdoNumber) -> Option<Self> {
+    fn of(node: &SimulatedDrive, number: PdoNumber) -> Option<Self> {
         let index = parameters(FIRST, number);
         let id = mapping::identifier(&node.dictionary, index);
         if !id.valid {
@@ -57,7 +57,7 @@ impl ConfiguredPdo {
     }
 
     /// The mapped values at this instant.
-    fn sample(&self, node: &Node) -> Option<Data> {
+    fn sample(&self, node: &SimulatedDrive) -> Option<Data> {
         let mut values = BoundedVec::<u64, MAX_ENTRIES>::new();
         for entry in self.layout.entries() {
             let value = node.read(entry.address).ok()?;
@@ -77,7 +77,12 @@ impl ConfiguredPdo {
 
 impl TransmitPdo {
     /// A SYNC.
-    pub fn on_sync(&mut self, node: &Node, number: PdoNumber, out: &mut impl FnMut(&CanFrame)) {
+    pub fn on_sync(
+        &mut self,
+        node: &SimulatedDrive,
+        number: PdoNumber,
+        out: &mut impl FnMut(&CanFrame),
+    ) {
         let Some(configured) = ConfiguredPdo::of(node, number) else {
             return;
         };
@@ -103,7 +108,7 @@ impl TransmitPdo {
     /// Sends changed data, not before the inhibit time (180x:3) has elapsed.
     pub fn on_event(
         &mut self,
-        node: &Node,
+        node: &SimulatedDrive,
         number: PdoNumber,
         now_us: u64,
         out: &mut impl FnMut(&CanFrame),
@@ -128,7 +133,7 @@ impl TransmitPdo {
     /// A remote frame with identifier `requested`.
     pub fn on_request(
         &mut self,
-        node: &Node,
+        node: &SimulatedDrive,
         number: PdoNumber,
         requested: CobId,
         out: &mut impl FnMut(&CanFrame),
@@ -150,7 +155,7 @@ impl TransmitPdo {
 
     fn send(
         &mut self,
-        node: &Node,
+        node: &SimulatedDrive,
         configured: &ConfiguredPdo,
         data: Data,
         out: &mut impl FnMut(&CanFrame),

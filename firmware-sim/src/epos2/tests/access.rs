@@ -3,7 +3,7 @@
 use protocol::epos2::cia402::control;
 use protocol::epos2::objects::{self, Address};
 
-use super::super::Abort;
+use super::super::AbortCode;
 use super::super::entry::{EntryAccess, Type};
 use super::super::table::TABLE;
 use super::{command, enabled, get, healthy, set, ticks};
@@ -12,19 +12,19 @@ use super::{command, enabled, get, healthy, set, ticks};
 fn refused_accesses_have_their_abort_codes() {
     let mut node = healthy();
     let mut refused = |index, sub, raw| node.write(Address::new(index, sub), raw).unwrap_err();
-    assert_eq!(refused(0x6041, 0, 0), Abort::READ_ONLY);
-    assert_eq!(refused(0x5000, 0, 0), Abort::NO_OBJECT);
-    assert_eq!(refused(0x6040, 1, 0), Abort::NO_SUB);
-    assert_eq!(refused(0x607F, 0, 25_001), Abort::TOO_HIGH);
-    assert_eq!(refused(0x2210, 1, 15), Abort::TOO_LOW);
-    assert_eq!(refused(0x6060, 0, 42), Abort::RANGE);
-    assert_eq!(refused(0x6098, 0, 3), Abort::RANGE);
-    assert_eq!(refused(0x1003, 0, 1), Abort::RANGE);
-    assert_eq!(refused(0x1010, 1, 1), Abort::STORE);
+    assert_eq!(refused(0x6041, 0, 0), AbortCode::READ_ONLY);
+    assert_eq!(refused(0x5000, 0, 0), AbortCode::NO_OBJECT);
+    assert_eq!(refused(0x6040, 1, 0), AbortCode::NO_SUB);
+    assert_eq!(refused(0x607F, 0, 25_001), AbortCode::TOO_HIGH);
+    assert_eq!(refused(0x2210, 1, 15), AbortCode::TOO_LOW);
+    assert_eq!(refused(0x6060, 0, 42), AbortCode::RANGE);
+    assert_eq!(refused(0x6098, 0, 3), AbortCode::RANGE);
+    assert_eq!(refused(0x1003, 0, 1), AbortCode::RANGE);
+    assert_eq!(refused(0x1010, 1, 1), AbortCode::STORE);
     set(&mut node, objects::MIN_POSITION, 0);
     assert_eq!(
         node.write(objects::MAX_POSITION.address, u32::MAX),
-        Err(Abort::MAX_BELOW_MIN)
+        Err(AbortCode::MAX_BELOW_MIN)
     );
 }
 
@@ -33,11 +33,11 @@ fn power_stage_configuration_needs_power_off() {
     let mut node = enabled();
     assert_eq!(
         node.write(objects::MOTOR_TYPE.address, 1),
-        Err(Abort::STATE)
+        Err(AbortCode::STATE)
     );
     assert_eq!(
         node.write(objects::ENCODER_LINES.address, 1000),
-        Err(Abort::STATE)
+        Err(AbortCode::STATE)
     );
     command(&mut node, control::DISABLE_VOLTAGE);
     assert_eq!(node.write(objects::MOTOR_TYPE.address, 1), Ok(()));
@@ -71,8 +71,8 @@ fn every_object_that_the_protocol_names_exists_in_its_width() {
     }
     for entry in &TABLE {
         let expected = match (entry.access, entry.ty) {
-            (EntryAccess::Wo, _) => Some(Abort::WRITE_ONLY),
-            (_, Type::Domain) => Some(Abort::STATE),
+            (EntryAccess::Wo, _) => Some(AbortCode::WRITE_ONLY),
+            (_, Type::Domain) => Some(AbortCode::STATE),
             _ => None,
         };
         assert_eq!(

@@ -14,7 +14,7 @@ use protocol::epos2::cia402::DeviceState::{self, *};
 use protocol::epos2::objects::{self, Address};
 
 use super::super::table::TABLE;
-use super::super::{CanServer, Node, NodeConfig, UsbServer};
+use super::super::{CanServer, SimulatedDrive, SimulatedDriveConfig, UsbServer};
 use super::{get, state};
 
 /// Cause of a transition.
@@ -194,9 +194,9 @@ fn action() -> impl Strategy<Value = Action> {
     ]
 }
 
-/// The unit with its interfaces and the checks of its transitions.
+/// The drive with its interfaces and the checks of its transitions.
 struct World {
-    node: Node,
+    node: SimulatedDrive,
     can: CanServer,
     usb: UsbServer,
     last: DeviceState,
@@ -206,11 +206,11 @@ struct World {
 
 impl World {
     fn new(stops: [Option<i32>; 2]) -> Self {
-        let node = Node::new(NodeConfig {
+        let node = SimulatedDrive::new(SimulatedDriveConfig {
             fault_at_power_on: DeviceError::NONE,
             initial_position: 0,
             hard_stops: stops,
-            ..NodeConfig::default()
+            ..SimulatedDriveConfig::default()
         });
         Self {
             last: state(&node),

@@ -4,19 +4,19 @@ use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::{DeviceState, control, mode, status};
 use protocol::epos2::objects::{self, TypedObject};
 
-use super::super::{Node, NodeConfig};
+use super::super::{SimulatedDrive, SimulatedDriveConfig};
 use super::{arrive, command, enable, enabled, get, go, has, position, set, state, ticks, until};
 
 const FOLLOWING: TypedObject<i16> = TypedObject::new(0x20F4, 0, "Following Error Actual Value");
 
 /// Hard stops at -20,000 and 30,000 world qc; index pulses at 700 + n 2000.
-fn between_stops(at: i32) -> Node {
-    let mut node = Node::new(NodeConfig {
+fn between_stops(at: i32) -> SimulatedDrive {
+    let mut node = SimulatedDrive::new(SimulatedDriveConfig {
         fault_at_power_on: DeviceError::NONE,
         initial_position: at,
         hard_stops: [Some(-20_000), Some(30_000)],
         switches: [None; 4],
-        ..NodeConfig::default()
+        ..SimulatedDriveConfig::default()
     });
     enable(&mut node);
     node
@@ -185,17 +185,17 @@ fn a_jam_outlasts_power_off() {
 
 #[test]
 fn the_quick_stop_input_stops_the_axis() {
-    let mut config = NodeConfig {
+    let mut config = SimulatedDriveConfig {
         fault_at_power_on: DeviceError::NONE,
         initial_position: 0,
-        ..NodeConfig::default()
+        ..SimulatedDriveConfig::default()
     };
     config.switches[2] = Some(super::super::Switch {
         input: 4,
         pressed: super::super::Region::AtLeast(8_000),
         normally_closed: false,
     });
-    let mut node = Node::new(config);
+    let mut node = SimulatedDrive::new(config);
     enable(&mut node);
     set(
         &mut node,

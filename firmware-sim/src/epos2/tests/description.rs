@@ -9,7 +9,7 @@ use std::vec::Vec;
 
 use protocol::epos2::objects::Address;
 
-use super::super::{Abort, Node};
+use super::super::{AbortCode, SimulatedDrive};
 use super::healthy;
 
 /// An entry of the description.
@@ -80,7 +80,7 @@ fn number(text: &str) -> i64 {
     )
 }
 
-fn value(node: &Node, entry: &Described) -> i64 {
+fn value(node: &SimulatedDrive, entry: &Described) -> i64 {
     let value = node.read(entry.address).unwrap();
     let mut bytes = [0; 8];
     bytes[..entry.bytes].copy_from_slice(value.bytes());
@@ -94,7 +94,12 @@ fn value(node: &Node, entry: &Described) -> i64 {
 }
 
 /// Writes a number with this many bytes.
-fn write(node: &mut Node, entry: &Described, number: i64, bytes: usize) -> Result<(), Abort> {
+fn write(
+    node: &mut SimulatedDrive,
+    entry: &Described,
+    number: i64,
+    bytes: usize,
+) -> Result<(), AbortCode> {
     node.write_bytes(entry.address, &number.to_le_bytes()[..bytes])
 }
 
@@ -119,12 +124,12 @@ fn exactly_the_described_objects_exist() {
     for index in 0..=u16::MAX {
         let Some(subs) = subs.get(&index) else {
             let found = node.read(Address::new(index, 0)).unwrap_err();
-            assert_eq!(found, Abort::NO_OBJECT, "{index:04X}");
+            assert_eq!(found, AbortCode::NO_OBJECT, "{index:04X}");
             continue;
         };
         for sub in 0..=u8::MAX {
             let found = node.read(Address::new(index, sub)).err();
-            let missing = found == Some(Abort::NO_SUB);
+            let missing = found == Some(AbortCode::NO_SUB);
             assert_eq!(missing, !subs.contains(&sub), "{index:04X}:{sub:02X}");
         }
     }
@@ -136,8 +141,8 @@ fn values_have_their_width_and_factory_default() {
     for entry in described() {
         let read = node.read(entry.address);
         match (entry.access, entry.bytes) {
-            ("wo", _) => assert_eq!(read, Err(Abort::WRITE_ONLY), "{}", entry.address),
-            _ if entry.domain => assert_eq!(read, Err(Abort::STATE), "{}", entry.address),
+            ("wo", _) => assert_eq!(read, Err(AbortCode::WRITE_ONLY), "{}", entry.address),
+            _ if entry.domain => assert_eq!(read, Err(AbortCode::STATE), "{}", entry.address),
             (_, 0) => assert_eq!(read.unwrap().bytes(), b"EPOS2"),
             (_, bytes) => assert_eq!(read.unwrap().bytes().len(), bytes, "{}", entry.address),
         }
@@ -160,7 +165,7 @@ fn writes_respect_access_length_and_limits() {
         if matches!(entry.access, "ro" | "const") {
             for bytes in 1..=8 {
                 let refused = write(&mut node, &entry, 0, bytes);
-                assert_eq!(refused, Err(Abort::READ_ONLY), "{at}");
+                assert_eq!(refused, Err(AbortCode::READ_ONLY), "{at}");
             }
             continue;
         }
@@ -171,16 +176,16 @@ fn writes_respect_access_length_and_limits() {
         let fits = entry.default.or(entry.low).unwrap_or(0);
         for wrong in (1..=8).filter(|&wrong| wrong != bytes) {
             let expected = if wrong > bytes {
-                Abort::TOO_LONG
+                AbortCode::TOO_LONG
             } else {
-                Abort::TOO_SHORT
+                AbortCode::TOO_SHORT
             };
             let refused = write(&mut node, &entry, fits, wrong);
             assert_eq!(refused, Err(expected), "{at} in {wrong} bytes");
         }
         for (outside, expected) in [
-            (entry.high.map(|high| high + 1), Abort::TOO_HIGH),
-            (entry.low.map(|low| low - 1), Abort::TOO_LOW),
+            (entry.high.map(|high| high + 1), AbortCode::TOO_HIGH),
+            (entry.low.map(|low| low - 1), AbortCode::TOO_LOW),
         ] {
             // Values outside the type's range cannot be written.
             let bits = 8 * bytes - usize::from(entry.signed);
@@ -222,7 +227,7 @@ fn process_data_carries_exactly_the_mappable_objects() {
             let expected = if entry.mappable && access.contains(&entry.access) {
                 Ok(())
             } else {
-                Err(Abort::PDO_MAPPING)
+                Err(AbortCode::PDO_MAPPING)
             };
             assert_eq!(taken, expected, "{} in {mapping:04X}", entry.address);
         }

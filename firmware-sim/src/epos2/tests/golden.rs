@@ -1,12 +1,12 @@
 //! The serial interfaces against independent bytes: frames in the Communication Guide's format as a
-//! real unit and its tools exchange them, with a checksum computed bit by bit.
+//! real drive and its tools exchange them, with a checksum computed bit by bit.
 
 extern crate std;
 use std::vec::Vec;
 
 use protocol::epos2::objects;
 
-use super::super::{Node, Rs232Server, UsbServer};
+use super::super::{Rs232Server, SimulatedDrive, UsbServer};
 use super::{command, healthy, set};
 
 /// CRC-16/XMODEM (polynomial 1021, init 0) over bytes in the order given.
@@ -46,7 +46,7 @@ fn usb_body(frame: &[u8]) -> Vec<u8> {
     content.to_vec()
 }
 
-fn usb(node: &mut Node, request: &[u8]) -> Vec<u8> {
+fn usb(node: &mut SimulatedDrive, request: &[u8]) -> Vec<u8> {
     usb_body(request);
     let mut out = Vec::new();
     UsbServer::new(9).input(node, request, &mut |frame: &[u8]| {
@@ -115,9 +115,9 @@ fn a_two_word_error_matches_golden_bytes() {
     assert!(seen[0] > 0 && seen[1] > 0, "{seen:?}");
 }
 
-fn rs232(node: &mut Node, request: &[u8]) -> Vec<u8> {
+fn rs232(node: &mut SimulatedDrive, request: &[u8]) -> Vec<u8> {
     let (server, mut out) = (&mut Rs232Server::new(9), Vec::new());
-    let mut send = |bytes: &[u8], node: &mut Node| {
+    let mut send = |bytes: &[u8], node: &mut SimulatedDrive| {
         let mut answer = Vec::new();
         server.input(node, bytes, &mut |bytes: &[u8]| {
             answer.extend_from_slice(bytes)

@@ -4,10 +4,10 @@ use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::{DeviceState, control, mode, status};
 use protocol::epos2::objects;
 
-use super::super::{Node, NodeConfig, Region, Switch};
+use super::super::{Region, SimulatedDrive, SimulatedDriveConfig, Switch};
 use super::{arrive, command, enable, get, go, has, position, set, state, ticks, until};
 
-fn home(node: &mut Node, method: i8) {
+fn home(node: &mut SimulatedDrive, method: i8) {
     set(node, objects::MODE, mode::HOMING);
     set(node, objects::HOMING_METHOD, method);
     command(node, control::ENABLE_OPERATION);
@@ -21,24 +21,24 @@ fn home(node: &mut Node, method: i8) {
 }
 
 /// World position of the shaft, qc.
-fn world(node: &Node) -> i64 {
+fn world(node: &SimulatedDrive) -> i64 {
     node.segment().end >> 32
 }
 
 /// A home switch between 5000 and 6000, limits at +-43334, index pulses at 700 + n 2000; starting
 /// at `at`.
-fn with_home_switch(at: i32) -> Node {
-    let mut config = NodeConfig {
+fn with_home_switch(at: i32) -> SimulatedDrive {
+    let mut config = SimulatedDriveConfig {
         fault_at_power_on: DeviceError::NONE,
         initial_position: at,
-        ..NodeConfig::default()
+        ..SimulatedDriveConfig::default()
     };
     config.switches[2] = Some(Switch {
         input: 4,
         pressed: Region::Within(5_000, 6_000),
         normally_closed: false,
     });
-    let mut node = Node::new(config);
+    let mut node = SimulatedDrive::new(config);
     enable(&mut node);
     set(&mut node, objects::HOMING_SWITCH_SPEED, 400);
     set(&mut node, objects::HOMING_ZERO_SPEED, 30); // 1 qc/ms
@@ -161,9 +161,9 @@ fn homing_that_cannot_start_sets_bit_13() {
 
 #[test]
 fn a_missing_home_switch_sets_bit_13() {
-    let mut node = Node::new(NodeConfig {
+    let mut node = SimulatedDrive::new(SimulatedDriveConfig {
         fault_at_power_on: DeviceError::NONE,
-        ..NodeConfig::default()
+        ..SimulatedDriveConfig::default()
     });
     enable(&mut node);
     set(&mut node, objects::MODE, mode::HOMING);

@@ -4,7 +4,7 @@ use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::{DeviceState, control};
 use protocol::epos2::objects;
 
-use super::super::{BrakeState, Node, NodeConfig, Region, Switch};
+use super::super::{BrakeState, Region, SimulatedDrive, SimulatedDriveConfig, Switch};
 use super::{
     arrive, command, enable, enabled, get, go, healthy, position, set, state, ticks, until,
 };
@@ -71,16 +71,16 @@ fn input_mask_and_polarity_take_effect() {
 
 #[test]
 fn a_normally_closed_switch_is_low_when_pressed() {
-    let mut config = NodeConfig {
+    let mut config = SimulatedDriveConfig {
         fault_at_power_on: DeviceError::NONE,
-        ..NodeConfig::default()
+        ..SimulatedDriveConfig::default()
     };
     config.switches[0] = Some(Switch {
         input: 6,
         pressed: Region::AtMost(-43_334),
         normally_closed: true,
     });
-    let mut node = Node::new(config);
+    let mut node = SimulatedDrive::new(config);
     assert_eq!(get(&node, objects::INPUT_STATE), 1);
     set(&mut node, objects::INPUT_POLARITY, 0x0001);
     node.tick();

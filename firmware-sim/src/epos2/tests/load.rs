@@ -4,19 +4,19 @@ use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::{DeviceState, control, mode};
 use protocol::epos2::objects::{self, TypedObject};
 
-use super::super::{AxisLoad, BrakeState, HoldingBrake, Node, NodeConfig};
+use super::super::{AxisLoad, BrakeState, HoldingBrake, SimulatedDrive, SimulatedDriveConfig};
 use super::{arrive, command, enable, get, go, healthy, position, set, state, ticks, until};
 
 /// 1500 deg/s2 of an axis geared 120:1, with 2000 qc per revolution of the motor: a free fall of
 /// `n` ms covers `n * n / 2` qc.
 const GRAVITY: i32 = -30_000;
 
-fn loaded(load: AxisLoad) -> Node {
-    Node::new(NodeConfig {
+fn loaded(load: AxisLoad) -> SimulatedDrive {
+    SimulatedDrive::new(SimulatedDriveConfig {
         fault_at_power_on: DeviceError::NONE,
         initial_position: 0,
         load: Some(load),
-        ..NodeConfig::default()
+        ..SimulatedDriveConfig::default()
     })
 }
 
@@ -34,7 +34,7 @@ const BRAKE: HoldingBrake = HoldingBrake {
 };
 
 /// Enabled, with the brake on output 1 and these reaction times in 2100.
-fn enabled_with(brake: HoldingBrake, rise_ms: u16, fall_ms: u16) -> Node {
+fn enabled_with(brake: HoldingBrake, rise_ms: u16, fall_ms: u16) -> SimulatedDrive {
     let mut node = loaded(AxisLoad {
         brake: Some(brake),
         ..free()
@@ -74,12 +74,12 @@ fn an_unpowered_axis_falls_with_gravity_less_friction() {
 
 #[test]
 fn a_fall_ends_at_the_hard_stop_and_is_caught_by_power() {
-    let mut node = Node::new(NodeConfig {
+    let mut node = SimulatedDrive::new(SimulatedDriveConfig {
         fault_at_power_on: DeviceError::NONE,
         initial_position: 0,
         hard_stops: [Some(-1_000), None],
         load: Some(free()),
-        ..NodeConfig::default()
+        ..SimulatedDriveConfig::default()
     });
     ticks(&mut node, 500);
     assert_eq!(position(&node), -1_000);
@@ -201,11 +201,11 @@ fn a_fitted_brake_without_an_output_stays_closed() {
 
 #[test]
 fn the_encoder_dithers_at_rest_under_power_only() {
-    let mut node = Node::new(NodeConfig {
+    let mut node = SimulatedDrive::new(SimulatedDriveConfig {
         fault_at_power_on: DeviceError::NONE,
         initial_position: 0,
         dither_qc: 2,
-        ..NodeConfig::default()
+        ..SimulatedDriveConfig::default()
     });
     ticks(&mut node, 100);
     assert_eq!(position(&node), 0);

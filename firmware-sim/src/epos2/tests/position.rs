@@ -3,7 +3,7 @@
 use protocol::epos2::cia402::{DeviceState, control, status};
 use protocol::epos2::objects;
 
-use super::super::Node;
+use super::super::SimulatedDrive;
 use super::{arrive, command, enabled, get, go, has, position, set, state, ticks, until};
 
 #[test]
@@ -183,7 +183,7 @@ fn the_encoder_is_read_at_the_time_of_the_request() {
     ticks(&mut node, 10);
     let segment = node.segment();
     assert_eq!((segment.end - segment.start) >> 32, 20);
-    let read = |node: &mut Node, phase| {
+    let read = |node: &mut SimulatedDrive, phase| {
         node.set_phase_us(phase);
         position(node)
     };

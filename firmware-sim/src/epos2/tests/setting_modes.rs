@@ -6,13 +6,13 @@ use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::{DeviceState, control, mode, status};
 use protocol::epos2::objects::{self, TypedObject};
 
-use super::super::{Node, NodeConfig, Servo};
+use super::super::{Servo, SimulatedDrive, SimulatedDriveConfig};
 use super::{command, enable, enabled, get, has, healthy, position, set, state, ticks, until};
 
 const POSITION_SETTING: TypedObject<i32> = TypedObject::new(0x2062, 0, "");
 const VELOCITY_SETTING: TypedObject<i32> = TypedObject::new(0x206B, 0, "");
 
-fn in_mode(number: i8) -> Node {
+fn in_mode(number: i8) -> SimulatedDrive {
     let mut node = enabled();
     set(&mut node, objects::MODE, number);
     assert_eq!(get(&node, objects::MODE_DISPLAY), number);
@@ -40,11 +40,11 @@ fn a_position_step_has_the_step_response_of_the_servo() {
     let servo = Servo::FirstOrder {
         corner_millihertz: 5_000,
     };
-    let mut node = Node::new(NodeConfig {
+    let mut node = SimulatedDrive::new(SimulatedDriveConfig {
         fault_at_power_on: DeviceError::NONE,
         initial_position: 0,
         servo: Some(servo),
-        ..NodeConfig::default()
+        ..SimulatedDriveConfig::default()
     });
     enable(&mut node);
     set(&mut node, objects::MODE, mode::POSITION);

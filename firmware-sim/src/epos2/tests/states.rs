@@ -5,7 +5,7 @@ use protocol::epos2::DeviceError;
 use protocol::epos2::cia402::{DeviceState, control};
 use protocol::epos2::objects;
 
-use super::super::{Node, NodeConfig};
+use super::super::{SimulatedDrive, SimulatedDriveConfig};
 use super::{command, enabled, get, go, healthy, position, set, state, ticks, until};
 
 #[test]
@@ -53,7 +53,7 @@ fn nmt_start_shows_in_bit_9() {
 
 #[test]
 fn the_fault_of_a_unit_without_can_is_cleared_by_a_rising_bit_7() {
-    let mut node = Node::new(NodeConfig::default());
+    let mut node = SimulatedDrive::new(SimulatedDriveConfig::default());
     assert_eq!(state(&node), DeviceState::Fault);
     assert_eq!(get(&node, objects::ERROR_COUNT), 1);
     assert_eq!(get(&node, objects::ERROR_HISTORY_1), 0x8120);

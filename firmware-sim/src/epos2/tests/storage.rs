@@ -4,14 +4,14 @@ use protocol::canopen::nmt::NmtCommand;
 use protocol::canopen::nmt::NmtState;
 use protocol::epos2::objects::{self, Address};
 
-use super::super::{Abort, Node};
+use super::super::{AbortCode, SimulatedDrive};
 use super::{get, healthy, set};
 
-fn raw(node: &Node, index: u16, sub: u8) -> u32 {
+fn raw(node: &SimulatedDrive, index: u16, sub: u8) -> u32 {
     node.read(Address::new(index, sub)).unwrap().raw().unwrap()
 }
 
-fn write(node: &mut Node, index: u16, sub: u8, raw: u32) -> Result<(), Abort> {
+fn write(node: &mut SimulatedDrive, index: u16, sub: u8, raw: u32) -> Result<(), AbortCode> {
     node.write(Address::new(index, sub), raw)
 }
 
@@ -23,11 +23,11 @@ fn only_saved_values_survive_power_off() {
     write(&mut node, 0x200C, 3, 0xCAFE_F00D).unwrap();
     assert_eq!(
         write(&mut node, 0x1010, 1, objects::LOAD),
-        Err(Abort::STORE)
+        Err(AbortCode::STORE)
     );
     assert_eq!(
         write(&mut node, 0x1011, 1, objects::SAVE),
-        Err(Abort::STORE)
+        Err(AbortCode::STORE)
     );
     set(&mut node, objects::STORE_ALL, objects::SAVE);
     assert_eq!(raw(&node, 0x1010, 1), 1, "saves on command");
@@ -63,8 +63,8 @@ fn restored_defaults_apply_at_once_and_after_power_off() {
 #[test]
 fn a_node_id_takes_effect_at_power_on() {
     let mut node = healthy();
-    assert_eq!(write(&mut node, 0x2000, 0, 0), Err(Abort::RANGE));
-    assert_eq!(write(&mut node, 0x2000, 0, 128), Err(Abort::RANGE));
+    assert_eq!(write(&mut node, 0x2000, 0, 0), Err(AbortCode::RANGE));
+    assert_eq!(write(&mut node, 0x2000, 0, 128), Err(AbortCode::RANGE));
     set(&mut node, objects::NODE_ID, 5);
     assert_eq!(node.node_id(), 1);
     node.power_cycle();
@@ -101,20 +101,23 @@ fn a_communication_reset_leaves_other_objects_unchanged() {
 fn the_mapping_procedure_requires_its_order() {
     let mut node = healthy();
     // The mapping of an enabled PDO cannot be changed.
-    assert_eq!(write(&mut node, 0x1A00, 0, 0), Err(Abort::STATE));
+    assert_eq!(write(&mut node, 0x1A00, 0, 0), Err(AbortCode::STATE));
     write(&mut node, 0x1800, 1, 0xC000_0181).unwrap();
     // Entries cannot be changed while the mapping counts them.
-    assert_eq!(write(&mut node, 0x1A00, 1, 0x6064_0020), Err(Abort::STATE));
+    assert_eq!(
+        write(&mut node, 0x1A00, 1, 0x6064_0020),
+        Err(AbortCode::STATE)
+    );
     write(&mut node, 0x1A00, 0, 0).unwrap();
     write(&mut node, 0x1A00, 1, 0x6064_0020).unwrap();
     write(&mut node, 0x1A00, 2, 0x1013_0020).unwrap();
     // A ninth byte.
     write(&mut node, 0x1A00, 3, 0x6061_0008).unwrap();
-    assert_eq!(write(&mut node, 0x1A00, 0, 3), Err(Abort::PDO_LENGTH));
-    assert_eq!(write(&mut node, 0x1A00, 0, 9), Err(Abort::TOO_HIGH));
+    assert_eq!(write(&mut node, 0x1A00, 0, 3), Err(AbortCode::PDO_LENGTH));
+    assert_eq!(write(&mut node, 0x1A00, 0, 9), Err(AbortCode::TOO_HIGH));
     assert_eq!(
         write(&mut node, 0x1A00, 0, 4),
-        Err(Abort::PDO_MAPPING),
+        Err(AbortCode::PDO_MAPPING),
         "the fourth entry is empty"
     );
     write(&mut node, 0x1A00, 0, 2).unwrap();
@@ -133,13 +136,13 @@ fn unmappable_objects_are_refused() {
     }
     for (index, entry, expected) in [
         (0x1A00, 0x6099_0120, Ok(())),
-        (0x1A00, 0x2222_0010, Err(Abort::NO_OBJECT)),
-        (0x1A00, 0x6041_0110, Err(Abort::NO_SUB)),
-        (0x1A00, 0x1018_0120, Err(Abort::PDO_MAPPING)),
-        (0x1A00, 0x6041_0008, Err(Abort::PDO_MAPPING)),
-        (0x1A00, 0x20C1_0040, Err(Abort::PDO_MAPPING)),
+        (0x1A00, 0x2222_0010, Err(AbortCode::NO_OBJECT)),
+        (0x1A00, 0x6041_0110, Err(AbortCode::NO_SUB)),
+        (0x1A00, 0x1018_0120, Err(AbortCode::PDO_MAPPING)),
+        (0x1A00, 0x6041_0008, Err(AbortCode::PDO_MAPPING)),
+        (0x1A00, 0x20C1_0040, Err(AbortCode::PDO_MAPPING)),
         (0x1600, 0x20C1_0040, Ok(())),
-        (0x1600, 0x6041_0010, Err(Abort::PDO_MAPPING)),
+        (0x1600, 0x6041_0010, Err(AbortCode::PDO_MAPPING)),
         (0x1600, 0x607A_0020, Ok(())),
         (0x1600, 0, Ok(())),
     ] {
@@ -155,19 +158,19 @@ fn unmappable_objects_are_refused() {
 fn pdo_identifiers_are_validated() {
     let mut node = healthy();
     for (raw, expected) in [
-        (0x4000_0182, Err(Abort::RANGE)), // another identifier while enabled
-        (0x2000_0181, Err(Abort::RANGE)), // 29 bits
-        (0x4000_1181, Err(Abort::RANGE)), // 12 bits
+        (0x4000_0182, Err(AbortCode::RANGE)), // another identifier while enabled
+        (0x2000_0181, Err(AbortCode::RANGE)), // 29 bits
+        (0x4000_1181, Err(AbortCode::RANGE)), // 12 bits
         (0x0000_0181, Ok(())),
         (0x8000_0000, Ok(())),
-        (0x0000_0601, Err(Abort::RANGE)),
-        (0x0000_0080, Err(Abort::RANGE)),
-        (0x0000_0701, Err(Abort::RANGE)),
+        (0x0000_0601, Err(AbortCode::RANGE)),
+        (0x0000_0080, Err(AbortCode::RANGE)),
+        (0x0000_0701, Err(AbortCode::RANGE)),
         (0x0000_0182, Ok(())),
     ] {
         assert_eq!(write(&mut node, 0x1800, 1, raw), expected, "{raw:08X}");
     }
-    assert_eq!(write(&mut node, 0x1800, 2, 245), Err(Abort::RANGE));
+    assert_eq!(write(&mut node, 0x1800, 2, 245), Err(AbortCode::RANGE));
 }
 
 #[test]
@@ -176,11 +179,11 @@ fn process_data_is_configurable_only_in_pre_operational() {
     for command in [NmtCommand::Start, NmtCommand::Stop] {
         node.nmt(command);
         for (index, sub, raw) in [(0x1800, 1, 0xC000_0181), (0x1800, 2, 1), (0x1A00, 0, 0)] {
-            assert_eq!(write(&mut node, index, sub, raw), Err(Abort::NMT_STATE));
+            assert_eq!(write(&mut node, index, sub, raw), Err(AbortCode::NMT_STATE));
         }
         assert_eq!(
             write(&mut node, 0x1011, 5, objects::LOAD),
-            Err(Abort::NMT_STATE)
+            Err(AbortCode::NMT_STATE)
         );
         assert_eq!(write(&mut node, 0x1017, 0, 100), Ok(()));
     }
@@ -189,16 +192,19 @@ fn process_data_is_configurable_only_in_pre_operational() {
 #[test]
 fn entries_without_a_value_are_refused_with_a_reason() {
     let mut node = healthy();
-    assert_eq!(node.read(Address::new(0x20C1, 0)), Err(Abort::WRITE_ONLY));
-    assert_eq!(write(&mut node, 0x20C1, 0, 0), Err(Abort::STATE));
-    assert_eq!(node.read(Address::new(0x201B, 0)), Err(Abort::STATE));
-    assert_eq!(write(&mut node, 0x2FFF, 1, 0), Err(Abort::SERVICE_MODE));
-    assert_eq!(write(&mut node, 0x1008, 0, 0), Err(Abort::READ_ONLY));
-    let bytes = |node: &mut Node, n| {
+    assert_eq!(
+        node.read(Address::new(0x20C1, 0)),
+        Err(AbortCode::WRITE_ONLY)
+    );
+    assert_eq!(write(&mut node, 0x20C1, 0, 0), Err(AbortCode::STATE));
+    assert_eq!(node.read(Address::new(0x201B, 0)), Err(AbortCode::STATE));
+    assert_eq!(write(&mut node, 0x2FFF, 1, 0), Err(AbortCode::SERVICE_MODE));
+    assert_eq!(write(&mut node, 0x1008, 0, 0), Err(AbortCode::READ_ONLY));
+    let bytes = |node: &mut SimulatedDrive, n| {
         node.write_bytes(objects::TARGET_POSITION.address, &[1, 2, 3, 4, 5][..n])
     };
-    assert_eq!(bytes(&mut node, 3), Err(Abort::TOO_SHORT));
-    assert_eq!(bytes(&mut node, 5), Err(Abort::TOO_LONG));
+    assert_eq!(bytes(&mut node, 3), Err(AbortCode::TOO_SHORT));
+    assert_eq!(bytes(&mut node, 5), Err(AbortCode::TOO_LONG));
     assert_eq!(bytes(&mut node, 4), Ok(()));
     assert_eq!(get(&node, objects::TARGET_POSITION), 0x0403_0201);
 }

@@ -5,14 +5,14 @@ extern crate std;
 use protocol::epos2::cia402::{DeviceState, control, mode, status};
 use protocol::epos2::objects::{self, TypedObject};
 
-use super::super::Node;
+use super::super::SimulatedDrive;
 use super::{command, enable, enabled, get, go, has, healthy, position, set, state, ticks, until};
 
 const WINDOW: TypedObject<u32> = TypedObject::new(0x606D, 0, "Velocity Window");
 const WINDOW_TIME: TypedObject<u16> = TypedObject::new(0x606E, 0, "Velocity Window Time");
 const SPEED_IS_ZERO: u16 = 1 << 12;
 
-fn turning(rpm: i32) -> Node {
+fn turning(rpm: i32) -> SimulatedDrive {
     let mut node = enabled();
     set(&mut node, objects::MODE, mode::PROFILE_VELOCITY);
     assert_eq!(get(&node, objects::MODE_DISPLAY), mode::PROFILE_VELOCITY);
@@ -20,7 +20,7 @@ fn turning(rpm: i32) -> Node {
     node
 }
 
-fn velocity(node: &Node) -> i32 {
+fn velocity(node: &SimulatedDrive) -> i32 {
     get(node, objects::VELOCITY_ACTUAL)
 }
 
@@ -198,7 +198,7 @@ fn modes_that_are_not_simulated_are_out_of_range() {
         let raw = objects::MODE.encode(number);
         assert_eq!(
             node.write(objects::MODE.address, raw),
-            Err(super::super::Abort::RANGE)
+            Err(super::super::AbortCode::RANGE)
         );
     }
     assert_eq!(get(&node, objects::SUPPORTED_MODES), 0x0003_0025);

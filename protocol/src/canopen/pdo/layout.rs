@@ -271,7 +271,7 @@ mod tests {
         assert_eq!(layout.get(TIMESTAMP, &data[..7]), Err(short));
     }
 
-    /// TPDO1 of a real unit (1A00): an analogue value, statusword, mode.
+    /// TPDO1 of a real drive (1A00): an analogue value, statusword, mode.
     #[test]
     fn values_are_packed_without_gaps() {
         let entries = [0x20C4_0110, 0x6041_0010, 0x6061_0008].map(MappedObject::from_u32);

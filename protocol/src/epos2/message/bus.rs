@@ -1,8 +1,8 @@
-//! NMT service, send and request CAN frame, opcodes 0E, 20 and 21: the CAN bus through the unit as
+//! NMT service, send and request CAN frame, opcodes 0E, 20 and 21: the CAN bus through the drive as
 //! gateway.
 
 use super::{SerialAnswer, command, word_count};
-use crate::epos2::{CommError, SerialFrame, SerialFrameError};
+use crate::epos2::{AbortCode, SerialFrame, SerialFrameError};
 
 /// A network management command to one node or to all. Over RS232 it has no answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,7 +60,7 @@ command!(
 impl RequestCanFrame {
     /// The answer to it.
     #[must_use]
-    pub fn answer(outcome: Result<[u8; 8], CommError>) -> SerialFrame {
+    pub fn answer(outcome: Result<[u8; 8], AbortCode>) -> SerialFrame {
         SerialAnswer::of(outcome.map(to_words))
     }
 
@@ -68,10 +68,10 @@ impl RequestCanFrame {
     ///
     /// # Errors
     /// [`SerialFrameError::Opcode`], [`SerialFrameError::WordCount`] if `frame` is no such answer;
-    /// the inner error is what the unit reports.
+    /// the inner error is what the drive reports.
     pub fn parse_answer(
         frame: &SerialFrame,
-    ) -> Result<Result<[u8; 8], CommError>, SerialFrameError> {
+    ) -> Result<Result<[u8; 8], AbortCode>, SerialFrameError> {
         SerialAnswer::read(frame, |answer| match answer.data.first_chunk() {
             Some(words) => Ok(from_words(*words)),
             None => Err(word_count(6, 2 + answer.data.len())),

@@ -2,7 +2,7 @@
 //! Reference").
 //!
 //! An answer names neither its command nor its object: the client pairs it with a request. Words
-//! that a command does not use are ignored, since a real unit fills them with garbage.
+//! that a command does not use are ignored, since a real drive fills them with garbage.
 
 mod bus;
 mod object;
@@ -15,7 +15,7 @@ pub use segmented::{
     WriteSegment,
 };
 
-use super::CommError;
+use super::AbortCode;
 use super::error::{SerialFrameError, SerialLayer};
 use super::frame::{SerialFrame, Words};
 use crate::canopen::Address;
@@ -51,7 +51,7 @@ use command;
 /// Defines the enum of all requests and its parser.
 macro_rules! requests {
     ($($name:ident),*) => {
-        /// Any request that a unit knows.
+        /// Any request that a drive knows.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum SerialRequest {
             $(#[doc = concat!("[`", stringify!($name), "`].")] $name($name),)*
@@ -98,7 +98,7 @@ requests!(
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SerialAnswer {
     /// Whether the command was carried out.
-    pub error: CommError,
+    pub error: AbortCode,
     /// The words after the error code, garbage included.
     pub data: Words,
 }
@@ -106,7 +106,7 @@ pub struct SerialAnswer {
 impl SerialAnswer {
     /// An answer without data.
     #[must_use]
-    pub fn bare(error: CommError) -> Self {
+    pub fn bare(error: AbortCode) -> Self {
         let data = Words::new();
         Self { error, data }
     }
@@ -122,7 +122,7 @@ impl SerialAnswer {
             return Err(word_count(2, frame.words.len()));
         };
         Ok(Self {
-            error: CommError::from_words(*low, *high),
+            error: AbortCode::from_words(*low, *high),
             data: data.iter().copied().collect(),
         })
     }
@@ -148,8 +148,8 @@ impl SerialAnswer {
     }
 
     /// The frame that answers with the data of a success, or with the error of a failure.
-    fn of<D: IntoIterator<Item = u16>>(outcome: Result<D, CommError>) -> SerialFrame {
-        let mut answer = Self::bare(CommError::NONE);
+    fn of<D: IntoIterator<Item = u16>>(outcome: Result<D, AbortCode>) -> SerialFrame {
+        let mut answer = Self::bare(AbortCode::NONE);
         match outcome {
             Ok(data) => answer.data.extend(data),
             Err(error) => answer.error = error,
@@ -157,11 +157,11 @@ impl SerialAnswer {
         answer.to_frame()
     }
 
-    /// The result of `read` on an answer of success; the inner error is that of the unit.
+    /// The result of `read` on an answer of success; the inner error is that of the drive.
     fn read<T>(
         frame: &SerialFrame,
         read: impl FnOnce(&Self) -> Result<T, SerialFrameError>,
-    ) -> Result<Result<T, CommError>, SerialFrameError> {
+    ) -> Result<Result<T, AbortCode>, SerialFrameError> {
         let answer = Self::parse(frame)?;
         if answer.error.is_none() {
             read(&answer).map(Ok)
@@ -198,5 +198,5 @@ fn target_and_number(node: u8, address: Address, number: u32) -> [u16; 4] {
 
 /// The number of a low and a high word.
 fn dword(low: u16, high: u16) -> u32 {
-    CommError::from_words(low, high).0
+    AbortCode::from_words(low, high).0
 }

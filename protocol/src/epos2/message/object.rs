@@ -2,12 +2,12 @@
 
 use super::{SerialAnswer, command, dword, parse_target, target, target_and_number};
 use crate::canopen::Address;
-use crate::epos2::{CommError, SerialFrame, SerialFrameError};
+use crate::epos2::{AbortCode, SerialFrame, SerialFrameError};
 
 /// Reads the value of an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReadObject {
-    /// Node id; the unit itself executes 0 and its own.
+    /// Node id; the drive itself executes 0 and its own.
     pub node: u8,
     /// The object.
     pub address: Address,
@@ -25,8 +25,8 @@ command!(
 impl ReadObject {
     /// The answer to it: the value in the low bytes, or an error in two words.
     #[must_use]
-    pub fn answer(outcome: Result<u32, CommError>) -> SerialFrame {
-        SerialAnswer::of(outcome.map(|value| CommError(value).to_words()))
+    pub fn answer(outcome: Result<u32, AbortCode>) -> SerialFrame {
+        SerialAnswer::of(outcome.map(|value| AbortCode(value).to_words()))
     }
 
     /// The value in its answer; the bits above the width of the object are garbage. An error comes
@@ -34,8 +34,8 @@ impl ReadObject {
     ///
     /// # Errors
     /// [`SerialFrameError::Opcode`], [`SerialFrameError::WordCount`] if `frame` is no such answer;
-    /// the inner error is what the unit reports.
-    pub fn parse_answer(frame: &SerialFrame) -> Result<Result<u32, CommError>, SerialFrameError> {
+    /// the inner error is what the drive reports.
+    pub fn parse_answer(frame: &SerialFrame) -> Result<Result<u32, AbortCode>, SerialFrameError> {
         SerialAnswer::read(frame, SerialAnswer::value)
     }
 }
@@ -43,7 +43,7 @@ impl ReadObject {
 /// Writes the value of an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WriteObject {
-    /// Node id; the unit itself executes 0 and its own.
+    /// Node id; the drive itself executes 0 and its own.
     pub node: u8,
     /// The object.
     pub address: Address,
@@ -68,7 +68,7 @@ command!(
 impl WriteObject {
     /// The answer to it.
     #[must_use]
-    pub fn answer(outcome: Result<(), CommError>) -> SerialFrame {
+    pub fn answer(outcome: Result<(), AbortCode>) -> SerialFrame {
         SerialAnswer::of(outcome.map(|()| []))
     }
 
@@ -76,8 +76,8 @@ impl WriteObject {
     ///
     /// # Errors
     /// [`SerialFrameError::Opcode`], [`SerialFrameError::WordCount`] if `frame` is no answer; the
-    /// inner error is what the unit reports.
-    pub fn parse_answer(frame: &SerialFrame) -> Result<Result<(), CommError>, SerialFrameError> {
+    /// inner error is what the drive reports.
+    pub fn parse_answer(frame: &SerialFrame) -> Result<Result<(), AbortCode>, SerialFrameError> {
         SerialAnswer::read(frame, |_| Ok(()))
     }
 }

@@ -3,7 +3,7 @@
 use super::{SerialAnswer, command, dword, parse_target, target, target_and_number, word_count};
 use crate::BoundedVec;
 use crate::canopen::Address;
-use crate::epos2::{CommError, SerialFrame, SerialFrameError, Words};
+use crate::epos2::{AbortCode, SerialFrame, SerialFrameError, Words};
 
 /// Toggle bit of a control byte.
 const TOGGLE: u8 = 1 << 6;
@@ -17,7 +17,7 @@ const MAX_BYTES: usize = LENGTH as usize;
 /// Begins to read an object; the answer has no data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct InitiateSegmentedRead {
-    /// Node id; the unit itself executes 0 and its own.
+    /// Node id; the drive itself executes 0 and its own.
     pub node: u8,
     /// The object.
     pub address: Address,
@@ -35,7 +35,7 @@ command!(
 /// Begins to write an object; the answer has no data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct InitiateSegmentedWrite {
-    /// Node id; the unit itself executes 0 and its own.
+    /// Node id; the drive itself executes 0 and its own.
     pub node: u8,
     /// The object.
     pub address: Address,
@@ -82,7 +82,7 @@ pub struct ReadSegment {
 impl SegmentedRead {
     /// The answer to it.
     #[must_use]
-    pub fn answer(outcome: &Result<ReadSegment, CommError>) -> SerialFrame {
+    pub fn answer(outcome: &Result<ReadSegment, AbortCode>) -> SerialFrame {
         SerialAnswer::of(outcome.as_ref().map_err(|error| *error).map(|segment| {
             let more = if segment.more { MORE } else { 0 };
             pack(toggle_bit(segment.toggle) | more, &segment.bytes)
@@ -93,10 +93,10 @@ impl SegmentedRead {
     ///
     /// # Errors
     /// [`SerialFrameError::Opcode`], [`SerialFrameError::WordCount`] if `frame` is no such answer
-    /// or holds fewer bytes than it announces; the inner error is what the unit reports.
+    /// or holds fewer bytes than it announces; the inner error is what the drive reports.
     pub fn parse_answer(
         frame: &SerialFrame,
-    ) -> Result<Result<ReadSegment, CommError>, SerialFrameError> {
+    ) -> Result<Result<ReadSegment, AbortCode>, SerialFrameError> {
         SerialAnswer::read(frame, |answer| {
             let (control, bytes) = unpack(&answer.data, 2)?;
             Ok(ReadSegment {
@@ -147,7 +147,7 @@ impl SegmentedWrite {
 
     /// The answer to it: the toggle bit as received.
     #[must_use]
-    pub fn answer(outcome: Result<bool, CommError>) -> SerialFrame {
+    pub fn answer(outcome: Result<bool, AbortCode>) -> SerialFrame {
         SerialAnswer::of(outcome.map(|toggle| [u16::from(toggle_bit(toggle))]))
     }
 
@@ -155,8 +155,8 @@ impl SegmentedWrite {
     ///
     /// # Errors
     /// [`SerialFrameError::Opcode`], [`SerialFrameError::WordCount`] if `frame` is no such answer;
-    /// the inner error is what the unit reports.
-    pub fn parse_answer(frame: &SerialFrame) -> Result<Result<bool, CommError>, SerialFrameError> {
+    /// the inner error is what the drive reports.
+    pub fn parse_answer(frame: &SerialFrame) -> Result<Result<bool, AbortCode>, SerialFrameError> {
         SerialAnswer::read(frame, |answer| {
             let control = answer.data.first().ok_or(word_count(3, 2))?;
             Ok(has_toggle(*control))

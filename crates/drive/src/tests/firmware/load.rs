@@ -17,12 +17,12 @@ const LOAD: AxisLoad = AxisLoad {
 /// World position of the lower hard stop, 5 degrees below the limit switch.
 const STOP: i32 = -46_667;
 
-fn loaded(load: AxisLoad) -> NodeConfig {
-    NodeConfig {
+fn loaded(load: AxisLoad) -> SimulatedDriveConfig {
+    SimulatedDriveConfig {
         load: Some(load),
         dither_qc: 2,
         hard_stops: [Some(STOP), Some(-STOP)],
-        ..NodeConfig::default()
+        ..SimulatedDriveConfig::default()
     }
 }
 

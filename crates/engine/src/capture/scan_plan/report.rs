@@ -27,7 +27,7 @@ pub struct CommandRow {
 pub struct PlanReport {
     /// The device.
     pub device: String,
-    /// Whether it is software.
+    /// Whether it is simulated.
     pub simulated: bool,
     /// Model of the lidar.
     pub lidar: String,

@@ -13,7 +13,7 @@ fn record(ns: i64, frame: &[u8]) -> Record<'_> {
         host: Stamp::from_nanos(ns),
         wire: Wire::Drive {
             link: DriveLink::Usb,
-            direction: Direction::ToDevice,
+            direction: Direction::ToDrive,
             frame,
         },
     }
@@ -77,7 +77,7 @@ fn records_of_equal_time_keep_their_order() {
             record.wire,
             Wire::Drive {
                 link: DriveLink::Usb,
-                direction: Direction::ToDevice,
+                direction: Direction::ToDrive,
                 frame: &[n]
             }
         );

@@ -36,8 +36,8 @@ fn a_sweep() -> Vec<OwnedRecord> {
             let bytes: Vec<u8> = (0..1206_i64).map(|b| (i * 31 + b) as u8).collect();
             let record = match i % 3 {
                 0 => lidar(ns, &bytes),
-                1 => drive(ns, Direction::ToDevice, &bytes[..10]),
-                _ => drive(ns, Direction::FromDevice, &bytes[..14 + (i % 5) as usize]),
+                1 => drive(ns, Direction::ToDrive, &bytes[..10]),
+                _ => drive(ns, Direction::FromDrive, &bytes[..14 + (i % 5) as usize]),
             };
             OwnedRecord::from(&record)
         })
@@ -85,7 +85,7 @@ proptest! {
         metadata in any::<String>(),
     ) {
         let records: Vec<OwnedRecord> = records.iter().map(|(ns, source, port, kind, to, bytes)| {
-            let direction = if *to { Direction::ToDevice } else { Direction::FromDevice };
+            let direction = if *to { Direction::ToDrive } else { Direction::FromDrive };
             // A CAN frame has 16 bytes, the fifth of them its length.
             let mut can = [0; 16];
             can.iter_mut().zip(bytes).for_each(|(to, from)| *to = *from);
@@ -157,7 +157,7 @@ fn invalid_records_are_refused_and_the_log_continues() {
         })
     ));
     assert!(matches!(
-        writer.write(&drive(1, Direction::ToDevice, &long)),
+        writer.write(&drive(1, Direction::ToDrive, &long)),
         Err(LogError::TooLong {
             layer: "drive frame",
             ..

@@ -43,7 +43,7 @@ fn play(link: DriveLink, chunks: Vec<(i64, Vec<u8>)>) -> Vec<(i64, Vec<u8>)> {
         .map(|record| match record.as_record().wire {
             Wire::Drive {
                 frame,
-                direction: Direction::FromDevice,
+                direction: Direction::FromDrive,
                 ..
             } => (record.host().as_nanos(), frame.to_vec()),
             other => panic!("{other:?}"),
@@ -112,7 +112,7 @@ fn written_frames_are_recorded_with_their_time() {
         record.wire,
         Wire::Drive {
             link: DriveLink::Usb,
-            direction: Direction::ToDevice,
+            direction: Direction::ToDrive,
             frame: &ANSWER
         }
     );

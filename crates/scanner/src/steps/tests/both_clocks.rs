@@ -93,7 +93,7 @@ fn samples_with_the_drives_time_enclose_the_truth_across_a_step() {
                 answer: Stamp::from_nanos(clock(answer)),
                 position: Quadcounts(0),
                 trigger: SampleTrigger::Sync,
-                device_us: Some((at / 1_000) as u32),
+                drive_us: Some((at / 1_000) as u32),
             }
         });
         let mut samples: Vec<ShaftSample> = samples.collect();
@@ -133,7 +133,7 @@ fn samples_matched_with_a_later_sync_are_matched_again() {
                 answer: Stamp::from_nanos(EPOCH + at + 1_350_000),
                 position: Quadcounts(0),
                 trigger: SampleTrigger::Sync,
-                device_us: Some((at / 1_000 - at / 10_000_000) as u32),
+                drive_us: Some((at / 1_000 - at / 10_000_000) as u32),
             }
         });
         let mut samples: Vec<ShaftSample> = samples.collect();

@@ -86,7 +86,8 @@ fn is_subset(returns: [u16; 2], others: [u16; 2], within: u16) -> bool {
 #[test]
 fn another_effect_does_not_change_random_draws_per_shot() {
     // Fog that is dense enough to return, and fog that only dims.
-    let (dense, thin) = (TABLES[5].1, "visibility_m = 1000.0");
+    let weather = TABLES.iter().find(|(name, _)| *name == "weather");
+    let (dense, thin) = (weather.expect("weather").1, "visibility_m = 1000.0");
     let nothing = shots(&[], thin, 1);
     assert!(nothing.len() > 4_000);
     let others = TABLES.map(|(name, _)| (name, shots(&[name], thin, 2)));

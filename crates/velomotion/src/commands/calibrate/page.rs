@@ -21,7 +21,7 @@ const BINS: usize = 36;
 /// The page.
 pub fn html(report: &CalibrateReport, evidence: &CalibrationEvidence) -> String {
     let simulated = match report.simulated {
-        true => "<p><strong>SIMULATED</strong>: calibrated by logs of software devices.</p>",
+        true => "<p><strong>SIMULATED</strong>: calibrated by logs of simulated devices.</p>",
         false => "",
     };
     let lasers: Vec<[f64; 2]> = report

@@ -187,11 +187,11 @@ pub(super) fn run(
     conclude(steps, report)
 }
 
-/// Refuses software devices, and questions without a terminal.
+/// Refuses simulated devices, and questions without a terminal.
 fn check_arguments(arguments: &Doctor, device: &Device) -> Result<(), Failure> {
     let (message, help) = if profile::simulated(device) {
         (
-            "the bring-up needs a drive of its own, not the software devices of --device sim",
+            "the bring-up needs a drive of its own, not the simulated devices of --device sim",
             "name the drive with --device; velomotion firmware-sim is one to practise with",
         )
     } else if !arguments.yes && !std::io::stdin().is_terminal() {

@@ -29,7 +29,7 @@ pub(super) fn check(config: &Config, (name, device): (String, Device)) -> Vec<Fi
         return vec![finding(
             format!("device {name}"),
             Verdict::Ok,
-            "software devices: nothing to open",
+            "simulated devices: nothing to open",
         )];
     }
     let lidar = format!("lidar of {name}");

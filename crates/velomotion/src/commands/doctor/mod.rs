@@ -197,7 +197,7 @@ fn profiles(config: &Config, chosen: &str, interfaces: &[CanInterface]) -> Vec<F
     for (name, device) in &config.device.profiles {
         let what = format!("[device.{name}]");
         let mut found = match (&device.kind, &device.port) {
-            (DeviceKind::Sim, _) => finding(what, Verdict::Ok, "software devices"),
+            (DeviceKind::Sim, _) => finding(what, Verdict::Ok, "simulated devices"),
             (DeviceKind::Can, _) => match &device.interface {
                 Some(name) => can_profile(what, name, interfaces),
                 None => finding(what, Verdict::Problem, "no interface configured")

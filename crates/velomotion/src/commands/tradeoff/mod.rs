@@ -3,7 +3,7 @@
 //! `analysis::tradeoff` has tables and pages; the study and the files are here. Studies behind the
 //! program's own choices are in the crate `studies`.
 
-mod overview;
+mod scan_speed;
 mod text;
 
 use std::path::{Path, PathBuf};
@@ -29,7 +29,7 @@ const BOOK: Book<'_> = Book {
 /// # Errors
 /// [`Kind::Usage`] for a file that exists; [`Kind::Incomplete`] if the study or a file fails.
 pub fn run(arguments: &cli::Tradeoff, common: &Common) -> Result<CommandOutput, Failure> {
-    let study = overview::SCAN_SPEED;
+    let study = scan_speed::SCAN_SPEED;
     prepare(arguments, study.name)?;
     let effort = if arguments.quick {
         Effort::Quick

@@ -4,7 +4,7 @@ use protocol::canopen::nmt::NmtCommand;
 use protocol::epos2::DeviceError;
 
 use super::Bus;
-use crate::epos2::NodeConfig;
+use crate::epos2::SimulatedDriveConfig;
 
 #[test]
 fn errors_and_their_end_are_sent() {
@@ -49,7 +49,7 @@ fn a_stopped_node_reports_errors_later_and_one_without_identifier_never() {
 
 #[test]
 fn the_power_on_fault_follows_the_boot_up_message() {
-    let mut bus = Bus::of(NodeConfig::default());
+    let mut bus = Bus::of(SimulatedDriveConfig::default());
     assert_eq!(bus.read(0x1003, 1), 0x8120);
     bus.nmt(NmtCommand::ResetNode);
     let ids: std::vec::Vec<_> = bus.take().into_iter().map(|(id, _)| id).collect();

@@ -150,7 +150,7 @@ fn guarding_requests_are_answered_with_a_toggle() {
     assert_eq!(bus.take(), [], "heartbeat excludes guarding");
 }
 
-/// A unit in motion, guarded every 40 ms with a life time of 3 x 40 ms and this reaction.
+/// A drive in motion, guarded every 40 ms with a life time of 3 x 40 ms and this reaction.
 fn guarded(option: u32) -> Bus {
     let mut bus = Bus::new();
     bus.write(0x100C, 0, 40);

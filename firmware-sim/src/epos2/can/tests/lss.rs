@@ -7,18 +7,18 @@ use protocol::canopen::nmt::NmtCommand;
 use protocol::epos2::DeviceError;
 
 use super::Bus;
-use crate::epos2::{NodeConfig, UnitIdentity};
+use crate::epos2::{SimulatedDriveConfig, UnitIdentity};
 
 const SERIAL: u32 = 0x1234_5678;
 
 fn stopped() -> Bus {
-    let mut bus = Bus::of(NodeConfig {
+    let mut bus = Bus::of(SimulatedDriveConfig {
         fault_at_power_on: DeviceError::NONE,
         identity: UnitIdentity {
             serial_number: SERIAL.into(),
             ..UnitIdentity::default()
         },
-        ..NodeConfig::default()
+        ..SimulatedDriveConfig::default()
     });
     bus.nmt(NmtCommand::Stop);
     bus.take();

@@ -1,4 +1,4 @@
-//! The unit as seen by a master on its bus.
+//! The drive as seen by a master on its bus.
 
 extern crate std;
 use std::vec::Vec;
@@ -15,14 +15,14 @@ use protocol::epos2::DeviceError;
 use protocol::epos2::objects::Address;
 
 use super::CanServer;
-use crate::epos2::{Node, NodeConfig};
+use crate::epos2::{SimulatedDrive, SimulatedDriveConfig};
 
 /// Identifier and data.
 type Frames = Vec<(u16, Vec<u8>)>;
 
-/// A unit and its bus.
+/// A drive and its bus.
 struct Bus {
-    node: Node,
+    node: SimulatedDrive,
     server: CanServer,
     received: Frames,
 }
@@ -33,18 +33,18 @@ fn note(received: &mut Frames, frame: &CanFrame) {
 }
 
 impl Bus {
-    /// A unit after power-on whose boot-up message has been received.
+    /// A drive after power-on whose boot-up message has been received.
     fn new() -> Self {
-        Self::of(NodeConfig {
+        Self::of(SimulatedDriveConfig {
             fault_at_power_on: DeviceError::NONE,
             initial_position: 0,
-            ..NodeConfig::default()
+            ..SimulatedDriveConfig::default()
         })
     }
 
-    fn of(config: NodeConfig) -> Self {
+    fn of(config: SimulatedDriveConfig) -> Self {
         let mut bus = Self {
-            node: Node::new(config),
+            node: SimulatedDrive::new(config),
             server: CanServer::new(),
             received: Vec::new(),
         };

@@ -6,7 +6,7 @@ use std::vec::Vec;
 use proptest::prelude::*;
 use protocol::canopen::nmt::NmtCommand;
 use protocol::canopen::sdo::{SdoResponse, SdoTransfer, TransferError, TransferStep};
-use protocol::epos2::CommError;
+use protocol::epos2::AbortCode;
 use protocol::epos2::objects::{self, Address};
 
 use super::Bus;
@@ -20,10 +20,10 @@ impl Bus {
         answers[0].as_slice().try_into().unwrap()
     }
 
-    fn abort_code(&mut self, request: [u8; 8]) -> CommError {
+    fn abort_code(&mut self, request: [u8; 8]) -> AbortCode {
         let answer = self.sdo(request);
         assert_eq!(answer[0], 0x80);
-        CommError(u32::from_le_bytes([
+        AbortCode(u32::from_le_bytes([
             answer[4], answer[5], answer[6], answer[7],
         ]))
     }
@@ -118,20 +118,20 @@ fn refusals_have_their_abort_codes() {
         [0x40, low, high, sub, 0, 0, 0, 0]
     };
     for (request, code) in [
-        (read(0x5000, 0), CommError::NO_OBJECT),
-        (read(0x6041, 1), CommError::NO_SUB),
-        (read(0x20C1, 0), CommError::WRITE_ONLY),
-        ([0x2B, 0x41, 0x60, 0, 0, 0, 0, 0], CommError::READ_ONLY),
-        ([0x23, 0x40, 0x60, 0, 6, 0, 0, 0], CommError::TOO_LONG),
-        ([0x2B, 0x7A, 0x60, 0, 6, 0, 0, 0], CommError::TOO_SHORT),
-        ([0x23, 0x7F, 0x60, 0, 0xA9, 0x61, 0, 0], CommError::TOO_HIGH),
-        ([0x2F, 0x60, 0x60, 0, 42, 0, 0, 0], CommError::RANGE),
-        ([0x21, 0x7A, 0x60, 0, 5, 0, 0, 0], CommError::TOO_LONG),
-        ([0x21, 0x41, 0x60, 0, 2, 0, 0, 0], CommError::READ_ONLY),
+        (read(0x5000, 0), AbortCode::NO_OBJECT),
+        (read(0x6041, 1), AbortCode::NO_SUB),
+        (read(0x20C1, 0), AbortCode::WRITE_ONLY),
+        ([0x2B, 0x41, 0x60, 0, 0, 0, 0, 0], AbortCode::READ_ONLY),
+        ([0x23, 0x40, 0x60, 0, 6, 0, 0, 0], AbortCode::TOO_LONG),
+        ([0x2B, 0x7A, 0x60, 0, 6, 0, 0, 0], AbortCode::TOO_SHORT),
+        ([0x23, 0x7F, 0x60, 0, 0xA9, 0x61, 0, 0], AbortCode::TOO_HIGH),
+        ([0x2F, 0x60, 0x60, 0, 42, 0, 0, 0], AbortCode::RANGE),
+        ([0x21, 0x7A, 0x60, 0, 5, 0, 0, 0], AbortCode::TOO_LONG),
+        ([0x21, 0x41, 0x60, 0, 2, 0, 0, 0], AbortCode::READ_ONLY),
         // Segments without a transfer; block transfer.
-        ([0x60, 0, 0, 0, 0, 0, 0, 0], CommError::COMMAND),
-        ([0x01, 0, 0, 0, 0, 0, 0, 0], CommError::COMMAND),
-        ([0xA0, 8, 0x10, 0, 0, 0, 0, 0], CommError::COMMAND),
+        ([0x60, 0, 0, 0, 0, 0, 0, 0], AbortCode::COMMAND),
+        ([0x01, 0, 0, 0, 0, 0, 0, 0], AbortCode::COMMAND),
+        ([0xA0, 8, 0x10, 0, 0, 0, 0, 0], AbortCode::COMMAND),
     ] {
         assert_eq!(bus.abort_code(request), code, "{request:02X?}");
         // Segments without a transfer and their aborts name 0000:00.
@@ -145,17 +145,17 @@ fn a_wrong_toggle_a_new_transfer_and_an_abort_end_a_transfer() {
     bus.sdo([0x40, 8, 0x10, 0, 0, 0, 0, 0]);
     assert_eq!(
         bus.abort_code([0x70, 0, 0, 0, 0, 0, 0, 0]),
-        CommError::TOGGLE
+        AbortCode::TOGGLE
     );
     assert_eq!(
         bus.abort_code([0x60, 0, 0, 0, 0, 0, 0, 0]),
-        CommError::COMMAND
+        AbortCode::COMMAND
     );
     bus.sdo([0x40, 8, 0x10, 0, 0, 0, 0, 0]);
     bus.sdo([0x40, 0x41, 0x60, 0, 0, 0, 0, 0]);
     assert_eq!(
         bus.abort_code([0x60, 0, 0, 0, 0, 0, 0, 0]),
-        CommError::COMMAND
+        AbortCode::COMMAND
     );
     bus.sdo([0x21, 0x7A, 0x60, 0, 4, 0, 0, 0]);
     bus.take();
@@ -163,18 +163,18 @@ fn a_wrong_toggle_a_new_transfer_and_an_abort_end_a_transfer() {
     assert_eq!(bus.take(), []);
     assert_eq!(
         bus.abort_code([0x0B, 1, 2, 0, 0, 0, 0, 0]),
-        CommError::COMMAND
+        AbortCode::COMMAND
     );
     // Fewer and more bytes than announced.
     bus.sdo([0x21, 0x7A, 0x60, 0, 4, 0, 0, 0]);
     assert_eq!(
         bus.abort_code([0x0B, 1, 2, 0, 0, 0, 0, 0]),
-        CommError::TOO_SHORT
+        AbortCode::TOO_SHORT
     );
     bus.sdo([0x21, 0x7A, 0x60, 0, 4, 0, 0, 0]);
     assert_eq!(
         bus.abort_code([0x05, 1, 2, 3, 4, 5, 0, 0]),
-        CommError::TOO_LONG
+        AbortCode::TOO_LONG
     );
     assert_eq!(bus.read(0x607A, 0), 0);
 }
