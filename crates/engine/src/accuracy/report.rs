@@ -57,7 +57,7 @@ pub struct LaserNoise {
 #[derive(Clone, Debug, Serialize, ToSchema)]
 #[non_exhaustive]
 pub struct ResidualGroup {
-    /// The quantity, with its drive.
+    /// The quantity, with its unit.
     pub by: String,
     /// Its bins.
     pub bins: Vec<ResidualReport>,

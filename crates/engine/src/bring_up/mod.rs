@@ -36,7 +36,7 @@ pub enum Judgement {
 pub struct BringUpResult {
     /// What was measured.
     pub name: String,
-    /// The value with its drive.
+    /// The value with its unit.
     pub value: String,
     /// Judgement.
     pub judgement: Judgement,

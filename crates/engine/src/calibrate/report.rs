@@ -50,7 +50,7 @@ pub struct LogReport {
     pub shots: usize,
 }
 
-/// A parameter, in the drive that its name states.
+/// A parameter, in the unit that its name states.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 #[non_exhaustive]
 pub struct ParameterReport {
