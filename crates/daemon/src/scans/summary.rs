@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use engine::failure::Kind;
 use engine::service::scan_record::{ScanRecord, ScanState};
 
 /// The summary of a scan in `place`; `None` for a complete scan or one under way.
@@ -19,11 +20,22 @@ pub(super) fn of(record: &ScanRecord, place: &Path, has_log: bool) -> Option<Str
     let cause = record.cause.as_ref().or(record.why.as_ref());
     let what = cause.map_or("", |cause| &cause.message);
     let help = cause.and_then(|cause| cause.help.as_deref());
-    let mut all = vec![sentence(what), left.to_owned()];
+    let mut all = vec![sentence(what)];
+    all.extend(last_sweep(record));
+    all.push(left.to_owned());
     all.extend(sentences(help.unwrap_or_default()));
     all.extend(record.no_cloud.as_deref().map(sentence));
     all.retain(|text| !text.is_empty());
     Some(all.join(" ").replace(&format!("{}/", place.display()), ""))
+}
+
+/// Where the last sweep of a stopped scan ended, as its report says.
+fn last_sweep(record: &ScanRecord) -> Option<String> {
+    let cause = record.cause.as_ref().or(record.why.as_ref())?;
+    let sweeps = record.report.as_ref()?.get("sweeps")?.as_array()?;
+    let to_deg = sweeps.last()?.get("to_deg")?.as_f64()?;
+    let stopped = record.state == ScanState::Partial && cause.kind == Kind::Interrupted;
+    stopped.then(|| format!("Sweep {} ended at {to_deg:.2} deg.", sweeps.len()))
 }
 
 /// The help, one sentence per line.
@@ -64,7 +76,7 @@ mod tests {
     use super::*;
     use crate::scans::{CLOUD, LOG};
     use engine::capture::run::{self, Outcome};
-    use engine::failure::{Failure, Kind};
+    use engine::failure::Failure;
     use engine::service::scan_record::ScanHead;
 
     const PLACE: &str = "/data/my scans/hall";
@@ -125,6 +137,17 @@ mod tests {
         assert_eq!(
             describe(ScanState::Partial, stopped(), false, true),
             "Stopped by the user. What was captured is kept."
+        );
+        let mut partial = record(ScanState::Partial, false);
+        partial.why = Some(stopped());
+        let sweeps = [
+            serde_json::json!({"to_deg": -45.0}),
+            serde_json::json!({"to_deg": -12.344}),
+        ];
+        partial.report = Some(serde_json::json!({ "sweeps": sweeps }));
+        assert_eq!(
+            of(&partial, Path::new(PLACE), true).unwrap(),
+            "Stopped by the user. Sweep 2 ended at -12.34 deg. What was captured is kept."
         );
         assert_eq!(
             without_cloud(None, full(), true).0,

@@ -48,7 +48,7 @@ const status = () => ({
     state: mode === "fault" ? "fault" : mode === "absent" ? "absent" : "connected",
     problem: mode === "fault" ? { message: "the drive reports 8611: following error", help: "see whether something holds the platform; then clear the fault and home" }
       : mode === "absent" ? { message: "no drive found yet: looking for an EPOS2 (USB 0403:A8B0) with a serial port (serial ports: none)", help: "plug the EPOS2 in and switch it on: it is connected as soon as it is there\nvelomotion doctor lists what is there; a drive that is not on USB needs a [device.NAME] of the configuration", kind: "no-device" } : null,
-    port: "/dev/pts/4", link: "usb", cia402: mode === "fault" ? "Fault" : mode === "live" ? "Operation Enabled" : "Switch On Disabled", referenced: true,
+    port: "/dev/pts/4", link: "usb", cia402: mode === "fault" ? "fault" : mode === "live" ? "operation enabled" : "switch-on disabled", referenced: true,
     angle_deg: mode === "absent" ? null : angle, speed_deg_s: mode === "live" ? -5.625 : 0, faults: mode === "fault" ? [{ code: "8611", meaning: "following error" }] : [],
   },
   lidar: { state: "connected", problem: null, model: "VLP-16", return_mode: "strongest", rpm: 600, received: (packets += 754), packets_per_s: 753 + 2 * Math.random(), lost_packets: 0, dropped_by_kernel: 0 },

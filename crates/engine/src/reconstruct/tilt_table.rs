@@ -66,7 +66,7 @@ fn angle_table(path: &Path) -> Result<AngleTable, Failure> {
     })
 }
 
-/// Whether no column of a header has another drive: `time,angle` has none.
+/// Whether no column of a header has another unit: `time,angle` has none.
 fn has_units(header: &str) -> bool {
     let units = ["s", "deg"];
     header.split([',', ';']).zip(units).all(|(name, unit)| {
