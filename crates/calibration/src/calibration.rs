@@ -64,6 +64,8 @@ pub struct CalibrationEvidence {
     pub shots: usize,
     /// Squared residuals per degree of freedom.
     pub chi2: f64,
+    /// The base of each log.
+    pub bases: Vec<BaseEvidence>,
     /// Range noise of each laser, metres.
     pub noise_m: Vec<f64>,
     /// Mean and root mean square of each laser's residuals before, metres.
@@ -74,6 +76,20 @@ pub struct CalibrationEvidence {
     pub rms_m: [f64; 2],
     /// That of each surface element.
     pub patches_m: [Vec<f64>; 2],
+}
+
+/// What a scan says of the motion of its base.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct BaseEvidence {
+    /// Whether it is taken to stand, but for a creep of 0.02 mm/s.
+    pub stands: bool,
+    /// Chi-squared of the drift by one step from a base that stands.
+    pub chi2: f64,
+    /// Free parts of the drift.
+    pub(crate) parts: usize,
+    /// A slower drift may be unseen, metres per second, also of points at 20 m.
+    pub unseen_m_s: f64,
 }
 
 /// A calibration that the scans do not support. Nothing may be applied.

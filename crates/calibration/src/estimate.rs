@@ -5,8 +5,8 @@ mod stage_two;
 use cloud::mount::Mount;
 
 use crate::calibration::{
-    CHI2, Calibration, CalibrationEvidence, CalibrationRefusal, MAX_LOOPS, MIN_PATCHES,
-    ParameterEstimate,
+    BaseEvidence, CHI2, Calibration, CalibrationEvidence, CalibrationRefusal, MAX_LOOPS,
+    MIN_PATCHES, ParameterEstimate,
 };
 use crate::equations::{Equations, Residuals, ShotWeights};
 use crate::linear::{Cholesky, Matrix};
@@ -57,9 +57,16 @@ const DRIFT_MM_S: f64 = 1.0;
 const DRIFT_AT_M: f64 = 20.0;
 /// How a base that stands may creep, one standard deviation: 72 mm in an hour.
 const CREEP_M_S: f64 = 2e-5;
-/// A base stands if chi-squared of its six drifts is at most this: it is larger for 1 % of the
-/// bases that stand.
-const STANDING: f64 = 16.8;
+/// Chi-squared that the drift of a base that stands exceeds with a probability of 1 %, by the
+/// number of its free parts.
+const STANDING: [f64; 7] = [0.0, 6.6, 9.2, 11.3, 13.3, 15.1, 16.8];
+/// Standard deviations of a drift that the test surely finds.
+const FOUND_SD: f64 = 4.0;
+/// A scan that would not show a drift of this speed, or of 5 mm/s at 5 m (0.06 deg/s), does not
+/// show that its base stands.
+const POWER_M_S: f64 = 0.02;
+/// How a base may then drift, one standard deviation.
+const UNSEEN_M_S: f64 = 1e-3;
 
 /// A solution on the elements of the last loop.
 struct Solution {
@@ -67,11 +74,32 @@ struct Solution {
     covariance: Matrix,
     /// The last equations, and the values before their step.
     equations: Equations,
-    before: Vec<f64>,
+    values_before: Vec<f64>,
     loops: usize,
     moves: Vec<f64>,
     noise_m: Vec<f64>,
     priors: Vec<f64>,
+}
+
+/// A step of Gauss-Newton from given values.
+pub(crate) struct GaussNewtonStep {
+    pub step: Vec<f64>,
+    /// The covariance by the equations.
+    pub formal: Matrix,
+    /// The larger of that and the one by the scatter of the elements' gradients.
+    pub covariance: Matrix,
+}
+
+impl BaseEvidence {
+    /// Whether the scan shows that a base taken to stand moves.
+    fn is_moving(&self) -> bool {
+        self.stands && self.chi2 > STANDING[self.parts]
+    }
+
+    /// Whether the scan would not show it.
+    fn is_unseen(&self) -> bool {
+        self.stands && !self.is_moving() && self.unseen_m_s > POWER_M_S
+    }
 }
 
 /// One calibration in progress.
@@ -80,7 +108,7 @@ pub(crate) struct Estimator<'a> {
     pub layout: Layout,
     fixed: Fixed,
     parameters: Vec<Parameter>,
-    /// Standard deviations before the scan, where any base may move; 0 for fixed parameters.
+    /// Standard deviations before the scan, those of bases that may move; 0 for fixed parameters.
     pub priors: Vec<f64>,
     pub start: Vec<f64>,
     noise_m: Vec<f64>,
@@ -113,13 +141,13 @@ pub fn calibrate(
             known: known.chain(["laser_".into(), "drift_".into()]).collect(),
         });
     }
-    let before = estimator.residuals(&estimator.start)?;
-    let mut solution = estimator.first(progress)?;
+    let residuals = estimator.residuals(&estimator.start)?;
+    let (mut solution, bases) = estimator.solve_first(progress)?;
     let second = estimator.second_start();
     let second = estimator.solve(&second, &solution.priors, Some(&solution), progress)?;
     estimator.compare(&solution, &second.values)?;
     estimator.flatten(&mut solution)?;
-    Ok(estimator.result(solution, before))
+    Ok(estimator.result(solution, residuals, bases))
 }
 
 impl<'a> Estimator<'a> {
@@ -200,42 +228,64 @@ impl<'a> Estimator<'a> {
         Ok(self.equations(&patches, values, &self.noise_m))
     }
 
-    /// The solution from the first start: of bases that stand, where the residuals do not say that
-    /// they move. A drift that no base has would be a part of delay, scale and elevations.
-    fn first(
+    /// The solution from the first start, of bases that stand where the scans show that they do: a
+    /// drift that no base has would be a part of delay, scale and elevations.
+    fn solve_first(
         &self,
         progress: &mut dyn FnMut(usize, f64) -> bool,
-    ) -> Result<Solution, CalibrationRefusal> {
-        let mut priors = self.priors.clone();
-        for log in 0..self.layout.logs {
-            let first = self.layout.drift(log);
-            for (axis, prior) in priors[first..first + 6].iter_mut().enumerate() {
-                let lever = if axis < 3 { 1.0 } else { DRIFT_AT_M };
-                *prior = prior.min(CREEP_M_S / lever);
-            }
-        }
-        let standing = self.solve(&self.start, &priors, None, progress)?;
+    ) -> Result<(Solution, Vec<BaseEvidence>), CalibrationRefusal> {
         let logs = 0..self.layout.logs;
-        let moved = logs.map(|log| self.moved(&standing, log));
-        let moved: Vec<f64> = moved.collect::<Result<_, _>>()?;
-        if moved.iter().all(|chi2| *chi2 <= STANDING) {
-            self.settled(&standing)?;
-            self.fits(&standing)?;
-            return Ok(standing);
+        let mut priors = self.priors.clone();
+        for log in logs.clone() {
+            self.limit_drift(&mut priors, log, CREEP_M_S);
         }
-        for log in (0..moved.len()).filter(|&log| moved[log] > STANDING) {
-            let drift = self.layout.drift(log)..self.layout.drift(log) + 6;
-            priors[drift.clone()].copy_from_slice(&self.priors[drift]);
-        }
-        let solution = self.solve(&self.start, &priors, None, progress)?;
-        self.settled(&solution)?;
-        for (log, chi2) in moved.into_iter().enumerate() {
-            if chi2 > DRIFT_SD * DRIFT_SD {
-                self.stands(&solution, log)?;
+        let mut bases = vec![
+            BaseEvidence {
+                stands: true,
+                ..BaseEvidence::default()
+            };
+            logs.len()
+        ];
+        loop {
+            let solution = self.solve(&self.start, &priors, None, progress);
+            let mut freed = Vec::new();
+            if let Ok(solution) = &solution {
+                for (log, base) in bases.iter_mut().enumerate().filter(|(_, base)| base.stands) {
+                    *base = self.base(solution, log)?;
+                }
+                // The base that moves most first: its drift may seem to be that of another.
+                let moving = logs.clone().filter(|&log| bases[log].is_moving());
+                let most = moving.max_by(|&a, &b| bases[a].chi2.total_cmp(&bases[b].chi2));
+                freed.extend(most.map(|log| (log, f64::INFINITY)));
+                let unseen = logs.clone().filter(|&log| bases[log].is_unseen());
+                freed.extend(unseen.map(|log| (log, UNSEEN_M_S)));
+            } else if !matches!(solution, Err(CalibrationRefusal::Interrupted)) {
+                let standing = logs.clone().filter(|&log| bases[log].stands);
+                freed.extend(standing.map(|log| (log, f64::INFINITY)));
+            }
+            if freed.is_empty() {
+                let solution = solution?;
+                self.check_settled(&solution)?;
+                for (log, base) in bases.iter().enumerate().filter(|(_, base)| !base.stands) {
+                    self.check_drift(&solution, log, base)?;
+                }
+                self.check_fit(&solution)?;
+                return Ok((solution, bases));
+            }
+            for (log, most_m_s) in freed {
+                bases[log].stands = false;
+                self.limit_drift(&mut priors, log, most_m_s);
             }
         }
-        self.fits(&solution)?;
-        Ok(solution)
+    }
+
+    /// Sets the standard deviations of a log's drift before the scan: those of any base, but at
+    /// most this speed, also of points at 20 m.
+    fn limit_drift(&self, priors: &mut [f64], log: usize, most_m_s: f64) {
+        for (axis, index) in self.layout.drift_of(log).enumerate() {
+            let lever = if axis < 3 { 1.0 } else { DRIFT_AT_M };
+            priors[index] = self.priors[index].min(most_m_s / lever);
+        }
     }
 
     /// Loops from `start` until nothing moves, or until the values agree with another solution.
@@ -259,15 +309,17 @@ impl<'a> Estimator<'a> {
             }
             let begin = values.clone();
             let mut last = None;
-            let mut before = Vec::new();
+            let mut values_before = Vec::new();
             let steps = match patches.scale > 1.0 {
                 true => COARSE_STEPS,
                 false => FINE_STEPS,
             };
             for _ in 0..steps {
                 let equations = self.equations(&patches, &values, &noise_m);
-                let (step, covariance) = self.step(&equations, &values, priors)?;
-                before.clone_from(&values);
+                let GaussNewtonStep {
+                    step, covariance, ..
+                } = self.step(&equations, &values, priors)?;
+                values_before.clone_from(&values);
                 for (value, step) in values.iter_mut().zip(step) {
                     *value += step;
                 }
@@ -297,7 +349,7 @@ impl<'a> Estimator<'a> {
                     values,
                     covariance,
                     equations,
-                    before,
+                    values_before,
                     loops,
                     moves,
                     noise_m,
@@ -308,14 +360,13 @@ impl<'a> Estimator<'a> {
         Err(CalibrationRefusal::Singular)
     }
 
-    /// A step of Gauss-Newton with the priors, and the covariance of the parameters: the larger of
-    /// the formal one and that by the scatter of the elements' gradients.
+    /// A step of Gauss-Newton with the priors, and the covariance of the parameters.
     pub fn step(
         &self,
         equations: &Equations,
         values: &[f64],
         priors: &[f64],
-    ) -> Result<(Vec<f64>, Matrix), CalibrationRefusal> {
+    ) -> Result<GaussNewtonStep, CalibrationRefusal> {
         let size = self.layout.len();
         // In units of the priors, which keeps the matrix well scaled.
         let unit = |i: usize| priors[i];
@@ -356,6 +407,7 @@ impl<'a> Estimator<'a> {
             .collect();
         let inverse = factor.inverse();
         let mut covariance = inverse.clone();
+        let mut formal = inverse.clone();
         let robust = sandwich(&inverse, &scatter);
         for i in 0..size {
             for j in 0..size {
@@ -367,9 +419,14 @@ impl<'a> Estimator<'a> {
                     0.0
                 };
                 *covariance.at_mut(i, j) *= units;
+                *formal.at_mut(i, j) *= if free { unit(i) * unit(j) } else { 0.0 };
             }
         }
-        Ok((step, covariance))
+        Ok(GaussNewtonStep {
+            step,
+            formal,
+            covariance,
+        })
     }
 
     /// Whether a parameter must settle and agree. A drift along all surfaces, as over a bare floor,
@@ -379,7 +436,7 @@ impl<'a> Estimator<'a> {
     }
 
     /// Refuses parameters that still move.
-    fn settled(&self, solution: &Solution) -> Result<(), CalibrationRefusal> {
+    fn check_settled(&self, solution: &Solution) -> Result<(), CalibrationRefusal> {
         let moves = solution.moves.iter().copied().enumerate();
         match moves.max_by(|a, b| a.1.total_cmp(&b.1)) {
             Some((index, moves_sd)) if moves_sd >= STARTS_AGREE_SD => {
@@ -392,15 +449,22 @@ impl<'a> Estimator<'a> {
         }
     }
 
-    /// Refuses a base that moves.
-    fn stands(&self, solution: &Solution, log: usize) -> Result<(), CalibrationRefusal> {
-        let first = self.layout.drift(log);
-        for index in first..first + 6 {
+    /// Refuses a base that moves. Over a bare floor a drift along it follows the noise of the
+    /// elements' normals from step to step, beyond its standard deviation, but one step from a base
+    /// that stands finds none.
+    fn check_drift(
+        &self,
+        solution: &Solution,
+        log: usize,
+        base: &BaseEvidence,
+    ) -> Result<(), CalibrationRefusal> {
+        let drift = self.layout.drift_of(log);
+        for (axis, index) in drift.enumerate() {
             let sd = solution.covariance.at(index, index).sqrt();
             let value = solution.values[index].abs();
-            let lever = if index < first + 3 { 1.0 } else { DRIFT_AT_M };
+            let lever = if axis < 3 { 1.0 } else { DRIFT_AT_M };
             let (mm_s, sds) = (value * lever * 1e3, value / sd);
-            if sds > DRIFT_SD && mm_s > DRIFT_MM_S {
+            if base.chi2 > DRIFT_SD * DRIFT_SD && sds > DRIFT_SD && mm_s > DRIFT_MM_S {
                 let log = log + 1;
                 return Err(CalibrationRefusal::Drift { log, mm_s, sds });
             }
@@ -409,7 +473,7 @@ impl<'a> Estimator<'a> {
     }
 
     /// Refuses residuals that the model does not describe.
-    fn fits(&self, solution: &Solution) -> Result<(), CalibrationRefusal> {
+    fn check_fit(&self, solution: &Solution) -> Result<(), CalibrationRefusal> {
         let chi2 = self.chi2(&solution.equations);
         match (CHI2[0]..=CHI2[1]).contains(&chi2) {
             true => Ok(()),
@@ -417,17 +481,21 @@ impl<'a> Estimator<'a> {
         }
     }
 
-    /// Chi-squared of the drift of a log that one step finds from a base that stands, where it may
-    /// be any (Wald's test). Over a bare floor it stays small, though steps that follow one another
-    /// drift along the floor with the noise of the elements' normals.
-    fn moved(&self, standing: &Solution, log: usize) -> Result<f64, CalibrationRefusal> {
+    /// Whether the base of a log stands, by the drift that one step from a base that stands finds
+    /// where it may be any (Wald's test). The covariance is the formal one: the scatter of the
+    /// elements' gradients would contain the drift.
+    fn base(&self, standing: &Solution, log: usize) -> Result<BaseEvidence, CalibrationRefusal> {
         let mut priors = standing.priors.clone();
-        let drift = self.layout.drift(log)..self.layout.drift(log) + 6;
+        let drift = self.layout.drift_of(log);
         priors[drift.clone()].copy_from_slice(&self.priors[drift.clone()]);
         let free: Vec<usize> = drift.filter(|&index| priors[index] > 0.0).collect();
-        let (step, covariance) = self.step(&standing.equations, &standing.before, &priors)?;
+        let GaussNewtonStep {
+            step,
+            formal: covariance,
+            ..
+        } = self.step(&standing.equations, &standing.values_before, &priors)?;
         let sd = |index: usize| covariance.at(index, index).sqrt();
-        let found = |index: usize| (standing.before[index] + step[index]) / sd(index);
+        let found = |index: usize| (standing.values_before[index] + step[index]) / sd(index);
         let mut correlation = Matrix::zero(free.len());
         for (i, &row) in free.iter().enumerate() {
             for (j, &column) in free.iter().enumerate() {
@@ -435,9 +503,21 @@ impl<'a> Estimator<'a> {
             }
         }
         let factor = Cholesky::new(&correlation).ok_or(CalibrationRefusal::Singular)?;
-        let mut root: Vec<f64> = free.into_iter().map(found).collect();
+        let mut root: Vec<f64> = free.iter().map(|&index| found(index)).collect();
         factor.forward(&mut root);
-        Ok(root.iter().map(|part| part * part).sum())
+        let first = self.layout.drift(log);
+        let speeds = free.iter().map(|&index| {
+            let lever = if index < first + 3 { 1.0 } else { DRIFT_AT_M };
+            sd(index) * lever
+        });
+        Ok(BaseEvidence {
+            stands: true,
+            // Noise that is larger than stated is no drift.
+            chi2: root.iter().map(|part| part * part).sum::<f64>()
+                / self.chi2(&standing.equations).max(1.0),
+            parts: free.len(),
+            unseen_m_s: FOUND_SD * speeds.fold(0.0, f64::max),
+        })
     }
 
     /// Refuses results that depend on the start.
@@ -464,7 +544,12 @@ impl<'a> Estimator<'a> {
         equations.squares / (equations.freedom - free).max(1.0)
     }
 
-    fn result(&self, solution: Solution, before: Equations) -> Calibration {
+    fn result(
+        &self,
+        solution: Solution,
+        before: Equations,
+        bases: Vec<BaseEvidence>,
+    ) -> Calibration {
         let Solution {
             values,
             covariance,
@@ -518,6 +603,7 @@ impl<'a> Estimator<'a> {
                 shots: equations.shots,
                 chi2,
                 noise_m,
+                bases,
                 before_m: before.lasers.iter().map(mean_and_rms).collect(),
                 after_m: equations.lasers.iter().map(mean_and_rms).collect(),
                 rms_m: [rms(&before.lasers), rms(&equations.lasers)],

@@ -53,7 +53,9 @@ pub use accuracy::{
     AccuracyStudy, AngleErrors, BinGroup, BudgetBin, KnownCovariance, PointError, ResidualBin,
     StationPair, StudyRequest, SweepPair, study,
 };
-pub use calibration::{Calibration, CalibrationEvidence, CalibrationRefusal, ParameterEstimate};
+pub use calibration::{
+    BaseEvidence, Calibration, CalibrationEvidence, CalibrationRefusal, ParameterEstimate,
+};
 pub use estimate::{CalibrationRequest, calibrate};
 pub use parameters::ParameterKind;
 pub use shots::{NominalLaser, Scan};

@@ -93,6 +93,11 @@ impl Layout {
         DEVICE + 3 * self.lasers + DRIFT * log
     }
 
+    /// The drift of a log.
+    pub const fn drift_of(&self, log: usize) -> Range<usize> {
+        self.drift(log)..self.drift(log) + DRIFT
+    }
+
     pub const fn azimuths(&self) -> Range<usize> {
         self.azimuth(0)..self.azimuth(self.lasers)
     }

@@ -20,7 +20,7 @@ pub(crate) trait Weigh {
 pub(crate) struct SurfacePatch {
     pub log: usize,
     pub frame: Frame,
-    /// Those of all shots of its voxel.
+    /// Coefficients of the fit to all shots of its voxel.
     pub coefficients: Coefficients,
     /// Indices of its shots.
     pub shots: Vec<u32>,

@@ -23,8 +23,8 @@ const MIN_ACROSS: f64 = 0.15;
 const NEWTON_STEPS: usize = 4;
 /// A shorter step is the last: the next would be a hundredth of it, the slope of a curved element.
 const EXACT_M: f64 = 1e-4;
-/// A fit ends when its coefficients change by less, half of a thousandth of its slope away from the
-/// best: a twentieth of what noise of 10 mm leaves uncertain.
+/// A fit ends when its coefficients change by less. The step is taken; what is left is of second
+/// order.
 const FITTED_M: f64 = 5e-4;
 /// Fewest shots of an element.
 pub(crate) const MIN_SHOTS: usize = 12;

@@ -219,9 +219,10 @@ fn a_step_is_that_of_dense_equations_with_numeric_derivatives() {
     }
     let equations = Equations::new(&scans, &patches, layout, &model, &weigh);
     assert_eq!((equations.patches, equations.shots), (16, 1024));
-    let (step, _) = estimator
+    let step = estimator
         .step(&equations, &values, &estimator.priors)
-        .unwrap();
+        .unwrap()
+        .step;
 
     let oracle = Oracle {
         lasers: fixed.lasers.clone(),

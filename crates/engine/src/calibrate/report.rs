@@ -1,6 +1,6 @@
 //! The object of `velomotion calibrate --json`.
 
-use calibration::{Calibration, ParameterEstimate, ParameterKind};
+use calibration::{BaseEvidence, Calibration, ParameterEstimate, ParameterKind};
 use scanner::config::MountConfig;
 use serde::Serialize;
 use utoipa::ToSchema;
@@ -13,6 +13,8 @@ use super::{Calibrated, mount_config};
 pub struct CalibrateReport {
     /// The logs.
     pub logs: Vec<LogReport>,
+    /// The base of each log.
+    pub bases: Vec<BaseReport>,
     /// Model of the lidar.
     pub model: String,
     /// Whether the devices were simulated.
@@ -48,6 +50,18 @@ pub struct LogReport {
     pub path: String,
     /// Shots with a return in its sweeps.
     pub shots: usize,
+}
+
+/// What a log says of the motion of its base.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+#[non_exhaustive]
+pub struct BaseReport {
+    /// Whether it is taken to stand: the residuals show no drift.
+    pub stands: bool,
+    /// Chi-squared of its drift; of a base that stands at most 16.8 (99 %).
+    pub chi2: f64,
+    /// A slower drift may be unseen, also of points at 20 m, millimetres per second.
+    pub unseen_mm_s: f64,
 }
 
 /// A parameter, in the unit that its name states.
@@ -116,15 +130,21 @@ impl CalibrateReport {
             path: path.display().to_string(),
             shots: *shots,
         });
+        let bases = evidence.bases.iter().map(|base| BaseReport {
+            stands: base.stands,
+            chi2: base.chi2,
+            unseen_mm_s: 1e3 * base.unseen_m_s,
+        });
         Self {
             logs: logs.collect(),
+            bases: bases.collect(),
             model: calibrated.model.name.to_owned(),
             simulated: calibrated.simulated,
             mount: mount_config(&calibration.mount()),
             parameters: calibration
                 .parameters
                 .iter()
-                .map(ParameterReport::new)
+                .map(|estimate| ParameterReport::new(estimate, &evidence.bases))
                 .collect(),
             correlation: correlations(calibration, calibration.parameters.len()),
             residual_mm: BeforeAfter { before, after },
@@ -174,8 +194,12 @@ fn lasers(calibration: &Calibration) -> Vec<LaserResiduals> {
 }
 
 impl ParameterReport {
-    fn new(estimate: &ParameterEstimate) -> Self {
-        let observable = estimate.posterior_over_prior <= DETERMINED;
+    fn new(estimate: &ParameterEstimate, bases: &[BaseEvidence]) -> Self {
+        let stands = match estimate.kind {
+            ParameterKind::Drift(log) => bases.get(log - 1).is_some_and(|base| base.stands),
+            _ => false,
+        };
+        let observable = stands || estimate.posterior_over_prior <= DETERMINED;
         let (correlated_with, correlation) = estimate.correlation.clone().unzip();
         Self {
             name: estimate.name.clone(),
@@ -196,8 +220,7 @@ impl ParameterReport {
 const fn help(kind: ParameterKind) -> &'static str {
     match kind {
         ParameterKind::Delay | ParameterKind::Play => "scan both ways, at two speeds",
-        ParameterKind::Scale => "scan both ways",
-        ParameterKind::Drift(_) => "the residuals show none",
+        ParameterKind::Drift(_) | ParameterKind::Scale => "scan both ways",
         ParameterKind::RippleSin | ParameterKind::RippleCos => {
             "scan more turns of the motor, with surfaces beyond 10 m"
         }

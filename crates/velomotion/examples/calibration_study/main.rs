@@ -105,7 +105,7 @@ fn main() -> Outcome<()> {
     std::fs::create_dir_all(&folder)?;
     match word(0) {
         "errors" => errors(&scenes, seeds, &folder, &["play"])?,
-        "known-scale" => errors(&scenes, seeds, &folder, &["play", "scale", "drift"])?,
+        "known-scale" => errors(&scenes, seeds, &folder, &["play", "scale"])?,
         "recipe" => recipe(&scenes, seeds, &folder)?,
         "starts" => starts(&scenes, seeds, &folder)?,
         "places" => places(seeds, &folder)?,
@@ -129,7 +129,8 @@ fn add(totals: &mut Totals, name: &str, seed: u64, run: &Run, truth: &[(String, 
             let (pooled, worst, of) = totals.add(truth, report);
             let (loops, chi2, patches) = (report.loops, report.chi2, report.patches);
             eprintln!(
-                "{name} {seed}: error / sd {pooled:.2}, worst {worst:.1} {of}, {loops} loops, chi2 {chi2:.3}, {patches} elements"
+                "{name} {seed}: base {:?}, error / sd {pooled:.2}, worst {worst:.1} {of}, {loops} loops, chi2 {chi2:.3}, {patches} elements",
+                report.bases
             );
         }
         Err(message) => {
@@ -380,7 +381,11 @@ fn verdicts(seeds: u64, folder: &Path) -> Outcome<()> {
             let delay = delay_us(&file, seed, &log, scanner.ripple()).unwrap_or(0.0);
             let truth = scanner.values(delay);
             let run = run(&[log], MountConfig::upright(0.06), &["play"]);
-            right += u64::from(run.made.is_ok() == accepted);
+            let is_right = match &run.made {
+                Ok(_) => accepted,
+                Err(message) => !accepted && (!name.contains("moves") || message.contains("moved")),
+            };
+            right += u64::from(is_right);
             add(&mut Totals::default(), name, seed, &run, &truth);
         }
         println!(

@@ -122,6 +122,13 @@ fn text(report: &CalibrateReport) -> String {
         report.residual_mm.before,
         report.residual_mm.after
     ));
+    lines.extend((1..).zip(&report.bases).map(|(number, base)| {
+        let unseen = base.unseen_mm_s;
+        match base.stands {
+            true => format!("log {number}: the base stands: a drift below {unseen:.1} mm/s would not be seen"),
+            false => format!("log {number}: the base may drift, which makes the result less certain: a scan both ways shows it"),
+        }
+    }));
     let mut table = Table::new();
     table.load_style(NOTHING);
     table.set_header(["parameter", "value", "sd", "of prior", "moves at 20 m", ""]);
