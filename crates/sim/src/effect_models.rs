@@ -170,10 +170,13 @@ macro_rules! effects_config {
                 }
             }
 
-            /// Takes the settings of `other` for effects that have none here.
-            pub(crate) fn complete(&mut self, other: Self) {
-                $(if self.$name.settings().is_none() {
-                    self.$name = other.$name;
+            /// Takes the settings of `facts` for effects that have none here, or that are only
+            /// switched on.
+            pub(crate) fn complete(&mut self, facts: Self) {
+                $(match (&mut self.$name, facts.$name) {
+                    (EffectRequest::On(own), EffectRequest::Settings(fact)) => *own = fact,
+                    (own, fact) if own.settings().is_none() => *own = fact,
+                    _ => {}
                 })*
             }
 

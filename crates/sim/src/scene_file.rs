@@ -199,6 +199,7 @@ impl SceneFile {
         let boxes = boxes.map_err(|error| in_file(scene.invalid_value(&stated, &error)))?;
         scene.movers = boxes.and(surroundings.movers);
         scene.config.complete(stated_config);
+        scene.check_empty(&stated).map_err(in_file)?;
         // Settings for estimates; those that nothing calls for go again below.
         let mut estimated = scene.config.clone();
         for name in EffectsConfig::NAMES {
@@ -312,6 +313,38 @@ impl SceneFile {
     }
 
     /// An invalid setting at its place in the file: in `[effects]`, or in the section of a fact.
+    /// Refuses effects that are on with settings that do nothing: fog without a visibility is a
+    /// slip of the pen.
+    fn check_empty(&self, stated: &[StatedFact]) -> Result<(), InvalidValue> {
+        let config = &self.config;
+        for (effect, is_empty, expected) in [
+            (
+                "weather",
+                config.weather.is_empty(),
+                "visibility_m or rain_mm_h",
+            ),
+            (
+                "base_drift",
+                config.base_drift.is_empty(),
+                "velocity_m_s or turn_deg_s",
+            ),
+            (
+                "own_shadow",
+                config.own_shadow.is_empty(),
+                "sectors or below_deg",
+            ),
+        ] {
+            if is_empty {
+                let fact = stated.iter().find(|fact| fact.effect == effect);
+                let table =
+                    fact.map_or_else(|| format!("effects.{effect}"), |fact| fact.path.to_owned());
+                let what = format!("{table}: expected {expected}, got neither");
+                return Err(invalid(table, what));
+            }
+        }
+        Ok(())
+    }
+
     fn invalid_value(&self, stated: &[StatedFact], error: &InvalidSetting) -> InvalidValue {
         let fact = stated.iter().find(|fact| fact.effect == error.effect);
         let is_requested = self.requests.configured().any(|name| name == error.effect);

@@ -17,7 +17,7 @@ pub enum EffectRequest<S> {
     Absent,
     /// `false`.
     Off,
-    /// `true`: the usual settings, in any case.
+    /// `true`: in any case, with the settings of its fact, else the usual ones.
     On(S),
     /// A table: these settings.
     Settings(S),
@@ -31,6 +31,13 @@ impl<S> EffectRequest<S> {
             Self::Absent | Self::Off => None,
             Self::On(settings) | Self::Settings(settings) => Some(settings),
         }
+    }
+}
+
+impl<S: Default + PartialEq> EffectRequest<S> {
+    /// Whether it is on with settings that do nothing: all those of its type that are absent.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.settings().is_some_and(|all| *all == S::default())
     }
 }
 

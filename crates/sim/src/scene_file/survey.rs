@@ -16,6 +16,24 @@ const SHOTS: u32 = 1_000;
 const GOLDEN_DEG: f64 = 137.507_764;
 /// Half the divergence of a VLP-16's beam, along and across the scan (63-9243, appendix F).
 const HALF_BEAM: [f64; 2] = [1.5e-3, 0.75e-3];
+/// Parts of a footprint about its middle, in pairs opposite to each other: the columns and rows of
+/// the effect `divergence`.
+const FOOTPRINT: [[f64; 2]; 14] = [
+    [1.0, 1.0],
+    [-1.0, -1.0],
+    [1.0, -1.0],
+    [-1.0, 1.0],
+    [1.0, 0.0],
+    [-1.0, 0.0],
+    [0.5, 1.0],
+    [-0.5, -1.0],
+    [0.5, -1.0],
+    [-0.5, 1.0],
+    [0.5, 0.0],
+    [-0.5, 0.0],
+    [0.0, 1.0],
+    [0.0, -1.0],
+];
 /// Smallest deviation from a plane that counts as an edge, metres: the noise of a range exceeds it.
 const EDGE_M: f64 = 0.005;
 /// Surfaces closer than this make one return, metres (63-9243, section 6.2).
@@ -132,6 +150,8 @@ impl SceneSurvey {
         weather: Option<&Weather>,
     ) {
         let Some(met) = surfaces.first(origin_m, direction) else {
+            // A pole before the sky that the middle of the beam misses.
+            self.edges += u32::from(surfaces.edge(origin_m, direction, f64::INFINITY).is_some());
             return;
         };
         self.returned += 1;
@@ -202,19 +222,22 @@ impl<'a> Surfaces<'a> {
             .try_normalize()
             .unwrap_or(DVec3::X);
         let up = across.cross(direction);
-        let [x, y] = HALF_BEAM;
-        let corners = [(x, y), (-x, -y), (x, -y), (-x, y)];
-        let ranges_m = corners.map(|(x, y)| {
-            let corner = (direction + x * across + y * up).normalize();
-            self.first(origin_m, corner)
+        let ranges_m = FOOTPRINT.map(|[x, y]| {
+            let [x, y] = [x * HALF_BEAM[0], y * HALF_BEAM[1]];
+            let part = (direction + x * across + y * up).normalize();
+            self.first(origin_m, part)
                 .map_or(f64::INFINITY, |met| met.range_m)
         });
+        if range_m.is_infinite() {
+            let returns = ranges_m.iter().any(|part_m| part_m.is_finite());
+            return returns.then_some(f64::INFINITY);
+        }
         // Over a plane, one over the range is linear in the direction.
         let is_edge = ranges_m.as_chunks::<2>().0.iter().any(|[a, b]| {
             let bent = 0.5 * (1.0 / a + 1.0 / b) - 1.0 / range_m;
             bent.abs() * range_m * range_m > EDGE_M
         });
-        let depths_m = ranges_m.iter().map(|corner_m| (corner_m - range_m).abs());
+        let depths_m = ranges_m.iter().map(|part_m| (part_m - range_m).abs());
         is_edge.then(|| depths_m.fold(0.0, f64::max))
     }
 }

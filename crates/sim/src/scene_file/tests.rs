@@ -293,6 +293,30 @@ fn the_facts_of_a_scene_call_for_its_effects() {
     assert!((300.0..800.0).contains(&lag_mm), "{lag_mm}");
 }
 
+/// `weather = true` beside the fact of a fog once had no fog, without a word.
+#[test]
+fn an_effect_that_is_switched_on_has_the_settings_of_its_fact() {
+    let with = |text: &str| {
+        let motion = "[motion]\nkind = \"fixed\"\nduration_s = 1\n";
+        SceneFile::parse(&format!("scene = \"hall\"\n{motion}{text}"), None, None)
+    };
+    let fog = with("[weather]\nvisibility_m = 20\n[effects]\nweather = true\n").unwrap();
+    assert!(fog.is_forced("weather"));
+    let demand = fog.demand("weather").unwrap();
+    assert!(demand.reason.contains("20 m"), "{demand:?}");
+    for nothing in [
+        "[effects]\nweather = true\n",
+        "[weather]\n",
+        "[base]\n",
+        "[mount]\nshadow = {}\n",
+        "[effects]\nown_shadow = {}\n",
+    ] {
+        let error = with(nothing).unwrap_err();
+        assert!(error.what.contains("got neither"), "{nothing} {error}");
+        assert!(error.line > 4, "{nothing} {error}");
+    }
+}
+
 /// A boom of 40 m that turns by 20 deg, and a fan of 1.2 m that turns many times.
 #[test]
 fn a_turning_object_is_displaced_by_its_own_arm() {
