@@ -242,7 +242,10 @@ fn a_sweep_is_displayed_and_stopped_by_key_and_by_touch() {
             let swept = stopped["report"]["sweeps"][0]["to_deg"].as_f64().unwrap();
             assert!((-44.0..-0.02).contains(&swept), "{stopped}");
             let printed = page.text(".scan .why").await;
-            assert_eq!(printed, "Stopped by the user. What was captured is kept.");
+            let ended = format!(
+                "Stopped by the user. Sweep 1 ended at {swept:.2} deg. What was captured is kept."
+            );
+            assert_eq!(printed, ended);
             let tilt = page.api("tilt").await;
             assert_eq!(tilt["velocity_rpm"], 0, "{tilt}");
         });

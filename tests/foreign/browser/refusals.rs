@@ -155,6 +155,10 @@ fn a_refused_download_is_reported_at_its_scan() {
             // The next download clears it.
             page.choose(".scan [data-role=download]", "ply").await;
             page.until_gone(".scan .wrong").await;
+            // A reload keeps the messages.
+            page.goto(&url).await;
+            page.until_has("#messages", "Download as log: too many downloads at once")
+                .await;
         });
     }
     full.stop(|| true).unwrap();

@@ -9,7 +9,8 @@ use serde_json::{Value, json};
 
 use super::browser::{DESKTOP, Driver, NARROW, PHONE, Page, Screen};
 use super::{
-    ENTER, ESCAPE, TOO_MANY, browser_and_simulator, daemon, simulator, start, until_in_sight, url,
+    ENTER, ESCAPE, TOO_MANY, browser_and_simulator, daemon, ready, simulator, start,
+    until_in_sight, url,
 };
 
 /// Screens of these tests, dark and light.
@@ -365,6 +366,50 @@ fn the_view_of_a_deleted_scan_is_back_with_it() {
         page.until_loaded().await;
         page.until_true("document.querySelector('.scan').ariaCurrent === 'true'")
             .await;
+    });
+    daemon.stop(|| true).unwrap();
+}
+
+/// One button makes both scans of a calibration. A stop ends it: nothing moves on its own later.
+#[test]
+#[ignore = "needs chromium and chromedriver"]
+fn the_two_scans_for_a_calibration_follow_each_other_unless_stopped() {
+    let driver = Driver::start();
+    let folder = tempfile::tempdir().unwrap();
+    let daemon = simulator(folder.path());
+    let url = url(&daemon);
+    let begin = async |page: &Page| {
+        page.run("document.querySelector('#recipe').closest('details').open = true")
+            .await;
+        page.until_true("!document.querySelector('#recipe').disabled")
+            .await;
+        page.click("#recipe").await;
+        page.until_has("#recipe-state", "Scan 1 of 2").await;
+    };
+    driver.test(PHONE, async |page| {
+        ready(&page, &url).await;
+        begin(&page).await;
+        page.until_true("document.querySelector('#stop').dataset.moving === 'true'")
+            .await;
+        page.click("#stop").await;
+        page.until_has("#doing", "Ready").await;
+        assert_eq!(page.text("#recipe-state").await, "");
+        assert_eq!(names(&page).await.len(), 1);
+        begin(&page).await;
+        page.until_has("#recipe-state", "Scan 2 of 2: 10\u{b0}/s")
+            .await;
+        let done = page.until_has("#messages", "velomotion calibrate").await;
+        assert_eq!(page.text("#recipe-state").await, "");
+        let scans = page.api("scans").await;
+        let scans = scans["scans"].as_array().unwrap();
+        assert_eq!(scans.len(), 3, "{scans:?}");
+        for (scan, speed_deg_s) in scans.iter().zip([10.0, 56.25]) {
+            assert_eq!(scan["state"], "whole", "{scan}");
+            assert_eq!(scan["asked"]["speed_deg_s"], speed_deg_s, "{scan}");
+            assert_eq!(scan["asked"]["both_ways"], true, "{scan}");
+            assert!(done.contains(scan["id"].as_str().unwrap()), "{done}");
+        }
+        page.audit("after two scans").await;
     });
     daemon.stop(|| true).unwrap();
 }

@@ -12,6 +12,7 @@ import * as devices from "./panels/devices.ts";
 import { alarm, announce, note, restore } from "./panels/messages.ts";
 import { setFormats } from "./panels/scan_parts.ts";
 import * as quality from "./panels/quality.ts";
+import * as recipe from "./panels/recipe.ts";
 import * as scans from "./panels/scans.ts";
 import * as signin from "./panels/signin.ts";
 import * as sweep from "./panels/sweep.ts";
@@ -42,6 +43,7 @@ const listener: Listener = {
     if (connected) alarm("Connection to the daemon lost.");
     connected = false;
     control.setConnected(false);
+    recipe.end();
     devices.setLink("Offline", "bad");
     if (id("lost").hidden) text(id("lost"), "Connection to the daemon lost: displayed values are old.");
     show(id("lost"), true);
@@ -101,6 +103,7 @@ const events = new Events(listener);
 async function finished(scan: Scan): Promise<void> {
   if (scan.state === "recording" || scan.state === "making") return;
   const name = title(scan);
+  recipe.finished(scan);
   if (scan.state === "whole") announce(`Scan ${name} is complete: ${count(scan.points ?? 0)} points`);
   else note(scan.state === "failed" ? "error" : "warning", `Scan ${name} ${scan.state === "failed" ? "has no cloud" : "is partial"}.`, scan.summary);
   if (viewer?.shown === scan.id) {
@@ -197,7 +200,11 @@ export function start(view: Viewer | null): void {
   control.wire(() => {
     const capture = sweep.capture_request();
     if (capture !== null) void control.command("Start", () => api.capture(capture));
-  }, axis.setReady);
+  }, (ready) => {
+    axis.setReady(ready);
+    recipe.setReady(ready);
+  }, recipe.end);
+  recipe.wire(sweep.capture_request);
   axis.wire();
   sweep.wire();
   quality.wire();
