@@ -58,7 +58,7 @@ pub struct LogReport {
 pub struct BaseReport {
     /// Whether it is taken to stand: the residuals show no drift.
     pub stands: bool,
-    /// Chi-squared of its drift; of a base that stands at most 16.8 (99 %).
+    /// Chi-squared of its drift; of a base that stands at most 22.5 (99.9 %).
     pub chi2: f64,
     /// A slower drift may be unseen, also of points at 20 m, millimetres per second.
     pub unseen_mm_s: f64,

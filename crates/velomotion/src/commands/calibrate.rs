@@ -123,9 +123,13 @@ fn text(report: &CalibrateReport) -> String {
         report.residual_mm.after
     ));
     lines.extend((1..).zip(&report.bases).map(|(number, base)| {
+        // A slow log shows hundredths of a millimetre.
         let unseen = base.unseen_mm_s;
+        let decimals = if unseen < 1.0 { 2 } else { 0 };
         match base.stands {
-            true => format!("log {number}: the base stands: a drift below {unseen:.1} mm/s would not be seen"),
+            true => format!(
+                "log {number}: the base stands: a drift below {unseen:.decimals$} mm/s would not be seen"
+            ),
             false => format!("log {number}: the base may drift, which makes the result less certain: a scan both ways shows it"),
         }
     }));
