@@ -91,9 +91,14 @@ pub(crate) struct GaussNewtonStep {
 }
 
 impl BaseEvidence {
-    /// Whether the scan shows that a base taken to stand moves.
+    /// Whether the scan shows that the base moves.
+    #[must_use]
+    pub fn moves(&self) -> bool {
+        self.chi2 > STANDING[self.parts]
+    }
+
     fn is_moving(&self) -> bool {
-        self.stands && self.chi2 > STANDING[self.parts]
+        self.stands && self.moves()
     }
 
     /// Whether the scan would not show it.
@@ -257,11 +262,10 @@ impl<'a> Estimator<'a> {
                 let moving = logs.clone().filter(|&log| bases[log].is_moving());
                 let most = moving.max_by(|&a, &b| bases[a].chi2.total_cmp(&bases[b].chi2));
                 freed.extend(most.map(|log| (log, f64::INFINITY)));
-                let unseen = logs.clone().filter(|&log| bases[log].is_unseen());
-                freed.extend(unseen.map(|log| (log, UNSEEN_M_S)));
-            } else if !matches!(solution, Err(CalibrationRefusal::Interrupted)) {
-                let standing = logs.clone().filter(|&log| bases[log].stands);
-                freed.extend(standing.map(|log| (log, f64::INFINITY)));
+                if freed.is_empty() {
+                    let unseen = logs.clone().filter(|&log| bases[log].is_unseen());
+                    freed.extend(unseen.map(|log| (log, UNSEEN_M_S)));
+                }
             }
             if freed.is_empty() {
                 let solution = solution?;

@@ -312,39 +312,41 @@ impl SceneFile {
         line.and_then(|line| line.line)
     }
 
-    /// An invalid setting at its place in the file: in `[effects]`, or in the section of a fact.
-    /// Refuses effects that are on with settings that do nothing: fog without a visibility is a
-    /// slip of the pen.
+    /// Refuses effects that are switched on without the settings that they need.
     fn check_empty(&self, stated: &[StatedFact]) -> Result<(), InvalidValue> {
-        let config = &self.config;
-        for (effect, is_empty, expected) in [
-            (
-                "weather",
-                config.weather.is_empty(),
-                "visibility_m or rain_mm_h",
-            ),
-            (
-                "base_drift",
-                config.base_drift.is_empty(),
-                "velocity_m_s or turn_deg_s",
-            ),
+        let requests = &self.requests;
+        let is_stated = |effect| stated.iter().any(|fact| fact.effect == effect);
+        for (effect, is_on, fact) in [
+            ("weather", requests.weather.is_on(), "[weather]"),
+            ("base_drift", requests.base_drift.is_on(), "[base]"),
             (
                 "own_shadow",
-                config.own_shadow.is_empty(),
-                "sectors or below_deg",
+                requests.own_shadow.is_on(),
+                "shadow in [mount]",
             ),
         ] {
-            if is_empty {
-                let fact = stated.iter().find(|fact| fact.effect == effect);
-                let table =
-                    fact.map_or_else(|| format!("effects.{effect}"), |fact| fact.path.to_owned());
-                let what = format!("{table}: expected {expected}, got neither");
-                return Err(invalid(table, what));
+            if is_on && !is_stated(effect) {
+                let path = format!("effects.{effect}");
+                let what =
+                    format!("{path}: expected a table of settings, or {fact}, got true alone");
+                return Err(invalid(path, what));
             }
+        }
+        let nothing = WeatherSettings::default();
+        if self.config.weather.settings() == Some(&nothing) && !requests.is_off("weather") {
+            let is_table = requests.weather.settings().is_some() && !requests.weather.is_on();
+            let path = if is_table {
+                "effects.weather"
+            } else {
+                "weather"
+            };
+            let what = format!("{path}: expected visibility_m or rain_mm_h, got neither");
+            return Err(invalid(path, what));
         }
         Ok(())
     }
 
+    /// An invalid setting at its place in the file: in `[effects]`, or in the section of a fact.
     fn invalid_value(&self, stated: &[StatedFact], error: &InvalidSetting) -> InvalidValue {
         let fact = stated.iter().find(|fact| fact.effect == error.effect);
         let is_requested = self.requests.configured().any(|name| name == error.effect);

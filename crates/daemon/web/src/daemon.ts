@@ -43,7 +43,6 @@ const listener: Listener = {
     if (connected) alarm("Connection to the daemon lost.");
     connected = false;
     control.setConnected(false);
-    recipe.end();
     devices.setLink("Offline", "bad");
     if (id("lost").hidden) text(id("lost"), "Connection to the daemon lost: displayed values are old.");
     show(id("lost"), true);
@@ -203,7 +202,7 @@ export function start(view: Viewer | null): void {
   }, (ready) => {
     axis.setReady(ready);
     recipe.setReady(ready);
-  }, recipe.end);
+  });
   recipe.wire(sweep.capture_request);
   axis.wire();
   sweep.wire();

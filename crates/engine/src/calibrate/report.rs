@@ -58,6 +58,8 @@ pub struct LogReport {
 pub struct BaseReport {
     /// Whether it is taken to stand: the residuals show no drift.
     pub stands: bool,
+    /// Whether the residuals show a drift. If it neither stands nor moves, they would not show it.
+    pub moves: bool,
     /// Chi-squared of its drift; of a base that stands at most 22.5 (99.9 %).
     pub chi2: f64,
     /// A slower drift may be unseen, also of points at 20 m, millimetres per second.
@@ -132,6 +134,7 @@ impl CalibrateReport {
         });
         let bases = evidence.bases.iter().map(|base| BaseReport {
             stands: base.stands,
+            moves: base.moves(),
             chi2: base.chi2,
             unseen_mm_s: 1e3 * base.unseen_m_s,
         });

@@ -32,12 +32,10 @@ impl<S> EffectRequest<S> {
             Self::On(settings) | Self::Settings(settings) => Some(settings),
         }
     }
-}
 
-impl<S: Default + PartialEq> EffectRequest<S> {
-    /// Whether it is on with settings that do nothing: all those of its type that are absent.
-    pub(crate) fn is_empty(&self) -> bool {
-        self.settings().is_some_and(|all| *all == S::default())
+    /// Whether it is `true`.
+    pub(crate) const fn is_on(&self) -> bool {
+        matches!(self, Self::On(_))
     }
 }
 

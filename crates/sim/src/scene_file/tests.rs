@@ -307,13 +307,25 @@ fn an_effect_that_is_switched_on_has_the_settings_of_its_fact() {
     for nothing in [
         "[effects]\nweather = true\n",
         "[weather]\n",
-        "[base]\n",
-        "[mount]\nshadow = {}\n",
-        "[effects]\nown_shadow = {}\n",
+        "[effects]\nweather = {}\n",
+        "[effects]\nbase_drift = true\n",
+        "[effects]\nown_shadow = true\n",
     ] {
         let error = with(nothing).unwrap_err();
-        assert!(error.what.contains("got neither"), "{nothing} {error}");
-        assert!(error.line > 4, "{nothing} {error}");
+        let expected = ["got neither", "got true alone"];
+        assert!(
+            expected.iter().any(|what| error.what.contains(what)),
+            "{nothing} {error}"
+        );
+        assert!(error.line > 3, "{nothing} {error}");
+    }
+    // What is off, or 0, is no slip.
+    for valid in [
+        "[weather]\n[effects]\nweather = false\n",
+        "[base]\nvelocity_m_s = [0, 0, 0]\n",
+        "[mount]\nshadow = { sectors = [] }\n",
+    ] {
+        with(valid).unwrap();
     }
 }
 

@@ -128,9 +128,10 @@ fn text(report: &CalibrateReport) -> String {
         let decimals = if unseen < 1.0 { 2 } else { 0 };
         match base.stands {
             true => format!(
-                "log {number}: the base stands: a drift below {unseen:.decimals$} mm/s would not be seen"
+                "log {number}: the base is taken to stand; a drift below {unseen:.decimals$} mm/s at 20 m is not seen"
             ),
-            false => format!("log {number}: the base may drift, which makes the result less certain: a scan both ways shows it"),
+            false if base.moves => format!("log {number}: the base moves slowly: its drift is part of the result"),
+            false => format!("log {number}: the base may drift by less than {unseen:.0} mm/s unseen: scan both ways"),
         }
     }));
     let mut table = Table::new();

@@ -23,7 +23,6 @@ const STOPPED_MS = 5_000;
 
 /** Called when it changes whether the axis may be moved by hand. */
 let ready: (ready: boolean) => void = () => {};
-let stopped_by_user: () => void = () => {};
 let status: Status | null = null;
 let connected = false;
 let asking = false;
@@ -35,10 +34,8 @@ let stopped = false;
 let whole_s = 0;
 let stepped = 0;
 
-/** `on_stop` is called before a stop is sent. */
-export function wire(start_capture: () => void, axis_ready: (ready: boolean) => void, on_stop: () => void): void {
+export function wire(start_capture: () => void, axis_ready: (ready: boolean) => void): void {
   ready = axis_ready;
-  stopped_by_user = on_stop;
   stop.addEventListener("click", () => void halt());
   home.addEventListener("click", () => void command("Home", () => api.home()));
   id("not-stopped-end").addEventListener("click", () => stopping?.abort());
@@ -95,7 +92,6 @@ function reason(error: unknown): string {
 }
 
 async function halt(): Promise<void> {
-  stopped_by_user();
   if (stopping !== null) return;
   stopping = new AbortController();
   show(id("control-error"), false);

@@ -11,6 +11,10 @@ const polite = id("announce");
 const urgent = id("alarm");
 const clock = new Intl.DateTimeFormat("en-GB", { hour: "2-digit", minute: "2-digit", second: "2-digit" });
 
+const day = new Intl.DateTimeFormat("en-GB", { day: "numeric", month: "short" });
+/** The time, with the day unless it is today's. */
+const words_of = (at: Date) => (at.toDateString() === new Date().toDateString() ? "" : `${day.format(at)}, `) + clock.format(at);
+
 let timer = 0;
 let kept: Message[] = [];
 
@@ -24,8 +28,14 @@ export function restore(): void {
   }
 }
 
+/** Forgets them: the next person at this tab may not read them. */
+export function forget(): void {
+  kept = [];
+  sessionStorage.removeItem(KEPT);
+}
+
 function draw({ at, level, full }: Message): void {
-  list.prepend(h("li", { "data-level": level }, h("time", { datetime: at }, clock.format(new Date(at))), level === "info" ? null : `${level}: `, full));
+  list.prepend(h("li", { "data-level": level }, h("time", { datetime: at }, words_of(new Date(at))), level === "info" ? null : `${level}: `, full));
   while (list.children.length > MOST) list.lastElementChild?.remove();
 }
 

@@ -1,5 +1,6 @@
 // Sign-in with the daemon's token. It is sent once; the browser stores the cookie, the page stores nothing.
 
+import { forget } from "./messages.ts";
 import { RequestError, sendRequest } from "../api.ts";
 import { id, show, text } from "../dom.ts";
 import { refused } from "./control.ts";
@@ -33,6 +34,7 @@ export function open(): void {
 }
 
 async function sign_out(): Promise<void> {
+  forget();
   const at = id("sign-out-error");
   show(at, false);
   try {
