@@ -2,7 +2,6 @@
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::UdpSocket;
-use std::os::unix::fs::PermissionsExt;
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::PathBuf;
 use std::process::{Child, Command, Output, Stdio};
@@ -535,9 +534,13 @@ fn the_machine_does_not_sleep_while_the_axis_can_move() {
         let made = Command::new("mkfifo").arg(&pipe).status().unwrap();
         assert!(made.success());
         let program = folder.join("systemd-inhibit");
+        // Another process writes it: one that a test beside this one starts at the same time would
+        // hold the file open for writing, and no such file can be executed (ETXTBSY).
         let script = "#!/bin/sh\nexec >\"${0%/*}/asked\"\necho \"$@\"\ncat\necho end\n";
-        std::fs::write(&program, script).unwrap();
-        std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
+        let write = r#"printf %s "$1" >"$0" && chmod 755 "$0""#;
+        let mut shell = Command::new("sh");
+        let written = shell.args(["-c", write]).arg(&program).arg(script).status();
+        assert!(written.unwrap().success());
         let (send, asked) = std::sync::mpsc::channel();
         std::thread::spawn(move || send.send(std::fs::read_to_string(pipe)));
         let path = std::env::var("PATH").unwrap();

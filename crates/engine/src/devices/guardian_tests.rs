@@ -1,6 +1,6 @@
 //! The guardian on a bad line, and a parent whose guardian fails.
 
-use std::os::unix::fs::PermissionsExt;
+use std::process::{Command, Stdio};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -15,6 +15,15 @@ use units::{Degrees, Host, Rpm, RpmPerS, Stamp};
 use super::*;
 use crate::devices::simulated;
 use crate::devices::simulated_drive::{SimulatedPort, run_observed};
+
+/// Ends the thread of a simulated drive, also after a panic: a scope waits for its threads.
+struct StopOnDrop<'a>(&'a AtomicBool);
+
+impl Drop for StopOnDrop<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
 
 /// A line that a test writes on and reads from without a drive.
 struct BadLine {
@@ -138,6 +147,7 @@ fn the_guardian_stops_an_axis_though_an_answer_to_its_parent_is_late() {
             let node = simulated::node(&axis);
             run_observed(node, Attachment::Usb, port, &is_over, &mut |_, _| {}).unwrap();
         });
+        let over = StopOnDrop(&is_over);
         let read = ReadObject {
             node: 1,
             address: objects::POSITION_ACTUAL.address,
@@ -150,7 +160,7 @@ fn the_guardian_stops_an_axis_though_an_answer_to_its_parent_is_late() {
             has_answered: false,
         };
         let stopped = stop(axis.clone(), DriveLink::Usb, late);
-        is_over.store(true, Ordering::Relaxed);
+        drop(over);
         stopped.unwrap();
     });
 }
@@ -202,13 +212,24 @@ fn script(answer: &str) -> String {
     )
 }
 
+/// Writes a program. Another process does: a process that another thread of this one starts at the
+/// same time would hold the file open for writing, and no such file can be executed (ETXTBSY).
+fn write_program(path: &Path, text: &str) {
+    let write = r#"cat >"$0" && chmod 755 "$0""#;
+    let mut shell = Command::new("sh");
+    shell.args(["-c", write]).arg(path).stdin(Stdio::piped());
+    let mut shell = shell.spawn().unwrap();
+    let written = shell.stdin.take().unwrap().write_all(text.as_bytes());
+    written.unwrap();
+    assert!(shell.wait().unwrap().success());
+}
+
 /// A move in which this process is silent for 0.3 s, and whose guardian answers so. Returns the
 /// error and whether the axis has power in the end.
 fn move_with_guardian(answer: &str) -> (SessionError, bool) {
     let folder = tempfile::tempdir().unwrap();
     let program = folder.path().join("guardian");
-    std::fs::write(&program, script(answer)).unwrap();
-    std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
+    write_program(&program, &script(answer));
     let settings = AxisSettings::default();
     let axis = profile::axis(&settings).unwrap();
     let pty = Pty::open().unwrap();
@@ -224,6 +245,7 @@ fn move_with_guardian(answer: &str) -> (SessionError, bool) {
             };
             run_observed(node, Attachment::Usb, port, &stop, &mut observe).unwrap();
         });
+        let over = StopOnDrop(&stop);
         let mut guardian = Guardian::start(&program, &port, DriveLink::Usb, &settings).unwrap();
         let client = DriveClient::new(axis.clone(), DriveLink::Usb);
         let mut session =
@@ -245,7 +267,7 @@ fn move_with_guardian(answer: &str) -> (SessionError, bool) {
         drop(session);
         // The guardian's word counts in the next control cycles.
         std::thread::sleep(Duration::from_millis(50));
-        stop.store(true, Ordering::Relaxed);
+        drop(over);
         error.unwrap_err()
     });
     (error, powered.load(Ordering::Relaxed))
