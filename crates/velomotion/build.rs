@@ -1,4 +1,4 @@
-//! Stores version and commit of the build.
+//! Stores version and commit of the build. `cfg(devices)`: the feature of this name, on Linux.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -7,6 +7,10 @@ use std::process::Command;
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
     println!("cargo:rerun-if-env-changed=VELOMOTION_COMMIT");
+    let system = env::var("CARGO_CFG_TARGET_OS").unwrap_or_default();
+    if env::var_os("CARGO_FEATURE_DEVICES").is_some() && system == "linux" {
+        println!("cargo:rustc-cfg=devices");
+    }
     let package = env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from);
     let root = package.unwrap_or_default().join("../..");
     // The reflog changes with every commit and checkout. Development builds may name an older

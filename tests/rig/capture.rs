@@ -16,6 +16,7 @@ use cloud::{Fields, Points};
 use drive::{DriveClient, Observation};
 use engine::capture::moves as motion;
 use engine::capture::request::scan_config;
+use engine::capture::run_moves;
 use engine::config::{AxisSettings, Config};
 use engine::devices::drive_port::BusLine;
 use engine::devices::drive_session::{Session, SessionError};
@@ -172,7 +173,7 @@ impl Captured {
             port.interrupt_at(setting.start + after, Arc::clone(&interrupt));
         }
         let mut session = Session::new(client, recorder, interrupt);
-        let ended = motion::run(&mut session, &steps, &mut |_| {});
+        let ended = run_moves::run(&mut session, &steps, &mut |_| {});
         drop(session);
         // The lidar runs on for a moment, as in a capture.
         let mut tail = port.clone();

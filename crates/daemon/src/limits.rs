@@ -2,8 +2,11 @@
 
 use std::time::Duration;
 
+#[cfg(devices)]
 pub use engine::service::events::{QUEUE, SUBSCRIBERS};
+#[cfg(devices)]
 pub use engine::service::live_preview::{FRAME_POINTS, WAITING_RECORDS};
+#[cfg(devices)]
 pub use engine::service::scan_record::{NAME_BYTES, NAME_CHARS, NOTES_CHARS};
 
 /// Largest body of a request, bytes.

@@ -9,8 +9,9 @@ use engine::devices::profile;
 use engine::failure::{Failure, Kind};
 use engine::service::{DeviceService, DeviceThread, Environment, Lifetime, ServiceOptions};
 
-use crate::http::command_router;
-use crate::http::server::{Server, UnixSocket};
+use crate::http::api::command_router;
+use crate::http::server::Server;
+use crate::http::unix_socket::UnixSocket;
 use crate::limits::{LOCAL_CONNECTIONS, Waits};
 use crate::sockets;
 

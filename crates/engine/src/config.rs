@@ -133,7 +133,9 @@ fn positive(name: &str, value: f64, high: f64) -> Result<(), String> {
 #[must_use]
 pub fn usual_place() -> Option<PathBuf> {
     let var = |name| std::env::var_os(name).map(PathBuf::from);
-    let user = var("XDG_CONFIG_HOME").or_else(|| var("HOME").map(|home| home.join(".config")));
+    let system = if cfg!(windows) { var("APPDATA") } else { None };
+    let home = || var("HOME").map(|home| home.join(".config"));
+    let user = var("XDG_CONFIG_HOME").or(system).or_else(home);
     [
         Some(PathBuf::from("velomotion.toml")),
         user.map(|dir| dir.join("velomotion/velomotion.toml")),

@@ -14,6 +14,7 @@ use crate::capture::scan_plan::PlanReport;
 use crate::failure::Failure;
 use crate::reconstruct::lidar_copy::LidarCopyReport;
 use crate::reconstruct::report::{InfoReport, ScanReport};
+#[cfg(devices)]
 use crate::service::axis_report::{AxisReport, StoppedCommand};
 use crate::simulate::SimulationReport;
 
@@ -54,10 +55,12 @@ impl Document for LidarCopyReport {
     const SCHEMA: &'static str = "pcap-1";
 }
 
+#[cfg(devices)]
 impl Document for AxisReport {
     const SCHEMA: &'static str = "axis-1";
 }
 
+#[cfg(devices)]
 impl Document for StoppedCommand {
     const SCHEMA: &'static str = "stopped-1";
 }
@@ -113,6 +116,7 @@ pub(crate) fn return_modes() -> Schema {
     names("Return mode.", &["strongest", "last", "dual"], true)
 }
 
+#[cfg(devices)]
 pub(crate) fn links() -> Schema {
     names("Link of the drive.", &LINKS, true)
 }

@@ -12,6 +12,7 @@
 //! ```
 
 pub mod accuracy;
+#[cfg(devices)]
 pub mod bring_up;
 pub mod calibrate;
 pub mod capture;
@@ -24,6 +25,7 @@ pub mod failure;
 pub mod lidars;
 pub mod output;
 pub mod reconstruct;
+#[cfg(devices)]
 pub mod service;
 pub mod simulate;
 mod threads;

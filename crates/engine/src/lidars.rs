@@ -1,7 +1,9 @@
 //! Lidars that the axis may tilt, by their data sheets.
 
 use analysis::plan::{PlanLaser, PlanLidar};
+use firmware_sim::vlp16::DISTANCE_UNIT_MM;
 use protocol::vlp16::{LidarModel, models};
+use scanner::LidarConfig;
 use sim::patterns::{PatternSensor, PlanarFront};
 
 /// A lidar by its data sheet.
@@ -224,6 +226,15 @@ impl LidarSheet {
             ]),
             ..lidar
         }
+    }
+}
+
+/// Accuracy of the simulated lidar: ranges are quantised and have no other error.
+#[must_use]
+pub fn simulated() -> LidarConfig {
+    let step_m = f64::from(DISTANCE_UNIT_MM) * 1e-3;
+    LidarConfig {
+        range_sd_m: step_m / f64::sqrt(12.0),
     }
 }
 

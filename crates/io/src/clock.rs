@@ -30,6 +30,7 @@ pub fn steady() -> Stamp<Host> {
 
 /// Time that the machine was suspended since boot: `CLOCK_BOOTTIME` less `CLOCK_MONOTONIC`. Zero if
 /// the system has no such clocks.
+#[cfg(devices)]
 #[must_use]
 pub fn suspended() -> Span {
     use nix::time::{ClockId, clock_gettime};
@@ -48,6 +49,7 @@ pub fn suspended() -> Span {
 mod tests {
     use super::*;
 
+    #[cfg(target_os = "linux")]
     #[test]
     fn system_time_agrees_with_clock_gettime() {
         use nix::time::{ClockId, clock_gettime};
@@ -58,6 +60,7 @@ mod tests {
         assert!(before.as_nanos() <= between && between <= after.as_nanos());
     }
 
+    #[cfg(devices)]
     #[test]
     fn a_running_machine_is_not_suspended() {
         let (first, second) = (suspended(), suspended());

@@ -4,13 +4,10 @@
 
 use std::env;
 use std::ffi::{OsStr, OsString};
-use std::fs::{self, File, OpenOptions, Permissions};
+use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom, Write};
-use std::os::unix::fs::{OpenOptionsExt, PermissionsExt};
 use std::path::{Path, PathBuf};
 
-use nix::fcntl::OFlag;
-use nix::sys::stat::Mode;
 use tempfile::{Builder, NamedTempFile};
 
 /// Suffix of the temporary name.
@@ -21,7 +18,12 @@ const PARTIAL: &str = ".partial";
 ///
 /// # Errors
 /// The system's, and [`io::ErrorKind::InvalidInput`] for anything but a regular file in a folder.
+#[cfg(target_os = "linux")]
 pub fn open_regular(path: &Path) -> io::Result<File> {
+    use nix::fcntl::OFlag;
+    use nix::sys::stat::Mode;
+    use std::os::unix::fs::OpenOptionsExt;
+
     let (Some(folder), Some(name)) = (path.parent(), path.file_name()) else {
         return Err(io::ErrorKind::InvalidInput.into());
     };
@@ -267,11 +269,85 @@ fn create_temporary(path: &Path, folder: &Path) -> io::Result<NamedTempFile> {
     let mut prefix = OsString::from(".");
     prefix.push(path.file_name().unwrap_or_default());
     prefix.push(".");
-    Builder::new()
-        .prefix(&prefix)
-        .suffix(PARTIAL)
-        .permissions(Permissions::from_mode(0o666)) // less the umask, as for any new file
-        .tempfile_in(folder)
+    let mut builder = Builder::new();
+    builder.prefix(&prefix).suffix(PARTIAL);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // Less the umask, as for any new file.
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    builder.tempfile_in(folder)
+}
+
+/// An open file that several readers can open again, each with its own position.
+#[derive(Debug)]
+pub struct ReopenableFile {
+    file: File,
+    /// Only Linux opens a file again without its name.
+    #[cfg(not(target_os = "linux"))]
+    path: PathBuf,
+    /// Removes a scratch file.
+    #[cfg(not(target_os = "linux"))]
+    _temporary: Option<tempfile::TempPath>,
+}
+
+impl ReopenableFile {
+    /// Opens a file to read it.
+    ///
+    /// # Errors
+    /// The system's.
+    pub fn open(path: &Path) -> io::Result<Self> {
+        Ok(Self {
+            file: File::open(path)?,
+            #[cfg(not(target_os = "linux"))]
+            path: path.to_owned(),
+            #[cfg(not(target_os = "linux"))]
+            _temporary: None,
+        })
+    }
+
+    /// As [`scratch_in`], in [`scratch_folder`]. It goes with this value.
+    ///
+    /// # Errors
+    /// As [`scratch_in`].
+    pub fn scratch() -> io::Result<Self> {
+        let folder = scratch_folder();
+        #[cfg(target_os = "linux")]
+        return scratch_in(&folder).map(|file| Self { file });
+        #[cfg(not(target_os = "linux"))]
+        {
+            let named = Builder::new().tempfile_in(&folder);
+            let named = named.map_err(|error| no_scratch(&folder, &error))?;
+            let (file, temporary) = named.into_parts();
+            Ok(Self {
+                file,
+                path: temporary.to_path_buf(),
+                _temporary: Some(temporary),
+            })
+        }
+    }
+
+    /// The file, whose position is shared.
+    #[must_use]
+    pub const fn file(&self) -> &File {
+        &self.file
+    }
+
+    /// Opens it for a reader with its own position.
+    ///
+    /// # Errors
+    /// The system's.
+    pub fn reopen(&self) -> io::Result<File> {
+        #[cfg(target_os = "linux")]
+        {
+            use std::os::fd::AsRawFd;
+            // proc(5)
+            File::open(format!("/proc/self/fd/{}", self.file.as_raw_fd()))
+        }
+        #[cfg(not(target_os = "linux"))]
+        File::open(&self.path)
+    }
 }
 
 /// An unnamed file in `folder`, such as [`scratch_folder`], for data that does not fit memory.
@@ -279,12 +355,14 @@ fn create_temporary(path: &Path, folder: &Path) -> io::Result<NamedTempFile> {
 /// # Errors
 /// The system's; the message names the folder.
 pub fn scratch_in(folder: &Path) -> io::Result<File> {
-    tempfile::tempfile_in(folder).map_err(|error| {
-        io::Error::new(
-            error.kind(),
-            format!("no scratch file in {}: {error}", folder.display()),
-        )
-    })
+    tempfile::tempfile_in(folder).map_err(|error| no_scratch(folder, &error))
+}
+
+fn no_scratch(folder: &Path, error: &io::Error) -> io::Error {
+    io::Error::new(
+        error.kind(),
+        format!("no scratch file in {}: {error}", folder.display()),
+    )
 }
 
 /// `$TMPDIR`, or else `/var/tmp`, which unlike `/tmp` is never held in memory.
@@ -301,6 +379,7 @@ pub fn scratch_folder() -> PathBuf {
 ///
 /// # Errors
 /// The system's, such as a missing path.
+#[cfg(target_os = "linux")]
 pub fn free_bytes(path: &Path) -> io::Result<u64> {
     let stat = nix::sys::statvfs::statvfs(path)?;
     // Their widths differ between systems.
@@ -325,6 +404,7 @@ mod tests {
         names
     }
 
+    #[cfg(target_os = "linux")]
     #[test]
     fn the_free_space_agrees_with_df() {
         let folder = tempfile::tempdir().unwrap();
@@ -403,6 +483,7 @@ mod tests {
         assert_eq!(fs::read_to_string(&path).unwrap(), "second");
     }
 
+    #[cfg(target_os = "linux")]
     #[test]
     fn directories_and_missing_folders_are_refused_and_devices_written() {
         let folder = tempfile::tempdir().unwrap();
@@ -421,6 +502,7 @@ mod tests {
         assert!(!fs::metadata("/dev/null").unwrap().is_file());
     }
 
+    #[cfg(target_os = "linux")]
     #[test]
     fn symbolic_links_are_kept() {
         let folder = tempfile::tempdir().unwrap();

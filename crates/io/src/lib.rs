@@ -27,13 +27,19 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#[cfg(devices)]
 mod ancillary;
+#[cfg(devices)]
 pub mod can;
 pub mod clock;
+#[cfg(devices)]
 pub mod discover;
 pub mod files;
 pub mod log;
+#[cfg(devices)]
 pub mod port;
+#[cfg(devices)]
 pub mod processes;
 pub mod recording;
+#[cfg(devices)]
 pub mod udp;

@@ -8,7 +8,9 @@ use utoipa::ToSchema;
 
 use crate::commands::analyze::report::AnalyzeReport;
 use crate::commands::analyze::sweep::SettingsReport;
+#[cfg(devices)]
 use crate::commands::doctor::DoctorReport;
+#[cfg(devices)]
 use crate::commands::doctor::bring_up::BringUpReport;
 
 /// Names schemas.
@@ -23,15 +25,20 @@ macro_rules! documents {
 documents! {
     AnalyzeReport: "analyze-1";
     SettingsReport: "analyze-sweep-1";
-    DoctorReport: "doctor-1";
-    BringUpReport: "bring-up-1";
-    DaemonReport: "daemon-1";
     ServedView: "view-1";
-    SimulatedDriveReady: "firmware-sim-1";
     HelpText: "help-1";
 }
 
+#[cfg(devices)]
+documents! {
+    DoctorReport: "doctor-1";
+    BringUpReport: "bring-up-1";
+    DaemonReport: "daemon-1";
+    SimulatedDriveReady: "firmware-sim-1";
+}
+
 /// Printed by a daemon once it answers.
+#[cfg(devices)]
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct DaemonReport {
     /// Address and port of its page.
@@ -55,6 +62,7 @@ pub struct ServedView {
 }
 
 /// Printed by `firmware-sim` once the drive answers.
+#[cfg(devices)]
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct SimulatedDriveReady {
     /// Its terminal, or the CAN interface.
@@ -71,7 +79,7 @@ pub struct HelpText {
     pub text: String,
 }
 
-#[cfg(test)]
+#[cfg(all(test, devices))]
 mod tests {
     use std::collections::BTreeMap;
     use std::path::Path;

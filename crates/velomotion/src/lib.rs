@@ -23,6 +23,7 @@ pub fn run(cli: &Cli) -> Result<CommandOutput, Failure> {
         engine::config::load(Some(file))?;
     }
     match &cli.command {
+        #[cfg(devices)]
         Command::Capture(arguments) => commands::capture::run(arguments, &cli.common),
         Command::Replay(arguments) => commands::replay::run(arguments, &cli.common),
         Command::Simulate(arguments) => commands::simulate::run(arguments, &cli.common),
@@ -33,11 +34,28 @@ pub fn run(cli: &Cli) -> Result<CommandOutput, Failure> {
         Command::Plan(arguments) => commands::plan::run(arguments, &cli.common),
         Command::Analyze(arguments) => commands::analyze::run(arguments, &cli.common),
         Command::Tradeoff(arguments) => commands::tradeoff::run(arguments, &cli.common),
+        #[cfg(devices)]
         Command::Tilt(arguments) => commands::tilt::run(arguments, &cli.common),
+        #[cfg(devices)]
         Command::Daemon(arguments) => commands::daemon::run(arguments, &cli.common),
+        #[cfg(devices)]
         Command::Doctor(arguments) => commands::doctor::run(arguments, &cli.common),
         Command::Help(arguments) => commands::help::run(arguments),
+        #[cfg(devices)]
         Command::GuardAxis => commands::guard_axis::run(),
+        #[cfg(not(devices))]
+        _ => Err(no_devices()),
+        #[cfg(devices)]
         Command::FirmwareSim(arguments) => commands::firmware_sim::run(arguments, &cli.common),
     }
+}
+
+/// The refusal of commands for devices by a build without them.
+#[cfg(not(devices))]
+fn no_devices() -> Failure {
+    use engine::failure::Kind;
+    Failure::new(Kind::Usage, "this velomotion was built without devices").help(
+        "capture, tilt, daemon, doctor and firmware-sim need Linux, and a build with the feature devices (the default); \
+         simulate makes a log without devices",
+    )
 }

@@ -2,7 +2,6 @@
 //! priority prefix (`<4>`, sd-daemon(3)) in systemd's journal.
 
 use std::io::{self, IsTerminal, Write};
-use std::os::unix::fs::MetadataExt;
 
 use tracing::{Level, Metadata};
 use tracing_subscriber::EnvFilter;
@@ -17,13 +16,22 @@ const ERROR: u8 = 3;
 /// Whether stderr is connected to the journal: `$JOURNAL_STREAM` holds its device and inode
 /// (systemd.exec(5)). A child of a service inherits the variable even if its own stderr is
 /// redirected.
+#[cfg(target_os = "linux")]
 #[must_use]
 pub fn has_stderr() -> bool {
+    use std::os::unix::fs::MetadataExt;
     let Ok(stream) = std::env::var("JOURNAL_STREAM") else {
         return false;
     };
     let own = std::fs::metadata("/proc/self/fd/2");
     own.is_ok_and(|own| stream == format!("{}:{}", own.dev(), own.ino()))
+}
+
+/// There is no journal.
+#[cfg(not(target_os = "linux"))]
+#[must_use]
+pub const fn has_stderr() -> bool {
+    false
 }
 
 /// Starts logging events of at least `level`, or those selected by `$RUST_LOG`.

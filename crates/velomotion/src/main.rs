@@ -8,7 +8,9 @@ use engine::document::{Document, ErrorReport};
 use engine::failure::{Failure, Kind};
 use serde_json::Value;
 use velomotion::cli::Common;
-use velomotion::commands::{CommandOutput, guard_axis, help};
+#[cfg(devices)]
+use velomotion::commands::guard_axis;
+use velomotion::commands::{CommandOutput, help};
 use velomotion::logging;
 use velomotion::signals;
 use velomotion::terminal::{flush, to_stderr};
@@ -21,6 +23,7 @@ fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(failure) => return refuse(&failure),
     };
+    #[cfg(devices)]
     guard_axis::offer();
     // The default hook would block the device thread on a stderr that no program reads.
     std::panic::set_hook(Box::new(|panic| {

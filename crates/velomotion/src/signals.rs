@@ -3,7 +3,11 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, LazyLock};
 
-use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP};
+#[cfg(devices)]
+use signal_hook::consts::SIGTSTP;
+#[cfg(unix)]
+use signal_hook::consts::{SIGHUP, SIGQUIT};
+use signal_hook::consts::{SIGINT, SIGTERM};
 
 use engine::failure::{Failure, Kind};
 
@@ -35,7 +39,11 @@ pub fn end_process_on_signal() {
 /// # Errors
 /// The system refuses a signal handler.
 pub fn interrupt_flag() -> Result<Arc<AtomicBool>, Failure> {
-    flag_of(&[SIGINT, SIGTERM, SIGQUIT, SIGHUP])
+    #[cfg(unix)]
+    let signals = [SIGINT, SIGTERM, SIGQUIT, SIGHUP];
+    #[cfg(windows)]
+    let signals = [SIGINT, SIGTERM];
+    flag_of(&signals)
 }
 
 /// Like [`interrupt_flag`] for commands that can move the axis. Ctrl-Z (SIGTSTP) sets the flag,
@@ -43,6 +51,7 @@ pub fn interrupt_flag() -> Result<Arc<AtomicBool>, Failure> {
 ///
 /// # Errors
 /// The system refuses a signal handler.
+#[cfg(devices)]
 pub fn motion_interrupt_flag() -> Result<Arc<AtomicBool>, Failure> {
     flag_of(&[SIGINT, SIGTERM, SIGQUIT, SIGHUP, SIGTSTP])
 }

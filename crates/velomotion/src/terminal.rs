@@ -5,7 +5,10 @@
 //! does not fit is dropped.
 
 use std::io::{IsTerminal, Write};
-use std::os::fd::AsFd;
+#[cfg(unix)]
+use std::os::fd::AsFd as Stream;
+#[cfg(windows)]
+use std::os::windows::io::AsHandle as Stream;
 use std::sync::LazyLock;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::Duration;
@@ -107,7 +110,7 @@ pub fn flush() {
 
 /// Columns of a terminal; `None` for a pipe or a file.
 #[must_use]
-pub fn width_of(output: impl AsFd) -> Option<usize> {
+pub fn width_of(output: impl Stream) -> Option<usize> {
     terminal_size::terminal_size_of(output).map(|(width, _)| width.0.into())
 }
 

@@ -16,7 +16,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use utoipa::ToSchema;
 
-use super::Api;
+use super::api::Api;
 use super::openapi::{NotNow, Usage};
 use super::refusal::Refusal;
 use crate::plan as plans;

@@ -16,7 +16,7 @@ use utoipa::IntoParams;
 
 use engine::failure::Kind;
 
-use super::Api;
+use super::api::Api;
 use super::openapi::Limit;
 use super::refusal::Refusal;
 use crate::limits::CLIENT_MESSAGE_BYTES;

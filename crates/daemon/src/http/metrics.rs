@@ -14,8 +14,8 @@ use prometheus_client::metrics::gauge::ConstGauge;
 use prometheus_client::metrics::info::Info;
 use prometheus_client::registry::Registry;
 
-use super::Api;
 use super::accept::quality;
+use super::api::Api;
 use super::refusal::Refusal;
 use crate::state::DaemonState;
 use engine::service::status::{AxisTask, DeviceHealth};

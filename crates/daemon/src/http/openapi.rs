@@ -140,8 +140,8 @@ pub fn formats() -> Schema {
         description = "A lidar on a tilting platform: captures, scans, motions of the axis. Objects may get new keys. No content of a request causes a 5xx status except 507."
     ),
     paths(
-        super::status,
-        super::health,
+        super::api::status,
+        super::api::health,
         page::page,
         page::signed_in,
         page::login,
@@ -246,7 +246,7 @@ pub async fn description() -> Response {
 mod tests {
     use axum::routing::MethodRouter;
 
-    use super::super::{daemon_routes, device_routes};
+    use super::super::api::{daemon_routes, device_routes};
     use super::*;
     use std::collections::BTreeSet;
 

@@ -3,7 +3,7 @@
 
 use std::fs::Metadata;
 use std::ops::Range;
-use std::os::unix::fs::MetadataExt;
+use std::time::UNIX_EPOCH;
 
 use axum::http::{HeaderMap, header};
 
@@ -20,12 +20,10 @@ pub enum FileRange {
 
 /// Validator of a stored file as it is now: its length and the time of its last change.
 pub fn tag_of(file: &Metadata) -> String {
-    format!(
-        "\"{:x}-{:x}-{:x}\"",
-        file.len(),
-        file.mtime(),
-        file.mtime_nsec()
-    )
+    let changed = file.modified().ok();
+    let since = changed.and_then(|time| time.duration_since(UNIX_EPOCH).ok());
+    let ns = since.map_or(0, |since| since.as_nanos());
+    format!("\"{:x}-{ns:x}\"", file.len())
 }
 
 /// Whether the client has the content of this validator.

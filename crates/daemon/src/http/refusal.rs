@@ -6,6 +6,7 @@ use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use engine::document::{Document, ErrorReport};
 use engine::failure::{Failure, Kind};
+#[cfg(devices)]
 use engine::service::LeaseError;
 
 use crate::limits::BODY_BYTES;
@@ -164,6 +165,7 @@ impl From<Failure> for Refusal {
     }
 }
 
+#[cfg(devices)]
 impl From<LeaseError> for Refusal {
     fn from(error: LeaseError) -> Self {
         match error {

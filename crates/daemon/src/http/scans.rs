@@ -11,9 +11,10 @@ use axum::response::Response;
 use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
 
+use super::api::Api;
+use super::captures;
 use super::openapi::{NotFound, NotNow, Usage};
 use super::refusal::Refusal;
-use super::{Api, captures};
 use crate::limits::UNDO;
 use engine::failure::{Failure, Kind};
 use engine::service::scan_record::{ScanDetails, ScanEdit, ScanView};

@@ -1,12 +1,8 @@
-//! The sockets, TCP and Unix, with the limits of their connections, and the runtime that serves
-//! them.
+//! Accepts connections, with their limits, and the runtime that serves them.
 
 use std::convert::Infallible;
 use std::future::Future;
 use std::net::{IpAddr, SocketAddr, TcpListener as StdTcpListener};
-use std::os::unix::fs::PermissionsExt;
-use std::os::unix::net::{UnixListener as StdUnixListener, UnixStream};
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -20,19 +16,25 @@ use hyper::service::{Service, service_fn};
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::service::TowerToHyperService;
 use tokio::io::{AsyncRead, AsyncWrite};
-use tokio::net::{TcpListener, UnixListener};
+use tokio::net::TcpListener;
 use tokio::runtime::{Builder, Runtime};
 use tokio::sync::{mpsc, watch};
 use tokio::time::timeout;
+#[cfg(devices)]
 use tokio_rustls::TlsAcceptor;
 
 use super::connection_limits::{ConnectionLimits, ConnectionSlot, TimedStream};
 use crate::limits::{HEAD_BYTES, HEADERS, Waits};
 
+/// A build without the daemon has no TLS.
+#[cfg(not(devices))]
+#[derive(Clone)]
+pub enum TlsAcceptor {}
+
 /// Wait for answers under way at the end.
 const CLOSE_WAIT: Duration = Duration::from_secs(2);
 
-fn cannot_listen(place: &str, error: &std::io::Error) -> Failure {
+pub(super) fn cannot_listen(place: &str, error: &std::io::Error) -> Failure {
     Failure::new(Kind::Usage, format!("cannot listen on {place}: {error}")).help(
         "end the program that has it, or choose another address with --listen (port 0 takes any that is free)",
     )
@@ -52,60 +54,18 @@ pub(crate) fn bind_tcp(listen: SocketAddr) -> Result<(StdTcpListener, SocketAddr
     bind().map_err(|error| cannot_listen(&listen.to_string(), &error))
 }
 
-/// A bound Unix socket. Dropping it removes its file.
-pub(crate) struct UnixSocket {
-    listener: StdUnixListener,
-    file: SocketFile,
-}
-
-struct SocketFile(PathBuf);
-
-impl Drop for SocketFile {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_file(&self.0);
-    }
-}
-
-impl UnixSocket {
-    /// Binds a socket for its user and group.
-    ///
-    /// # Errors
-    /// [`Kind::NoDevice`] where another service answers there, [`Kind::Usage`] where it cannot be
-    /// bound.
-    pub(crate) fn bind(path: &Path) -> Result<Self, Failure> {
-        if UnixStream::connect(path).is_ok() {
-            return Err(Failure::new(
-                Kind::NoDevice,
-                format!("another daemon has this device ({})", path.display()),
-            )
-            .help("use that one, or end it first"));
-        }
-        // A file that nothing answers at was left by a process that was killed.
-        let _ = std::fs::remove_file(path);
-        let bind = || {
-            let listener = StdUnixListener::bind(path)?;
-            let file = SocketFile(path.to_owned());
-            std::fs::set_permissions(path, std::fs::Permissions::from_mode(0o660))?;
-            listener.set_nonblocking(true)?;
-            Ok(Self { listener, file })
-        };
-        bind().map_err(|error| cannot_listen(&path.display().to_string(), &error))
-    }
-}
-
 /// A running server.
 pub struct Server {
-    runtime: Runtime,
+    pub(super) runtime: Runtime,
     waits: Waits,
     closing: watch::Sender<bool>,
     /// Cloned by every connection.
     open: mpsc::Sender<Infallible>,
     /// Closed once no connection is left.
     all_closed: mpsc::Receiver<Infallible>,
-    files: Vec<SocketFile>,
 }
 
-fn no_runtime(error: std::io::Error) -> Failure {
+pub(super) fn no_runtime(error: std::io::Error) -> Failure {
     engine::no_resource("runtime", "the server", &error)
 }
 
@@ -128,7 +88,6 @@ impl Server {
             closing: watch::Sender::new(false),
             open,
             all_closed,
-            files: Vec::new(),
         })
     }
 
@@ -157,23 +116,7 @@ impl Server {
         Ok(())
     }
 
-    /// Serves a Unix socket with at most this many connections.
-    pub(crate) fn accept_unix(
-        &mut self,
-        socket: UnixSocket,
-        router: Router,
-        connections: usize,
-    ) -> Result<(), Failure> {
-        let inside = self.runtime.enter();
-        let listener = UnixListener::from_std(socket.listener).map_err(no_runtime)?;
-        drop(inside);
-        self.files.push(socket.file);
-        let acceptor = self.acceptor(connections);
-        self.runtime.spawn(acceptor.run(router, listener, |_| None));
-        Ok(())
-    }
-
-    fn acceptor(&self, connections: usize) -> Acceptor {
+    pub(super) fn acceptor(&self, connections: usize) -> Acceptor {
         Acceptor {
             limits: ConnectionLimits::new(connections),
             tls: None,
@@ -213,7 +156,7 @@ fn remote_host(address: &SocketAddr) -> Option<IpAddr> {
 }
 
 /// Accepts the connections of a socket.
-struct Acceptor {
+pub(super) struct Acceptor {
     limits: Arc<ConnectionLimits>,
     tls: Option<TlsAcceptor>,
     open: mpsc::Sender<Infallible>,
@@ -222,7 +165,7 @@ struct Acceptor {
 }
 
 impl Acceptor {
-    async fn run<L: Listener>(
+    pub(super) async fn run<L: Listener>(
         mut self,
         router: Router,
         mut listener: L,
@@ -245,12 +188,15 @@ impl Acceptor {
                     match tls {
                         None => serve(stream, &slot, router, waits, closing).await,
                         // A client without TLS, or with another's certificate, is disconnected.
+                        #[cfg(devices)]
                         Some(tls) => {
                             if let Ok(Ok(stream)) = timeout(waits.headers, tls.accept(stream)).await
                             {
                                 serve(stream, &slot, router, waits, closing).await;
                             }
                         }
+                        #[cfg(not(devices))]
+                        Some(tls) => match tls {},
                     }
                 };
                 tokio::select! {

@@ -21,7 +21,7 @@ use protocol::vlp16::models;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::Api;
+use super::api::Api;
 use super::download::ClientGuard;
 use super::openapi::{Limit, NotFound, NotNow};
 use super::refusal::Refusal;

@@ -3,9 +3,7 @@
 //! It listens on the loopback interface. The token is the first part of every path, so that
 //! neither other users nor pages of other servers can read the files.
 
-use std::fs::File;
 use std::net::{Ipv4Addr, SocketAddr};
-use std::os::fd::AsRawFd;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -18,15 +16,17 @@ use axum::response::{IntoResponse, Response};
 use engine::config::daemon::equal;
 use engine::failure::{Failure, Kind};
 use futures_util::stream::unfold;
+use io::files::ReopenableFile;
 use serde::Serialize;
 use tokio::sync::{Semaphore, watch};
 use tokio::time::sleep;
 
+use super::assets;
 use super::connection_limits::{Connection, Trust};
-use super::download;
-use super::guard;
-use super::page;
 use super::refusal::Refusal;
+use super::request_limits;
+use super::secret::secret;
+use super::send_file;
 use super::server::{self, Server};
 use crate::limits::{CONNECTIONS, DOWNLOADS, Waits};
 
@@ -71,7 +71,7 @@ pub struct ViewedFile {
     pub help: Option<String>,
     /// The cloud as binary PLY.
     #[serde(skip)]
-    pub cloud: Option<Arc<File>>,
+    pub cloud: Option<Arc<ReopenableFile>>,
 }
 
 impl ViewedFile {
@@ -177,9 +177,9 @@ impl ViewServer {
     /// # Errors
     /// Where the system has no port, thread or random number.
     pub fn start(files: Vec<ViewedFile>) -> Result<Self, Failure> {
-        let token = guard::secret().map_err(|error| {
+        let token = secret().map_err(|error| {
             let what = format!("cannot get random bytes from the system: {error}");
-            Failure::new(Kind::Incomplete, what).help("see whether /dev/urandom can be read")
+            Failure::new(Kind::Incomplete, what).help("start it again")
         })?;
         let waits = Waits::default();
         let (tcp, address) = server::bind_tcp((Ipv4Addr::LOCALHOST, 0).into())?;
@@ -193,7 +193,7 @@ impl ViewServer {
         });
         let router = Router::new()
             .fallback(answer)
-            .layer(from_fn_with_state(waits, guard::limits))
+            .layer(from_fn_with_state(waits, request_limits::limits))
             .with_state(Arc::clone(&files));
         server.accept_tcp(tcp, None, router, CONNECTIONS)?;
         Ok(Self {
@@ -243,9 +243,9 @@ async fn answer(State(files): State<Arc<ViewedFiles>>, request: Request) -> Resp
         return cloud.unwrap_or_else(IntoResponse::into_response);
     }
     match rest {
-        "" => page::page_of_files(),
+        "" => assets::page_of_files(),
         "events" => events(&files),
-        _ => page::file(&format!("/{rest}"), &request),
+        _ => assets::file(&format!("/{rest}"), &request),
     }
 }
 
@@ -266,15 +266,14 @@ async fn cloud_of(
     let permit = Arc::clone(&files.downloads)
         .try_acquire_owned()
         .map_err(|_| Refusal::too_many("downloads"))?;
-    // Readers of one open file would share its position (proc(5)).
     let opened = super::with_disk(move || {
-        let file = File::open(format!("/proc/self/fd/{}", cloud.as_raw_fd()))?;
+        let file = cloud.reopen()?;
         let metadata = file.metadata()?;
         Ok::<_, std::io::Error>((file, metadata))
     });
     let opened = opened.await?.map_err(|_| no_cloud())?;
     let name = format!("velomotion-{index}");
-    Ok(download::send(opened, &name, "ply", permit, Some(headers)))
+    Ok(send_file::send(opened, &name, "ply", permit, Some(headers)))
 }
 
 /// The files now and after each change, as server-sent events (HTML, section 9.2).

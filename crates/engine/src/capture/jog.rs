@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use units::{DegPerS, DegPerS2, Degrees};
 use utoipa::ToSchema;
 
-use crate::capture::moves;
+use crate::capture::run_moves;
 use crate::config::{Config, Device};
 use crate::devices::drive_session::{Session, SessionError};
 use crate::devices::guardian::GuardianError;
@@ -79,7 +79,7 @@ pub fn commands(
                 .map_err(|error| Failure::new(Kind::Usage, error.to_string()).help(error.help()))?;
             vec![
                 DriveCommand::Connect,
-                DriveCommand::Goto(moves::command(&plan)),
+                DriveCommand::Goto(run_moves::command(&plan)),
                 DriveCommand::Brake,
             ]
         }

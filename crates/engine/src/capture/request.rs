@@ -9,8 +9,8 @@ use crate::capture::moves::{self as motion, Step, SweepRequest};
 use crate::capture_request::{CaptureRequest, MAX_SWEEPS};
 use crate::config::{Config, Device};
 use crate::devices::profile as devices;
-use crate::devices::simulated;
 use crate::failure::{Failure, Kind};
+use crate::lidars;
 
 /// The sweeps with the defaults of this axis and device filled in.
 pub(super) fn sweep_request(
@@ -151,7 +151,7 @@ pub fn scan_config(
         mount: config.mount.pose(),
         calibration: config.mount.calibration().cloned(),
         lidar: match simulated {
-            true => simulated::lidar(),
+            true => lidars::simulated(),
             false => config.lidar.accuracy(),
         },
         axis: config.axis.scan(),

@@ -16,8 +16,8 @@ use sim::Truth;
 
 use crate::capture::completeness::{self, SilenceWatch};
 use crate::capture::log_recorder::{CaptureCounts, CaptureLog};
-use crate::capture::moves::{self, MoveProgress};
 use crate::capture::request::CapturePlan;
+use crate::capture::run_moves::{self, MoveProgress};
 use crate::devices::drive_session::{Session, SessionError};
 use crate::devices::guardian::{Guardian, GuardianError};
 use crate::devices::lidar_receiver::LidarReceiver;
@@ -137,7 +137,7 @@ pub fn record(
         .keeping_awake(job.keeps_awake);
     let mut watch = SilenceWatch::new(recorder.packets());
     let mut powered = false;
-    let motion = moves::run(&mut session, &plan.steps, &mut |progress| {
+    let motion = run_moves::run(&mut session, &plan.steps, &mut |progress| {
         powered |= matches!(progress, MoveProgress::Event(event) if is_powered(event));
         let packets = recorder.packets();
         if recorder.failed() || watch.silent(packets) {

@@ -18,7 +18,7 @@ use super::moves::{self, Step};
 use super::request::{CapturePlan, sweep_request};
 use crate::capture_request::CaptureRequest;
 use crate::config::{Config, Device, DeviceKind};
-use crate::devices::{profile, simulated};
+use crate::devices::profile;
 use crate::failure::{Failure, Kind};
 use crate::lidars::{self, LidarSheet};
 
@@ -439,7 +439,7 @@ impl RangeSource {
         let sheet_m = request.lidar.range_sd_m(request.at_m);
         match self {
             Self::Request => request.range_sd_m.unwrap_or(sheet_m),
-            Self::Simulator => simulated::lidar().range_sd_m,
+            Self::Simulator => lidars::simulated().range_sd_m,
             Self::Configuration => config.lidar.accuracy().range_sd_m,
             Self::DataSheet => sheet_m,
         }

@@ -3,8 +3,9 @@
 use std::fmt;
 use std::hint::black_box;
 use std::net::{Ipv4Addr, SocketAddr};
-use std::os::unix::fs::MetadataExt;
-use std::path::{Path, PathBuf};
+#[cfg(devices)]
+use std::path::Path;
+use std::path::PathBuf;
 
 use serde::Deserialize;
 
@@ -112,7 +113,9 @@ pub fn equal(secret: &[u8], given: &[u8]) -> bool {
 }
 
 /// Warns if other users can read or change a file that holds a secret. Returns whether they can.
+#[cfg(devices)]
 pub fn warn_if_exposed(secret: &str, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
     // Bits of group and others.
     let readable = std::fs::metadata(path).is_ok_and(|there| there.mode() & 0o066 != 0);
     if readable {
@@ -130,6 +133,7 @@ impl DaemonConfig {
     ///
     /// # Errors
     /// [`Kind::BadInput`] for an unusable file, [`Kind::Usage`] for two tokens.
+    #[cfg(devices)]
     pub fn load_credentials(&mut self, credentials: Option<&Path>) -> Result<(), Failure> {
         let credential = |name| {
             let path = credentials.map(|folder| folder.join(name));
@@ -250,6 +254,7 @@ mod tests {
         }
     }
 
+    #[cfg(devices)]
     #[test]
     fn tokens_come_from_a_file_or_a_credential() {
         use std::os::unix::fs::PermissionsExt;

@@ -8,10 +8,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 
-use firmware_sim::vlp16::DISTANCE_UNIT_MM;
 use io::port::{Port, PortError, Pty};
+use scanner::ScanConfig;
 use scanner::config::MountConfig;
-use scanner::{LidarConfig, ScanConfig};
 use sim::sensor::LidarMount;
 use sim::{Rig, RigConfig, Truth};
 use thiserror::Error;
@@ -184,13 +183,4 @@ pub fn rig(axis: &drive::AxisConfig, scan: &ScanConfig, start: Stamp<Host>) -> R
 fn lidar_mount(mount: MountConfig) -> LidarMount {
     let mount = mount.mount();
     LidarMount::at(mount.position_m(), mount.rotation_deg())
-}
-
-/// Accuracy of the simulated lidar: ranges are quantised and have no other error.
-#[must_use]
-pub fn lidar() -> LidarConfig {
-    let step_m = f64::from(DISTANCE_UNIT_MM) * 1e-3;
-    LidarConfig {
-        range_sd_m: step_m / f64::sqrt(12.0),
-    }
 }

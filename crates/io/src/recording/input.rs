@@ -5,7 +5,6 @@
 
 use std::fs::File;
 use std::io::{self, Read, Write};
-use std::os::fd::AsFd;
 use std::path::{Path, PathBuf};
 
 use tempfile::{Builder, NamedTempFile};
@@ -48,7 +47,9 @@ impl RecordingInput {
             _ => name,
         };
         let is_rereadable = |metadata: std::fs::Metadata| metadata.is_file() || metadata.is_dir();
-        let is_rereadable = file.metadata().is_ok_and(is_rereadable);
+        // Only Linux opens the file behind /dev/stdin again, from its beginning.
+        let can_reopen = cfg!(target_os = "linux") || path == name;
+        let is_rereadable = can_reopen && file.metadata().is_ok_and(is_rereadable);
         let copy = if is_rereadable {
             None
         } else {
@@ -77,7 +78,7 @@ impl RecordingInput {
         Recording::new(file, &self.name)
     }
 
-    #[cfg(test)]
+    #[cfg(all(test, target_os = "linux"))]
     fn is_copied(&self) -> bool {
         self.copy.is_some()
     }
@@ -86,7 +87,7 @@ impl RecordingInput {
 /// Opens a file or standard input.
 pub(super) fn open(path: &Path) -> Result<File, RecordingError> {
     let file = if path.to_str() == Some(STDIN) {
-        io::stdin().as_fd().try_clone_to_owned().map(File::from)
+        open_stdin()
     } else {
         File::open(path)
     };
@@ -94,6 +95,19 @@ pub(super) fn open(path: &Path) -> Result<File, RecordingError> {
         path: path.to_owned(),
         source,
     })
+}
+
+#[cfg(unix)]
+fn open_stdin() -> io::Result<File> {
+    use std::os::fd::AsFd;
+    io::stdin().as_fd().try_clone_to_owned().map(File::from)
+}
+
+#[cfg(windows)]
+fn open_stdin() -> io::Result<File> {
+    use std::os::windows::io::AsHandle;
+    let handle = io::stdin().as_handle().try_clone_to_owned();
+    handle.map(File::from)
 }
 
 /// Copies a stream to a temporary file.
@@ -176,6 +190,7 @@ mod tests {
         assert!(nowhere.to_string().contains("/nonexistent"), "{nowhere}");
     }
 
+    #[cfg(target_os = "linux")]
     #[test]
     fn fifos_are_copied_and_files_are_not() {
         let folder = tempfile::tempdir().unwrap();
@@ -208,6 +223,7 @@ mod tests {
         assert!(matches!(missing, RecordingError::Open { .. }), "{missing}");
     }
 
+    #[cfg(target_os = "linux")]
     #[test]
     fn a_single_pass_needs_no_copy() {
         let folder = tempfile::tempdir().unwrap();

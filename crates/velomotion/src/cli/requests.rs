@@ -1,17 +1,18 @@
 //! Arguments as requests to the engine.
 
 use cloud::Fields;
+#[cfg(devices)]
 use engine::capture::jog::{GotoRequest, JogRequest};
 use engine::capture_request::CaptureRequest;
+#[cfg(devices)]
 use engine::failure::Failure;
 use engine::reconstruct::decoder_options::DecoderRequest;
 use engine::reconstruct::replay;
 use lidar::Duplicates;
 
-use super::{
-    AccuracyArguments, Capture, EqualReturns, LidarArguments, MotionArguments, Output, TiltVerb,
-    TimeArgument,
-};
+use super::{AccuracyArguments, Capture, EqualReturns, LidarArguments, Output, TimeArgument};
+#[cfg(devices)]
+use super::{MotionArguments, TiltVerb};
 
 impl AccuracyArguments {
     /// The accuracy requested from the scanner.
@@ -47,6 +48,7 @@ impl LidarArguments {
     }
 }
 
+#[cfg(devices)]
 impl TiltVerb {
     /// The request to the engine. A jog is a move to `end_of_jog` of its way.
     ///

@@ -3,17 +3,24 @@
 pub mod accuracy;
 pub mod analyze;
 pub mod calibrate;
+#[cfg(devices)]
 pub mod capture;
+#[cfg(devices)]
 pub mod daemon;
+#[cfg(devices)]
 pub mod device_backend;
+#[cfg(devices)]
 pub mod doctor;
+#[cfg(devices)]
 pub mod firmware_sim;
+#[cfg(devices)]
 pub mod guard_axis;
 pub mod help;
 pub mod info;
 pub mod plan;
 pub mod replay;
 pub mod simulate;
+#[cfg(devices)]
 pub mod tilt;
 pub mod tradeoff;
 pub mod view;

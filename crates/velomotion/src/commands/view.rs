@@ -1,7 +1,7 @@
 //! `velomotion view`: clouds, logs and recordings in the browser.
 
 use std::fs::File;
-use std::io::{BufWriter, Read, Seek, SeekFrom, Write};
+use std::io::{BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::Arc;
@@ -19,6 +19,7 @@ use engine::failure::{Failure, Kind};
 use engine::reconstruct::decoder_options::{DecoderRequest, decoder_options};
 use engine::reconstruct::replay::{self, Reconstruction};
 use engine::reconstruct::source::Source;
+use io::files::ReopenableFile;
 use protocol::record::Wire;
 use scanner::{Accuracy, TiltSource};
 use units::{Host, Stamp};
@@ -160,13 +161,19 @@ fn greet(url: &str, arguments: &cli::ViewArguments, common: &Common) {
 
 /// Opens the user's browser, if there is a screen for one.
 fn open_browser(url: &str) {
-    let has_screen = ["DISPLAY", "WAYLAND_DISPLAY"]
-        .iter()
-        .any(|name| std::env::var_os(name).is_some_and(|value| !value.is_empty()));
-    if !has_screen {
+    let (program, arguments): (_, &[&str]) = if cfg!(windows) {
+        ("rundll32", &["url.dll,FileProtocolHandler"])
+    } else if cfg!(target_os = "macos") {
+        ("open", &[])
+    } else {
+        ("xdg-open", &[])
+    };
+    let is_set = |name: &&str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    if program == "xdg-open" && !["DISPLAY", "WAYLAND_DISPLAY"].iter().any(is_set) {
         return;
     }
-    let opener = Command::new("xdg-open")
+    let opener = Command::new(program)
+        .args(arguments)
         .arg(url)
         .stdin(Stdio::null())
         .stdout(Stdio::null())
@@ -174,7 +181,7 @@ fn open_browser(url: &str) {
         .spawn();
     match opener {
         Ok(mut opener) => drop(std::thread::spawn(move || opener.wait())),
-        Err(error) => tracing::info!("no browser opened: xdg-open: {error}"),
+        Err(error) => tracing::info!("no browser opened: {program}: {error}"),
     }
 }
 
@@ -239,7 +246,7 @@ fn make_all(
 
 /// A cloud as binary PLY.
 struct MadeCloud {
-    file: File,
+    file: ReopenableFile,
     points: u64,
     simulated: bool,
     scanner: bool,
@@ -253,8 +260,8 @@ fn no_scratch(error: std::io::Error) -> Failure {
         .help("free some space there, or name another folder with TMPDIR")
 }
 
-fn scratch() -> Result<File, Failure> {
-    io::files::scratch_in(&io::files::scratch_folder()).map_err(no_scratch)
+fn scratch() -> Result<ReopenableFile, Failure> {
+    ReopenableFile::scratch().map_err(no_scratch)
 }
 
 /// The cloud of a log or recording, without tilt if that has no drive.
@@ -274,7 +281,7 @@ fn log(source: &Source, share: &dyn Fn(f64), interrupt: &AtomicBool) -> Result<M
     };
     let file = scratch()?;
     let fields = Fields::FILE | Fields::LASER | Fields::SD | Fields::ECHO;
-    let writer = PlyWriter::new(file.try_clone().map_err(no_scratch)?, fields);
+    let writer = PlyWriter::new(file.file().try_clone().map_err(no_scratch)?, fields);
     let mut sinks = (writer, ShareSink::new(share));
     let output = PathBuf::from("the cloud");
     let scan = replay::scan(&request, &mut sinks, &output)?;
@@ -348,11 +355,11 @@ fn cloud(path: &Path, format: Format) -> Result<MadeCloud, Failure> {
     if !path.metadata().map_err(wrong)?.is_file() {
         return Err(wrong(std::io::Error::other("not a regular file")));
     }
-    let mut file = File::open(path).map_err(wrong)?;
-    let length = file.metadata().map_err(wrong)?.len();
+    let file = ReopenableFile::open(path).map_err(wrong)?;
+    let length = file.file().metadata().map_err(wrong)?.len();
     if format == Format::Ply {
         let mut head = Vec::new();
-        let read = Read::take(&file, HEADER_BYTES).read_to_end(&mut head);
+        let read = Read::take(file.file(), HEADER_BYTES).read_to_end(&mut head);
         read.map_err(wrong)?;
         if let Some(points) = own_ply(&head, length) {
             return Ok(MadeCloud {
@@ -363,10 +370,10 @@ fn cloud(path: &Path, format: Format) -> Result<MadeCloud, Failure> {
                 missing: None,
             });
         }
-        file.seek(SeekFrom::Start(0)).map_err(wrong)?;
     }
     let mut bytes = Vec::new();
-    file.read_to_end(&mut bytes).map_err(wrong)?;
+    let mut whole = file.reopen().map_err(wrong)?;
+    whole.read_to_end(&mut bytes).map_err(wrong)?;
     let (simulated, scanner) = (contains(&bytes, SIMULATED), contains(&bytes, FROM_AXIS));
     let read = positions(format, bytes).map_err(|error| {
         let what = format!("{}: {error}", path.display());
@@ -374,7 +381,7 @@ fn cloud(path: &Path, format: Format) -> Result<MadeCloud, Failure> {
             .help("see whether the file is whole, and is what its extension says")
     })?;
     let file = scratch()?;
-    write_ply(&file, &read.positions).map_err(no_scratch)?;
+    write_ply(file.file(), &read.positions).map_err(no_scratch)?;
     Ok(MadeCloud {
         file,
         points: read.positions.len() as u64,
@@ -487,9 +494,8 @@ mod tests {
             (2, false, false)
         );
         let mut bytes = Vec::new();
-        let mut file = made.file;
-        file.seek(SeekFrom::Start(0)).unwrap();
-        file.read_to_end(&mut bytes).unwrap();
+        let file = made.file;
+        file.reopen().unwrap().read_to_end(&mut bytes).unwrap();
         let read = positions(Format::Ply, bytes).unwrap().positions;
         assert_eq!(read, [[500_000.125, 4_600_000.5, -2.0], [1.0, 2.0, 3.0]]);
     }
