@@ -41,6 +41,10 @@ chaos *ARGS:
 kills *ARGS:
     cargo test -p velomotion --test kills --locked -- --kills 200 {{ARGS}}
 
+# The unit tests of what runs on Windows, in Wine, and clouds compared with those of Linux.
+windows:
+    tests/foreign/windows
+
 # Captures beside 8 busy loops, by the command and by a daemon: each must be complete; --captures N --loops N for others.
 load *ARGS:
     cargo test -p velomotion --test load --locked -- --captures 10 {{ARGS}}

@@ -1,4 +1,4 @@
-"""Open3D reads a .ply or .pcd cloud: count, bounds and columns as JSON.
+"""Open3D reads a .ply, .pcd or .xyz cloud, and numpy a .bin of KITTI: count, bounds and columns as JSON.
 
 usage: open3d_reads.py CLOUD
 """
@@ -6,17 +6,27 @@ usage: open3d_reads.py CLOUD
 import json
 import sys
 
+import numpy as np
 import open3d as o3d
 
-cloud = o3d.t.io.read_point_cloud(sys.argv[1])
-xyz = cloud.point.positions.numpy()
+path = sys.argv[1]
+if path.endswith(".bin"):
+    rows = np.fromfile(path, dtype="<f4").reshape(-1, 4)
+    assert 0 <= rows[:, 3].min() and rows[:, 3].max() <= 1, "reflectance from 0 to 1"
+    # KITTI: x forward, y left. Ours: x right, y forward.
+    xyz = np.column_stack([-rows[:, 1], rows[:, 0], rows[:, 2]])
+    columns = ["positions", "reflectance"]
+else:
+    cloud = o3d.t.io.read_point_cloud(path)
+    xyz = cloud.point.positions.numpy()
+    columns = sorted(name for name in cloud.point)
 print(
     json.dumps(
         {
             "points": int(xyz.shape[0]),
             "min": xyz.min(axis=0).tolist(),
             "max": xyz.max(axis=0).tolist(),
-            "columns": sorted(name for name in cloud.point),
+            "columns": columns,
         }
     )
 )

@@ -10,7 +10,7 @@ use crate::{Diagnostic, Fields, Metadata, Points, SinkError, Summary, TiltTrack}
 #[non_exhaustive]
 pub struct Companion {
     /// File name, in the same folder.
-    pub name: &'static str,
+    pub name: String,
     /// Content.
     pub text: String,
 }
@@ -265,7 +265,7 @@ mod tests {
             fn companion(&self, file_name: &str) -> Option<Companion> {
                 let text = file_name.to_owned();
                 Some(Companion {
-                    name: "beside",
+                    name: "beside".to_owned(),
                     text,
                 })
             }

@@ -27,10 +27,14 @@ const HEAD_BYTES: u64 = 64 << 10;
 #[must_use]
 pub fn most_bytes(format: Format, points: u64) -> u64 {
     let row = match format {
-        Format::Csv => TEXT_ROW_BYTES,
-        Format::Ply | Format::Pcd | Format::Las | Format::Laz | Format::E57 | Format::Mcap => {
-            ROW_BYTES
-        }
+        Format::Csv | Format::Xyz => TEXT_ROW_BYTES,
+        Format::Ply
+        | Format::Pcd
+        | Format::Las
+        | Format::Laz
+        | Format::E57
+        | Format::Mcap
+        | Format::Kitti => ROW_BYTES,
     };
     points.saturating_mul(row).saturating_add(HEAD_BYTES)
 }

@@ -1,4 +1,5 @@
-//! CSV: a header row with units, one row per point, without rounding.
+//! CSV: a header row with units, one row per point, without rounding. XYZ is the same with spaces,
+//! and without a header row: its names of columns are the last comment.
 //!
 //! `x_m,y_m,z_m,intensity,ring,time_s,tilt_deg`; metadata as lines that start with `#` before the
 //! header row. Coordinates and angles are the shortest decimals that read back to the same f64;
@@ -6,6 +7,7 @@
 
 use std::io::{self, Write};
 
+use super::Format;
 use super::file_sink::{EncodeError, FileSink, FormatEncoder};
 use crate::{Column, Fields, Metadata, Point, Points, Summary};
 
@@ -16,16 +18,18 @@ pub(super) type CsvWriter<W> = FileSink<CsvEncoder<W>>;
 #[derive(Debug)]
 pub(super) struct CsvEncoder<W> {
     output: W,
+    format: Format,
     fields: Fields,
     /// Text of a batch, kept for its memory.
     text: Vec<u8>,
 }
 
 impl<W: Write> CsvWriter<W> {
-    /// A writer into `output` with the columns `fields`.
-    pub(super) fn new(output: W, fields: Fields) -> Self {
+    /// A writer of CSV or XYZ into `output` with the columns `fields`.
+    pub(super) fn new(output: W, format: Format, fields: Fields) -> Self {
         let encoder = CsvEncoder {
             output,
+            format,
             fields,
             text: Vec::new(),
         };
@@ -66,16 +70,20 @@ const fn heading(column: Column) -> &'static str {
 
 impl<W: Write> FormatEncoder for CsvEncoder<W> {
     fn format(&self) -> &'static str {
-        "csv"
+        self.format.extension()
     }
 
     fn begin(&mut self, metadata: &Metadata) -> Result<(), EncodeError> {
         for line in metadata.lines() {
             writeln!(self.text, "# {line}")?;
         }
-        write!(self.text, "x_m,y_m,z_m")?;
+        let (comment, between) = match self.format {
+            Format::Xyz => ("# ", ' '),
+            _ => ("", ','),
+        };
+        write!(self.text, "{comment}x_m{between}y_m{between}z_m")?;
         for column in self.fields.columns() {
-            write!(self.text, ",{}", heading(column))?;
+            write!(self.text, "{between}{}", heading(column))?;
         }
         writeln!(self.text)?;
         Ok(self.output.write_all(&self.text)?)
@@ -83,11 +91,12 @@ impl<W: Write> FormatEncoder for CsvEncoder<W> {
 
     fn points(&mut self, batch: &Points) -> Result<(), EncodeError> {
         self.text.clear();
+        let between = if self.format == Format::Xyz { ' ' } else { ',' };
         for point in batch.iter() {
             let [x, y, z] = point.position_m;
-            write!(self.text, "{x},{y},{z}")?;
+            write!(self.text, "{x}{between}{y}{between}{z}")?;
             for column in self.fields.columns() {
-                self.text.push(b',');
+                write!(self.text, "{between}")?;
                 encode_field(&mut self.text, column, &point)?;
             }
             self.text.push(b'\n');
@@ -107,7 +116,7 @@ mod tests {
     use crate::{Sink, SinkError};
 
     fn written(fields: Fields, points: &Points) -> String {
-        let mut writer = CsvWriter::new(vec![], fields);
+        let mut writer = CsvWriter::new(vec![], Format::Csv, fields);
         writer.begin(&metadata()).unwrap();
         writer.points(points).unwrap();
         assert_eq!(writer.finish().unwrap(), points.summary());
@@ -120,6 +129,20 @@ mod tests {
         assert!(text.starts_with("# SIMULATED"));
         let header = text.lines().find(|line| !line.starts_with('#'));
         assert_eq!(header, Some("x_m,y_m,z_m,intensity,ring,time_s,tilt_deg"));
+    }
+
+    #[test]
+    fn xyz_has_spaces_and_its_header_is_a_comment() {
+        let mut writer = CsvWriter::new(vec![], Format::Xyz, Fields::INTENSITY);
+        writer.begin(&metadata()).unwrap();
+        writer.points(&cloud(3)).unwrap();
+        writer.finish().unwrap();
+        let xyz = String::from_utf8(writer.encoder.output).unwrap();
+        let (comments, rows): (Vec<_>, Vec<_>) = xyz.lines().partition(|line| line.starts_with('#'));
+        assert_eq!(comments.last(), Some(&"# x_m y_m z_m intensity"));
+        let csv = written(Fields::INTENSITY, &cloud(3));
+        let csv: Vec<String> = csv.lines().map(|line| line.replace(',', " ")).collect();
+        assert_eq!(rows, csv[csv.len() - 3..]);
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::error::Error;
 use std::io;
 
 use super::stage::Stage;
-use crate::{Fields, Metadata, Points, Sink, SinkError, Summary};
+use crate::{Companion, Fields, Metadata, Points, Sink, SinkError, Summary};
 
 /// Encodes a file. [`FileSink`] calls it in the order begin, points (any number), finish.
 pub trait FormatEncoder {
@@ -24,7 +24,8 @@ pub trait FormatEncoder {
     }
 
     /// Writes the header. It must contain `metadata.lines()` as plain text, such as comments:
-    /// `velomotion view` finds the mark SIMULATED and the frame there.
+    /// `velomotion view` finds the mark SIMULATED and the frame there. A format without a header
+    /// has them in its companion.
     ///
     /// # Errors
     /// [`EncodeError`] if the output or the library fails.
@@ -41,6 +42,12 @@ pub trait FormatEncoder {
     /// # Errors
     /// [`EncodeError`] if the output or the library fails.
     fn finish(&mut self, summary: &Summary) -> Result<(), EncodeError>;
+
+    /// As [`Sink::companion`].
+    fn companion(&self, file_name: &str) -> Option<Companion> {
+        let _ = file_name;
+        None
+    }
 }
 
 /// Failure of an encoder.
@@ -140,5 +147,9 @@ impl<E: FormatEncoder> Sink for FileSink<E> {
         let finished = self.encoder.finish(&self.summary);
         finished.map_err(|fault| self.error(fault))?;
         Ok(self.summary)
+    }
+
+    fn companion(&self, file_name: &str) -> Option<Companion> {
+        self.encoder.companion(file_name)
     }
 }

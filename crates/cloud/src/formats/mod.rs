@@ -1,4 +1,4 @@
-//! Clouds as files: PLY, PCD, LAS/LAZ, E57, MCAP and CSV, each a [`Sink`] over a writer.
+//! Clouds as files: PLY, PCD, LAS/LAZ, E57, MCAP, CSV, XYZ and KITTI, each a [`Sink`] over a writer.
 //!
 //! The default columns are intensity, ring, time and tilt ([`Fields::FILE`](crate::Fields::FILE)).
 //!
@@ -9,13 +9,15 @@
 //! | LAS, LAZ | 0.1 mm steps | gps_time within 0.06 us, f64 Unix seconds | batch by batch |
 //! | E57 | f32, within 4 um at 100 m | f64 seconds after the start, within 0.01 ns | by a thread |
 //! | MCAP | f32, within 4 um at 100 m | stamp, f32 seconds after it within 0.25 us | by time |
-//! | CSV | exact | exact | batch by batch |
+//! | CSV, XYZ | exact | exact | batch by batch |
+//! | KITTI | f32, within 4 um at 100 m | none | batch by batch |
 
 mod csv;
 mod e57;
 mod fallible;
 mod file_sink;
 mod gps_time;
+pub(crate) mod kitti;
 mod las;
 mod layout;
 pub mod mcap;
@@ -47,6 +49,10 @@ pub enum Format {
     Mcap,
     /// Comma-separated text.
     Csv,
+    /// Text with spaces.
+    Xyz,
+    /// `.bin` of KITTI: position and reflectance alone.
+    Kitti,
 }
 
 /// An extension without a format.
@@ -72,7 +78,7 @@ fn expected() -> String {
 
 impl Format {
     /// Every format.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 9] = [
         Self::Ply,
         Self::Pcd,
         Self::Las,
@@ -80,7 +86,18 @@ impl Format {
         Self::E57,
         Self::Mcap,
         Self::Csv,
+        Self::Xyz,
+        Self::Kitti,
     ];
+
+    /// Columns that the format has no place for.
+    #[must_use]
+    pub fn lacks(self) -> Fields {
+        match self {
+            Self::Kitti => Fields::SD | Fields::ECHO,
+            _ => Fields::NONE,
+        }
+    }
 
     /// The file name extension, without its dot.
     #[must_use]
@@ -93,6 +110,8 @@ impl Format {
             Self::E57 => "e57",
             Self::Mcap => "mcap",
             Self::Csv => "csv",
+            Self::Xyz => "xyz",
+            Self::Kitti => "bin",
         }
     }
 
@@ -131,7 +150,8 @@ impl Format {
             Self::Laz => Box::new(las::LasWriter::laz(output, fields)),
             Self::E57 => Box::new(e57::E57Writer::new(output, fields)),
             Self::Mcap => Box::new(mcap::McapWriter::new(output, fields)),
-            Self::Csv => Box::new(csv::CsvWriter::new(output, fields)),
+            Self::Csv | Self::Xyz => Box::new(csv::CsvWriter::new(output, self, fields)),
+            Self::Kitti => Box::new(kitti::KittiWriter::new(output)),
         }
     }
 }
@@ -160,10 +180,10 @@ mod tests {
 
     #[test]
     fn an_unknown_extension_lists_the_formats() {
-        let error = Format::from_extension("xyz").unwrap_err();
+        let error = Format::from_extension("obj").unwrap_err();
         assert_eq!(
             error.to_string(),
-            "no cloud format for extension .xyz: expected one of .ply .pcd .las .laz .e57 .mcap .csv"
+            "no cloud format for extension .obj: expected one of .ply .pcd .las .laz .e57 .mcap .csv .xyz .bin"
         );
         let error = Format::from_path(Path::new("cloud")).unwrap_err();
         assert!(error.to_string().contains("without extension"), "{error}");
@@ -179,7 +199,8 @@ mod tests {
             sink.points(&cloud).unwrap();
             let summary = sink.finish().unwrap();
             assert_eq!(summary, cloud.summary(), "{format}");
-            let bytes = file.content();
+            let companion = sink.companion("cloud").filter(|_| format == Format::Kitti);
+            let bytes = companion.map_or_else(|| file.content(), |beside| beside.text.into());
             let marked = bytes.windows(9).any(|window| window == b"SIMULATED");
             assert!(marked, "{format} is not marked SIMULATED");
         }

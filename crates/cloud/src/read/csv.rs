@@ -6,11 +6,8 @@ use crate::formats::Format;
 
 const NAMES: [[&str; 2]; 3] = [["x_m", "x"], ["y_m", "y"], ["z_m", "z"]];
 
-pub(super) fn positions(bytes: &[u8]) -> Result<Positions, ReadError> {
-    let text = SourceFile {
-        format: Format::Csv,
-        bytes,
-    };
+pub(super) fn positions(format: Format, bytes: &[u8]) -> Result<Positions, ReadError> {
+    let text = SourceFile { format, bytes };
     let mut offset = 0;
     while let Some((line, next)) = text.line(offset)? {
         if line.is_empty() || line.starts_with('#') {

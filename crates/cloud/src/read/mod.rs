@@ -2,11 +2,12 @@
 //!
 //! The formats of [`crate::formats`], as written here and by other programs: PLY and PCD as text or
 //! binary in any layout of columns, LAS and LAZ of every version of the `las` crate, E57,
-//! PointCloud2 in MCAP, text with a row per point. Positions are in metres as in the file; other
+//! PointCloud2 in MCAP, text with a row per point, KITTI. Positions are in metres as in the file; other
 //! columns are ignored.
 
 mod csv;
 mod e57;
+mod kitti;
 mod las;
 mod mcap;
 mod pcd;
@@ -39,7 +40,8 @@ pub fn positions(format: Format, bytes: Vec<u8>) -> Result<CloudPositions, ReadE
         Format::Las | Format::Laz => las::positions(format, bytes),
         Format::E57 => e57::positions(&bytes),
         Format::Mcap => mcap::positions(&bytes),
-        Format::Csv => csv::positions(&bytes),
+        Format::Csv | Format::Xyz => csv::positions(format, &bytes),
+        Format::Kitti => kitti::positions(&bytes),
     }?;
     let rows = positions.len();
     positions.retain(|position| position.iter().all(|axis| axis.is_finite()));

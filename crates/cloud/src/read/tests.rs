@@ -31,9 +31,9 @@ fn files_round_trip() {
         assert_eq!(read.len(), points.len());
         // f32 at 100 m; 0.1 mm steps; shortest decimals.
         let most = match format {
-            Format::Ply | Format::Pcd | Format::E57 | Format::Mcap => 4e-6,
+            Format::Ply | Format::Pcd | Format::E57 | Format::Mcap | Format::Kitti => 4e-6,
             Format::Las | Format::Laz => 0.51e-4,
-            Format::Csv => 0.0,
+            Format::Csv | Format::Xyz => 0.0,
         };
         let off = (points.x_m().iter().zip(points.y_m()).zip(points.z_m()))
             .zip(&read)

@@ -63,6 +63,12 @@ pub async fn cloud(
     let Query(wanted) = query?;
     let name = wanted.format.as_deref().unwrap_or("ply");
     let format = Format::from_extension(name).map_err(|error| Refusal::usage(error.to_string()))?;
+    if format == Format::Kitti {
+        // Its metadata need a second file.
+        return Err(Refusal::usage(
+            "format=bin: made by velomotion replay LOG -o NAME.bin",
+        ));
+    }
     let record = api.state.scans.record(&id);
     let record = record.ok_or_else(|| Refusal::no_scan(&id))?;
     if !record.state.is_final() {

@@ -124,7 +124,8 @@ fn stored(content: &str) -> BTreeMap<String, RefOr<Answer>> {
 
 /// Extensions of the formats of clouds.
 pub fn formats() -> Schema {
-    let names = Format::ALL.iter().map(|format| format.extension());
+    let made = Format::ALL.iter().filter(|format| **format != Format::Kitti);
+    let names = made.map(|format| format.extension());
     ObjectBuilder::new()
         .schema_type(Type::String)
         .enum_values(Some(names))

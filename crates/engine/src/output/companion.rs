@@ -1,4 +1,4 @@
-//! Companion files of formats that need one, such as `metadata.yaml` of a bag.
+//! Companion files of formats that need one: `metadata.yaml` of a bag, the metadata of a `.bin`.
 
 use std::io::{self as stdio, Write};
 use std::path::Path;
@@ -11,7 +11,7 @@ use crate::failure::{Failure, Kind};
 /// Writes the companion of the file `path`. A companion of another file stays: a folder has room
 /// for one, and both files are usable without it.
 pub(super) fn write_beside(path: &Path, companion: &Companion) -> Result<(), Failure> {
-    let beside = path.with_file_name(companion.name);
+    let beside = path.with_file_name(&companion.name);
     let failed = |what: String| {
         Failure::new(
             Kind::Incomplete,
@@ -37,7 +37,7 @@ pub(super) fn write_beside(path: &Path, companion: &Companion) -> Result<(), Fai
     };
     if older.is_some_and(|text| !of_this(text)) {
         tracing::warn!(
-            "{} belongs to another recording and is kept; {name} plays without it, or from a folder of its own",
+            "{} belongs to another file and is kept; {name} is usable without it, or write it to a folder of its own",
             beside.display()
         );
         return Ok(());

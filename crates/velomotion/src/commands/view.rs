@@ -374,7 +374,13 @@ fn cloud(path: &Path, format: Format) -> Result<MadeCloud, Failure> {
     let mut bytes = Vec::new();
     let mut whole = file.reopen().map_err(wrong)?;
     whole.read_to_end(&mut bytes).map_err(wrong)?;
-    let (simulated, scanner) = (contains(&bytes, SIMULATED), contains(&bytes, FROM_AXIS));
+    let mut simulated = contains(&bytes, SIMULATED);
+    let mut scanner = contains(&bytes, FROM_AXIS);
+    if format == Format::Kitti {
+        let beside = std::fs::read(format!("{}.txt", path.display())).unwrap_or_default();
+        simulated = contains(&beside, SIMULATED);
+        scanner = contains(&beside, FROM_AXIS);
+    }
     let read = positions(format, bytes).map_err(|error| {
         let what = format!("{}: {error}", path.display());
         Failure::new(Kind::BadInput, what)

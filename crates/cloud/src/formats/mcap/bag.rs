@@ -74,7 +74,7 @@ pub(super) fn companion(file_name: &str, channels: &McapChannels) -> Companion {
 "
     );
     Companion {
-        name: "metadata.yaml",
+        name: "metadata.yaml".to_owned(),
         text,
     }
 }

@@ -60,8 +60,8 @@ pub enum InputArgument<'a> {
 }
 
 impl<'a> InputArgument<'a> {
-    /// Classifies an argument without reading the file: by pattern name, else by extension. `.xyz`,
-    /// `.txt` and `.asc` are read like `.csv`.
+    /// Classifies an argument without reading the file: by pattern name, else by extension. `.txt`
+    /// and `.asc` are read like `.xyz`.
     ///
     /// # Errors
     /// [`Kind::Usage`] for invalid patterns, [`Kind::BadInput`] for missing files.
@@ -81,7 +81,7 @@ impl<'a> InputArgument<'a> {
         let is_text = TEXT_EXTENSIONS.iter().any(|text| extension == *text);
         Ok(match Format::from_path(path) {
             Ok(format) => Self::Cloud(path, format),
-            Err(_) if is_text => Self::Cloud(path, Format::Csv),
+            Err(_) if is_text => Self::Cloud(path, Format::Xyz),
             Err(_) => Self::Log(path),
         })
     }
@@ -104,10 +104,10 @@ impl<'a> InputArgument<'a> {
     }
 }
 
-/// Extensions of text files with one row per point, apart from `.csv`.
-const TEXT_EXTENSIONS: [&str; 3] = ["xyz", "txt", "asc"];
+/// Extensions of text files with one row per point, apart from `.csv` and `.xyz`.
+const TEXT_EXTENSIONS: [&str; 2] = ["txt", "asc"];
 
-const HINT: &str = "name a pattern (a lidar: vlp16, hi-res, hdl32e, vlp32c, hdl64e, utm30lx, lms151, each with :SPEED to tilt and ,spin to spin; rmbl:SPEED, rsbl:SPEED, velomotion16:SPEED), a cloud (.ply .pcd .las .laz .e57 .mcap .csv .xyz .txt .asc), \
+const HINT: &str = "name a pattern (a lidar: vlp16, hi-res, hdl32e, vlp32c, hdl64e, utm30lx, lms151, each with :SPEED to tilt and ,spin to spin; rmbl:SPEED, rsbl:SPEED, velomotion16:SPEED), a cloud (.ply .pcd .las .laz .e57 .mcap .csv .xyz .bin .txt .asc), \
                     or a log or recording (pcapng, pcap)";
 
 /// The failure for an invalid pattern.
@@ -180,7 +180,7 @@ fn of_cloud(path: &Path, format: Format, origin_m: DVec3) -> Result<Input, Failu
         wrong(
             error.to_string(),
             match format {
-                Format::Csv => "expected one row per point with x, y and z in metres, in the first three columns or those that a header names",
+                Format::Csv | Format::Xyz => "expected one row per point with x, y and z in metres, in the first three columns or those that a header names",
                 _ => "see whether the file is whole, and is what its extension says",
             },
         )
