@@ -15,6 +15,17 @@ pub struct Companion {
     pub text: String,
 }
 
+impl Companion {
+    /// The text beside a file that has no place for its metadata.
+    pub(crate) fn metadata(file_name: &str, columns: &str, lines: &[String]) -> Self {
+        let lines = lines.join("\n");
+        Self {
+            name: format!("{file_name}.txt"),
+            text: format!("- {file_name}\ncolumns: {columns}\n{lines}\n"),
+        }
+    }
+}
+
 /// A consumer of points. Only [`Sink::points`] is required. The order of calls is begin, tilt,
 /// points and revolution (any number), diagnostics, finish, companion.
 pub trait Sink {

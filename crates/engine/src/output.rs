@@ -53,8 +53,15 @@ impl Target {
                 .help("use one of those extensions, or - for PLY on stdout")
         })?;
         let lacks = format.lacks();
-        if let Some(column) = fields.columns().find(|column| lacks.contains(column.field())) {
-            let what = format!("{}: .{format} has no column {}", path.display(), column.name());
+        if let Some(column) = fields
+            .columns()
+            .find(|column| lacks.contains(column.field()))
+        {
+            let what = format!(
+                "{}: .{format} has no column {}",
+                path.display(),
+                column.name()
+            );
             return Err(Failure::new(Kind::Usage, what)
                 .help("omit --uncertainty and --echo, or write another format, such as .ply"));
         }

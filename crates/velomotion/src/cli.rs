@@ -377,8 +377,8 @@ pub struct Output {
 /// `view`.
 #[derive(Clone, Debug, Args)]
 pub struct ViewArguments {
-    /// Clouds (.ply .pcd .las .laz .e57 .mcap .csv .xyz .bin .txt .asc), logs or recordings (pcapng,
-    /// pcap); a log's cloud is made first and plays along its time
+    /// Clouds (.ply .pcd .las .laz .e57 .mcap .csv .xyz .bin .txt .asc), logs or recordings
+    /// (pcapng, pcap); a log's cloud is made first and plays along its time
     #[arg(value_name = "FILE", required = true)]
     pub files: Vec<PathBuf>,
     /// Print the address only, and open no browser
@@ -452,8 +452,8 @@ pub struct Analyze {
     /// Patterns by name: a lidar (vlp16, hi-res, hdl32e, vlp32c, hdl64e, utm30lx, lms151), which
     /// tilts with :SPEED and spins with ,spin; rmbl:SPEED, rsbl:SPEED, velomotion16:SPEED. Each
     /// takes ,KEY=VALUE: rpm, step, start, seam, from, to, accel, tilt, frames, d, and planar
-    /// scanners ,roll or ,pitch. Clouds (.ply .pcd .las .laz .e57 .mcap .csv .xyz .bin .txt .asc), logs
-    /// or recordings
+    /// scanners ,roll or ,pitch. Clouds (.ply .pcd .las .laz .e57 .mcap .csv .xyz .bin .txt .asc),
+    /// logs or recordings
     #[arg(value_name = "PATTERN|CLOUD|LOG", required = true)]
     pub inputs: Vec<String>,
     /// Subdivisions of the icosahedron whose faces are the bins: 20 x 4^N bins

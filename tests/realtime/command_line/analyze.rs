@@ -494,7 +494,11 @@ fn inputs_that_cannot_be_analysed_are_errors() {
             "no point that has a direction",
         ),
         ("analyze vlp16 --origin 1,2,3", 2, "no cloud is named"),
-        ("analyze nosuch.ply", 3, ".e57 .mcap .csv .xyz .bin .txt .asc"),
+        (
+            "analyze nosuch.ply",
+            3,
+            ".e57 .mcap .csv .xyz .bin .txt .asc",
+        ),
         ("analyze vlp16,start=0,start=90", 2, "expected start once"),
         ("analyze velomotion16:50,,d=1", 2, "expected KEY=VALUE"),
         (

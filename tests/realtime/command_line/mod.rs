@@ -131,7 +131,7 @@ fn simulate_writes_a_log_that_replay_reads_and_locates_errors() {
         ],
     );
     std::fs::write(place.path("stand.toml"), scene).unwrap();
-    place.fails("simulate stand.toml --truth t.xyz", 2, &["t.xyz", ".ply"]);
+    place.fails("simulate stand.toml --truth t.obj", 2, &["t.obj", ".ply"]);
     place.fails("simulate stand.toml --truth - --json", 2, &["stdout"]);
     place.fails("simulate stand.toml -o -", 2, &["file", ".pcapng"]);
     let output = place.run("simulate stand.toml --truth t.csv --json --threads 2");

@@ -1,5 +1,5 @@
-//! CSV: a header row with units, one row per point, without rounding. XYZ is the same with spaces,
-//! and without a header row: its names of columns are the last comment.
+//! CSV: a header row with units, one row per point, without rounding. XYZ is the same rows with
+//! spaces and nothing else, since readers fail on comments: the rest is in its companion.
 //!
 //! `x_m,y_m,z_m,intensity,ring,time_s,tilt_deg`; metadata as lines that start with `#` before the
 //! header row. Coordinates and angles are the shortest decimals that read back to the same f64;
@@ -9,7 +9,7 @@ use std::io::{self, Write};
 
 use super::Format;
 use super::file_sink::{EncodeError, FileSink, FormatEncoder};
-use crate::{Column, Fields, Metadata, Point, Points, Summary};
+use crate::{Column, Companion, Fields, Metadata, Point, Points, Summary};
 
 /// Writes CSV. Each batch is one write: the output needs no buffer.
 pub(super) type CsvWriter<W> = FileSink<CsvEncoder<W>>;
@@ -20,6 +20,8 @@ pub(super) struct CsvEncoder<W> {
     output: W,
     format: Format,
     fields: Fields,
+    /// Metadata for the companion of XYZ.
+    lines: Vec<String>,
     /// Text of a batch, kept for its memory.
     text: Vec<u8>,
 }
@@ -31,6 +33,7 @@ impl<W: Write> CsvWriter<W> {
             output,
             format,
             fields,
+            lines: Vec::new(),
             text: Vec::new(),
         };
         Self::of(encoder, fields)
@@ -68,24 +71,29 @@ const fn heading(column: Column) -> &'static str {
     }
 }
 
+impl<W> CsvEncoder<W> {
+    /// Names of the columns, with units.
+    fn names(&self) -> Vec<&'static str> {
+        let more = self.fields.columns().map(heading);
+        ["x_m", "y_m", "z_m"].into_iter().chain(more).collect()
+    }
+}
+
 impl<W: Write> FormatEncoder for CsvEncoder<W> {
     fn format(&self) -> &'static str {
         self.format.extension()
     }
 
     fn begin(&mut self, metadata: &Metadata) -> Result<(), EncodeError> {
+        if self.format == Format::Xyz {
+            self.lines = metadata.lines();
+            return Ok(());
+        }
         for line in metadata.lines() {
             writeln!(self.text, "# {line}")?;
         }
-        let (comment, between) = match self.format {
-            Format::Xyz => ("# ", ' '),
-            _ => ("", ','),
-        };
-        write!(self.text, "{comment}x_m{between}y_m{between}z_m")?;
-        for column in self.fields.columns() {
-            write!(self.text, "{between}{}", heading(column))?;
-        }
-        writeln!(self.text)?;
+        let names = self.names().join(",");
+        writeln!(self.text, "{names}")?;
         Ok(self.output.write_all(&self.text)?)
     }
 
@@ -106,6 +114,11 @@ impl<W: Write> FormatEncoder for CsvEncoder<W> {
 
     fn finish(&mut self, _: &Summary) -> Result<(), EncodeError> {
         Ok(self.output.flush()?)
+    }
+
+    fn companion(&self, file_name: &str) -> Option<Companion> {
+        (self.format == Format::Xyz)
+            .then(|| Companion::metadata(file_name, &self.names().join(" "), &self.lines))
     }
 }
 
@@ -132,17 +145,23 @@ mod tests {
     }
 
     #[test]
-    fn xyz_has_spaces_and_its_header_is_a_comment() {
+    fn xyz_has_the_same_rows_with_spaces_and_the_rest_beside_it() {
         let mut writer = CsvWriter::new(vec![], Format::Xyz, Fields::INTENSITY);
         writer.begin(&metadata()).unwrap();
         writer.points(&cloud(3)).unwrap();
         writer.finish().unwrap();
+        let beside = writer.companion("scan.xyz").unwrap();
+        assert_eq!(beside.name, "scan.xyz.txt");
+        assert!(beside.text.contains("\nSIMULATED"), "{}", beside.text);
+        assert!(
+            beside.text.contains("x_m y_m z_m intensity\n"),
+            "{}",
+            beside.text
+        );
         let xyz = String::from_utf8(writer.encoder.output).unwrap();
-        let (comments, rows): (Vec<_>, Vec<_>) = xyz.lines().partition(|line| line.starts_with('#'));
-        assert_eq!(comments.last(), Some(&"# x_m y_m z_m intensity"));
         let csv = written(Fields::INTENSITY, &cloud(3));
-        let csv: Vec<String> = csv.lines().map(|line| line.replace(',', " ")).collect();
-        assert_eq!(rows, csv[csv.len() - 3..]);
+        let rows: Vec<String> = csv.lines().map(|line| line.replace(',', " ")).collect();
+        assert_eq!(xyz.lines().collect::<Vec<_>>(), rows[rows.len() - 3..]);
     }
 
     #[test]
@@ -187,7 +206,7 @@ mod tests {
 
     #[test]
     fn a_full_disk_is_an_error_with_the_number_of_points() {
-        let mut writer = CsvWriter::new(SmallDisk::new(20_000), Fields::FILE);
+        let mut writer = CsvWriter::new(SmallDisk::new(20_000), Format::Csv, Fields::FILE);
         writer.begin(&metadata()).unwrap();
         writer.points(&cloud(10)).unwrap();
         let error = writer.points(&cloud(1000)).unwrap_err();

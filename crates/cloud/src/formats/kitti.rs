@@ -64,17 +64,10 @@ impl<W: Write> FormatEncoder for KittiEncoder<W> {
     }
 
     fn companion(&self, file_name: &str) -> Option<Companion> {
-        let mut text = format!(
-            "- {file_name}\ncolumns: x forward, y left, z up (m), reflectance (0 to 1), each f32\n"
-        );
-        for line in &self.lines {
-            text.push_str(line);
-            text.push('\n');
-        }
-        Some(Companion {
-            name: format!("{file_name}.txt"),
-            text,
-        })
+        let columns = "x y z, reflectance from 0 to 1, each f32";
+        let turned = |line: &String| line.replace("x right, y forward", "x forward, y left");
+        let lines: Vec<String> = self.lines.iter().map(turned).collect();
+        Some(Companion::metadata(file_name, columns, &lines))
     }
 }
 

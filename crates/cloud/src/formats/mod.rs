@@ -1,4 +1,5 @@
-//! Clouds as files: PLY, PCD, LAS/LAZ, E57, MCAP, CSV, XYZ and KITTI, each a [`Sink`] over a writer.
+//! Clouds as files: PLY, PCD, LAS/LAZ, E57, MCAP, CSV, XYZ and KITTI, each a [`Sink`] over a
+//! writer.
 //!
 //! The default columns are intensity, ring, time and tilt ([`Fields::FILE`](crate::Fields::FILE)).
 //!
@@ -89,6 +90,12 @@ impl Format {
         Self::Xyz,
         Self::Kitti,
     ];
+
+    /// Whether the metadata, and the mark SIMULATED, are only in a companion.
+    #[must_use]
+    pub const fn needs_companion(self) -> bool {
+        matches!(self, Self::Xyz | Self::Kitti)
+    }
 
     /// Columns that the format has no place for.
     #[must_use]
@@ -199,7 +206,7 @@ mod tests {
             sink.points(&cloud).unwrap();
             let summary = sink.finish().unwrap();
             assert_eq!(summary, cloud.summary(), "{format}");
-            let companion = sink.companion("cloud").filter(|_| format == Format::Kitti);
+            let companion = sink.companion("cloud").filter(|_| format.needs_companion());
             let bytes = companion.map_or_else(|| file.content(), |beside| beside.text.into());
             let marked = bytes.windows(9).any(|window| window == b"SIMULATED");
             assert!(marked, "{format} is not marked SIMULATED");

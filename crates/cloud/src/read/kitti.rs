@@ -17,7 +17,11 @@ pub(super) fn positions(bytes: &[u8]) -> Result<Positions, ReadError> {
     }
     let position = |row: &[u8; ROW_BYTES]| {
         let (values, _) = row.as_chunks::<4>();
-        let axis = |index: usize| values.get(index).map_or(f64::NAN, |v| f32::from_le_bytes(*v).into());
+        let axis = |index: usize| {
+            values
+                .get(index)
+                .map_or(f64::NAN, |v| f32::from_le_bytes(*v).into())
+        };
         [-axis(1), axis(0), axis(2)]
     };
     Ok(rows.iter().map(position).collect())

@@ -2,8 +2,8 @@
 //!
 //! The formats of [`crate::formats`], as written here and by other programs: PLY and PCD as text or
 //! binary in any layout of columns, LAS and LAZ of every version of the `las` crate, E57,
-//! PointCloud2 in MCAP, text with a row per point, KITTI. Positions are in metres as in the file; other
-//! columns are ignored.
+//! PointCloud2 in MCAP, text with a row per point, KITTI. Positions are in metres as in the file;
+//! other columns are ignored.
 
 mod csv;
 mod e57;

@@ -63,11 +63,11 @@ pub async fn cloud(
     let Query(wanted) = query?;
     let name = wanted.format.as_deref().unwrap_or("ply");
     let format = Format::from_extension(name).map_err(|error| Refusal::usage(error.to_string()))?;
-    if format == Format::Kitti {
-        // Its metadata need a second file.
-        return Err(Refusal::usage(
-            "format=bin: made by velomotion replay LOG -o NAME.bin",
-        ));
+    if format.needs_companion() {
+        let what = format!(
+            "a download is one file, and {format} needs a second: velomotion replay makes both of the log"
+        );
+        return Err(Refusal::usage(what));
     }
     let record = api.state.scans.record(&id);
     let record = record.ok_or_else(|| Refusal::no_scan(&id))?;

@@ -124,7 +124,9 @@ fn stored(content: &str) -> BTreeMap<String, RefOr<Answer>> {
 
 /// Extensions of the formats of clouds.
 pub fn formats() -> Schema {
-    let made = Format::ALL.iter().filter(|format| **format != Format::Kitti);
+    let made = Format::ALL
+        .iter()
+        .filter(|format| !format.needs_companion());
     let names = made.map(|format| format.extension());
     ObjectBuilder::new()
         .schema_type(Type::String)
@@ -298,6 +300,7 @@ mod tests {
         let listed = format.unwrap()["schema"]["enum"].as_array().unwrap();
         let ours: Vec<&str> = cloud::formats::Format::ALL
             .iter()
+            .filter(|f| !f.needs_companion())
             .map(|f| f.extension())
             .collect();
         assert_eq!(

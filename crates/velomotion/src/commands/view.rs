@@ -376,7 +376,7 @@ fn cloud(path: &Path, format: Format) -> Result<MadeCloud, Failure> {
     whole.read_to_end(&mut bytes).map_err(wrong)?;
     let mut simulated = contains(&bytes, SIMULATED);
     let mut scanner = contains(&bytes, FROM_AXIS);
-    if format == Format::Kitti {
+    if format.needs_companion() {
         let beside = std::fs::read(format!("{}.txt", path.display())).unwrap_or_default();
         simulated = contains(&beside, SIMULATED);
         scanner = contains(&beside, FROM_AXIS);
