@@ -16,7 +16,8 @@ pub struct Companion {
 }
 
 impl Companion {
-    /// The text beside a file that has no place for its metadata.
+    /// The text beside a file that has no place for its metadata. The first line tells which file
+    /// it belongs to, as in the list of files of a bag.
     pub(crate) fn metadata(file_name: &str, columns: &str, lines: &[String]) -> Self {
         let lines = lines.join("\n");
         Self {

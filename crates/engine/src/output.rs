@@ -14,7 +14,7 @@ use cloud::formats::pcd::PcdWriter;
 use cloud::formats::ply::PlyPipe;
 use cloud::{Fields, Sink, SinkError};
 
-use self::companion::write_beside;
+use self::companion::{check_beside, write_beside};
 use crate::failure::{Failure, Kind};
 
 pub use self::file::{BufferedFile, SharedFile};
@@ -64,6 +64,9 @@ impl Target {
             );
             return Err(Failure::new(Kind::Usage, what)
                 .help("omit --uncertainty and --echo, or write another format, such as .ply"));
+        }
+        if format.needs_companion() {
+            check_beside(path)?;
         }
         Self::file(path, force, |file| {
             format.writer(BufferedFile::new(file), fields)

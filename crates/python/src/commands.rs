@@ -174,7 +174,7 @@ pub(crate) fn calibrate<'py>(
 /// output : path
 ///     The log to write: .pcapng, or .pcap for the lidar's packets alone.
 /// truth : path, optional
-///     Cloud of the true points (.ply, .pcd, .las, .laz, .e57, .mcap, .csv).
+///     Cloud of the true points (.ply, .pcd, .las, .laz, .e57, .mcap, .csv, .xyz, .bin).
 /// seed : int, optional
 ///     Random seed; by default the scene's.
 /// without : sequence of str

@@ -230,7 +230,8 @@ mod tests {
         let ply = error_um(Format::Ply);
         // Half a step of f32 between 16 and 32 m is 0.95 um per coordinate.
         assert!((0.1..1.7).contains(&ply), "{ply}");
-        for like in [Format::Pcd, Format::E57, Format::Mcap] {
+        assert_eq!(error_um(Format::Xyz), 0.0);
+        for like in [Format::Pcd, Format::E57, Format::Mcap, Format::Kitti] {
             assert_eq!(error_um(like), ply, "{like}");
         }
         let las = error_um(Format::Las);

@@ -6,9 +6,9 @@
 
 use std::io::{IsTerminal, Write};
 #[cfg(unix)]
-use std::os::fd::AsFd as Stream;
+use std::os::fd::AsFd as AsHandle;
 #[cfg(windows)]
-use std::os::windows::io::AsHandle as Stream;
+use std::os::windows::io::AsHandle;
 use std::sync::LazyLock;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::Duration;
@@ -110,7 +110,7 @@ pub fn flush() {
 
 /// Columns of a terminal; `None` for a pipe or a file.
 #[must_use]
-pub fn width_of(output: impl Stream) -> Option<usize> {
+pub fn width_of(output: impl AsHandle) -> Option<usize> {
     terminal_size::terminal_size_of(output).map(|(width, _)| width.0.into())
 }
 

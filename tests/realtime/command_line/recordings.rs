@@ -57,10 +57,7 @@ fn ros_recordings_are_bags_and_keep_the_metadata_of_others() {
     assert!(output.status.success() && place.path("an.mcap").is_file());
     assert_eq!(metadata(), first);
     let printed = String::from_utf8_lossy(&output.stderr);
-    assert!(
-        printed.contains("belongs to another file"),
-        "{printed}"
-    );
+    assert!(printed.contains("belongs to another file"), "{printed}");
 }
 
 #[test]

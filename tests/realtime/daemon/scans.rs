@@ -465,8 +465,7 @@ fn a_download_leaves_the_space_reserved_for_a_scan() {
     };
     for format in Format::ALL {
         if format.needs_companion() {
-            rig.get(&path(format))
-                .refused(400, "a download is one file");
+            rig.get(&path(format)).refused(400, "expected one of ply");
             continue;
         }
         let most = disk_quota::most_bytes(format, points);

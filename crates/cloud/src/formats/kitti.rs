@@ -95,6 +95,8 @@ mod tests {
         assert_eq!(row, [y, -x, z, f32::from(point.intensity) / 255.0]);
         let companion = writer.companion("scan.bin").unwrap();
         assert_eq!(companion.name, "scan.bin.txt");
-        assert!(companion.text.contains("\nSIMULATED"), "{}", companion.text);
+        for part in ["\nSIMULATED", "\nframe: x forward, y left, z up"] {
+            assert!(companion.text.contains(part), "{}", companion.text);
+        }
     }
 }

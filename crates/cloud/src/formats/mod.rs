@@ -97,7 +97,13 @@ impl Format {
         matches!(self, Self::Xyz | Self::Kitti)
     }
 
-    /// Columns that the format has no place for.
+    /// The formats that are one file with its metadata.
+    pub fn single_files() -> impl Iterator<Item = Self> {
+        let formats = Self::ALL.into_iter();
+        formats.filter(|format| !format.needs_companion())
+    }
+
+    /// Optional columns that the format refuses.
     #[must_use]
     pub fn lacks(self) -> Fields {
         match self {

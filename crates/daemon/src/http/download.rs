@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use axum::extract::rejection::QueryRejection;
 use axum::extract::{Path, Query, State};
-use axum::http::HeaderMap;
+use axum::http::{HeaderMap, StatusCode};
 use axum::response::Response;
 use cloud::Fields;
 use cloud::formats::Format;
@@ -62,13 +62,7 @@ pub async fn cloud(
 ) -> Result<Response, Refusal> {
     let Query(wanted) = query?;
     let name = wanted.format.as_deref().unwrap_or("ply");
-    let format = Format::from_extension(name).map_err(|error| Refusal::usage(error.to_string()))?;
-    if format.needs_companion() {
-        let what = format!(
-            "a download is one file, and {format} needs a second: velomotion replay makes both of the log"
-        );
-        return Err(Refusal::usage(what));
-    }
+    let format = format_of(name)?;
     let record = api.state.scans.record(&id);
     let record = record.ok_or_else(|| Refusal::no_scan(&id))?;
     if !record.state.is_final() {
@@ -114,6 +108,17 @@ pub async fn cloud(
     let file = made.await.map_err(|_| defect())??;
     drop(client);
     Ok(send(file, &stem, format.extension(), permit, None))
+}
+
+/// The format of an extension. A download is one file, without a companion.
+fn format_of(extension: &str) -> Result<Format, Refusal> {
+    let is_named = |format: &Format| extension.eq_ignore_ascii_case(format.extension());
+    Format::single_files().find(is_named).ok_or_else(|| {
+        let names: Vec<_> = Format::single_files().map(Format::extension).collect();
+        let error = format!("format={extension}: expected one of {}", names.join(" "));
+        let help = "velomotion replay makes .xyz and .bin, which are two files each, of the log";
+        Refusal::new(StatusCode::BAD_REQUEST, Kind::Usage, error, help)
+    })
 }
 
 /// The refusal of what needs a finished scan.

@@ -124,10 +124,7 @@ fn stored(content: &str) -> BTreeMap<String, RefOr<Answer>> {
 
 /// Extensions of the formats of clouds.
 pub fn formats() -> Schema {
-    let made = Format::ALL
-        .iter()
-        .filter(|format| !format.needs_companion());
-    let names = made.map(|format| format.extension());
+    let names = Format::single_files().map(Format::extension);
     ObjectBuilder::new()
         .schema_type(Type::String)
         .enum_values(Some(names))
@@ -298,11 +295,7 @@ mod tests {
             .iter()
             .find(|p| p["name"] == "format");
         let listed = format.unwrap()["schema"]["enum"].as_array().unwrap();
-        let ours: Vec<&str> = cloud::formats::Format::ALL
-            .iter()
-            .filter(|f| !f.needs_companion())
-            .map(|f| f.extension())
-            .collect();
+        let ours: Vec<&str> = Format::single_files().map(Format::extension).collect();
         assert_eq!(
             listed
                 .iter()

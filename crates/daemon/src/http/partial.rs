@@ -20,9 +20,9 @@ pub enum FileRange {
 
 /// Validator of a stored file as it is now: its length and the time of its last change.
 pub fn tag_of(file: &Metadata) -> String {
-    let changed = file.modified().ok();
-    let since = changed.and_then(|time| time.duration_since(UNIX_EPOCH).ok());
-    let ns = since.map_or(0, |since| since.as_nanos());
+    let time = file.modified().ok();
+    let age = time.and_then(|time| time.duration_since(UNIX_EPOCH).ok());
+    let ns = age.map_or(0, |age| age.as_nanos());
     format!("\"{:x}-{ns:x}\"", file.len())
 }
 

@@ -1,4 +1,4 @@
-//! Secrets that nobody guesses.
+//! Random secrets.
 
 const SECRET_BYTES: usize = 16;
 

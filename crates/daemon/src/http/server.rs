@@ -226,7 +226,7 @@ async fn serve<S: AsyncRead + AsyncWrite + Unpin + Send + 'static>(
     let connection = http1::Builder::new()
         .timer(TokioTimer::new())
         .header_read_timeout(waits.headers)
-        // Twice the limits: `guard::limits` refuses more with an error object.
+        // Twice the limits: `request_limits::limits` refuses more with an error object.
         .max_buf_size(2 * HEAD_BYTES)
         .max_headers(2 * HEADERS)
         .serve_connection(TokioIo::new(stream), answer)

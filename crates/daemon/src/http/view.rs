@@ -179,7 +179,8 @@ impl ViewServer {
     pub fn start(files: Vec<ViewedFile>) -> Result<Self, Failure> {
         let token = secret().map_err(|error| {
             let what = format!("cannot get random bytes from the system: {error}");
-            Failure::new(Kind::Incomplete, what).help("start it again")
+            Failure::new(Kind::Incomplete, what)
+                .help("start it again: the system's random numbers may not be ready")
         })?;
         let waits = Waits::default();
         let (tcp, address) = server::bind_tcp((Ipv4Addr::LOCALHOST, 0).into())?;

@@ -48,7 +48,7 @@ impl RecordingInput {
         };
         let is_rereadable = |metadata: std::fs::Metadata| metadata.is_file() || metadata.is_dir();
         // Only Linux opens the file behind /dev/stdin again, from its beginning.
-        let can_reopen = cfg!(target_os = "linux") || path == name;
+        let can_reopen = cfg!(target_os = "linux") || !path.starts_with("/dev");
         let is_rereadable = can_reopen && file.metadata().is_ok_and(is_rereadable);
         let copy = if is_rereadable {
             None

@@ -377,9 +377,11 @@ fn cloud(path: &Path, format: Format) -> Result<MadeCloud, Failure> {
     let mut simulated = contains(&bytes, SIMULATED);
     let mut scanner = contains(&bytes, FROM_AXIS);
     if format.needs_companion() {
-        let beside = std::fs::read(format!("{}.txt", path.display())).unwrap_or_default();
-        simulated = contains(&beside, SIMULATED);
-        scanner = contains(&beside, FROM_AXIS);
+        let mut companion = path.as_os_str().to_owned();
+        companion.push(".txt");
+        let companion = std::fs::read(companion).unwrap_or_default();
+        simulated |= contains(&companion, SIMULATED);
+        scanner |= contains(&companion, FROM_AXIS);
     }
     let read = positions(format, bytes).map_err(|error| {
         let what = format!("{}: {error}", path.display());
@@ -397,7 +399,7 @@ fn cloud(path: &Path, format: Format) -> Result<MadeCloud, Failure> {
     })
 }
 
-/// Marks of velomotion's own clouds in every format.
+/// Marks of velomotion's own clouds. `FRAME` is that of all formats but KITTI.
 const SIMULATED: &[u8] = b"SIMULATED";
 const FRAME: &[u8] = b"frame: x right, y forward, z up in metres from ";
 const FROM_AXIS: &[u8] = b"z up in metres from the tilt axis";
@@ -504,6 +506,27 @@ mod tests {
         file.reopen().unwrap().read_to_end(&mut bytes).unwrap();
         let read = positions(Format::Ply, bytes).unwrap().positions;
         assert_eq!(read, [[500_000.125, 4_600_000.5, -2.0], [1.0, 2.0, 3.0]]);
+    }
+
+    #[test]
+    fn the_marks_of_text_are_in_it_or_beside_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let write =
+            |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+        let marks = |name: &str| {
+            let made = cloud(&folder.path().join(name), Format::Xyz).unwrap();
+            (made.simulated, made.scanner)
+        };
+        write("renamed.txt", "# SIMULATED: no scan\n1 2 3\n");
+        assert_eq!(marks("renamed.txt"), (true, false));
+        write("plain.xyz", "1 2 3\n");
+        assert_eq!(marks("plain.xyz"), (false, false));
+        write("own.xyz", "1 2 3\n");
+        write(
+            "own.xyz.txt",
+            "SIMULATED\nframe: z up in metres from the tilt axis\n",
+        );
+        assert_eq!(marks("own.xyz"), (true, true));
     }
 
     #[test]
