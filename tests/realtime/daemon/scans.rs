@@ -66,7 +66,7 @@ fn a_scan_is_listed_downloaded_like_its_replay_and_deleted() {
         );
     }
     let wrong = rig.get(&format!("/api/v1/scans/{id}/cloud?format=obj"));
-    assert!(wrong.refused(400, "format").to_string().contains(".laz"));
+    assert!(wrong.refused(400, "format").to_string().contains(" laz "));
     rig.get(&format!("/api/v1/scans/{id}/cloud?formt=ply"))
         .refused(400, "misspelt");
     let picture = rig.get(&format!("/api/v1/scans/{id}/thumbnail"));
