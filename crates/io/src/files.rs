@@ -131,8 +131,7 @@ impl NewFile {
                 });
             }
             Ok(metadata) if !metadata.is_file() => {
-                let device = OpenOptions::new().write(true).open(&file_path);
-                WriteTarget::Device(device.map_err(io_error)?)
+                WriteTarget::Device(open_device(&file_path).map_err(io_error)?)
             }
             Ok(_) if overwrite == Overwrite::Refuse => {
                 return Err(FileError::Exists {
@@ -262,6 +261,39 @@ fn folder_of(path: &Path) -> &Path {
 pub fn is_half_written(name: &OsStr) -> bool {
     let name = name.as_encoded_bytes();
     name.starts_with(b".") && name.ends_with(PARTIAL.as_bytes())
+}
+
+/// Opens a device or pipe to write it. A pipe that no program reads would block: after 10 s it is
+/// an error.
+#[cfg(target_os = "linux")]
+fn open_device(path: &Path) -> io::Result<File> {
+    use nix::errno::Errno;
+    use nix::fcntl::{FcntlArg, OFlag, fcntl};
+    use std::os::unix::fs::OpenOptionsExt;
+    use std::time::{Duration, Instant};
+
+    let mut options = OpenOptions::new();
+    options.write(true).custom_flags(OFlag::O_NONBLOCK.bits());
+    let start = Instant::now();
+    let file = loop {
+        match options.open(path) {
+            Err(error) if error.raw_os_error() == Some(Errno::ENXIO as i32) => {
+                if start.elapsed() > Duration::from_secs(10) {
+                    return Err(io::Error::other("no program reads this pipe"));
+                }
+                std::thread::sleep(Duration::from_millis(20));
+            }
+            opened => break opened?,
+        }
+    };
+    let flags = OFlag::from_bits_truncate(fcntl(&file, FcntlArg::F_GETFL)?);
+    fcntl(&file, FcntlArg::F_SETFL(flags - OFlag::O_NONBLOCK))?;
+    Ok(file)
+}
+
+#[cfg(not(target_os = "linux"))]
+fn open_device(path: &Path) -> io::Result<File> {
+    OpenOptions::new().write(true).open(path)
 }
 
 /// A temporary file in `folder`, named after `path`.

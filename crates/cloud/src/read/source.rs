@@ -134,7 +134,7 @@ impl<'a> SourceFile<'a> {
     }
 
     /// At most `most` points as text, one per line from `offset` on, with the columns of x, y and
-    /// z. Empty lines and `#` are skipped.
+    /// z. Empty lines and comments are skipped.
     pub(super) fn rows(
         &self,
         mut offset: usize,
@@ -146,7 +146,7 @@ impl<'a> SourceFile<'a> {
         while positions.len() < most
             && let Some((line, next)) = self.line(offset)?
         {
-            if !line.is_empty() && !line.starts_with('#') {
+            if !is_comment(line) {
                 let fields = || line.split(is_separator).filter(|field| !field.is_empty());
                 let mut position = [0.0; 3];
                 for (axis, place) in position.iter_mut().zip(columns) {
@@ -161,6 +161,11 @@ impl<'a> SourceFile<'a> {
         }
         Ok(positions)
     }
+}
+
+/// Whether a line of text holds no point.
+pub(super) fn is_comment(line: &str) -> bool {
+    line.is_empty() || line.starts_with('#') || line.starts_with("//")
 }
 
 /// Shortens a text for a message.

@@ -140,6 +140,8 @@ fn text_files_of_other_programs_are_read() {
         "1 2 3\n\n4 5 6",
         "# by hand\nx;y;z\n1;2;3\n4;5;6\n",
         "time,z,\"y\",x\n0,3,2,1\n0,6,5,4\n",
+        "//X Y Z\n1 2 3\n4 5 6\n",
+        "\u{feff}x y z i\n1 2 3 0\n4 5 6 0\n",
     ] {
         let read = places(Format::Csv, text.into()).unwrap();
         assert_eq!(read, [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]], "{text}");
@@ -159,6 +161,16 @@ fn errors_name_offset_and_content() {
             Format::Csv,
             "x,y,z\n1,2,3\n4,five,6\n",
             "byte 12: expected a number, got \"five\"",
+        ),
+        (
+            Format::Xyz,
+            "0,305;2,414;0,353\n",
+            "byte 0: expected columns x_m, y_m and z_m, got \"0,305;2,414;0,353\"",
+        ),
+        (
+            Format::Csv,
+            "x;y;z\n0,305;2,414;0,353\n",
+            "byte 6: expected a number, got \"0,305\"",
         ),
         (
             Format::Csv,

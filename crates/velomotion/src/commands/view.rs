@@ -25,7 +25,7 @@ use scanner::{Accuracy, TiltSource};
 use units::{Host, Stamp};
 
 use super::CommandOutput;
-use super::analyze::input::InputArgument;
+use super::analyze::input::{CloudMarks, InputArgument, help_on};
 use crate::cli::{self, Common};
 use crate::documents::ServedView;
 use crate::logging;
@@ -45,20 +45,29 @@ const SHARE_STEP: f64 = 0.01;
 /// [`Failure`] if no file can be shown.
 pub fn run(arguments: &cli::ViewArguments, common: &Common) -> Result<CommandOutput, Failure> {
     let interrupt = signals::interrupt_flag()?;
-    show(&arguments.files, common, &interrupt, |url| {
+    let mut is_served = false;
+    let shown = show(&arguments.files, common, &interrupt, |url| {
+        is_served = true;
         greet(url, arguments, common);
         if !arguments.no_open {
             open_browser(url);
         }
-    })?;
-    Ok(CommandOutput::default())
+    });
+    match shown {
+        // The address was the one object of --json.
+        Err(failure) if is_served => Ok(CommandOutput {
+            failure: Some(failure),
+            ..CommandOutput::default()
+        }),
+        shown => shown.map(|()| CommandOutput::default()),
+    }
 }
 
 /// Serves the files until `interrupt`, or until their last page is closed. `served` gets the
 /// address.
 ///
 /// # Errors
-/// [`Failure`] of the first file that cannot be shown.
+/// [`Failure`] of a file that cannot be shown; of several files those are printed at once.
 pub fn show(
     paths: &[PathBuf],
     common: &Common,
@@ -95,7 +104,14 @@ pub fn show(
         Failure::new(Kind::Incomplete, "a thread of the command had panicked")
             .help("run it with -vv and report the messages")
     })?;
-    failures.into_iter().next().map_or(Ok(()), Err)
+    let Some(first) = failures.first() else {
+        return Ok(());
+    };
+    if let [_] = paths {
+        return Err(first.clone());
+    }
+    let what = format!("{} of {} files are not shown", failures.len(), paths.len());
+    Err(Failure::new(first.kind, what).help("the messages above say why"))
 }
 
 /// A file, classified by its name.
@@ -233,8 +249,8 @@ fn make_all(
                     file.error = Some(failure.message.clone());
                     file.help.clone_from(&failure.help);
                 });
-                // The first one is printed at the end.
-                if !failures.is_empty() {
+                // That of one file is the command's own.
+                if inputs.len() > 1 {
                     logging::failed(&failure);
                 }
                 failures.push(failure);
@@ -362,10 +378,11 @@ fn cloud(path: &Path, format: Format) -> Result<MadeCloud, Failure> {
         let read = Read::take(file.file(), HEADER_BYTES).read_to_end(&mut head);
         read.map_err(wrong)?;
         if let Some(points) = own_ply(&head, length) {
+            let CloudMarks { simulated, scanner } = CloudMarks::of(path, format, &head);
             return Ok(MadeCloud {
                 points,
-                simulated: contains(&head, SIMULATED),
-                scanner: contains(&head, FROM_AXIS),
+                simulated,
+                scanner,
                 file,
                 missing: None,
             });
@@ -374,20 +391,15 @@ fn cloud(path: &Path, format: Format) -> Result<MadeCloud, Failure> {
     let mut bytes = Vec::new();
     let mut whole = file.reopen().map_err(wrong)?;
     whole.read_to_end(&mut bytes).map_err(wrong)?;
-    let mut simulated = contains(&bytes, SIMULATED);
-    let mut scanner = contains(&bytes, FROM_AXIS);
-    if format.needs_companion() {
-        let mut companion = path.as_os_str().to_owned();
-        companion.push(".txt");
-        let companion = std::fs::read(companion).unwrap_or_default();
-        simulated |= contains(&companion, SIMULATED);
-        scanner |= contains(&companion, FROM_AXIS);
-    }
+    let CloudMarks { simulated, scanner } = CloudMarks::of(path, format, &bytes);
     let read = positions(format, bytes).map_err(|error| {
         let what = format!("{}: {error}", path.display());
-        Failure::new(Kind::BadInput, what)
-            .help("see whether the file is whole, and is what its extension says")
+        Failure::new(Kind::BadInput, what).help(help_on(format))
     })?;
+    if read.positions.is_empty() {
+        let what = format!("{}: the file has no points", path.display());
+        return Err(Failure::new(Kind::BadInput, what).help(help_on(format)));
+    }
     let file = scratch()?;
     write_ply(file.file(), &read.positions).map_err(no_scratch)?;
     Ok(MadeCloud {
@@ -399,14 +411,8 @@ fn cloud(path: &Path, format: Format) -> Result<MadeCloud, Failure> {
     })
 }
 
-/// Marks of velomotion's own clouds. `FRAME` is that of all formats but KITTI.
-const SIMULATED: &[u8] = b"SIMULATED";
-const FRAME: &[u8] = b"frame: x right, y forward, z up in metres from ";
-const FROM_AXIS: &[u8] = b"z up in metres from the tilt axis";
-
-fn contains(bytes: &[u8], mark: &[u8]) -> bool {
-    bytes.windows(mark.len()).any(|window| window == mark)
-}
+/// Comment of velomotion's own clouds.
+const FRAME: &str = "frame: x right, y forward, z up in metres from ";
 
 /// Number of points of a PLY of velomotion, which the page reads as it is: binary, little-endian,
 /// finite coordinates and nothing but points. A file of other programs, or one that is not whole,
@@ -432,7 +438,7 @@ fn own_ply(head: &[u8], length: u64) -> Option<u64> {
     }
     let header_bytes = (end + END.len()) as u64;
     let is_whole = |points: &u64| points.checked_mul(row_bytes) == length.checked_sub(header_bytes);
-    points.filter(is_whole).filter(|_| contains(head, FRAME))
+    points.filter(is_whole).filter(|_| text.contains(FRAME))
 }
 
 /// Positions as a PLY of doubles: coordinates of a map need them.

@@ -29,6 +29,8 @@ use engine::reconstruct::source::Source;
 pub struct Input {
     /// Name of the input.
     pub name: String,
+    /// Whether its devices were simulated.
+    pub simulated: bool,
     /// Unit directions of the points.
     pub directions: Directions,
     /// Revolutions of the lidar, if known.
@@ -166,6 +168,45 @@ pub fn device(pattern: &Pattern) -> Option<DeviceReport> {
     })
 }
 
+/// What velomotion's own clouds say of themselves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CloudMarks {
+    /// Whether the devices were simulated.
+    pub simulated: bool,
+    /// Whether the origin is on the tilt axis.
+    pub scanner: bool,
+}
+
+impl CloudMarks {
+    /// The marks in some bytes of a file, and in its companion if it has one.
+    pub fn of(path: &Path, format: Format, bytes: &[u8]) -> Self {
+        let mut companion = Vec::new();
+        if format.needs_companion() {
+            let mut name = path.as_os_str().to_owned();
+            name.push(".txt");
+            companion = std::fs::read(name).unwrap_or_default();
+        }
+        let has = |mark: &[u8]| {
+            let contains = |text: &[u8]| text.windows(mark.len()).any(|window| window == mark);
+            contains(bytes) || contains(&companion)
+        };
+        Self {
+            simulated: has(b"SIMULATED"),
+            scanner: has(b"z up in metres from the tilt axis"),
+        }
+    }
+}
+
+/// What to do about a cloud that cannot be read.
+pub const fn help_on(format: Format) -> &'static str {
+    match format {
+        Format::Csv | Format::Xyz => {
+            "expected one row per point with x, y and z in metres, in the first three columns or those that a header names, with decimal points"
+        }
+        _ => "see whether the file is whole, and is what its extension says",
+    }
+}
+
 fn of_cloud(path: &Path, format: Format, origin_m: DVec3) -> Result<Input, Failure> {
     let wrong = |what: String, help: &str| {
         Failure::new(Kind::BadInput, format!("{}: {what}", path.display())).help(help)
@@ -176,21 +217,16 @@ fn of_cloud(path: &Path, format: Format, origin_m: DVec3) -> Result<Input, Failu
             "check the name and the read permission",
         )
     })?;
-    let read = positions(format, bytes).map_err(|error| {
-        wrong(
-            error.to_string(),
-            match format {
-                Format::Csv | Format::Xyz => "expected one row per point with x, y and z in metres, in the first three columns or those that a header names",
-                _ => "see whether the file is whole, and is what its extension says",
-            },
-        )
-    })?;
+    let simulated = CloudMarks::of(path, format, &bytes).simulated;
+    let read =
+        positions(format, bytes).map_err(|error| wrong(error.to_string(), help_on(format)))?;
     let places = read.positions.into_iter().map(DVec3::from_array);
     let places: Vec<DVec3> = places.map(|place| place - origin_m).collect();
     let outside = DistantOrigin::new(&places, origin_m);
     let (directions, without_direction) = directions(path, places, read.without_numbers)?;
     Ok(Input {
         name: path.display().to_string(),
+        simulated,
         directions: Directions::Stored(directions),
         without_direction,
         without_numbers: read.without_numbers,
@@ -298,6 +334,7 @@ fn of_log(path: &Path, interrupt: &AtomicBool) -> Result<Input, Failure> {
     };
     Ok(Input {
         name: path.display().to_string(),
+        simulated: scan.contents.simulated,
         directions: Directions::Stored(directions),
         frames: frames.map(|frames| frames.round() as u64),
         scan_s: Some(scan_s),

@@ -124,6 +124,9 @@ fn measured(
             progress.say(name);
         }
         let input = input.read(origin_m, interrupt)?;
+        if input.simulated {
+            progress.say(&format!("SIMULATED: {} is not of a real scan", input.name));
+        }
         let pattern = measure.one(&input, &progress, interrupt)?;
         for warning in &pattern.warnings {
             progress.say(&format!("warning: {}: {warning}", pattern.name));
@@ -240,6 +243,7 @@ impl Measure {
             frames: input.frames,
             scan_s: input.scan_s,
             without_direction: input.without_direction,
+            simulated: input.simulated,
             without_numbers: input.without_numbers,
             view: input.view,
             density: Density {

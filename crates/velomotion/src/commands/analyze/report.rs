@@ -20,6 +20,8 @@ pub struct AnalyzeReport {
 pub struct PatternReport {
     /// Name in the arguments.
     pub name: String,
+    /// Whether the devices of a cloud or log were simulated.
+    pub simulated: bool,
     /// Points with a direction.
     pub points: u64,
     /// Revolutions of the lidar; null if unknown.
