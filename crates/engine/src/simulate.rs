@@ -1,5 +1,8 @@
 //! A log of a simulated scene, and its ground truth.
 //!
+//! A lidar whose packets are not simulated has no log, but the cloud that it measures, with exact
+//! times and angles.
+//!
 //! The log holds the lidar's datagrams, and the drive's USB frames if the scene has a drive.
 //! `sim::simulate` does the simulation.
 
@@ -12,12 +15,12 @@ pub use stopwatch::nanoseconds;
 
 use std::fs::File;
 use std::num::NonZeroUsize;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use cloud::mount::Mount;
-use cloud::{Metadata, TiltTrack};
+use cloud::{Fields, Metadata, TiltTrack};
 use io::log::{LogConfig, LogError, LogWriter};
 use protocol::record::DriveLink;
 use scanner::ScanConfig;
@@ -31,7 +34,7 @@ use utoipa::ToSchema;
 use crate::failure::{Failure, Kind};
 use crate::output::{self, Target};
 use crate::reconstruct::report::PacketCounts;
-use log::{Log, cannot_write, scan_config};
+use log::{Log, Outputs, ReturnCloud, Written, cannot_write, scan_config};
 
 /// Report on a simulation.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
@@ -63,8 +66,12 @@ pub struct SimulationReport {
     pub times_real_time: f64,
     /// Threads used.
     pub threads: usize,
-    /// Path of the log.
-    pub log: String,
+    /// Path of the log; absent with a lidar whose packets are not simulated.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub log: Option<String>,
+    /// Path of the cloud that such a lidar measures.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cloud: Option<String>,
     /// Path of the truth cloud, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub truth: Option<String>,
@@ -83,20 +90,105 @@ pub struct SimulationReport {
     pub choice: Option<EffectChoice>,
 }
 
+/// What a simulation makes besides the truth.
+pub enum SimulationOutput {
+    /// A log.
+    Log {
+        /// Its path.
+        path: PathBuf,
+        /// Whether to overwrite an older one.
+        force: bool,
+    },
+    /// The measured cloud of a lidar without packets.
+    Cloud(Target),
+}
+
+impl SimulationOutput {
+    /// The extension of an output that the user does not name.
+    #[must_use]
+    pub const fn extension(scene: &SceneFile) -> &'static str {
+        match scene.simulation.sensor.packets {
+            Some(_) => "pcapng",
+            None => "ply",
+        }
+    }
+
+    /// Whether it is stdout.
+    #[must_use]
+    pub fn is_stdout(&self) -> bool {
+        match self {
+            Self::Log { .. } => false,
+            Self::Cloud(target) => target.is_stdout(),
+        }
+    }
+}
+
+/// The files of a simulation as named by the user.
+#[derive(Clone, Copy, Debug)]
+pub struct SimulationFiles<'a> {
+    /// The scene.
+    pub scene: &'a Path,
+    /// The log, or the cloud of a lidar without packets.
+    pub output: &'a Path,
+    /// What names the output.
+    pub option: &'static str,
+    /// The cloud of the truth.
+    pub truth: Option<&'a Path>,
+    /// Whether to overwrite older files.
+    pub force: bool,
+}
+
+impl SimulationFiles<'_> {
+    /// Opens the clouds and checks the name of the log.
+    ///
+    /// # Errors
+    /// [`Kind::Usage`] for a file that exists or that two of them would share, and for a format
+    /// that does not serve; [`Kind::BadInput`] for a cloud that cannot be created.
+    pub fn open(self, scene: &SceneFile) -> Result<(SimulationOutput, Option<Target>), Failure> {
+        let Self {
+            output,
+            option,
+            force,
+            ..
+        } = self;
+        output::refuse_overwrite(self.scene, output)?;
+        if let Some(truth) = self.truth {
+            output::refuse_overwrite(self.scene, truth)?;
+            output::two_files(output, truth)?;
+        }
+        let opened = if scene.simulation.sensor.packets.is_some() {
+            output::log_is_file(output, option, &["pcapng", "pcap"])?;
+            output::check_free(output, force)?;
+            let path = output.to_owned();
+            SimulationOutput::Log { path, force }
+        } else if output::log_is_file(output, option, &["pcapng", "pcap"]).is_ok() {
+            let what = format!(
+                "{}: the packets of this lidar are not simulated, so there is no log of it",
+                output.display()
+            );
+            let help = format!("name the cloud that it measures with {option}, such as cloud.ply");
+            return Err(Failure::new(Kind::Usage, what).help(help));
+        } else {
+            SimulationOutput::Cloud(Target::open(output, Fields::FILE | Fields::SD, force)?)
+        };
+        let truth = self.truth;
+        let truth = truth.map(|truth| Target::open(truth, Fields::FILE, force));
+        Ok((opened, truth.transpose()?))
+    }
+}
+
 /// A simulation to run.
 pub struct SimulationRequest<'a> {
     /// Name of the scene.
     pub name: String,
-    /// The log to write.
-    pub log: &'a Path,
+    /// The output, a log or the cloud of a lidar without packets.
+    pub output: SimulationOutput,
     /// Destination of the truth.
     pub truth: Option<Target>,
     /// Threads that make packets.
     pub threads: NonZeroUsize,
     /// Whether to report what effects did.
     pub explain: bool,
-    /// Whether to overwrite an older log.
-    pub force: bool,
     /// Stops the simulation when set.
     pub interrupt: &'a AtomicBool,
     /// Called with the simulated seconds.
@@ -204,11 +296,10 @@ pub fn make(
 ) -> Result<(SimulationReport, Option<Failure>), Failure> {
     let SimulationRequest {
         name,
-        log: path,
+        output,
         mut truth,
         threads,
         explain,
-        force,
         interrupt,
         progressed,
     } = request;
@@ -220,19 +311,27 @@ pub fn make(
     let config = scan_config(&name, &scene, gearing);
     // Before an older log is replaced.
     (scene.simulation.check()).map_err(|error| cannot_simulate(&name, &error))?;
-    let writer = create_log(path, &config, gearing.is_some(), force)?;
-    if let Some(truth) = &mut truth {
-        begin_truth(truth, &name, config.mount.mount())?;
+    let mut outputs = Outputs::default();
+    let mount = config.mount.mount();
+    match output {
+        SimulationOutput::Log { path, force } => {
+            let writer = create_log(&path, &config, gearing.is_some(), force)?;
+            outputs.log = Some((writer, path));
+        }
+        SimulationOutput::Cloud(mut target) => {
+            let what = "measured with exact times and angles in the simulated scene";
+            begin_cloud(&mut target, what, &name, mount)?;
+            let sd_m = config.lidar.range_sd_m;
+            outputs.measured = Some(ReturnCloud::measured(target, sd_m));
+        }
     }
+    if let Some(truth) = &mut truth {
+        begin_cloud(truth, "the truth of the simulated scene", &name, mount)?;
+    }
+    outputs.truth = truth.map(ReturnCloud::of_truth);
+    let log = outputs.log.as_ref().map(|(_, path)| path.display().to_string());
     let began = Instant::now();
-    let mut out = Log::new(
-        &scene.simulation,
-        writer,
-        gearing,
-        truth,
-        interrupt,
-        progressed,
-    );
+    let mut out = Log::new(&scene.simulation, outputs, gearing, interrupt, progressed);
     // Separate instances, so that a scene without effects pays nothing for them.
     let summary = match scene.effects.is_none() {
         true => {
@@ -245,7 +344,11 @@ pub fn make(
         }
     };
     let summary = summary.map_err(|error| cannot_simulate(&name, &error))?;
-    let (truth, cut) = out.finish(path)?;
+    let Written {
+        measured,
+        truth,
+        cut,
+    } = out.finish()?;
     let took = began.elapsed();
     let explanation = explain.then(|| {
         let busy_ns = took.as_nanos().saturating_mul(threads.get() as u128);
@@ -277,7 +380,8 @@ pub fn make(
         took_s,
         times_real_time: ratio(duration_s, took_s),
         threads: threads.get(),
-        log: path.display().to_string(),
+        log,
+        cloud: measured.map(|path| path.display().to_string()),
         truth: truth.map(|path| path.display().to_string()),
         warnings: Vec::new(),
         explanation,
@@ -307,15 +411,15 @@ fn create_log(
     writer.map_err(|error| log_failure(path, &error))
 }
 
-/// Begins the cloud of the truth.
-fn begin_truth(truth: &mut Target, name: &str, mount: Mount) -> Result<(), Failure> {
+/// Begins a cloud of a scene.
+fn begin_cloud(cloud: &mut Target, what: &str, name: &str, mount: Mount) -> Result<(), Failure> {
     let track = TiltTrack {
         mount: Some(mount),
         ..TiltTrack::default()
     };
-    let sink = truth.sink();
-    let begun = sink.begin(&metadata(name)).and_then(|()| sink.tilt(&track));
-    begun.map_err(|error| output::sink_failure(truth.path(), &error))
+    let sink = cloud.sink();
+    let begun = sink.begin(&metadata(what, name)).and_then(|()| sink.tilt(&track));
+    begun.map_err(|error| output::sink_failure(cloud.path(), &error))
 }
 
 /// A quotient, 0 of nothing.
@@ -323,10 +427,10 @@ fn ratio(part: f64, of: f64) -> f64 {
     if of > 0.0 { part / of } else { 0.0 }
 }
 
-fn metadata(name: &str) -> Metadata {
+fn metadata(what: &str, name: &str) -> Metadata {
     Metadata {
         simulated: true,
-        source: format!("the truth of the simulated scene {}", stem(name)),
+        source: format!("{what} {}", stem(name)),
         software: concat!("velomotion ", env!("CARGO_PKG_VERSION")).to_owned(),
         time_reference: "Unix seconds (UTC) of the simulated host's clock".to_owned(),
         ..Metadata::default()

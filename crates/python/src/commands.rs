@@ -11,7 +11,9 @@ use engine::config;
 use engine::devices::profile;
 use engine::document::Document;
 use engine::output::{self, Target};
-use engine::simulate::{Sampler, SimulationRequest, choose_effects, find, make, read, unmet};
+use engine::simulate::{
+    Sampler, SimulationFiles, SimulationRequest, choose_effects, find, make, read, unmet,
+};
 use engine::{Failure, Kind, calibrate as calibration};
 use pyo3::prelude::*;
 use sim::effect_models::{EffectTolerance, EffectsConfig};
@@ -172,7 +174,8 @@ pub(crate) fn calibrate<'py>(
 /// scene : path or str
 ///     A scene file (TOML), or a built-in scene such as "hall".
 /// output : path
-///     The log to write: .pcapng, or .pcap for the lidar's packets alone.
+///     The log to write: .pcapng, or .pcap for the lidar's packets alone; the measured cloud of a
+///     lidar whose packets are not simulated.
 /// truth : path, optional
 ///     Cloud of the true points (.ply, .pcd, .las, .laz, .e57, .mcap, .csv, .xyz, .bin).
 /// seed : int, optional
@@ -229,20 +232,20 @@ pub(crate) fn simulate<'py>(
             threads.ok_or_else(|| BindingError::usage("threads: expected 1 or more, got 0"))?;
         let (name, text) = find(&scene)?;
         let mut scene_file = read(&name, &text, seed, None)?;
-        output::refuse_overwrite(&scene, &output)?;
-        output::log_is_file(&output, "output", &["pcapng", "pcap"])?;
-        output::check_free(&output, force)?;
-        let truth = match &truth {
-            Some(truth) => {
-                if truth.as_os_str() == "-" {
-                    return Err(BindingError::usage("truth: expected a file, got \"-\""));
-                }
-                output::refuse_overwrite(&scene, truth)?;
-                output::two_files(&output, truth)?;
-                Some(Target::open(truth, Fields::FILE, force)?)
+        for (name, path) in [("output", Some(&output)), ("truth", truth.as_ref())] {
+            if path.is_some_and(|path| path.as_os_str() == "-") {
+                let what = format!("{name}: expected a file, got \"-\"");
+                return Err(BindingError::usage(what));
             }
-            None => None,
+        }
+        let files = SimulationFiles {
+            scene: &scene,
+            output: &output,
+            option: "output",
+            truth: truth.as_deref(),
+            force,
         };
+        let (output, truth) = files.open(&scene_file)?;
         let is_out =
             |effect: &str| (without.iter()).any(|name| name == effect || name == ALL_EFFECTS);
         let choice = choose_effects(
@@ -260,11 +263,10 @@ pub(crate) fn simulate<'py>(
         let warnings = unmet(&Sampler::new(&scene_file, threads), None, &is_chosen_out)?;
         let request = SimulationRequest {
             name,
-            log: &output,
+            output,
             truth,
             threads,
             explain: false,
-            force,
             interrupt,
             progressed: &mut |_| {},
         };

@@ -33,7 +33,7 @@ pub struct SimulatedFiring {
     /// Number of lasers; further columns are unused.
     pub lasers: usize,
     /// Lasers that fire, one bit each, bit 0 for the first.
-    pub alive: u32,
+    pub alive: u64,
     /// Origin of each ray, metres in the frame of the base.
     pub origins_m: [DVec3; MAX_LASERS],
     /// Direction of each ray there, length 1.

@@ -32,13 +32,15 @@ pub struct HeadRotation {
     pub start_deg: f64,
 }
 
-/// A return without measurement error.
+/// A return, where it truly is and where it is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct TruePoint {
     /// Where the middle of the beam meets the scene, metres in the frame of the base: origin on the
     /// tilt axis, x right, y forward, z up.
     pub position_m: DVec3,
+    /// Where the measured distance puts it on the beam.
+    pub measured_m: DVec3,
     /// Host time of the laser's firing.
     pub host: Stamp<Host>,
     /// Lidar time of the laser's firing since the start, nanoseconds.
@@ -49,7 +51,8 @@ pub struct TruePoint {
     pub echo: u8,
     /// Calibrated reflectivity as reported.
     pub reflectivity: u8,
-    /// Distance, metres.
+    /// True distance, metres. Infinite for a return from no surface, such as fog, which only the
+    /// points of a lidar without packets include.
     pub range_m: f64,
     /// Azimuth of the beam in the sensor's frame, degrees, 0..360.
     pub azimuth_deg: f64,
@@ -80,6 +83,7 @@ pub(crate) struct SimulatedLidar {
 /// A data packet as it leaves the lidar.
 #[derive(Debug)]
 pub(crate) struct SimulatedPacket {
+    /// Zeros of a lidar without packets.
     pub payload: [u8; DATA_LEN],
     /// When it leaves, host nanoseconds since the start.
     pub leaves_ns: i64,
@@ -116,7 +120,8 @@ pub(crate) struct PacketMaker<F> {
     /// The firings of a packet and the returns of each.
     firings: Vec<SimulatedFiring>,
     echoes: Vec<Echoes>,
-    packet: DataPacketBuilder,
+    /// `None` for a lidar without packets.
+    packet: Option<DataPacketBuilder>,
 }
 
 /// Distance in the sensor's units (0 for no return) and calibrated reflectivity.
@@ -145,7 +150,7 @@ impl SimulatedLidar {
     /// Beginning of a firing in lidar time since the start.
     pub fn device_ns(&self, firing: u64) -> i64 {
         let firing = i64::try_from(firing).unwrap_or(i64::MAX);
-        firing.saturating_mul(self.sensor.model.firing_period_ns())
+        firing.saturating_mul(self.sensor.firing_period_ns)
     }
 
     /// A firing before any is aimed.
@@ -167,7 +172,10 @@ impl SimulatedLidar {
         firing.number = number;
         firing.time_s = host_ns as f64 * 1e-9;
         firing.azimuth_deg = self.rotation.azimuth_deg(device_ns);
-        firing.alive = self.sensor.used;
+        firing.alive = match self.sensor.sees(firing.azimuth_deg) {
+            true => self.sensor.used,
+            false => 0,
+        };
         match platform.state(host_ns) {
             Some(state) => firing.tilt = state,
             None => firing.alive = 0,
@@ -180,13 +188,14 @@ impl<F: FiringEffects> PacketMaker<F> {
     pub fn new(lidar: &SimulatedLidar, effects: F, surroundings: Surroundings) -> Self {
         let needs = effects.needs();
         let two = lidar.returns != ReturnMode::Strongest;
-        let model = lidar.sensor.model;
-        let firings = firing_blocks(lidar.returns) * model.firings_per_block();
+        let sensor = &lidar.sensor;
+        let firings = firing_blocks(lidar.returns) * sensor.firings_per_block();
+        let builder = |model| DataPacketBuilder::new(model, lidar.returns);
         Self {
             surroundings: surroundings.with_normals(needs.normals),
             firings: vec![lidar.firing(); firings],
             echoes: vec![Echoes::new(lidar.rays.count, two); firings],
-            packet: DataPacketBuilder::new(model, lidar.returns),
+            packet: sensor.packets.map(builder),
             effects,
             needs,
         }
@@ -212,7 +221,7 @@ impl<F: FiringEffects> PacketMaker<F> {
         let effects = self.effects.parts();
         let mut counts = ShotCounts::default();
         let points_before = points.as_ref().map_or(0, |points| points.len());
-        let per_block = lidar.sensor.model.firings_per_block() as u64;
+        let per_block = lidar.sensor.firings_per_block() as u64;
         let numbers = blocks.flat_map(|block| (0..per_block).map(move |n| block * per_block + n));
         for (firing, number) in self.firings.iter_mut().zip(numbers) {
             lidar.aim(firing, number, effects.clock, platform);
@@ -237,14 +246,16 @@ impl<F: FiringEffects> PacketMaker<F> {
                 clock: effects.clock,
                 firing,
             };
-            report.write(echoes, &mut self.packet, &mut counts, points.as_deref_mut());
+            let packet = self.packet.as_mut();
+            report.write(echoes, packet, &mut counts, points.as_deref_mut());
         }
         let device_ns = |firing: &SimulatedFiring| lidar.device_ns(firing.number);
         let first_ns = self.firings.first().map_or(0, device_ns);
         let last_ns = self.firings.last().map_or(0, device_ns);
-        let end_ns = last_ns.saturating_add(lidar.sensor.model.firing_period_ns());
+        let end_ns = last_ns.saturating_add(lidar.sensor.firing_period_ns);
+        let stamp_us = lidar.clock.stamp_us(first_ns);
         SimulatedPacket {
-            payload: self.packet.finish(lidar.clock.stamp_us(first_ns)),
+            payload: (self.packet.as_mut()).map_or([0; DATA_LEN], |packet| packet.finish(stamp_us)),
             leaves_ns: effects.clock.host_ns(end_ns),
             stamp_us: lidar.clock.stamp_us(end_ns),
             points: points.map_or(0, |points| points.len()) - points_before,
@@ -265,13 +276,13 @@ impl<C: ClockEffect> FiringReport<'_, C> {
     fn write(
         &self,
         echoes: &Echoes,
-        packet: &mut DataPacketBuilder,
+        packet: Option<&mut DataPacketBuilder>,
         counts: &mut ShotCounts,
         mut points: Option<&mut Vec<TruePoint>>,
     ) {
         let lidar = self.lidar;
         let device_ns = lidar.device_ns(self.firing.number);
-        let units_per_m = 1e3 / f64::from(lidar.sensor.model.distance_unit_mm());
+        let units_per_m = 1e3 / f64::from(lidar.sensor.distance_unit_mm);
         let azimuth_cdeg = lidar.rotation.azimuth_cdeg(device_ns);
         let lasers = self.firing.lasers;
         let by_range = match lidar.returns {
@@ -295,7 +306,7 @@ impl<C: ClockEffect> FiringReport<'_, C> {
             if raw.0 > 0
                 && let Some(points) = &mut points
             {
-                points.extend(self.point(laser, 0, echo, raw.1, device_ns));
+                points.extend(self.point(laser, 0, echo, *raw, device_ns));
             }
         }
         for (laser, (echo, raw)) in second.iter().zip(raw_second).enumerate() {
@@ -306,27 +317,31 @@ impl<C: ClockEffect> FiringReport<'_, C> {
             }
             counts.returns += 1;
             if let Some(points) = &mut points {
-                points.extend(self.point(laser, 1, echo, raw.1, device_ns));
+                points.extend(self.point(laser, 1, echo, *raw, device_ns));
             }
         }
         let [raw_first, raw_second] = &raw;
-        packet.firing(azimuth_cdeg, raw_first, raw_second);
+        if let Some(packet) = packet {
+            packet.firing(azimuth_cdeg, raw_first, raw_second);
+        }
     }
 
-    /// The true point of an echo; `None` for an echo without a surface.
+    /// The point of a return. `None` for one from no surface, unless the lidar has no packets:
+    /// these points are all that is measured.
     fn point(
         &self,
         laser: usize,
         number: u8,
         echo: &Echo,
-        reflectivity: u8,
+        (units, reflectivity): RawReturn,
         device_ns: i64,
     ) -> Option<TruePoint> {
         let beam = self.lidar.sensor.beams.get(laser)?;
         let (origin_m, direction) = self.firing.ray(laser)?;
-        if !echo.true_range_m.is_finite() {
+        if !echo.true_range_m.is_finite() && self.lidar.sensor.packets.is_some() {
             return None;
         }
+        let unit_m = 1e-3 * f64::from(self.lidar.sensor.distance_unit_mm);
         let device_ns = device_ns.saturating_add(beam.delay_ns);
         let after_s = beam.delay_ns as f64 * 1e-9;
         let ahead_deg = beam.azimuth_deg + self.lidar.rotation.deg_per_s() * after_s;
@@ -334,6 +349,7 @@ impl<C: ClockEffect> FiringReport<'_, C> {
         let tilt = self.firing.tilt;
         Some(TruePoint {
             position_m: origin_m + echo.true_range_m * direction,
+            measured_m: origin_m + f64::from(units) * unit_m * direction,
             host: (self.lidar.start).saturating_add(Span::from_nanos(host_ns)),
             device_ns,
             laser: u8::try_from(laser).ok()?,

@@ -350,8 +350,10 @@ impl SceneFile {
     fn invalid_value(&self, stated: &[StatedFact], error: &InvalidSetting) -> InvalidValue {
         let fact = stated.iter().find(|fact| fact.effect == error.effect);
         let is_requested = self.requests.configured().any(|name| name == error.effect);
+        // `true` leaves the settings to the fact.
+        let is_table = is_requested && !self.is_forced(error.effect);
         let table = match fact {
-            Some(fact) if !is_requested => fact.path.to_owned(),
+            Some(fact) if !is_table => fact.path.to_owned(),
             _ => format!("effects.{}", error.effect),
         };
         invalid(format!("{table}.{}", error.setting), error.to_string())

@@ -2,6 +2,8 @@
 //!
 //! The tables are the simulator's own, laser by laser, so that a receiver's tables that agree are
 //! evidence. A single-beam 2D scanner is a sensor with one active laser ([`LidarSensor::only`]).
+//! Lidars whose packets are not those of Velodyne's 16 and 32 lasers send none: only their points
+//! are simulated.
 
 mod tables;
 
@@ -11,7 +13,7 @@ use glam::{DMat3, DVec3, EulerRot};
 use crate::scenery::rotation;
 
 /// The most lasers of any sensor.
-pub const MAX_LASERS: usize = 32;
+pub const MAX_LASERS: usize = 64;
 
 /// One laser, in firing order.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,12 +42,19 @@ pub struct DetectionRange {
 /// A lidar model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LidarSensor {
-    /// The packet format.
-    pub model: PacketModel,
+    /// The packet format; `None` for a lidar whose packets are not simulated.
+    pub packets: Option<PacketModel>,
     /// The lasers in firing order.
     pub beams: Vec<LaserBeam>,
     /// The active lasers, one bit each, bit 0 for the first.
-    pub used: u32,
+    pub used: u64,
+    /// Nanoseconds from one firing of all lasers to the next.
+    pub firing_period_ns: i64,
+    /// Step of its distances, millimetres.
+    pub distance_unit_mm: u32,
+    /// Angle that a planar scanner sees, degrees, half of it to either side of azimuth 0; `None`
+    /// for a head that rotates.
+    pub aperture_deg: Option<f64>,
     range: DetectionRange,
 }
 
@@ -114,6 +123,40 @@ impl LidarSensor {
         Self::new(PacketModel::Vlp32c, tables::vlp32c(), 200.0)
     }
 
+    /// HDL-64E S2 (its manual, specifications): an upper block of 32 lasers from 2 degrees down in
+    /// steps of 1/3, a lower one from -8.83 in steps of 1/2; 1.333 million points per second, 0.9
+    /// to 120 m in steps of 2 mm. All lasers start from one point at one instant: where they are
+    /// differs from head to head, and a file of each head says it.
+    #[must_use]
+    pub fn hdl64e() -> Self {
+        let upper = (0..32).map(|laser| 2.0 - f64::from(laser) / 3.0);
+        let lower = (0..32).map(|laser| -8.83 - f64::from(laser) / 2.0);
+        Self {
+            distance_unit_mm: 2,
+            ..Self::without_packets(upper.chain(lower), 48_012, [0.9, 120.0])
+        }
+    }
+
+    /// Hokuyo UTM-30LX (its data sheet): one level laser, 270 degrees, 1440 steps of a revolution
+    /// at 40 Hz, 0.1 to 30 m in steps of 1 mm.
+    #[must_use]
+    pub fn utm30lx() -> Self {
+        Self {
+            aperture_deg: Some(270.0),
+            ..Self::without_packets([0.0], 17_361, [0.1, 30.0])
+        }
+    }
+
+    /// SICK LMS151 (its data sheet): one level laser, 270 degrees, 1440 steps of a revolution at 25
+    /// Hz, 720 at 50 Hz, 0.5 to 50 m in steps of 1 mm.
+    #[must_use]
+    pub fn lms151() -> Self {
+        Self {
+            aperture_deg: Some(270.0),
+            ..Self::without_packets([0.0], 27_778, [0.5, 50.0])
+        }
+    }
+
     /// A 2D scanner: a VLP-16 of which only laser 14 is active, 1 degree below level. Its packets
     /// are those of a VLP-16 whose other lasers never return, so any reader places its points
     /// correctly.
@@ -128,7 +171,7 @@ impl LidarSensor {
     pub fn only(mut self, laser: usize) -> Self {
         let bit = u32::try_from(laser)
             .ok()
-            .and_then(|laser| 1_u32.checked_shl(laser));
+            .and_then(|laser| 1_u64.checked_shl(laser));
         self.used &= bit.unwrap_or(0);
         self
     }
@@ -145,26 +188,68 @@ impl LidarSensor {
     }
 
     fn new(model: PacketModel, beams: Vec<LaserBeam>, max_m: f64) -> Self {
-        let used = u32::MAX >> (MAX_LASERS - beams.len().clamp(1, MAX_LASERS));
-        let range = DetectionRange { min_m: 1.0, max_m };
         Self {
-            model,
+            packets: Some(model),
+            used: bits(beams.len()),
             beams,
-            used,
-            range,
+            firing_period_ns: model.firing_period_ns(),
+            distance_unit_mm: model.distance_unit_mm(),
+            aperture_deg: None,
+            range: DetectionRange { min_m: 1.0, max_m },
         }
     }
 
-    /// The same sensor with another range of detection, limited by its packets.
+    /// A lidar all of whose lasers start from one point at one instant.
+    fn without_packets(
+        elevations_deg: impl IntoIterator<Item = f64>,
+        firing_period_ns: i64,
+        [min_m, max_m]: [f64; 2],
+    ) -> Self {
+        let beam = |elevation_deg| LaserBeam {
+            elevation_deg,
+            origin_m: 0.0,
+            azimuth_deg: 0.0,
+            delay_ns: 0,
+        };
+        let beams: Vec<LaserBeam> = elevations_deg.into_iter().map(beam).collect();
+        Self {
+            packets: None,
+            used: bits(beams.len()),
+            beams,
+            firing_period_ns,
+            distance_unit_mm: 1,
+            aperture_deg: None,
+            range: DetectionRange { min_m, max_m },
+        }
+    }
+
+    /// Firings of all lasers in a block of a packet. Without packets two firings are computed
+    /// together.
+    #[must_use]
+    pub fn firings_per_block(&self) -> usize {
+        (self.packets).map_or(2, PacketModel::firings_per_block)
+    }
+
+    /// Whether the sensor fires at an azimuth of its head, degrees.
+    #[inline]
+    #[must_use]
+    pub fn sees(&self, azimuth_deg: f64) -> bool {
+        self.aperture_deg.is_none_or(|aperture_deg| {
+            let from_front_deg = (azimuth_deg + 180.0).rem_euclid(360.0) - 180.0;
+            from_front_deg.abs() <= 0.5 * aperture_deg
+        })
+    }
+
+    /// The same sensor with another range of detection, limited by the 16 bits of its distances.
     #[must_use]
     pub fn with_range(self, range: DetectionRange) -> Self {
         Self { range, ..self }
     }
 
-    /// The range of detection, at most the largest distance of the packets.
+    /// The range of detection, at most the largest distance of 16 bits.
     #[must_use]
     pub fn range(&self) -> DetectionRange {
-        let wire_m = f64::from(u16::MAX) * f64::from(self.model.distance_unit_mm()) * 1e-3;
+        let wire_m = f64::from(u16::MAX) * f64::from(self.distance_unit_mm) * 1e-3;
         DetectionRange {
             min_m: self.range.min_m,
             max_m: self.range.max_m.min(wire_m),
@@ -196,6 +281,11 @@ impl LidarSensor {
             platform * (mount.rotation * (head * raised)),
         ))
     }
+}
+
+/// One bit for each laser.
+fn bits(lasers: usize) -> u64 {
+    u64::MAX >> (MAX_LASERS - lasers.clamp(1, MAX_LASERS))
 }
 
 /// The lasers of a rotating head relative to the azimuth of the first, constant over all firings.

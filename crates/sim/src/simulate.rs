@@ -129,6 +129,7 @@ pub trait SimulationSink {
     }
 
     /// Takes the true points of a data packet in firing order, whether the packet is lost or not.
+    /// Those of a lidar without packets include returns from no surface.
     /// `Break` ends the run.
     fn truth(&mut self, points: &[TruePoint]) -> ControlFlow<()> {
         let _ = points;
@@ -140,7 +141,7 @@ pub trait SimulationSink {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct SimulationSummary {
-    /// Data packets that left the lidar.
+    /// Data packets that left the lidar; 0 of one whose packets are not simulated.
     pub packets: u64,
     /// Shots (lasers that fired) in them.
     pub shots: u64,

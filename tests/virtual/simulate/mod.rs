@@ -4,6 +4,7 @@ mod accuracy;
 mod calibrate;
 mod light;
 mod models;
+mod points;
 mod round_trip;
 
 use std::collections::BTreeMap;
@@ -61,11 +62,13 @@ impl Simulated {
         let folder = tempfile::tempdir().unwrap();
         let request = simulate::SimulationRequest {
             name: "test".to_owned(),
-            log: &folder.path().join("scene.pcapng"),
+            output: simulate::SimulationOutput::Log {
+                path: folder.path().join("scene.pcapng"),
+                force: false,
+            },
             truth: None,
             threads: NonZeroUsize::new(2).unwrap(),
             explain: false,
-            force: false,
             interrupt: &AtomicBool::new(false),
             progressed: &mut |_| {},
         };
@@ -76,12 +79,11 @@ impl Simulated {
         let effects = &mut scene.effects.effects;
         let one = NonZeroUsize::MIN;
         scene.simulation.run(effects, one, &mut truth).unwrap();
-        let model = scene.simulation.sensor.model;
         let mut found = Self {
             folder,
             report,
             truth: BTreeMap::new(),
-            firing_ns: model.firing_period_ns(),
+            firing_ns: scene.simulation.sensor.firing_period_ns,
             clock_ns: i64::from(scene.simulation.clock_at_start_us) * 1_000,
         };
         for point in truth.0 {

@@ -51,7 +51,7 @@ impl TruePlaces {
         let mut places = Self {
             places: HashMap::new(),
             clock_ns: i64::from(simulation.clock_at_start_us).saturating_mul(1_000),
-            firing_ns: simulation.sensor.model.firing_period_ns(),
+            firing_ns: simulation.sensor.firing_period_ns,
         };
         let threads = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
         let run = simulation.run(&mut scene.effects.effects, threads, &mut places);

@@ -1,4 +1,4 @@
-//! Conversion of a simulation to log records and truth points.
+//! Conversion of a simulation to log records and points.
 
 use std::fs::File;
 use std::ops::ControlFlow;
@@ -35,12 +35,102 @@ const BATCH: usize = 16_384;
 /// Cause and scene time of an early end.
 pub(super) type Cut = (Failure, Span);
 
-/// Writes the log and the optional truth.
-pub(super) struct Log<'a> {
-    writer: LogWriter<File>,
-    gearing: Option<Gearing>,
-    truth: Option<Target>,
+/// A cloud of returns.
+pub(super) struct ReturnCloud {
+    target: Target,
     batch: Points,
+    is_true: bool,
+    /// Standard deviation of its points, metres.
+    sd_m: f64,
+}
+
+impl ReturnCloud {
+    /// The cloud of the places that beams hit.
+    pub fn of_truth(target: Target) -> Self {
+        Self {
+            is_true: true,
+            ..Self::measured(target, 0.0)
+        }
+    }
+
+    /// The cloud of the distances that a lidar measures, with their standard deviation in metres.
+    pub fn measured(target: Target, sd_m: f64) -> Self {
+        Self {
+            target,
+            batch: Points::with_capacity(Fields::FILE, BATCH),
+            is_true: false,
+            sd_m,
+        }
+    }
+
+    fn flush(&mut self) -> Result<(), Failure> {
+        let written = self.target.sink().points(&self.batch);
+        self.batch.clear();
+        written.map_err(|error| {
+            sink_failure(self.target.path(), &error).help(
+                "free some space or choose another folder, and run the command again: the simulation ends here",
+            )
+        })
+    }
+
+    /// Takes a return of a lidar whose clock was at `clock_ns` at the start.
+    fn push(&mut self, point: &TruePoint, ring: u8, clock_ns: i64) -> Result<(), Failure> {
+        if self.is_true && !point.range_m.is_finite() {
+            return Ok(());
+        }
+        let position_m = match self.is_true {
+            true => point.position_m,
+            false => point.measured_m,
+        };
+        self.batch.push(Point {
+            position_m: position_m.to_array(),
+            intensity: point.reflectivity,
+            ring,
+            laser: point.laser,
+            time: point.host,
+            device_time: Stamp::<Lidar>::from_nanos(point.device_ns)
+                .saturating_add(Span::from_nanos(clock_ns)),
+            tilt: Degrees(point.tilt_deg),
+            sd_m: self.sd_m,
+            echo: 0,
+        });
+        match self.batch.len() >= BATCH {
+            true => self.flush(),
+            false => Ok(()),
+        }
+    }
+
+    /// Completes the file and returns its path.
+    fn finish(mut self) -> Result<PathBuf, Failure> {
+        self.flush()?;
+        let path = self.target.path().to_owned();
+        self.target.commit()?;
+        Ok(path)
+    }
+}
+
+/// Where a simulation goes.
+#[derive(Default)]
+pub(super) struct Outputs {
+    /// The log of a lidar with packets.
+    pub log: Option<(LogWriter<File>, PathBuf)>,
+    /// The cloud that a lidar without packets measures.
+    pub measured: Option<ReturnCloud>,
+    /// The cloud of the places that beams hit.
+    pub truth: Option<ReturnCloud>,
+}
+
+/// The clouds that were written, and what ended the simulation early.
+pub(super) struct Written {
+    pub measured: Option<PathBuf>,
+    pub truth: Option<PathBuf>,
+    pub cut: Option<Cut>,
+}
+
+/// Writes the log and the clouds.
+pub(super) struct Log<'a> {
+    outputs: Outputs,
+    gearing: Option<Gearing>,
     rings: Vec<u8>,
     clock_ns: i64,
     interrupt: &'a AtomicBool,
@@ -48,24 +138,21 @@ pub(super) struct Log<'a> {
     began: Stamp<Host>,
     last: Stamp<Host>,
     failure: Option<Failure>,
-    /// Whether the truth could not be written.
-    truth_failed: bool,
+    /// Whether a cloud could not be written.
+    cloud_failed: bool,
 }
 
 impl<'a> Log<'a> {
     pub fn new(
         simulation: &Simulation,
-        writer: LogWriter<File>,
+        outputs: Outputs,
         gearing: Option<Gearing>,
-        truth: Option<Target>,
         interrupt: &'a AtomicBool,
         progressed: &'a mut dyn FnMut(f64),
     ) -> Self {
         Self {
-            writer,
+            outputs,
             gearing,
-            truth,
-            batch: Points::with_capacity(Fields::FILE, BATCH),
             rings: rings(simulation),
             clock_ns: i64::from(simulation.clock_at_start_us).saturating_mul(1_000),
             interrupt,
@@ -73,12 +160,16 @@ impl<'a> Log<'a> {
             began: simulation.start,
             last: simulation.start,
             failure: None,
-            truth_failed: false,
+            cloud_failed: false,
         }
     }
 
     fn record(&mut self, record: &Record<'_>) -> ControlFlow<()> {
-        match self.writer.write(record) {
+        let written = match &mut self.outputs.log {
+            Some((writer, _)) => writer.write(record),
+            None => Ok(()),
+        };
+        match written {
             Ok(()) => ControlFlow::Continue(()),
             Err(error) => self.fail(
                 Failure::new(Kind::Incomplete, error.to_string())
@@ -109,47 +200,49 @@ impl<'a> Log<'a> {
         })
     }
 
-    fn flush(&mut self) -> ControlFlow<()> {
-        let Some(truth) = &mut self.truth else {
+    /// Reports the time reached, and fails if the user stopped the simulation.
+    fn reach(&mut self, at: Stamp<Host>) -> ControlFlow<()> {
+        (self.progressed)((at - self.began).as_secs_f64());
+        self.last = at;
+        if !self.interrupt.load(Ordering::Relaxed) {
             return ControlFlow::Continue(());
-        };
-        if self.truth_failed {
-            return ControlFlow::Break(());
         }
-        let written = truth.sink().points(&self.batch);
-        let written = written.map_err(|error| {
-            sink_failure(truth.path(), &error).help(
-                "free some space or choose another folder with --truth, and run the command again: the log ends here, too",
-            )
-        });
-        self.batch.clear();
-        match written {
-            Ok(()) => ControlFlow::Continue(()),
-            Err(failure) => {
-                self.truth_failed = true;
-                self.fail(failure)
-            }
-        }
+        let what = "stopped by the user during the simulation";
+        self.fail(Failure::new(Kind::Interrupted, what).help(
+            "the files are complete up to that time; run the command again for the rest",
+        ))
     }
 
-    /// Completes the files. Returns the path of the truth and the cause of an early end.
-    pub fn finish(mut self, path: &Path) -> Result<(Option<PathBuf>, Option<Cut>), Failure> {
-        let _ = self.flush();
-        self.writer
-            .finish()
-            .map_err(|error| cannot_write(path, &error))?;
-        let name = match self.truth {
-            // Part of a truth is not kept under its name.
-            Some(_) if self.truth_failed => None,
-            Some(truth) => {
-                let name = truth.path().to_owned();
-                truth.commit()?;
-                Some(name)
-            }
-            None => None,
+    /// Completes the files.
+    pub fn finish(self) -> Result<Written, Failure> {
+        let Outputs {
+            log,
+            measured,
+            truth,
+        } = self.outputs;
+        if let Some((writer, path)) = log {
+            writer
+                .finish()
+                .map_err(|error| cannot_write(&path, &error))?;
+        }
+        let (mut failure, is_kept) = (self.failure, !self.cloud_failed);
+        let mut finish = |cloud: Option<ReturnCloud>| {
+            // Part of a cloud is not kept under its name.
+            let finished = cloud.filter(|_| is_kept)?.finish();
+            let error = match finished {
+                Ok(path) => return Some(path),
+                Err(error) => error,
+            };
+            failure.get_or_insert(error);
+            None
         };
+        let (measured, truth) = (finish(measured), finish(truth));
         let after = self.last - self.began;
-        Ok((name, self.failure.map(|failure| (failure, after))))
+        Ok(Written {
+            measured,
+            truth,
+            cut: failure.map(|failure| (failure, after)),
+        })
     }
 }
 
@@ -157,16 +250,7 @@ impl SimulationSink for Log<'_> {
     fn event(&mut self, event: &SimulationEvent) -> ControlFlow<()> {
         match event {
             SimulationEvent::Datagram { at, port, payload } => {
-                (self.progressed)((*at - self.began).as_secs_f64());
-                self.last = *at;
-                if self.interrupt.load(Ordering::Relaxed) {
-                    return self.fail(
-                        Failure::new(Kind::Interrupted, "stopped by the user during the simulation")
-                            .help(
-                                "the log is complete up to that time; run the command again for the rest",
-                            ),
-                    );
-                }
+                self.reach(*at)?;
                 self.record(&Record {
                     host: *at,
                     wire: Wire::Lidar {
@@ -184,32 +268,24 @@ impl SimulationSink for Log<'_> {
     }
 
     fn wants_truth(&self) -> bool {
-        self.truth.is_some()
+        self.outputs.measured.is_some() || self.outputs.truth.is_some()
     }
 
     fn truth(&mut self, points: &[TruePoint]) -> ControlFlow<()> {
+        if let (None, Some(point)) = (&self.outputs.log, points.first()) {
+            self.reach(point.host)?;
+        }
         for point in points {
-            self.batch.push(Point {
-                position_m: point.position_m.to_array(),
-                intensity: point.reflectivity,
-                ring: self
-                    .rings
-                    .get(usize::from(point.laser))
-                    .copied()
-                    .unwrap_or(0),
-                laser: point.laser,
-                time: point.host,
-                device_time: Stamp::<Lidar>::from_nanos(point.device_ns)
-                    .saturating_add(Span::from_nanos(self.clock_ns)),
-                tilt: Degrees(point.tilt_deg),
-                sd_m: 0.0,
-                echo: 0,
-            });
+            let ring = self.rings.get(usize::from(point.laser)).copied();
+            let outputs = &mut self.outputs;
+            for cloud in outputs.measured.iter_mut().chain(&mut outputs.truth) {
+                if let Err(failure) = cloud.push(point, ring.unwrap_or(0), self.clock_ns) {
+                    self.cloud_failed = true;
+                    return self.fail(failure);
+                }
+            }
         }
-        match self.batch.len() >= BATCH {
-            true => self.flush(),
-            false => ControlFlow::Continue(()),
-        }
+        ControlFlow::Continue(())
     }
 }
 
@@ -301,7 +377,7 @@ const fn probe_request(second: bool) -> (Address, AbortCode) {
 /// Configuration stored in the log.
 pub(super) fn scan_config(name: &str, scene: &SceneFile, gearing: Option<Gearing>) -> ScanConfig {
     let simulation = &scene.simulation;
-    let step_m = f64::from(simulation.sensor.model.distance_unit_mm()) * 1e-3;
+    let step_m = f64::from(simulation.sensor.distance_unit_mm) * 1e-3;
     let noise_m2 = scene.effects.effects.firings.surface.range_variance_m2();
     let axis = gearing.map_or_else(TiltAxisConfig::default, |gearing| TiltAxisConfig {
         node: NODE,

@@ -19,6 +19,7 @@ use protocol::epos2::usb;
 use protocol::record::{Direction, DriveLink, Record, Wire};
 use scanner::{Accuracy, TiltSource, align, place};
 use serde::Serialize;
+use sim::TruePoint;
 use sim::effect_models::EffectsConfig;
 use sim::effects::{EncoderEffect, Stopwatch};
 use sim::scene_file::{EffectDemand, SceneFile};
@@ -76,9 +77,12 @@ struct Difference {
     displaced_m: Vec<f64>,
 }
 
-/// A cloud of the sample; keys are time on the lidar's clock, laser, and number of the return.
+/// Points by time on the lidar's clock, laser, and number of the return.
+type SamplePoints = HashMap<(i64, u8, u8), [f64; 3]>;
+
+/// A cloud of the sample.
 struct SampleCloud {
-    points: HashMap<(i64, u8, u8), [f64; 3]>,
+    points: SamplePoints,
     took_s: f64,
     /// Share of the computing time by effect, percent.
     time_percent: Vec<(&'static str, f64)>,
@@ -99,7 +103,7 @@ impl<'a> Sampler<'a> {
     #[must_use]
     pub fn new(scene: &'a SceneFile, threads: NonZeroUsize) -> Self {
         let sampled_s = scene.simulation.motion.end_s.min(SAMPLED_S);
-        let period_s = 1e-9 * scene.simulation.sensor.model.firing_period_ns() as f64;
+        let period_s = 1e-9 * scene.simulation.sensor.firing_period_ns as f64;
         let usage = scene.effects.effects.usage();
         Self {
             scene,
@@ -213,10 +217,12 @@ impl<'a> Sampler<'a> {
             .map_err(|error| failed(&error))?;
         let polls = scene.simulation.polls;
         let gearing = polls.map(|polls| effects.encoder.gearing().unwrap_or(polls.gearing));
+        let has_packets = scene.simulation.sensor.packets.is_some();
         let mut log = SampleLog {
             interrupt: self.interrupt,
             gearing,
             records: Vec::new(),
+            measured: (!has_packets).then(HashMap::new),
             end_ns: scene.simulation.start.as_nanos() + (SAMPLED_S * 1e9) as i64,
             is_thinned: scene.simulation.motion.end_s > ALL_KEPT_S,
             datagrams: 0,
@@ -236,6 +242,15 @@ impl<'a> Sampler<'a> {
         let time_percent = (effects.usage().iter())
             .map(|used| (used.name, 100.0 * used.counts.spent_ns as f64 / busy_ns))
             .collect();
+        let mut cloud = SampleCloud {
+            points: HashMap::new(),
+            took_s,
+            time_percent,
+        };
+        if let Some(measured) = log.measured {
+            cloud.points = measured;
+            return Ok(cloud);
+        }
         let options = Options {
             duplicates: Duplicates::All,
             ..Options::default()
@@ -257,11 +272,6 @@ impl<'a> Sampler<'a> {
             Failure::new(Kind::BadInput, format!("a sample of the scene gives no cloud: {error}"))
                 .help("replay refuses the log of the scene alike: see [drive], [link] and what loses their messages")
         })?;
-        let mut cloud = SampleCloud {
-            points: HashMap::new(),
-            took_s,
-            time_percent,
-        };
         place(records(), &alignment, options, &mut cloud).map_err(|error| failed(&error))?;
         Ok(cloud)
     }
@@ -332,6 +342,8 @@ struct SampleLog<'a> {
     interrupt: Option<&'a AtomicBool>,
     gearing: Option<units::Gearing>,
     records: Vec<SampleRecord>,
+    /// The points of a lidar without packets, as measured.
+    measured: Option<SamplePoints>,
     end_ns: i64,
     is_thinned: bool,
     datagrams: u64,
@@ -369,6 +381,16 @@ impl SampleRecord {
 }
 
 impl SampleLog<'_> {
+    /// Ends the run where the sample ends, or where the user stops it.
+    fn go_on(&self, reached: Option<Stamp<Host>>) -> ControlFlow<()> {
+        let is_over = reached.is_some_and(|host| host.as_nanos() > self.end_ns);
+        let flag = self.interrupt;
+        match is_over || flag.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    }
+
     /// Whether to keep a datagram.
     fn keeps(&mut self, payload: &[u8]) -> bool {
         let has_return = has_return(payload);
@@ -402,16 +424,24 @@ impl SimulationSink for SampleLog<'_> {
                 bytes: usb::to_bytes(&frame).to_vec(),
             }),
         };
-        let is_over = record
-            .as_ref()
-            .is_some_and(|record| record.host.as_nanos() > self.end_ns);
+        let host = record.as_ref().map(|record| record.host);
         self.records.extend(record);
-        let flag = self.interrupt;
-        let is_interrupted = flag.is_some_and(|flag| flag.load(Ordering::Relaxed));
-        match is_over || is_interrupted {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
+        self.go_on(host)
+    }
+
+    fn wants_truth(&self) -> bool {
+        self.measured.is_some()
+    }
+
+    fn truth(&mut self, points: &[TruePoint]) -> ControlFlow<()> {
+        let by_key = points.iter().map(|point| {
+            let key = (point.device_ns, point.laser, point.echo);
+            (key, point.measured_m.to_array())
+        });
+        if let Some(measured) = &mut self.measured {
+            measured.extend(by_key);
         }
+        self.go_on(points.last().map(|point| point.host))
     }
 }
 

@@ -61,8 +61,13 @@ impl ReflectanceSettings {
             true => light::of_surface(head_on, specular, cosine),
             false => head_on,
         };
-        let share = self.half_range_m / range_m;
-        light * share * share / light::of_reflectivity(self.half_reflectivity)
+        self.over_threshold(light / (range_m * range_m))
+    }
+
+    /// Light over the square of its distance, by the threshold of detection.
+    pub(crate) fn over_threshold(&self, strength: f64) -> f64 {
+        let half_m2 = self.half_range_m * self.half_range_m;
+        strength * half_m2 / light::of_reflectivity(self.half_reflectivity)
     }
 }
 
@@ -163,6 +168,7 @@ mod tests {
     use super::*;
     use crate::effect_models::testing::{echo, firing};
     use crate::effects::Effect;
+    use crate::sensor::MAX_LASERS;
 
     fn detected_share(reflectance: &Reflectance, of: Echo) -> f64 {
         let mut firing = firing(0.0, 0.0);
@@ -170,7 +176,7 @@ mod tests {
         for number in 0..500 {
             firing.number = number;
             let mut echoes = Echoes::new(16, false);
-            echoes.strongest = [of; 32];
+            echoes.strongest = [of; MAX_LASERS];
             reflectance.reflect(&firing, &mut echoes);
             let seen = echoes.strongest.iter().take(16);
             noticed += seen.filter(|echo| echo.is_present()).count();

@@ -127,6 +127,13 @@ impl Weather {
         (-2.0 * self.extinction_per_m * range_m).exp()
     }
 
+    /// Light of the brightest fog and drops between two distances, over the square of the distance.
+    pub(crate) fn in_air(&self, [from_m, to_m]: [f64; 2], draw: u64) -> f64 {
+        let air = [self.fog(from_m, to_m), self.drops(from_m, to_m, (draw, 0))];
+        let strengths = air.into_iter().flatten().map(|seen| seen.strength);
+        strengths.fold(0.0, f64::max)
+    }
+
     /// Share of the scattered light of a distance that the receiver sees.
     fn overlap(&self, range_m: f64) -> f64 {
         let [from_m, to_m] = self.overlap_m;

@@ -1,13 +1,15 @@
-//! The sensors of patterns: elevations of their lasers, rates, apertures and ranges.
-//!
-//! Sensors that the simulator knows take its tables. The others have no packets here.
+//! The sensors of patterns and scenes by name, and their rates.
+
+use serde::Deserialize;
 
 use crate::sensor::{DetectionRange, LidarSensor};
 
-/// Sensors of patterns.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Sensors of patterns and scenes.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
 pub enum PatternSensor {
     /// VLP-16, 16 lasers.
+    #[default]
     Vlp16,
     /// Puck Hi-Res, 16 lasers.
     HiRes,
@@ -26,26 +28,31 @@ pub enum PatternSensor {
 }
 
 impl PatternSensor {
+    /// The sensor in a scene.
+    #[must_use]
+    pub fn sensor(self) -> LidarSensor {
+        match self {
+            Self::Vlp16 => LidarSensor::vlp16(),
+            Self::HiRes => LidarSensor::hi_res(),
+            Self::Hdl32e => LidarSensor::hdl32e(),
+            Self::Vlp32c => LidarSensor::vlp32c(),
+            Self::Hdl64e => LidarSensor::hdl64e(),
+            Self::Utm30lx => LidarSensor::utm30lx(),
+            Self::Lms151 => LidarSensor::lms151(),
+            Self::SingleBeam => LidarSensor::single_beam(),
+        }
+    }
+
     /// Elevations of its lasers in firing order, degrees.
     #[must_use]
     pub fn elevations_deg(self) -> Vec<f64> {
-        let of = |sensor: LidarSensor| {
-            let beams = sensor.beams.iter();
-            beams.map(|beam| beam.elevation_deg).collect()
-        };
         match self {
-            Self::Vlp16 => of(LidarSensor::vlp16()),
-            Self::HiRes => of(LidarSensor::hi_res()),
-            Self::Hdl32e => of(LidarSensor::hdl32e()),
-            Self::Vlp32c => of(LidarSensor::vlp32c()),
-            // HDL-64E S2 manual, specifications: an upper block of 32 lasers from 2 degrees down in
-            // steps of 1/3, a lower one from -8.83 in steps of 1/2.
-            Self::Hdl64e => {
-                let upper = (0..32).map(|laser| 2.0 - f64::from(laser) / 3.0);
-                let lower = (0..32).map(|laser| -8.83 - f64::from(laser) / 2.0);
-                upper.chain(lower).collect()
+            // That of a scene is a laser of a VLP-16, 1 degree below level.
+            Self::SingleBeam => vec![0.0],
+            _ => {
+                let beams = self.sensor().beams;
+                beams.iter().map(|beam| beam.elevation_deg).collect()
             }
-            Self::Utm30lx | Self::Lms151 | Self::SingleBeam => vec![0.0],
         }
     }
 
@@ -98,25 +105,13 @@ impl PatternSensor {
     /// Angle that a planar scanner sees, degrees, half of it to either side of its front; `None`
     /// for a head that rotates.
     #[must_use]
-    pub const fn aperture_deg(self) -> Option<f64> {
-        match self {
-            Self::Utm30lx | Self::Lms151 => Some(270.0),
-            _ => None,
-        }
+    pub fn aperture_deg(self) -> Option<f64> {
+        self.sensor().aperture_deg
     }
 
     /// The range of detection by the manual or data sheet.
     #[must_use]
     pub fn range(self) -> DetectionRange {
-        let range = |min_m, max_m| DetectionRange { min_m, max_m };
-        match self {
-            Self::Vlp16 | Self::SingleBeam => LidarSensor::vlp16().range(),
-            Self::HiRes => LidarSensor::hi_res().range(),
-            Self::Hdl32e => LidarSensor::hdl32e().range(),
-            Self::Vlp32c => LidarSensor::vlp32c().range(),
-            Self::Hdl64e => range(0.9, 120.0),
-            Self::Utm30lx => range(0.1, 30.0),
-            Self::Lms151 => range(0.5, 50.0),
-        }
+        self.sensor().range()
     }
 }

@@ -144,9 +144,12 @@ impl SceneFacts<'_> {
         if !self.is_ideal {
             demands.extend(self.edges(&survey));
             demands.extend(self.materials(&survey));
-            let of_sensor = ["range_noise", "lidar_clock"];
-            let of_drive = self.simulation.polls.map(|_| "encoder_quantisation");
-            let usual = of_sensor.into_iter().chain(of_drive).chain(["link_jitter"]);
+            // Without packets times and angles are exact.
+            let (has_packets, polls) = (self.has_packets(), self.simulation.polls);
+            let of_packets = ["lidar_clock", "link_jitter"].into_iter();
+            let of_drive = polls.map(|_| "encoder_quantisation");
+            let usual = of_packets.chain(of_drive).filter(|_| has_packets);
+            let usual = ["range_noise"].into_iter().chain(usual);
             for effect in usual.filter(|name| self.stated.iter().all(|fact| fact.effect != *name)) {
                 demands.push(self.stated_demand(effect, &survey));
             }
@@ -154,6 +157,10 @@ impl SceneFacts<'_> {
         let rank = |name: &str| EffectsConfig::NAMES.iter().position(|known| *known == name);
         demands.sort_by_key(|demand| rank(demand.effect));
         demands
+    }
+
+    const fn has_packets(&self) -> bool {
+        self.simulation.sensor.packets.is_some()
     }
 
     fn moving(&self, survey: &SceneSurvey) -> Option<EffectDemand> {
@@ -285,7 +292,9 @@ impl SceneFacts<'_> {
                 let fog = weather.visibility_m.map(|m| format!("visibility of {m} m"));
                 let rain = weather.rain_mm_h.map(|mm_h| format!("rain of {mm_h} mm/h"));
                 let reason: Vec<String> = fog.into_iter().chain(rain).collect();
-                demand(reason.join(", ")).percent(survey.percent(survey.dimmed))
+                let (changed, air) = (survey.dimmed + survey.in_air, survey.in_air);
+                let points = f64::from((survey.returned + air).max(1));
+                demand(reason.join(", ")).percent(100.0 * f64::from(changed) / points)
             }),
             "range_noise" => config.range_noise.settings().map(|noise| {
                 let mm = 1e3 * noise.sd_m;

@@ -26,7 +26,7 @@ pub(super) fn invalid(path: impl Into<String>, what: impl Into<String>) -> Inval
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct SensorSection {
-    model: SensorName,
+    model: PatternSensor,
     /// Number of the only active laser in firing order; absent: all.
     only_laser: Option<usize>,
     /// Whether all lasers of a firing start from one point at one instant.
@@ -34,25 +34,14 @@ pub(super) struct SensorSection {
     /// Range of detection, metres; absent: the model's.
     range_m: Option<[f64; 2]>,
     returns: ReturnsName,
-    /// Revolutions per minute.
-    rpm: u32,
+    /// Revolutions per minute; absent: 600 of a head that may rotate so, else the usual rate.
+    rpm: Option<u32>,
     /// Azimuth of the first firing, degrees.
     start_deg: f64,
     /// Noise of its ranges.
     pub noise: Option<RangeNoiseSettings>,
     /// Its clock.
     pub clock: Option<LidarClockSettings>,
-}
-
-#[derive(Clone, Copy, Debug, Default, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-enum SensorName {
-    #[default]
-    Vlp16,
-    HiRes,
-    Hdl32e,
-    Vlp32c,
-    SingleBeam,
 }
 
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
@@ -64,15 +53,18 @@ enum ReturnsName {
     Dual,
 }
 
+/// Revolutions per minute of scenes that state none.
+const USUAL_RPM: u32 = 600;
+
 impl Default for SensorSection {
     fn default() -> Self {
         Self {
-            model: SensorName::default(),
+            model: PatternSensor::default(),
             only_laser: None,
             ideal: false,
             range_m: None,
             returns: ReturnsName::default(),
-            rpm: 600,
+            rpm: None,
             start_deg: 0.0,
             noise: None,
             clock: None,
@@ -87,13 +79,7 @@ impl SensorSection {
     }
 
     pub fn build(&self) -> Result<(LidarSensor, ReturnMode, HeadRotation), InvalidValue> {
-        let mut sensor = match self.model {
-            SensorName::Vlp16 => LidarSensor::vlp16(),
-            SensorName::HiRes => LidarSensor::hi_res(),
-            SensorName::Hdl32e => LidarSensor::hdl32e(),
-            SensorName::Vlp32c => LidarSensor::vlp32c(),
-            SensorName::SingleBeam => LidarSensor::single_beam(),
-        };
+        let mut sensor = self.model.sensor();
         if let Some(laser) = self.only_laser {
             sensor = sensor.only(laser);
             if sensor.used == 0 {
@@ -116,9 +102,14 @@ impl SensorSection {
             ReturnsName::Last => ReturnMode::Last,
             ReturnsName::Dual => ReturnMode::Dual,
         };
-        let (rpm, start_deg) = (self.rpm, self.start_deg);
-        // All of them have the same rates.
-        if let Err(expected) = PatternSensor::Vlp16.check_rpm(f64::from(rpm)) {
+        let start_deg = self.start_deg;
+        let is_usual = self.model.check_rpm(f64::from(USUAL_RPM)).is_ok();
+        let usual_rpm = match is_usual {
+            true => USUAL_RPM,
+            false => self.model.usual_rpm() as u32,
+        };
+        let rpm = self.rpm.unwrap_or(usual_rpm);
+        if let Err(expected) = self.model.check_rpm(f64::from(rpm)) {
             return Err(invalid(
                 "sensor.rpm",
                 format!("expected {expected}, got {rpm}"),

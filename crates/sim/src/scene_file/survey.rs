@@ -52,6 +52,8 @@ pub(super) struct SceneSurvey {
     pub mixed_m: f64,
     /// Of them, those that the weather makes too faint.
     pub dimmed: u32,
+    /// Shots at the sky that the air returns.
+    pub in_air: u32,
     /// The farthest surface, metres.
     pub farthest_m: f64,
     /// The materials that objects have, and shots at them.
@@ -103,6 +105,9 @@ impl SceneSurvey {
             };
             let tilt_deg = simulation.motion.at(time_s).angle_deg;
             let azimuth_deg = (f64::from(shot) * GOLDEN_DEG).rem_euclid(360.0);
+            if !sensor.sees(azimuth_deg) {
+                continue;
+            }
             let ray = sensor.ray(*laser, azimuth_deg, tilt_deg, &simulation.mount);
             let Some((origin_m, direction)) = ray else {
                 continue;
@@ -114,7 +119,7 @@ impl SceneSurvey {
                     .filter_map(|mover| Some((mover, mover.travel.at(time_s).ok()?)))
                     .collect(),
             };
-            survey.shoot(&surfaces, origin_m, direction, detection, weather);
+            survey.shoot(&surfaces, shot, [origin_m, direction], detection, weather);
         }
         survey
     }
@@ -144,14 +149,19 @@ impl SceneSurvey {
     fn shoot(
         &mut self,
         surfaces: &Surfaces<'_>,
-        origin_m: DVec3,
-        direction: DVec3,
+        shot: u32,
+        [origin_m, direction]: [DVec3; 2],
         detection: &ReflectanceSettings,
         weather: Option<&Weather>,
     ) {
         let Some(met) = surfaces.first(origin_m, direction) else {
             // A pole before the sky that the middle of the beam misses.
             self.edges += u32::from(surfaces.edge(origin_m, direction, f64::INFINITY).is_some());
+            let reach = surfaces.simulation.sensor.range();
+            let light = weather.map_or(0.0, |weather| {
+                weather.in_air([reach.min_m.max(0.1), reach.max_m], shot.into())
+            });
+            self.in_air += u32::from(detection.over_threshold(light) >= 1.0);
             return;
         };
         self.returned += 1;

@@ -21,7 +21,7 @@ fn error(text: &str) -> (usize, String) {
 fn the_minimal_scene_is_a_static_vlp16_with_the_effects_that_it_calls_for() {
     let scene = SceneFile::parse(LEAST, None, None).unwrap();
     let simulation = &scene.simulation;
-    assert_eq!(simulation.sensor.model, PacketModel::Vlp16);
+    assert_eq!(simulation.sensor.packets, Some(PacketModel::Vlp16));
     assert_eq!(simulation.returns, ReturnMode::Strongest);
     assert_eq!(simulation.rotation.rpm, 600);
     assert!(simulation.polls.is_none() && scene.tolerance.is_none());
@@ -388,6 +388,39 @@ fn a_scene_states_its_tolerance() {
     assert_eq!((tolerance.displaced_mm, tolerance.percent), (5.0, 0.1));
     let (line, what) = error(&format!("seed = 1\ntolerance = \"5\"\n{LEAST}"));
     assert!(line == 2 && what.contains("5mm,0.1%"), "{line} {what}");
+}
+
+/// In [effects] stands `true` only.
+#[test]
+fn an_invalid_fact_is_named_where_it_is_stated() {
+    let text = format!("{LEAST}[weather]\nvisibility_m = 0.1\n[effects]\nweather = true\n");
+    let (line, what) = error(&text);
+    assert!(line == 6 && what.contains("visibility_m"), "{line} {what}");
+}
+
+/// Fog returns shots that nothing else would: in the open most of what it changes.
+#[test]
+fn fog_before_the_sky_counts() {
+    let text = LEAST.replace("hall", "parking") + "[weather]\nvisibility_m = 40\n";
+    let scene = SceneFile::parse(&text, None, None).unwrap();
+    let percent = scene.demand("weather").unwrap().percent.unwrap();
+    assert!((30.0..90.0).contains(&percent), "{percent}");
+}
+
+#[test]
+fn lidars_without_packets_stand_in_scenes() {
+    for (model, rpm, lasers) in [("hdl64e", 600, 64), ("utm30lx", 2_400, 1), ("lms151", 1_500, 1)] {
+        let text = format!("{LEAST}[sensor]\nmodel = \"{model}\"\n");
+        let scene = SceneFile::parse(&text, None, None).unwrap();
+        let simulation = &scene.simulation;
+        assert_eq!((simulation.rotation.rpm, simulation.sensor.beams.len()), (rpm, lasers));
+        assert_eq!(simulation.sensor.packets, None);
+        let of_packets = ["lidar_clock", "link_jitter", "encoder_quantisation"];
+        assert!(of_packets.iter().all(|name| scene.demand(name).is_none()));
+        assert!(scene.demand("range_noise").is_some());
+        let (line, what) = error(&format!("{text}rpm = 1080\n"));
+        assert!(line == 7 && what.contains("rpm"), "{line} {what}");
+    }
 }
 
 #[test]

@@ -53,7 +53,7 @@ fn tables_are_as_long_as_their_packets() {
         LidarSensor::vlp32c(),
         LidarSensor::single_beam(),
     ] {
-        let model = sensor.model;
+        let model = sensor.packets.unwrap();
         assert_eq!(sensor.beams.len(), model.lasers(), "{model:?}");
         let last = sensor.beams.iter().map(|beam| beam.delay_ns).max().unwrap();
         assert!(last < model.firing_period_ns());
@@ -67,6 +67,22 @@ fn a_single_laser_can_be_selected() {
     assert_eq!(LidarSensor::hdl32e().only(15).used, 1 << 15);
     assert_eq!(LidarSensor::vlp16().only(16).used, 0);
     assert_eq!(LidarSensor::vlp16().only(usize::MAX).used, 0);
+}
+
+#[test]
+fn planar_scanners_see_their_aperture() {
+    let scanner = LidarSensor::utm30lx();
+    for (azimuth_deg, is_seen) in [
+        (0.0, true),
+        (135.0, true),
+        (135.1, false),
+        (224.9, false),
+        (225.0, true),
+        (359.9, true),
+    ] {
+        assert_eq!(scanner.sees(azimuth_deg), is_seen, "{azimuth_deg}");
+        assert!(LidarSensor::hdl64e().sees(azimuth_deg));
+    }
 }
 
 #[test]

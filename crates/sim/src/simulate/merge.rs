@@ -98,6 +98,12 @@ impl<'a, E: EncoderEffect, L: LinkEffect> Merge<'a, E, L> {
     fn packet(&mut self, packet: &SimulatedPacket) -> ControlFlow<()> {
         let leaves_ns = packet.leaves_ns;
         self.poll_until(leaves_ns)?;
+        self.summary.shots += u64::from(packet.counts.shots);
+        self.summary.returned += u64::from(packet.counts.returned);
+        self.summary.returns += u64::from(packet.counts.returns);
+        if self.simulation.sensor.packets.is_none() {
+            return self.release(leaves_ns);
+        }
         let message = |kind, number| LinkMessage {
             kind,
             number,
@@ -105,9 +111,6 @@ impl<'a, E: EncoderEffect, L: LinkEffect> Merge<'a, E, L> {
         };
         let data = message(MessageKind::Data, self.summary.packets);
         self.summary.packets += 1;
-        self.summary.shots += u64::from(packet.counts.shots);
-        self.summary.returned += u64::from(packet.counts.returned);
-        self.summary.returns += u64::from(packet.counts.returns);
         self.datagram(data, DATA_PORT, &packet.payload);
         if let Some(payload) = packet.position_packet(self.summary.packets) {
             let number = self.position_packets;

@@ -26,7 +26,8 @@ struct BlockRun {
 
 impl BlockSchedule {
     pub fn new<V: ViewEffect>(simulation: &Simulation, needs: Needs, view: &V) -> Self {
-        let period_ns = simulation.sensor.model.block_period_ns();
+        let sensor = &simulation.sensor;
+        let period_ns = sensor.firings_per_block() as i64 * sensor.firing_period_ns;
         let possible = u64::try_from(simulation.end_ns() / period_ns).unwrap_or(0);
         let (runs, fired) = if needs.azimuths {
             runs_in_view(simulation.rotation, period_ns, possible, view)

@@ -111,6 +111,41 @@ fn run(simulation: &Simulation, count: usize) -> (Taken, SimulationSummary) {
     (taken, summary.unwrap())
 }
 
+/// Without packets there are only points: of all lasers, all round or in an aperture.
+#[test]
+fn lidars_without_packets_measure_points() {
+    for (sensor, rpm, lasers, per_s, share, step_m) in [
+        (LidarSensor::hdl64e(), 600, 64, 20_828.0, 1.0, 2e-3),
+        (LidarSensor::utm30lx(), 2_400, 1, 57_600.0, 0.75, 1e-3),
+        (LidarSensor::lms151(), 3_000, 1, 36_000.0, 0.75, 1e-3),
+    ] {
+        let mut simulation = hall(sensor);
+        simulation.rotation.rpm = rpm;
+        let (taken, summary) = run(&simulation, 2);
+        assert!(taken.datagrams.is_empty() && !taken.answers.is_empty());
+        assert_eq!(summary.packets, 0);
+        assert_eq!(taken.points.len() as u64, summary.returned);
+        let seconds = summary.duration.as_secs_f64();
+        let shots = seconds * per_s * f64::from(lasers) * share;
+        // The last revolution is not whole.
+        assert!((summary.shots as f64 / shots - 1.0).abs() < 0.03, "{shots}");
+        let seen: std::collections::BTreeSet<u8> =
+            taken.points.iter().map(|point| point.laser).collect();
+        assert_eq!(seen.len(), lasers as usize);
+        for point in &taken.points {
+            let from_front = (point.azimuth_deg + 180.0) % 360.0 - 180.0;
+            assert!(share == 1.0 || from_front.abs() <= 135.0, "{point:?}");
+            let laser = usize::from(point.laser);
+            let (azimuth_deg, tilt_deg) = (point.azimuth_deg, point.tilt_deg);
+            let ray = (simulation.sensor).ray(laser, azimuth_deg, tilt_deg, &simulation.mount);
+            let (origin, direction) = ray.unwrap();
+            let at = origin + point.range_m * direction;
+            assert!(at.distance(point.position_m) < 1e-9, "{point:?}");
+            assert!(at.distance(point.measured_m) < 0.5 * step_m + 1e-9, "{point:?}");
+        }
+    }
+}
+
 /// The plain definition of a ray against the rays of a firing.
 #[test]
 fn points_agree_with_single_rays() {
@@ -132,6 +167,8 @@ fn points_agree_with_single_rays() {
         let (origin, direction) = ray.unwrap();
         let seen = origin + point.range_m * direction;
         assert!(seen.distance(point.position_m) < 1e-11, "{point:?}");
+        // Half a step of 2 mm.
+        assert!(seen.distance(point.measured_m) < 1e-3 + 1e-9, "{point:?}");
         let hit = simulation.scene.cast(origin, direction, 1.0, 100.0);
         let same = hit.is_some_and(|hit| (hit.range_m - point.range_m).abs() < 1e-9);
         different += u32::from(!same);

@@ -11,7 +11,7 @@ use cloud::{Fields, Points};
 use engine::config::MountSettings;
 use engine::reconstruct::replay::{Reconstruction, scan};
 use engine::reconstruct::source::Source;
-use engine::simulate::{SimulationRequest, make, read};
+use engine::simulate::{SimulationOutput, SimulationRequest, make, read};
 use scanner::Accuracy;
 use sim::TruePoint;
 use sim::simulate::{SimulationEvent, SimulationSink};
@@ -22,11 +22,13 @@ pub fn simulate(text: &str, seed: u64, log: &Path) -> Result<(), Box<dyn Error>>
     let interrupt = AtomicBool::new(false);
     let request = SimulationRequest {
         name: "study".to_owned(),
-        log,
+        output: SimulationOutput::Log {
+            path: log.to_owned(),
+            force: true,
+        },
         truth: None,
         threads: NonZeroUsize::MIN,
         explain: false,
-        force: true,
         interrupt: &interrupt,
         progressed: &mut |_| {},
     };

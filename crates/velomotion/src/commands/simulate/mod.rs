@@ -5,12 +5,12 @@ mod words;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-use cloud::Fields;
 use engine::document::Document;
 use engine::failure::Failure;
 use engine::output::{self, Target};
 use engine::simulate::{
-    Sampler, SimulationReport, SimulationRequest, choose_effects, find, make, nanoseconds, read,
+    Sampler, SimulationFiles, SimulationOutput, SimulationReport, SimulationRequest,
+    choose_effects, find, make, nanoseconds, read,
     stem, unmet,
 };
 use engine::words::counted;
@@ -37,23 +37,20 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, 
     };
     let cores = || std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
     let threads = arguments.threads.unwrap_or_else(cores);
-    let log = arguments
-        .output
-        .clone()
-        .unwrap_or_else(|| PathBuf::from(stem(&name)).with_extension("pcapng"));
-    output::refuse_overwrite(&arguments.scene, &log)?;
-    output::log_is_file(&log, "-o", &["pcapng", "pcap"])?;
-    output::check_free(&log, arguments.force)?;
-    if let Some(truth) = &arguments.truth {
-        output::refuse_overwrite(&arguments.scene, truth)?;
-        output::two_files(&log, truth)?;
-        output::one_for_stdout(Some(truth), common.json)?;
+    let default = || PathBuf::from(stem(&name)).with_extension(SimulationOutput::extension(&scene));
+    let path = arguments.output.clone().unwrap_or_else(default);
+    for cloud in [Some(path.as_path()), arguments.truth.as_deref()] {
+        output::one_for_stdout(cloud, common.json)?;
     }
-    let truth = match &arguments.truth {
-        Some(truth) => Some(Target::open(truth, Fields::FILE, arguments.force)?),
-        None => None,
+    let files = SimulationFiles {
+        scene: &arguments.scene,
+        output: &path,
+        option: "-o",
+        truth: arguments.truth.as_deref(),
+        force: arguments.force,
     };
-    let stdout_taken = truth.as_ref().is_some_and(Target::is_stdout);
+    let (output, truth) = files.open(&scene)?;
+    let stdout_taken = output.is_stdout() || truth.as_ref().is_some_and(Target::is_stdout);
     let mut progress = Progress::new(common);
     progress.begin_comparison();
     let choice = choose_effects(
@@ -86,11 +83,10 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, 
     let (has_objects, range) = (scene.has_objects(), scene.simulation.sensor.range());
     let request = SimulationRequest {
         name,
-        log: &log,
+        output,
         truth,
         threads,
         explain: arguments.explain,
-        force: arguments.force,
         interrupt: &interrupt,
         progressed: &mut |seconds| progress.ran(seconds),
     };
@@ -126,13 +122,14 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, 
 
 /// Text of the report.
 fn report_text(report: &SimulationReport) -> String {
+    let packets = match &report.log {
+        Some(_) => format!("{} over {:.3} s", report.packets.data, report.duration_s),
+        None => format!("none: not simulated for this lidar; {:.3} s", report.duration_s),
+    };
     let mut rows = vec![
         ("scene", format!("{}, seed {}", report.scene, report.seed)),
         ("effects", effects_text(report)),
-        (
-            "packets",
-            format!("{} over {:.3} s", report.packets.data, report.duration_s),
-        ),
+        ("packets", packets),
         (
             "returned",
             format!(
@@ -156,7 +153,8 @@ fn report_text(report: &SimulationReport) -> String {
         ),
     ));
     rows.extend((report.choice.iter()).map(|choice| ("tolerance", choice.text(report.took_s))));
-    rows.push(("log", report.log.clone()));
+    rows.extend(report.log.iter().map(|log| ("log", log.clone())));
+    rows.extend(report.cloud.iter().map(|cloud| ("cloud", cloud.clone())));
     rows.extend(report.truth.iter().map(|truth| ("truth", truth.clone())));
     let warnings = report.warnings.iter();
     rows.extend(warnings.map(|warning| ("warning", warning.clone())));
@@ -173,13 +171,15 @@ fn report_text(report: &SimulationReport) -> String {
 /// The effects that are on, one per line, each with the fact that calls for it.
 fn effects_text(report: &SimulationReport) -> String {
     let reason = |effect: &EffectLine| {
-        let demand = report
-            .demands
-            .iter()
-            .find(|demand| demand.effect == effect.name);
+        let mut demands = (report.demands.iter()).filter(|demand| demand.effect == effect.name);
+        let (demand, others) = (demands.next(), demands.count());
+        let others = match others {
+            0 => String::new(),
+            _ => format!(", and {others} more"),
+        };
         let line = (effect.line).map_or_else(String::new, |line| format!(" (line {line})"));
         match demand {
-            Some(demand) => format!("{}: {}{line}", effect.name, demand.reason),
+            Some(demand) => format!("{}: {}{line}{others}", effect.name, demand.reason),
             None => format!("{}: requested{line}", effect.name),
         }
     };
