@@ -9,9 +9,12 @@ struct Block {
     before: String,
 }
 
-fn blocks_of(page: &str) -> Vec<Block> {
-    let path = format!("{}/../../docs/src/{page}.md", env!("CARGO_MANIFEST_DIR"));
-    let page = std::fs::read_to_string(path).unwrap();
+fn book() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/src")
+}
+
+fn blocks_of(page: &Path) -> Vec<Block> {
+    let page = std::fs::read_to_string(page).unwrap();
     let mut blocks = Vec::new();
     let mut before = String::new();
     let mut lines = page.lines();
@@ -39,7 +42,7 @@ fn run_page(place: &Place, page: &str) {
     let path = std::env::var("PATH").unwrap();
     let path = format!("{}:{path}", program.parent().unwrap().display());
     let mut ran = 0;
-    for block in blocks_of(page) {
+    for block in blocks_of(&book().join(page).with_extension("md")) {
         match block.language.as_str() {
             "toml" => {
                 // "Save this as `NAME`:"
@@ -94,4 +97,48 @@ fn the_calibration_of_a_simulated_scanner_runs_as_printed() {
     run_page(&place, "calibrate-simulated");
     let mount = std::fs::read_to_string(place.path("mount.toml")).unwrap();
     assert!(mount.contains("rotation_deg"), "{mount}");
+}
+
+/// The commands of velomotion in a line for a shell, without pipes, redirections and comments.
+fn commands_of(line: &str) -> impl Iterator<Item = Vec<String>> {
+    let line = line.strip_prefix("$ ").unwrap_or(line);
+    let line = line.split(" # ").next().unwrap_or_default();
+    let parts = line.split(['|', ';']).map(str::trim).filter_map(|part| {
+        let part = part.split(" > ").next().unwrap_or_default();
+        let arguments = ["velomotion ", "target/release/velomotion ", "cargo run --release -- "]
+            .iter()
+            .find_map(|program| part.strip_prefix(program))?;
+        Some(shlex::split(arguments).unwrap())
+    });
+    parts.collect::<Vec<_>>().into_iter()
+}
+
+/// Tutorials run; of all other commands verbs, options and values exist.
+#[test]
+fn every_command_of_the_book_is_understood() {
+    let mut pages = vec![book().join("../../README.md")];
+    for page in std::fs::read_dir(book()).unwrap() {
+        let page = page.unwrap().path();
+        pages.extend((page.extension().is_some_and(|is| is == "md")).then_some(page));
+    }
+    let (mut commands, mut wrong) = (0, Vec::new());
+    for page in pages {
+        let blocks = blocks_of(&page);
+        let shell = (blocks.iter()).filter(|block| ["sh", "console"].contains(&&*block.language));
+        let text: String = shell.map(|block| block.text.replace("\\\n", "")).collect();
+        let prose = std::fs::read_to_string(&page).unwrap();
+        // Spans of code; blocks have no single quotes of this kind.
+        let spans = prose.split('`').skip(1).step_by(2).map(str::to_owned);
+        let lines = text.lines().map(str::to_owned).chain(spans);
+        for words in lines.flat_map(|line| commands_of(&line)) {
+            commands += 1;
+            let words = [vec!["velomotion".to_owned()], words].concat();
+            if let Err(error) = <velomotion::cli::Cli as clap::Parser>::try_parse_from(&words) {
+                let line = error.to_string().lines().next().unwrap_or_default().to_owned();
+                wrong.push(format!("{}: {words:?}: {line}", page.display()));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(commands > 80, "{commands}");
 }
