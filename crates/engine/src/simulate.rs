@@ -329,7 +329,10 @@ pub fn make(
         begin_cloud(truth, "the truth of the simulated scene", &name, mount)?;
     }
     outputs.truth = truth.map(ReturnCloud::of_truth);
-    let log = outputs.log.as_ref().map(|(_, path)| path.display().to_string());
+    let log = outputs
+        .log
+        .as_ref()
+        .map(|(_, path)| path.display().to_string());
     let began = Instant::now();
     let mut out = Log::new(&scene.simulation, outputs, gearing, interrupt, progressed);
     // Separate instances, so that a scene without effects pays nothing for them.
@@ -418,7 +421,9 @@ fn begin_cloud(cloud: &mut Target, what: &str, name: &str, mount: Mount) -> Resu
         ..TiltTrack::default()
     };
     let sink = cloud.sink();
-    let begun = sink.begin(&metadata(what, name)).and_then(|()| sink.tilt(&track));
+    let begun = sink
+        .begin(&metadata(what, name))
+        .and_then(|()| sink.tilt(&track));
     begun.map_err(|error| output::sink_failure(cloud.path(), &error))
 }
 

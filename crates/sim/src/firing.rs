@@ -32,8 +32,10 @@ pub struct SimulatedFiring {
     pub tilt: AxisState,
     /// Number of lasers; further columns are unused.
     pub lasers: usize,
+    /// The sensor's number of the first: other than 0 only where its lasers are more than fit.
+    pub first_laser: usize,
     /// Lasers that fire, one bit each, bit 0 for the first.
-    pub alive: u64,
+    pub alive: u32,
     /// Origin of each ray, metres in the frame of the base.
     pub origins_m: [DVec3; MAX_LASERS],
     /// Direction of each ray there, length 1.
@@ -54,6 +56,7 @@ impl SimulatedFiring {
                 rate_deg_s: 0.0,
             },
             lasers,
+            first_laser: 0,
             alive: 0,
             origins_m: [DVec3::ZERO; MAX_LASERS],
             directions: [DVec3::Y; MAX_LASERS],

@@ -18,7 +18,7 @@ use crate::effects::{ClockEffect, FiringEffects, Needs};
 use crate::firing::{Echo, Echoes, SimulatedFiring, Surroundings};
 use crate::lidar_clock::LidarClock;
 use crate::motion::AxisState;
-use crate::sensor::{LidarMount, LidarSensor, MAX_LASERS, RayTable, ReturnMode};
+use crate::sensor::{LidarMount, LidarSensor, MAX_LASERS, PacketModel, RayTable, ReturnMode};
 
 /// Data packets per position packet, about the ratio of real sensors.
 const DATA_PER_POSITION: u64 = 5;
@@ -77,13 +77,14 @@ pub(crate) struct SimulatedLidar {
     pub start: Stamp<Host>,
     /// The clock of the packets' stamps. Its drift acts only where it is the clock effect too.
     pub clock: LidarClock,
+    /// Of the first firing of an instant, and of the others.
     rays: RayTable,
+    more_rays: Vec<RayTable>,
 }
 
 /// A data packet as it leaves the lidar.
 #[derive(Debug)]
 pub(crate) struct SimulatedPacket {
-    /// Zeros of a lidar without packets.
     pub payload: [u8; DATA_LEN],
     /// When it leaves, host nanoseconds since the start.
     pub leaves_ns: i64,
@@ -120,8 +121,7 @@ pub(crate) struct PacketMaker<F> {
     /// The firings of a packet and the returns of each.
     firings: Vec<SimulatedFiring>,
     echoes: Vec<Echoes>,
-    /// `None` for a lidar without packets.
-    packet: Option<DataPacketBuilder>,
+    packet: DataPacketBuilder,
 }
 
 /// Distance in the sensor's units (0 for no return) and calibrated reflectivity.
@@ -138,6 +138,7 @@ impl SimulatedLidar {
     ) -> Self {
         Self {
             rays: RayTable::new(&sensor, rotation.deg_per_s()),
+            more_rays: RayTable::others(&sensor, rotation.deg_per_s()),
             sensor,
             returns,
             rotation,
@@ -149,12 +150,11 @@ impl SimulatedLidar {
 
     /// Beginning of a firing in lidar time since the start.
     pub fn device_ns(&self, firing: u64) -> i64 {
-        let firing = i64::try_from(firing).unwrap_or(i64::MAX);
-        firing.saturating_mul(self.sensor.firing_period_ns)
+        self.sensor.firing_ns(firing)
     }
 
     /// A firing before any is aimed.
-    pub const fn firing(&self) -> SimulatedFiring {
+    pub fn firing(&self) -> SimulatedFiring {
         SimulatedFiring::new(self.rays.count)
     }
 
@@ -172,15 +172,33 @@ impl SimulatedLidar {
         firing.number = number;
         firing.time_s = host_ns as f64 * 1e-9;
         firing.azimuth_deg = self.rotation.azimuth_deg(device_ns);
-        firing.alive = match self.sensor.sees(firing.azimuth_deg) {
-            true => self.sensor.used,
-            false => 0,
-        };
+        firing.alive = self.sensor.used as u32;
+        if !self.sensor.sees(firing.azimuth_deg) {
+            firing.alive = 0;
+        }
         match platform.state(host_ns) {
             Some(state) => firing.tilt = state,
             None => firing.alive = 0,
         }
-        firing.aim(&self.rays, &self.mount);
+        match self.more_rays.is_empty() {
+            true => firing.aim(&self.rays, &self.mount),
+            false => self.aim_one_of_several(firing),
+        }
+    }
+
+    /// Aims one of several firings of an instant. Apart, since it would slow down the usual case.
+    #[inline(never)]
+    fn aim_one_of_several(&self, firing: &mut SimulatedFiring) {
+        let count = 1 + self.more_rays.len() as u64;
+        let at_once = (firing.number % count) as usize;
+        let others = at_once.checked_sub(1);
+        let rays = others.and_then(|other| self.more_rays.get(other));
+        let rays = rays.unwrap_or(&self.rays);
+        (firing.lasers, firing.first_laser) = (rays.count, rays.first);
+        if firing.alive != 0 {
+            firing.alive = (self.sensor.used >> rays.first) as u32;
+        }
+        firing.aim(rays, &self.mount);
     }
 }
 
@@ -190,12 +208,13 @@ impl<F: FiringEffects> PacketMaker<F> {
         let two = lidar.returns != ReturnMode::Strongest;
         let sensor = &lidar.sensor;
         let firings = firing_blocks(lidar.returns) * sensor.firings_per_block();
-        let builder = |model| DataPacketBuilder::new(model, lidar.returns);
+        // That of a lidar without packets is never sent.
+        let model = sensor.packets.unwrap_or(PacketModel::Vlp16);
         Self {
             surroundings: surroundings.with_normals(needs.normals),
             firings: vec![lidar.firing(); firings],
-            echoes: vec![Echoes::new(lidar.rays.count, two); firings],
-            packet: sensor.packets.map(builder),
+            echoes: vec![Echoes::new(lidar.firing().lasers, two); firings],
+            packet: DataPacketBuilder::new(model, lidar.returns),
             effects,
             needs,
         }
@@ -246,16 +265,14 @@ impl<F: FiringEffects> PacketMaker<F> {
                 clock: effects.clock,
                 firing,
             };
-            let packet = self.packet.as_mut();
-            report.write(echoes, packet, &mut counts, points.as_deref_mut());
+            report.write(echoes, &mut self.packet, &mut counts, points.as_deref_mut());
         }
         let device_ns = |firing: &SimulatedFiring| lidar.device_ns(firing.number);
         let first_ns = self.firings.first().map_or(0, device_ns);
         let last_ns = self.firings.last().map_or(0, device_ns);
         let end_ns = last_ns.saturating_add(lidar.sensor.firing_period_ns);
-        let stamp_us = lidar.clock.stamp_us(first_ns);
         SimulatedPacket {
-            payload: (self.packet.as_mut()).map_or([0; DATA_LEN], |packet| packet.finish(stamp_us)),
+            payload: self.packet.finish(lidar.clock.stamp_us(first_ns)),
             leaves_ns: effects.clock.host_ns(end_ns),
             stamp_us: lidar.clock.stamp_us(end_ns),
             points: points.map_or(0, |points| points.len()) - points_before,
@@ -276,7 +293,7 @@ impl<C: ClockEffect> FiringReport<'_, C> {
     fn write(
         &self,
         echoes: &Echoes,
-        packet: Option<&mut DataPacketBuilder>,
+        packet: &mut DataPacketBuilder,
         counts: &mut ShotCounts,
         mut points: Option<&mut Vec<TruePoint>>,
     ) {
@@ -321,9 +338,7 @@ impl<C: ClockEffect> FiringReport<'_, C> {
             }
         }
         let [raw_first, raw_second] = &raw;
-        if let Some(packet) = packet {
-            packet.firing(azimuth_cdeg, raw_first, raw_second);
-        }
+        packet.firing(azimuth_cdeg, raw_first, raw_second);
     }
 
     /// The point of a return. `None` for one from no surface, unless the lidar has no packets:
@@ -336,7 +351,8 @@ impl<C: ClockEffect> FiringReport<'_, C> {
         (units, reflectivity): RawReturn,
         device_ns: i64,
     ) -> Option<TruePoint> {
-        let beam = self.lidar.sensor.beams.get(laser)?;
+        let number_of_laser = self.firing.first_laser + laser;
+        let beam = self.lidar.sensor.beams.get(number_of_laser)?;
         let (origin_m, direction) = self.firing.ray(laser)?;
         if !echo.true_range_m.is_finite() && self.lidar.sensor.packets.is_some() {
             return None;
@@ -352,7 +368,7 @@ impl<C: ClockEffect> FiringReport<'_, C> {
             measured_m: origin_m + f64::from(units) * unit_m * direction,
             host: (self.lidar.start).saturating_add(Span::from_nanos(host_ns)),
             device_ns,
-            laser: u8::try_from(laser).ok()?,
+            laser: u8::try_from(number_of_laser).ok()?,
             echo: number,
             reflectivity,
             range_m: echo.true_range_m,

@@ -12,8 +12,11 @@ use glam::{DMat3, DVec3, EulerRot};
 
 use crate::scenery::rotation;
 
+/// The most lasers of a firing. Those of a lidar with more are simulated as several firings at one
+/// instant: wider firings made all lidars 6 % slower.
+pub const MAX_LASERS: usize = 32;
 /// The most lasers of any sensor.
-pub const MAX_LASERS: usize = 64;
+pub const MAX_SENSOR_LASERS: usize = 64;
 
 /// One laser, in firing order.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,7 +51,7 @@ pub struct LidarSensor {
     pub beams: Vec<LaserBeam>,
     /// The active lasers, one bit each, bit 0 for the first.
     pub used: u64,
-    /// Nanoseconds from one firing of all lasers to the next.
+    /// Nanoseconds from the firing of a laser to its next.
     pub firing_period_ns: i64,
     /// Step of its distances, millimetres.
     pub distance_unit_mm: u32,
@@ -230,6 +233,24 @@ impl LidarSensor {
         (self.packets).map_or(2, PacketModel::firings_per_block)
     }
 
+    /// Firings at one instant that all lasers need.
+    #[must_use]
+    pub fn firings_at_once(&self) -> usize {
+        self.beams.len().div_ceil(MAX_LASERS).max(1)
+    }
+
+    /// Beginning of a firing by its number from 0, nanoseconds.
+    #[inline]
+    #[must_use]
+    pub fn firing_ns(&self, firing: u64) -> i64 {
+        let instant = match self.firings_at_once() {
+            1 => firing,
+            several => firing / several as u64,
+        };
+        let instant = i64::try_from(instant).unwrap_or(i64::MAX);
+        instant.saturating_mul(self.firing_period_ns)
+    }
+
     /// Whether the sensor fires at an azimuth of its head, degrees.
     #[inline]
     #[must_use]
@@ -285,10 +306,11 @@ impl LidarSensor {
 
 /// One bit for each laser.
 fn bits(lasers: usize) -> u64 {
-    u64::MAX >> (MAX_LASERS - lasers.clamp(1, MAX_LASERS))
+    u64::MAX >> (MAX_SENSOR_LASERS - lasers.clamp(1, MAX_SENSOR_LASERS))
 }
 
-/// The lasers of a rotating head relative to the azimuth of the first, constant over all firings.
+/// The lasers of a firing of a rotating head relative to the azimuth of the first, constant over all
+/// firings.
 #[derive(Clone, Debug)]
 pub(crate) struct RayTable {
     /// Directions when the first laser fires at azimuth 0, the rotation during the delay included.
@@ -298,20 +320,37 @@ pub(crate) struct RayTable {
     /// Delays after the first laser, seconds.
     pub delays_s: [f64; MAX_LASERS],
     pub count: usize,
+    /// Number of the first in the sensor.
+    pub first: usize,
 }
 
 impl RayTable {
-    /// The rays of a head that rotates at `deg_per_s`.
+    /// The rays of a head that rotates at `deg_per_s`, of the first firing at an instant.
     pub fn new(sensor: &LidarSensor, deg_per_s: f64) -> Self {
+        Self::of(sensor, 0, deg_per_s)
+    }
+
+    /// The rays of the other firings at an instant.
+    pub fn others(sensor: &LidarSensor, deg_per_s: f64) -> Vec<Self> {
+        let others = 1..sensor.firings_at_once();
+        others
+            .map(|number| Self::of(sensor, number, deg_per_s))
+            .collect()
+    }
+
+    fn of(sensor: &LidarSensor, number: usize, deg_per_s: f64) -> Self {
+        let beams = sensor.beams.chunks(MAX_LASERS).nth(number);
+        let beams = beams.unwrap_or_default();
         let mut rays = Self {
+            first: MAX_LASERS * number,
             directions: [DVec3::Y; MAX_LASERS],
             heights_m: [0.0; MAX_LASERS],
             delays_s: [0.0; MAX_LASERS],
-            count: sensor.beams.len().min(MAX_LASERS),
+            count: beams.len(),
         };
         let directions = rays.directions.iter_mut();
         let places = directions.zip(&mut rays.heights_m).zip(&mut rays.delays_s);
-        for (((direction, height_m), delay_s), beam) in places.zip(&sensor.beams) {
+        for (((direction, height_m), delay_s), beam) in places.zip(beams) {
             *delay_s = beam.delay_ns as f64 * 1e-9;
             *height_m = beam.origin_m;
             let ahead_deg = beam.azimuth_deg + deg_per_s * *delay_s;

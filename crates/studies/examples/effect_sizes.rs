@@ -29,7 +29,9 @@ const PARAPET: &str = "\n[[objects]]\nname = \"parapet\"\nmaterial = \"plaster\"
                        box = { from_m = [-3, 0.9, -1.7], to_m = [2.5, 1, 0] }\n";
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let picture = std::env::args().nth(1).ok_or("expected the picture to write")?;
+    let picture = std::env::args()
+        .nth(1)
+        .ok_or("expected the picture to write")?;
     let threads = std::thread::available_parallelism()?;
     let mut all = Vec::new();
     println!("| scene | effect | state | added | removed | moved | median | 99 % | worst | time |");
@@ -45,7 +47,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("|---|---|---|---|---|---|");
     for name in SCENES {
         for tolerance in TOLERANCES {
-            println!("| {name} | {tolerance} | {} |", sizes(name, tolerance, threads)?.0);
+            println!(
+                "| {name} | {tolerance} | {} |",
+                sizes(name, tolerance, threads)?.0
+            );
         }
     }
     std::fs::write(picture, drawn(&all))?;

@@ -105,9 +105,13 @@ fn commands_of(line: &str) -> impl Iterator<Item = Vec<String>> {
     let line = line.split(" # ").next().unwrap_or_default();
     let parts = line.split(['|', ';']).map(str::trim).filter_map(|part| {
         let part = part.split(" > ").next().unwrap_or_default();
-        let arguments = ["velomotion ", "target/release/velomotion ", "cargo run --release -- "]
-            .iter()
-            .find_map(|program| part.strip_prefix(program))?;
+        let arguments = [
+            "velomotion ",
+            "target/release/velomotion ",
+            "cargo run --release -- ",
+        ]
+        .iter()
+        .find_map(|program| part.strip_prefix(program))?;
         Some(shlex::split(arguments).unwrap())
     });
     parts.collect::<Vec<_>>().into_iter()
@@ -134,7 +138,12 @@ fn every_command_of_the_book_is_understood() {
             commands += 1;
             let words = [vec!["velomotion".to_owned()], words].concat();
             if let Err(error) = <velomotion::cli::Cli as clap::Parser>::try_parse_from(&words) {
-                let line = error.to_string().lines().next().unwrap_or_default().to_owned();
+                let line = error
+                    .to_string()
+                    .lines()
+                    .next()
+                    .unwrap_or_default()
+                    .to_owned();
                 wrong.push(format!("{}: {words:?}: {line}", page.display()));
             }
         }

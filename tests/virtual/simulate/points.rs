@@ -62,9 +62,8 @@ fn a_lidar_without_packets_gives_its_cloud() {
         assert_eq!(measured.len() as u64, report.returns);
         assert_eq!(measured.len(), truth.len());
         let errors = measured.iter().zip(&truth);
-        let squares = errors.map(|(a, b)| -> f64 {
-            a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
-        });
+        let squares =
+            errors.map(|(a, b)| -> f64 { a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum() });
         let rms_m = (squares.sum::<f64>() / measured.len() as f64).sqrt();
         // The noise of the scene, and mixed pixels.
         assert!((0.019..0.2).contains(&rms_m), "{model}: {rms_m}");
@@ -92,7 +91,15 @@ fn effects_of_a_lidar_without_packets_are_measured_and_chosen() {
         assert!((12.0..15.0).contains(&noise.median_mm), "{noise:?}");
         assert!(size("divergence").is_some() && size("link_jitter").is_none());
         let tolerance = Some("50mm,1%".parse().unwrap());
-        let chosen = choose_effects(&mut scene, "test", |_| false, tolerance, THREADS, None, None);
+        let chosen = choose_effects(
+            &mut scene,
+            "test",
+            |_| false,
+            tolerance,
+            THREADS,
+            None,
+            None,
+        );
         let chosen = chosen.unwrap().unwrap();
         assert!(!chosen.on.contains(&"range_noise"), "{:?}", chosen.on);
     }

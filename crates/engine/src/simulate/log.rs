@@ -208,9 +208,10 @@ impl<'a> Log<'a> {
             return ControlFlow::Continue(());
         }
         let what = "stopped by the user during the simulation";
-        self.fail(Failure::new(Kind::Interrupted, what).help(
-            "the files are complete up to that time; run the command again for the rest",
-        ))
+        self.fail(
+            Failure::new(Kind::Interrupted, what)
+                .help("the files are complete up to that time; run the command again for the rest"),
+        )
     }
 
     /// Completes the files.

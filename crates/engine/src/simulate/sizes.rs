@@ -105,10 +105,13 @@ impl<'a> Sampler<'a> {
         let sampled_s = scene.simulation.motion.end_s.min(SAMPLED_S);
         let period_s = 1e-9 * scene.simulation.sensor.firing_period_ns as f64;
         let usage = scene.effects.effects.usage();
+        let at_once = scene.simulation.sensor.firings_at_once();
+        let every = (sampled_s * at_once as f64 / period_s / FIRINGS) as u64;
         Self {
             scene,
             on: usage.iter().map(|used| used.name).collect(),
-            every: (sampled_s / period_s / FIRINGS) as u64,
+            // An odd number meets each of the firings of an instant.
+            every: if at_once > 1 { every | 1 } else { every },
             threads,
             interrupt: None,
         }

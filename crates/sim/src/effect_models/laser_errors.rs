@@ -12,7 +12,7 @@ use super::settings::{InvalidSetting, SettingCheck};
 use crate::effects::SurfaceEffect;
 use crate::firing::{Echoes, SimulatedFiring};
 use crate::random::RandomSource;
-use crate::sensor::{LaserBeam, MAX_LASERS};
+use crate::sensor::{LaserBeam, MAX_SENSOR_LASERS};
 
 /// `[effects.laser_errors]`. Errors are drawn per laser; lists by laser in firing order add to
 /// them.
@@ -37,9 +37,9 @@ pub struct LaserErrorsSettings {
 /// Errors of lasers in firing order: range (metres), elevation and azimuth (degrees).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LaserErrors {
-    range_m: [f64; MAX_LASERS],
-    elevation_deg: [f64; MAX_LASERS],
-    azimuth_deg: [f64; MAX_LASERS],
+    range_m: [f64; MAX_SENSOR_LASERS],
+    elevation_deg: [f64; MAX_SENSOR_LASERS],
+    azimuth_deg: [f64; MAX_SENSOR_LASERS],
 }
 
 impl LaserErrors {
@@ -52,7 +52,7 @@ impl LaserErrors {
         let random = RandomSource::new(seed, Self::NAME);
         let kind = |channel, names: [&'static str; 2], sd: f64, list: &[f64], most: f64| {
             check.within(names[0], sd, 0.0..=most)?;
-            let mut errors = [0.0; MAX_LASERS];
+            let mut errors = [0.0; MAX_SENSOR_LASERS];
             for (laser, error) in errors.iter_mut().enumerate() {
                 let given = list.get(laser).copied().unwrap_or(0.0);
                 check.within(names[1], given, -most..=most)?;
@@ -95,10 +95,11 @@ effect! {
 }
 
 impl SurfaceEffect for LaserErrors {
-    fn reflect(&self, _: &SimulatedFiring, echoes: &mut Echoes) -> u32 {
+    fn reflect(&self, firing: &SimulatedFiring, echoes: &mut Echoes) -> u32 {
         let mut acted = 0;
+        let range_m = self.range_m.get(firing.first_laser..).unwrap_or_default();
         for echoes in echoes.all_mut() {
-            for (echo, error_m) in echoes.iter_mut().zip(&self.range_m) {
+            for (echo, error_m) in echoes.iter_mut().zip(range_m) {
                 if echo.is_present() {
                     echo.range_m += error_m;
                     acted += 1;
@@ -132,7 +133,7 @@ mod tests {
             .flat_map(|seed| LaserErrors::new(&drawn, seed).unwrap().range_m)
             .map(|error| error * error)
             .sum();
-        let sd = (squares / (200 * MAX_LASERS) as f64).sqrt();
+        let sd = (squares / (200 * MAX_SENSOR_LASERS) as f64).sqrt();
         assert!((sd / 0.01 - 1.0).abs() < 0.05, "{sd}");
         let both = LaserErrorsSettings {
             range_m: vec![0.5],

@@ -168,7 +168,6 @@ mod tests {
     use super::*;
     use crate::effect_models::testing::{echo, firing};
     use crate::effects::Effect;
-    use crate::sensor::MAX_LASERS;
 
     fn detected_share(reflectance: &Reflectance, of: Echo) -> f64 {
         let mut firing = firing(0.0, 0.0);
@@ -176,7 +175,7 @@ mod tests {
         for number in 0..500 {
             firing.number = number;
             let mut echoes = Echoes::new(16, false);
-            echoes.strongest = [of; MAX_LASERS];
+            echoes.strongest.fill(of);
             reflectance.reflect(&firing, &mut echoes);
             let seen = echoes.strongest.iter().take(16);
             noticed += seen.filter(|echo| echo.is_present()).count();

@@ -409,11 +409,18 @@ fn fog_before_the_sky_counts() {
 
 #[test]
 fn lidars_without_packets_stand_in_scenes() {
-    for (model, rpm, lasers) in [("hdl64e", 600, 64), ("utm30lx", 2_400, 1), ("lms151", 1_500, 1)] {
+    for (model, rpm, lasers) in [
+        ("hdl64e", 600, 64),
+        ("utm30lx", 2_400, 1),
+        ("lms151", 1_500, 1),
+    ] {
         let text = format!("{LEAST}[sensor]\nmodel = \"{model}\"\n");
         let scene = SceneFile::parse(&text, None, None).unwrap();
         let simulation = &scene.simulation;
-        assert_eq!((simulation.rotation.rpm, simulation.sensor.beams.len()), (rpm, lasers));
+        assert_eq!(
+            (simulation.rotation.rpm, simulation.sensor.beams.len()),
+            (rpm, lasers)
+        );
         assert_eq!(simulation.sensor.packets, None);
         let of_packets = ["lidar_clock", "link_jitter", "encoder_quantisation"];
         assert!(of_packets.iter().all(|name| scene.demand(name).is_none()));

@@ -27,7 +27,8 @@ struct BlockRun {
 impl BlockSchedule {
     pub fn new<V: ViewEffect>(simulation: &Simulation, needs: Needs, view: &V) -> Self {
         let sensor = &simulation.sensor;
-        let period_ns = sensor.firings_per_block() as i64 * sensor.firing_period_ns;
+        let block = sensor.firings_per_block() as i64 * sensor.firing_period_ns;
+        let period_ns = block / sensor.firings_at_once() as i64;
         let possible = u64::try_from(simulation.end_ns() / period_ns).unwrap_or(0);
         let (runs, fired) = if needs.azimuths {
             runs_in_view(simulation.rotation, period_ns, possible, view)

@@ -141,7 +141,10 @@ fn lidars_without_packets_measure_points() {
             let (origin, direction) = ray.unwrap();
             let at = origin + point.range_m * direction;
             assert!(at.distance(point.position_m) < 1e-9, "{point:?}");
-            assert!(at.distance(point.measured_m) < 0.5 * step_m + 1e-9, "{point:?}");
+            assert!(
+                at.distance(point.measured_m) < 0.5 * step_m + 1e-9,
+                "{point:?}"
+            );
         }
     }
 }

@@ -10,8 +10,7 @@ use engine::failure::Failure;
 use engine::output::{self, Target};
 use engine::simulate::{
     Sampler, SimulationFiles, SimulationOutput, SimulationReport, SimulationRequest,
-    choose_effects, find, make, nanoseconds, read,
-    stem, unmet,
+    choose_effects, find, make, nanoseconds, read, stem, unmet,
 };
 use engine::words::counted;
 use sim::effects::Stopwatch;
@@ -124,7 +123,10 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, 
 fn report_text(report: &SimulationReport) -> String {
     let packets = match &report.log {
         Some(_) => format!("{} over {:.3} s", report.packets.data, report.duration_s),
-        None => format!("none: not simulated for this lidar; {:.3} s", report.duration_s),
+        None => format!(
+            "none: not simulated for this lidar; {:.3} s",
+            report.duration_s
+        ),
     };
     let mut rows = vec![
         ("scene", format!("{}, seed {}", report.scene, report.seed)),
