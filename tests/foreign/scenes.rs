@@ -40,11 +40,13 @@ fn velodyne_decoder_places_simulated_points_on_the_scenes_surfaces() {
         );
         let request = simulate::SimulationRequest {
             name: model.to_owned(),
-            log: &log,
+            output: simulate::SimulationOutput::Log {
+                path: log.clone(),
+                force: false,
+            },
             truth: None,
             threads: NonZeroUsize::MIN,
             explain: false,
-            force: false,
             interrupt: &AtomicBool::new(false),
             progressed: &mut |_| {},
         };

@@ -34,7 +34,7 @@ use utoipa::ToSchema;
 use crate::failure::{Failure, Kind};
 use crate::output::{self, Target};
 use crate::reconstruct::report::PacketCounts;
-use log::{Log, Outputs, ReturnCloud, Written, cannot_write, scan_config};
+use log::{Log, MEASURED, Outputs, ReturnCloud, Written, cannot_write, scan_config};
 
 /// Report on a simulation.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
@@ -169,7 +169,7 @@ impl SimulationFiles<'_> {
             let help = format!("name the cloud that it measures with {option}, such as cloud.ply");
             return Err(Failure::new(Kind::Usage, what).help(help));
         } else {
-            SimulationOutput::Cloud(Target::open(output, Fields::FILE | Fields::SD, force)?)
+            SimulationOutput::Cloud(Target::open(output, MEASURED, force)?)
         };
         let truth = self.truth;
         let truth = truth.map(|truth| Target::open(truth, Fields::FILE, force));

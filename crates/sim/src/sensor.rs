@@ -309,8 +309,8 @@ fn bits(lasers: usize) -> u64 {
     u64::MAX >> (MAX_SENSOR_LASERS - lasers.clamp(1, MAX_SENSOR_LASERS))
 }
 
-/// The lasers of a firing of a rotating head relative to the azimuth of the first, constant over all
-/// firings.
+/// The lasers of a firing of a rotating head relative to the azimuth of the first, constant over
+/// all firings.
 #[derive(Clone, Debug)]
 pub(crate) struct RayTable {
     /// Directions when the first laser fires at azimuth 0, the rotation during the delay included.

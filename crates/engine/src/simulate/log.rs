@@ -35,6 +35,9 @@ const BATCH: usize = 16_384;
 /// Cause and scene time of an early end.
 pub(super) type Cut = (Failure, Span);
 
+/// Columns of a measured cloud.
+pub(super) const MEASURED: Fields = Fields::FILE.union(Fields::SD);
+
 /// A cloud of returns.
 pub(super) struct ReturnCloud {
     target: Target,
@@ -48,8 +51,10 @@ impl ReturnCloud {
     /// The cloud of the places that beams hit.
     pub fn of_truth(target: Target) -> Self {
         Self {
+            target,
+            batch: Points::with_capacity(Fields::FILE, BATCH),
             is_true: true,
-            ..Self::measured(target, 0.0)
+            sd_m: 0.0,
         }
     }
 
@@ -57,7 +62,7 @@ impl ReturnCloud {
     pub fn measured(target: Target, sd_m: f64) -> Self {
         Self {
             target,
-            batch: Points::with_capacity(Fields::FILE, BATCH),
+            batch: Points::with_capacity(MEASURED, BATCH),
             is_true: false,
             sd_m,
         }

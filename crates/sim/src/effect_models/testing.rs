@@ -20,7 +20,7 @@ pub fn firing(azimuth_deg: f64, tilt_deg: f64) -> SimulatedFiring {
         angle_deg: tilt_deg,
         rate_deg_s: 0.0,
     };
-    firing.alive = sensor.used;
+    firing.alive = sensor.used as u32;
     firing.aim(&rays, &LidarMount::above(0.0));
     firing
 }

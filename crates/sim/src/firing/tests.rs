@@ -27,8 +27,8 @@ fn firings(sensor: &LidarSensor, count: usize, first: u32) -> Vec<SimulatedFirin
             rate_deg_s: -200.0,
         };
         firing.alive = match at % 3 {
-            0 => sensor.used & 0x5a5a_1234,
-            _ => sensor.used,
+            0 => sensor.used as u32 & 0x5a5a_1234,
+            _ => sensor.used as u32,
         };
         firing.aim(&rays, &LidarMount::above(0.06));
         firing

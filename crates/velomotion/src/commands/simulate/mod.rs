@@ -121,17 +121,18 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, 
 
 /// Text of the report.
 fn report_text(report: &SimulationReport) -> String {
-    let packets = match &report.log {
-        Some(_) => format!("{} over {:.3} s", report.packets.data, report.duration_s),
-        None => format!(
-            "none: not simulated for this lidar; {:.3} s",
-            report.duration_s
+    let duration = format!("{:.3} s", report.duration_s);
+    let time = match &report.log {
+        Some(_) => (
+            "packets",
+            format!("{} over {duration}", report.packets.data),
         ),
+        None => ("duration", duration),
     };
     let mut rows = vec![
         ("scene", format!("{}, seed {}", report.scene, report.seed)),
         ("effects", effects_text(report)),
-        ("packets", packets),
+        time,
         (
             "returned",
             format!(
@@ -142,7 +143,7 @@ fn report_text(report: &SimulationReport) -> String {
             ),
         ),
     ];
-    if report.polls > 0 {
+    if report.polls > 0 && report.log.is_some() {
         rows.push(("drive", format!("asked {} times", report.polls)));
     }
     rows.push((
