@@ -23,7 +23,7 @@ const LOOK_AGAIN: Duration = Duration::from_millis(40);
 pub struct Screen {
     /// Name in file names of pictures.
     pub name: &'static str,
-    width: u32,
+    pub width: u32,
     height: u32,
     ratio: u32,
     dark: bool,
@@ -365,6 +365,12 @@ impl Page {
     pub async fn choose(&self, css: &str, value: &str) {
         let element = self.client.find(Locator::Css(css)).await.unwrap();
         element.select_by_value(value).await.unwrap();
+    }
+
+    /// Downloads the first scan in a format.
+    pub async fn download(&self, format: &str) {
+        self.click(".scan [data-role=download]").await;
+        self.click(&format!("#download [value='{format}']")).await;
     }
 
     /// Deletes the cookies, as if they had expired.

@@ -135,14 +135,14 @@ fn a_refused_download_is_reported_at_its_scan() {
         driver.test(screen, async |page| {
             ready(&page, &url).await;
             page.until_has(".scan", "short").await;
-            page.choose(".scan [data-role=download]", "las").await;
+            page.download("las").await;
             let no_room = page.until_has(".scan .wrong", "Download as las: ").await;
             assert!(no_room.contains("disk"), "{no_room}");
             until_in_sight(&page, ".scan .wrong").await;
             page.picture("no-room").await;
             for format in ["ply", "log"] {
                 page.run(TOO_MANY).await;
-                page.choose(".scan [data-role=download]", format).await;
+                page.download(format).await;
                 page.until_has(
                     ".scan .wrong",
                     &format!("Download as {format}: too many downloads at once"),
@@ -153,7 +153,7 @@ fn a_refused_download_is_reported_at_its_scan() {
             }
             assert_eq!(page.run("return location.href").await, url);
             // The next download clears it.
-            page.choose(".scan [data-role=download]", "ply").await;
+            page.download("ply").await;
             page.until_gone(".scan .wrong").await;
             // A reload keeps the messages.
             page.goto(&url).await;

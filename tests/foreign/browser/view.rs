@@ -177,7 +177,7 @@ fn a_cloud_is_downloaded_with_uncertainty_and_echo() {
         start(&page, "short", "5", "-5").await;
         page.until_has(".scan .badge[data-state]", "complete").await;
         page.run(CATCH_DOWNLOAD).await;
-        page.choose(".scan [data-role=download]", "csv+").await;
+        page.download("csv+").await;
         page.until_true("window.saved?.endsWith('.csv')").await;
         let head = page
             .run("return window.blob.text().then((text) => text.slice(0, 2000))")
@@ -225,6 +225,10 @@ fn points_are_measured_cut_coloured_and_linked() {
             until_in_sight(&page, "#fit").await;
             let [x1, y1, z1, range] = pick(&page, 1).await;
             assert!((length([x1, y1, z1]) - range).abs() < 2e-3, "{x1} {y1} {z1} {range}");
+            // Folded where they would cover the view.
+            if screen.width < 900 {
+                page.click("#picked summary").await;
+            }
             for value in ["sd", "Time", "Tilt", "Ring", "Laser", "Intensity", "Return"] {
                 page.until_has("#picked", value).await;
             }
@@ -235,6 +239,20 @@ fn points_are_measured_cut_coloured_and_linked() {
             assert!((shown - expected).abs() < 2e-3, "{measured}, expected {expected}");
             page.picture("measured").await;
             page.audit("a distance").await;
+            if screen.width < 900 {
+                page.click("#picked summary").await;
+                page.click("#large").await;
+                until_in_sight(&page, "#picked .distance b").await;
+                page.until_true("document.querySelector('#canvas').clientHeight > 150")
+                    .await;
+                page.picture("measured-large").await;
+                page.click("#large").await;
+            } else {
+                page.click("#tools > summary").await;
+                until_in_sight(&page, "#picked .distance b").await;
+                page.picture("measured-beside-tools").await;
+                page.click("#tools > summary").await;
+            }
             page.run("document.querySelector('#canvas').focus()").await;
             page.keys(DELETE).await;
             page.until_gone("#picked").await;
@@ -248,6 +266,7 @@ fn points_are_measured_cut_coloured_and_linked() {
             page.audit("tools").await;
             page.picture("tools").await;
             page.click("#tools > summary").await;
+            page.until_has("#view-clipped", "Parts are hidden").await;
             let [_, _, z, _] = pick(&page, 1).await;
             assert!(z >= 1.0, "the box begins at 1 m, and a point at {z} m was picked");
 

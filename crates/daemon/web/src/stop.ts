@@ -1,13 +1,16 @@
 // A stop that is repeated until it is acknowledged.
 
-/** Longest wait for the answer to one request, and for the first acknowledgement before the alarm. */
-export const TRY_MS = 1_000;
+/**
+ * Longest wait for the answer to one request, and for the first acknowledgement before the alarm. A stop is
+ * acknowledged at standstill, after up to 0.8 s.
+ */
+export const TRY_MS = 2_000;
 /** Pause after a failed request. */
 const PAUSE_MS = 200;
 
 /**
- * Sends the stop until it is answered or `ended`. Calls `unacknowledged` with the last error after a
- * second without an answer, and again after each later failure. Returns whether it was answered.
+ * Sends the stop until it is answered or `ended`. Calls `unacknowledged` with the last error after two
+ * seconds without an answer, and again after each later failure. Returns whether it was answered.
  */
 export async function repeatStop(
   send: (signal: AbortSignal) => Promise<unknown>,

@@ -554,7 +554,7 @@ export class Viewer {
     const words = (name: string) => id(name).textContent ?? "";
     const simulated = id("view-simulated").hidden ? "" : "SIMULATED \u00b7 ";
     const title = words("view-title");
-    const lines = [`${simulated}${title} \u00b7 ${words("view-points")} ${words("view-note")}`, `coloured by ${id<HTMLSelectElement>("field").selectedOptions[0]?.text ?? ""}`];
+    const lines = [`${simulated}${title} \u00b7 ${words("view-points")} ${words("view-note")} ${words("view-clipped")}`, `coloured by ${id<HTMLSelectElement>("field").selectedOptions[0]?.text ?? ""}`];
     if (this.picks.length === 2) lines.push(`A to B: ${document.querySelector("#picked .distance")?.textContent ?? ""}`);
     try {
       const points = this.stage.picture();

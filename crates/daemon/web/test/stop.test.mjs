@@ -26,7 +26,7 @@ test("an answered stop is sent once and raises no alarm", async (context) => {
   assert.deepEqual([stopped, sent, alarms.length], [true, 1, 0]);
 });
 
-test("a silent daemon is asked at least every 1.2 s, without end, and raises the alarm after 1 s", async (context) => {
+test("a silent daemon is asked at least every 2.2 s, without end, and raises the alarm after 2 s", async (context) => {
   context.mock.timers.enable({ apis: ["setTimeout"] });
   let sent = 0;
   let alarms = 0;
@@ -37,7 +37,7 @@ test("a silent daemon is asked at least every 1.2 s, without end, and raises the
   await pass(context, 100);
   assert.ok(alarms > 0);
   await pass(context, 60_000);
-  assert.ok(sent >= 50, `${sent} requests in a minute`);
+  assert.ok(sent >= 27, `${sent} requests in a minute`);
   ended.abort();
   await pass(context, 300);
   assert.equal(await stop, false);

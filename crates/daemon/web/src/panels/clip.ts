@@ -70,5 +70,7 @@ function apply(stage: Stage): void {
   stage.setSection(AXES.map((_, i) => (i === axis ? 1 : 0)), offset_m, section === undefined ? ANY_M : section.thick_m / 2);
   show(id("section-fields"), section !== undefined);
   text(id("section-at"), section === undefined ? "" : `at ${section.across} = ${fixed(section.offset_m, 2)} m`);
-  text(id("clipped"), limits.some((m) => m !== null) || section !== undefined ? "parts hidden" : "");
+  const hidden = limits.some((m) => m !== null) || section !== undefined;
+  text(id("clipped"), hidden ? "parts hidden" : "");
+  text(id("view-clipped"), hidden ? "Parts are hidden by box or section." : "");
 }

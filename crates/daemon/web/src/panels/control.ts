@@ -4,7 +4,7 @@ import { type Status, RequestError, api } from "../api.ts";
 import { attribute, id, show, text } from "../dom.ts";
 import { duration, fixed } from "../format.ts";
 import type { Motion } from "../events.ts";
-import { repeatStop } from "../stop.ts";
+import { TRY_MS, repeatStop } from "../stop.ts";
 import { announce, note } from "./messages.ts";
 
 const start = id<HTMLButtonElement>("start");
@@ -98,7 +98,8 @@ async function halt(): Promise<void> {
   draw();
   const banner = id("not-stopped");
   const unacknowledged = (why: unknown) => {
-    text(id("not-stopped-why"), why === null ? "the daemon does not answer" : reason(why));
+    const silent = why === null || (why instanceof DOMException && why.name === "AbortError");
+    text(id("not-stopped-why"), silent ? `the daemon has not answered for ${TRY_MS / 1_000} s` : reason(why));
     show(banner, true);
   };
   try {

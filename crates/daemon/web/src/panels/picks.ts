@@ -11,6 +11,10 @@ import type { Picked } from "../view/stage.ts";
 export type Known = { [key in keyof Omit<Columns, "count" | "positions">]: boolean };
 
 const box = id("picked");
+/** Where the values would cover the view. */
+const narrow = matchMedia("(max-width: 899px)");
+/** Whether the user unfolded the values. */
+let unfolded: boolean | null = null;
 const ECHOES: Record<number, string> = { 1: "strongest", 2: "last", 3: "strongest and last", 4: "second return" };
 
 /** Shows up to two points; `origin` was subtracted from their positions. */
@@ -25,11 +29,13 @@ export function draw(picks: Picked[], known: Known, origin: [number, number, num
     parts.push(
       h("p", { class: "distance" }, h("b", {}, `${found.m.toFixed(3)} m`), found.sd_m === null ? "" : ` \u00b1 ${mm(found.sd_m)}`),
       apart(a, b) > found.m / 2 ? h("p", { class: "hint", "data-tone": "warn" }, `Point B is ${length(apart(a, b))} ${Math.hypot(...b.position) > Math.hypot(...a.position) ? "farther" : "nearer"} than A: look whether both are on what you measure.`) : "",
-      h("p", { class: "hint" }, `x, y, z: ${along} m \u00b7 ${found.sd_m === null ? "for its standard error, colour by uncertainty" : "at most, by the errors of both points; not by where you point"}`),
+      h("p", { class: "hint" }, `${Math.hypot(found.along_m[0], found.along_m[1]).toFixed(3)} m in plan; x, y, z: ${along} m \u00b7 ${found.sd_m === null ? "for its standard error, colour by uncertainty" : "\u00b1 is one standard deviation at most, from the errors of both points; not from where you point"}`),
     );
   }
-  parts.push(table(picks, known, origin));
   if (b === undefined) parts.push(h("p", { class: "hint" }, "Pick another point for the distance."));
+  const values = h("details", { open: unfolded ?? !narrow.matches }, h("summary", {}, "Values"), table(picks, known, origin)) as HTMLDetailsElement;
+  values.addEventListener("toggle", () => { unfolded = values.open; });
+  parts.push(values);
   parts.push(h("button", { type: "button", id: "unpick", click: clear }, "Clear"));
   box.replaceChildren(...parts);
 }

@@ -78,7 +78,7 @@ function draw_measured(found: ScanStatistics): void {
   const rows: Fact[] = [
     [`Bins of 3\u00b0 ${where}`, `${count(density.bins)} of 5,120`],
     ["Points per bin", `${digits(density.mean)} \u00b1 ${digits(density.sd)}`],
-    ["Without a point", density.empty === 0 ? "none" : `${count(density.empty)} bins`, density.empty === 0 ? "off" : "warn"],
+    ["Without a point", density.empty === 0 ? "none" : `${count(density.empty)} ${density.empty === 1 ? "bin" : "bins"}`, density.empty === 0 ? "off" : "warn"],
     ["Gap, half of directions", `${digits(gap.p50)}\u00b0`],
     ["Gap, 99 %", `${digits(gap.p99)}\u00b0`],
     ["Largest gap", `${digits(gap.worst)}\u00b0`],

@@ -73,7 +73,7 @@ export function card(scan: Scan, chosen: boolean, wrong: HTMLElement, actions: A
     h("div", { class: "texts" }, scan.summary ? cut(scan, "why", scan.summary) : null, scan.notes ? cut(scan, "notes", scan.notes) : null),
     h("div", { class: "row" },
       hasCloud(scan) ? button("open", "Open", `Open ${name} in the view`, () => actions.open(scan)) : null,
-      isBusy(scan) ? null : downloads(scan, name, wrong, actions),
+      isBusy(scan) ? null : button("download", "Download", `Download ${name}`, () => downloads(scan, name, wrong, actions)),
       button("edit", "Edit", `Edit name and notes of ${name}`, () => actions.edit(scan)),
       isBusy(scan) ? null : button("delete", "Delete", `Delete ${name}`, () => actions.remove(scan))),
     wrong,
@@ -124,17 +124,13 @@ export function editor(scan: Scan, done: (changed: Scan | null) => void, { refus
   return form;
 }
 
-/** Shows the texts of a scan whole. Not modal: the stop button must remain usable. */
-function about(scan: Scan): void {
-  const dialog = id<HTMLDialogElement>("about");
-  text(id("about-title"), title(scan));
-  text(id("about-why"), scan.summary ?? "");
-  show(id("about-why"), Boolean(scan.summary));
-  text(id("about-notes"), scan.notes ?? "");
-  show(id("about-notes"), Boolean(scan.notes));
+/** Opens a dialog. Not modal: the stop button must remain usable. */
+function beside(dialog: HTMLDialogElement): void {
   const before = document.activeElement;
-  if (!dialog.open) dialog.show();
+  if (dialog.open) dialog.close();
+  dialog.show();
   dialog.onkeydown = (event) => {
+    // While the axis moves this key stops it, and nothing else.
     if (event.key === "Escape" && !event.defaultPrevented) dialog.close();
   };
   dialog.onclose = () => {
@@ -142,19 +138,28 @@ function about(scan: Scan): void {
   };
 }
 
-/** A list of formats; choosing one downloads it. */
-function downloads(scan: Scan, name: string, wrong: HTMLElement, actions: Actions): HTMLElement {
-  const cloud = hasCloud(scan);
-  const choose = h("select", { "data-role": "download", "aria-label": `Download ${name} as` }, h("option", { value: "" }, "Download"),
-    ...(cloud ? formats.map(([format, words]) => h("option", { value: format }, words)) : []),
-    h("option", { value: "log" }, "log (pcapng)"),
-    cloud ? h("optgroup", { label: "With uncertainty and echo" }, ...formats.map(([format, words]) => h("option", { value: `${format}${MORE}` }, words))) : null);
-  choose.addEventListener("change", () => {
-    const format = choose.value;
-    choose.value = "";
-    if (format !== "") void download(scan, name, format, wrong, actions);
-  });
-  return choose;
+/** Shows the texts of a scan whole. */
+function about(scan: Scan): void {
+  const dialog = id<HTMLDialogElement>("about");
+  text(id("about-title"), title(scan));
+  text(id("about-why"), scan.summary ?? "");
+  show(id("about-why"), Boolean(scan.summary));
+  text(id("about-notes"), scan.notes ?? "");
+  show(id("about-notes"), Boolean(scan.notes));
+  beside(dialog);
+}
+
+/** Lists the formats of a scan, which begin its download. */
+function downloads(scan: Scan, name: string, wrong: HTMLElement, actions: Actions): void {
+  const dialog = id<HTMLDialogElement>("download");
+  const choice = (format: string, words: string) =>
+    h("button", { type: "submit", value: format, click: () => void download(scan, name, format, wrong, actions) }, words);
+  text(id("download-title"), `Download ${name}`);
+  const cloud = hasCloud(scan) ? formats : [];
+  id("download-cloud").replaceChildren(...cloud.map(([format, words]) => choice(format, words)), choice("log", "log (pcapng)"));
+  id("download-more").replaceChildren(...cloud.map(([format, words]) => choice(`${format}${MORE}`, words)));
+  show(id("download-with"), cloud.length > 0);
+  beside(dialog);
 }
 
 /** Downloads a file; a refusal is shown at its scan. */
