@@ -4,7 +4,7 @@ use analysis::plan::{PlanLaser, PlanLidar};
 use firmware_sim::vlp16::DISTANCE_UNIT_MM;
 use protocol::vlp16::{LidarModel, models};
 use scanner::LidarConfig;
-use sim::patterns::{PatternSensor, PlanarFront};
+use sim::patterns::{PlanarFront, SensorModel};
 
 /// A lidar by its data sheet.
 ///
@@ -21,7 +21,7 @@ pub struct LidarSheet {
     /// Its packets, where velomotion reads them.
     pub model: Option<&'static LidarModel>,
     /// Its lasers, rates, aperture and ranges.
-    pub sensor: PatternSensor,
+    pub sensor: SensorModel,
     /// Steps of its ranges, metres.
     range_step_m: f64,
     /// Standard deviation of a range up to 10 m, and beyond, metres.
@@ -34,32 +34,32 @@ pub struct LidarSheet {
 pub static VLP_16: LidarSheet = LidarSheet {
     range_sd_m: [0.01; 2],
     source: "its manual's 3 cm as three standard deviations",
-    ..of_model("vlp16", &models::VLP_16, PatternSensor::Vlp16)
+    ..of_model("vlp16", &models::VLP_16, SensorModel::Vlp16)
 };
 /// Puck Hi-Res.
 pub static HI_RES: LidarSheet = LidarSheet {
     range_sd_m: [0.01; 2],
     source: "its manual's 3 cm as three standard deviations",
-    ..of_model("hi-res", &models::PUCK_HI_RES, PatternSensor::HiRes)
+    ..of_model("hi-res", &models::PUCK_HI_RES, SensorModel::HiRes)
 };
 /// HDL-32E.
 pub static HDL_32E: LidarSheet = LidarSheet {
     range_sd_m: [0.02 / 3.0; 2],
     source: "its manual's 2 cm as three standard deviations",
-    ..of_model("hdl32e", &models::HDL_32E, PatternSensor::Hdl32e)
+    ..of_model("hdl32e", &models::HDL_32E, SensorModel::Hdl32e)
 };
 /// VLP-32C.
 pub static VLP_32C: LidarSheet = LidarSheet {
     range_sd_m: [0.01; 2],
     source: "its manual's 3 cm as three standard deviations",
-    ..of_model("vlp32c", &models::VLP_32C, PatternSensor::Vlp32c)
+    ..of_model("vlp32c", &models::VLP_32C, SensorModel::Vlp32c)
 };
 /// HDL-64E S2.
 pub static HDL_64E: LidarSheet = LidarSheet {
     name: "hdl64e",
     title: "HDL-64E",
     model: None,
-    sensor: PatternSensor::Hdl64e,
+    sensor: SensorModel::Hdl64e,
     range_step_m: 0.002,
     range_sd_m: [0.02; 2],
     source: "its data sheet's 2 cm, one sigma",
@@ -69,7 +69,7 @@ static UTM_30LX: LidarSheet = LidarSheet {
     name: "utm30lx",
     title: "UTM-30LX",
     model: None,
-    sensor: PatternSensor::Utm30lx,
+    sensor: SensorModel::Utm30lx,
     range_step_m: 0.001,
     range_sd_m: [0.01, 0.03],
     source: "its data sheet's repeated accuracy: sigma 10 mm up to 10 m, 30 mm beyond",
@@ -79,7 +79,7 @@ static LMS_151: LidarSheet = LidarSheet {
     name: "lms151",
     title: "LMS151",
     model: None,
-    sensor: PatternSensor::Lms151,
+    sensor: SensorModel::Lms151,
     range_step_m: 0.001,
     range_sd_m: [0.012; 2],
     source: "its maker's typical statistical error of 12 mm",
@@ -101,7 +101,7 @@ const AZIMUTH_STEP_DEG: f64 = 0.01;
 const fn of_model(
     name: &'static str,
     model: &'static LidarModel,
-    sensor: PatternSensor,
+    sensor: SensorModel,
 ) -> LidarSheet {
     LidarSheet {
         name,

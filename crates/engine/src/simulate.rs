@@ -34,7 +34,7 @@ use utoipa::ToSchema;
 use crate::failure::{Failure, Kind};
 use crate::output::{self, Target};
 use crate::reconstruct::report::PacketCounts;
-use log::{Log, MEASURED, Outputs, ReturnCloud, Written, cannot_write, scan_config};
+use log::{Log, Outputs, ReturnCloud, ReturnKind, Written, cannot_write, scan_config};
 
 /// Report on a simulation.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
@@ -104,12 +104,14 @@ pub enum SimulationOutput {
 }
 
 impl SimulationOutput {
-    /// The extension of an output that the user does not name.
+    /// The output of the scene `name` where the user names none. That of a cloud differs from a
+    /// mesh of the scene's name.
     #[must_use]
-    pub const fn extension(scene: &SceneFile) -> &'static str {
+    pub fn default_path(scene: &SceneFile, name: &str) -> PathBuf {
+        let stem = stem(name);
         match scene.simulation.sensor.packets {
-            Some(_) => "pcapng",
-            None => "ply",
+            Some(_) => format!("{stem}.pcapng").into(),
+            None => format!("{stem}-measured.ply").into(),
         }
     }
 
@@ -130,7 +132,7 @@ pub struct SimulationFiles<'a> {
     pub scene: &'a Path,
     /// The log, or the cloud of a lidar without packets.
     pub output: &'a Path,
-    /// What names the output.
+    /// The option or argument that names the output, for messages.
     pub option: &'static str,
     /// The cloud of the truth.
     pub truth: Option<&'a Path>,
@@ -169,7 +171,7 @@ impl SimulationFiles<'_> {
             let help = format!("name the cloud that it measures with {option}, such as cloud.ply");
             return Err(Failure::new(Kind::Usage, what).help(help));
         } else {
-            SimulationOutput::Cloud(Target::open(output, MEASURED, force)?)
+            SimulationOutput::Cloud(Target::open(output, Fields::FILE, force)?)
         };
         let truth = self.truth;
         let truth = truth.map(|truth| Target::open(truth, Fields::FILE, force));
@@ -286,7 +288,7 @@ pub fn choose_effects(
     Ok(choice)
 }
 
-/// Simulates a scene into a log. A failure with a usable log is returned with the report.
+/// Simulates a scene into a log or a cloud. A failure with usable files is returned with the report.
 ///
 /// # Errors
 /// [`Failure`] without a log.
@@ -321,14 +323,13 @@ pub fn make(
         SimulationOutput::Cloud(mut target) => {
             let what = "measured with exact times and angles in the simulated scene";
             begin_cloud(&mut target, what, &name, mount)?;
-            let sd_m = config.lidar.range_sd_m;
-            outputs.measured = Some(ReturnCloud::measured(target, sd_m));
+            outputs.measured = Some(ReturnCloud::new(target, ReturnKind::Measured));
         }
     }
     if let Some(truth) = &mut truth {
         begin_cloud(truth, "the truth of the simulated scene", &name, mount)?;
     }
-    outputs.truth = truth.map(ReturnCloud::of_truth);
+    outputs.truth = truth.map(|target| ReturnCloud::new(target, ReturnKind::True));
     let log = outputs
         .log
         .as_ref()

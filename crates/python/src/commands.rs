@@ -4,13 +4,11 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use analysis::plan::PlanLimits;
-use cloud::Fields;
 use engine::calibrate::{CalibrateReport, CalibrateRequest, to_toml};
 use engine::capture::scan_plan::{PlanRequest, ScanPlanner};
 use engine::config;
 use engine::devices::profile;
 use engine::document::Document;
-use engine::output::{self, Target};
 use engine::simulate::{
     Sampler, SimulationFiles, SimulationRequest, choose_effects, find, make, read, unmet,
 };

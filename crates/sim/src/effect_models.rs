@@ -216,7 +216,7 @@ macro_rules! effects_config {
                 if let EffectRequest::On(weather) | EffectRequest::Settings(weather) =
                     &mut config.weather
                 {
-                    weather.reflectance = self.reflectance.settings().copied();
+                    *weather = weather.detected_by(self.reflectance.settings().copied());
                 }
                 $(if let Some(settings) = config.$name.settings() {
                     settings.add(seed, stopwatch, &mut effects)?;

@@ -32,8 +32,10 @@ pub struct SimulatedFiring {
     pub tilt: AxisState,
     /// Number of lasers; further columns are unused.
     pub lasers: usize,
-    /// The sensor's number of the first: other than 0 only where its lasers are more than fit.
+    /// Number of the first laser in the sensor: 0 unless the sensor has more lasers than a firing.
     pub first_laser: usize,
+    /// The head's axis of rotation in the frame of the base, length 1.
+    pub head_axis: DVec3,
     /// Lasers that fire, one bit each, bit 0 for the first.
     pub alive: u32,
     /// Origin of each ray, metres in the frame of the base.
@@ -57,6 +59,7 @@ impl SimulatedFiring {
             },
             lasers,
             first_laser: 0,
+            head_axis: DVec3::Z,
             alive: 0,
             origins_m: [DVec3::ZERO; MAX_LASERS],
             directions: [DVec3::Y; MAX_LASERS],
@@ -91,6 +94,7 @@ impl SimulatedFiring {
         let platform = DMat3::from_rotation_y(self.tilt.angle_deg.to_radians());
         let sensor = platform * mount.rotation;
         let turned = sensor * head;
+        self.head_axis = sensor.z_axis;
         let origin = platform * mount.position_m;
         let rate = self.tilt.rate_deg_s.to_radians();
         let places = self.origins_m.iter_mut().zip(&mut self.directions);

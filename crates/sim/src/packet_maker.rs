@@ -39,7 +39,8 @@ pub struct TruePoint {
     /// Where the middle of the beam meets the scene, metres in the frame of the base: origin on the
     /// tilt axis, x right, y forward, z up.
     pub position_m: DVec3,
-    /// Where the measured distance puts it on the beam.
+    /// Where the measured distance puts it: on the beam, or of a lidar without packets for a reader
+    /// who knows time and tilt exactly, the nominal sensor, and nothing of a base that moves.
     pub measured_m: DVec3,
     /// Host time of the laser's firing.
     pub host: Stamp<Host>,
@@ -77,9 +78,12 @@ pub(crate) struct SimulatedLidar {
     pub start: Stamp<Host>,
     /// The clock of the packets' stamps. Its drift acts only where it is the clock effect too.
     pub clock: LidarClock,
-    /// Of the first firing of an instant, and of the others.
+    /// Rays of the first firing at an instant.
     rays: RayTable,
+    /// Rays of the other firings at that instant.
     more_rays: Vec<RayTable>,
+    /// The sensor as a reader knows it, without errors of its lasers.
+    nominal: LidarSensor,
 }
 
 /// A data packet as it leaves the lidar.
@@ -139,6 +143,7 @@ impl SimulatedLidar {
         Self {
             rays: RayTable::new(&sensor, rotation.deg_per_s()),
             more_rays: RayTable::others(&sensor, rotation.deg_per_s()),
+            nominal: sensor.clone(),
             sensor,
             returns,
             rotation,
@@ -146,6 +151,12 @@ impl SimulatedLidar {
             start,
             clock,
         }
+    }
+
+    /// The same lidar for readers who know it as `nominal`.
+    pub fn known_as(self, nominal: &LidarSensor) -> Self {
+        let nominal = nominal.clone();
+        Self { nominal, ..self }
     }
 
     /// Beginning of a firing in lidar time since the start.
@@ -172,17 +183,16 @@ impl SimulatedLidar {
         firing.number = number;
         firing.time_s = host_ns as f64 * 1e-9;
         firing.azimuth_deg = self.rotation.azimuth_deg(device_ns);
+        let state = platform.state(host_ns);
+        let is_tilt_known = state.is_some();
+        firing.tilt = state.unwrap_or(firing.tilt);
         firing.alive = self.sensor.used as u32;
-        if !self.sensor.sees(firing.azimuth_deg) {
-            firing.alive = 0;
-        }
-        match platform.state(host_ns) {
-            Some(state) => firing.tilt = state,
-            None => firing.alive = 0,
-        }
         match self.more_rays.is_empty() {
             true => firing.aim(&self.rays, &self.mount),
             false => self.aim_one_of_several(firing),
+        }
+        if !is_tilt_known || !self.sensor.sees(firing.azimuth_deg) {
+            firing.alive = 0;
         }
     }
 
@@ -195,9 +205,7 @@ impl SimulatedLidar {
         let rays = others.and_then(|other| self.more_rays.get(other));
         let rays = rays.unwrap_or(&self.rays);
         (firing.lasers, firing.first_laser) = (rays.count, rays.first);
-        if firing.alive != 0 {
-            firing.alive = (self.sensor.used >> rays.first) as u32;
-        }
+        firing.alive = (self.sensor.used >> rays.first) as u32;
         firing.aim(rays, &self.mount);
     }
 }
@@ -208,7 +216,7 @@ impl<F: FiringEffects> PacketMaker<F> {
         let two = lidar.returns != ReturnMode::Strongest;
         let sensor = &lidar.sensor;
         let firings = firing_blocks(lidar.returns) * sensor.firings_per_block();
-        // That of a lidar without packets is never sent.
+        // Without packets this one is filled and not sent.
         let model = sensor.packets.unwrap_or(PacketModel::Vlp16);
         Self {
             surroundings: surroundings.with_normals(needs.normals),
@@ -343,6 +351,7 @@ impl<C: ClockEffect> FiringReport<'_, C> {
 
     /// The point of a return. `None` for one from no surface, unless the lidar has no packets:
     /// these points are all that is measured.
+    #[inline(never)]
     fn point(
         &self,
         laser: usize,
@@ -358,6 +367,10 @@ impl<C: ClockEffect> FiringReport<'_, C> {
             return None;
         }
         let unit_m = 1e-3 * f64::from(self.lidar.sensor.distance_unit_mm);
+        let (measured_from_m, along) = match self.lidar.sensor.packets {
+            Some(_) => (origin_m, direction),
+            None => self.known_ray(number_of_laser)?,
+        };
         let device_ns = device_ns.saturating_add(beam.delay_ns);
         let after_s = beam.delay_ns as f64 * 1e-9;
         let ahead_deg = beam.azimuth_deg + self.lidar.rotation.deg_per_s() * after_s;
@@ -365,7 +378,7 @@ impl<C: ClockEffect> FiringReport<'_, C> {
         let tilt = self.firing.tilt;
         Some(TruePoint {
             position_m: origin_m + echo.true_range_m * direction,
-            measured_m: origin_m + f64::from(units) * unit_m * direction,
+            measured_m: measured_from_m + f64::from(units) * unit_m * along,
             host: (self.lidar.start).saturating_add(Span::from_nanos(host_ns)),
             device_ns,
             laser: u8::try_from(number_of_laser).ok()?,
@@ -375,6 +388,19 @@ impl<C: ClockEffect> FiringReport<'_, C> {
             azimuth_deg: (self.firing.azimuth_deg + ahead_deg).rem_euclid(360.0),
             tilt_deg: tilt.angle_deg + tilt.rate_deg_s * after_s,
         })
+    }
+}
+
+impl<C> FiringReport<'_, C> {
+    /// The ray of a laser as a reader knows it: by the nominal sensor, on a base at rest.
+    #[inline(never)]
+    fn known_ray(&self, laser: usize) -> Option<(DVec3, DVec3)> {
+        let (lidar, firing) = (self.lidar, self.firing);
+        let beam = lidar.nominal.beams.get(laser)?;
+        let after_s = beam.delay_ns as f64 * 1e-9;
+        let azimuth_deg = firing.azimuth_deg + lidar.rotation.deg_per_s() * after_s;
+        let tilt_deg = firing.tilt.angle_deg + firing.tilt.rate_deg_s * after_s;
+        (lidar.nominal).ray(laser, azimuth_deg, tilt_deg, &lidar.mount)
     }
 }
 

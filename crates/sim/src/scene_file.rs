@@ -356,7 +356,9 @@ impl SceneFile {
             Some(fact) if !is_table => fact.path.to_owned(),
             _ => format!("effects.{}", error.effect),
         };
-        invalid(format!("{table}.{}", error.setting), error.to_string())
+        let path = format!("{table}.{}", error.setting);
+        let what = format!("{path}: expected {}, got {}", error.expected, error.got);
+        invalid(path, what)
     }
 
     /// Those effects that `keep` selects, of the file's and those that the scene's facts call for.

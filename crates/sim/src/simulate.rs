@@ -123,6 +123,12 @@ pub trait SimulationSink {
     /// Takes an event; events come in order of time. `Break` ends the run.
     fn event(&mut self, event: &SimulationEvent) -> ControlFlow<()>;
 
+    /// A lidar without packets has reached a time. `Break` ends the run.
+    fn reached(&mut self, at: Stamp<Host>) -> ControlFlow<()> {
+        let _ = at;
+        ControlFlow::Continue(())
+    }
+
     /// Whether true points are wanted. Called once before the run.
     fn wants_truth(&self) -> bool {
         false
@@ -247,6 +253,7 @@ impl Simulation {
             // Its drift is an effect.
             LidarClock::new(self.start, self.clock_at_start_us, 0.0),
         )
+        .known_as(&self.sensor)
     }
 
     /// Duration of the motion, nanoseconds.

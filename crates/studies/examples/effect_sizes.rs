@@ -37,7 +37,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("| scene | effect | state | added | removed | moved | median | 99 % | worst | time |");
     println!("|---|---|---|---|---|---|---|---|---|---|");
     for name in SCENES {
-        let (_, sizes) = sizes(name, "5mm,1%", threads)?;
+        let (scene, _) = chosen(name, "5mm,1%", threads)?;
+        let sampler = Sampler::new(&scene, threads);
+        let sizes = sampler.sizes(&sampler.candidates());
+        let sizes = sizes.map_err(|failure| failure.message)?;
         for size in &sizes {
             println!("| {name} | {}", row(size));
         }
@@ -49,7 +52,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         for tolerance in TOLERANCES {
             println!(
                 "| {name} | {tolerance} | {} |",
-                sizes(name, tolerance, threads)?.0
+                chosen(name, tolerance, threads)?.1
             );
         }
     }
@@ -57,12 +60,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// What the tolerance leaves out, and all sizes with the rest on.
-fn sizes(
+/// A scene with the effects that a tolerance chooses, and what it leaves out.
+fn chosen(
     name: &str,
     tolerance: &str,
     threads: NonZeroUsize,
-) -> Result<(String, Vec<EffectSize>), Box<dyn Error>> {
+) -> Result<(SceneFile, String), Box<dyn Error>> {
     let shipped = name.strip_suffix("-0.9m");
     let found = find(shipped.unwrap_or(name).as_ref());
     let (_, text) = found.map_err(|failure| failure.message)?;
@@ -84,9 +87,7 @@ fn sizes(
         100.0 * choice.time_ratio,
         choice.took_s
     );
-    let sampler = Sampler::new(&scene, threads);
-    let sizes = sampler.sizes(&sampler.candidates());
-    Ok((text, sizes.map_err(|failure| failure.message)?))
+    Ok((scene, text))
 }
 
 fn row(size: &EffectSize) -> String {

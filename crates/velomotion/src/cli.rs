@@ -276,8 +276,8 @@ pub struct Simulate {
     /// fog, traffic, room, stairwell, wavy-walls, hollow-sphere, planes, rig
     #[arg(value_name = "SCENE.toml|NAME")]
     pub scene: PathBuf,
-    /// Log to write, or the cloud of a lidar without packets here, such as an HDL-64E [default:
-    /// named after the scene]
+    /// Log to write, or the measured cloud of a lidar whose packets are not simulated, such as an
+    /// HDL-64E [default: named after the scene]
     #[arg(short, long, value_name = "LOG.pcapng")]
     pub output: Option<PathBuf>,
     /// Cloud of the true points: .ply .pcd .las .laz .e57 .mcap .csv .xyz .bin; - is PLY on stdout

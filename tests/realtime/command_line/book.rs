@@ -144,8 +144,9 @@ fn every_command_of_the_book_is_understood() {
         let text = std::fs::read_to_string(&page).unwrap();
         let mut is_block = false;
         let prose = text.lines().filter(|line| {
-            is_block ^= line.starts_with("```");
-            !is_block
+            let is_fence = line.starts_with("```");
+            is_block ^= is_fence;
+            !is_block && !is_fence
         });
         let prose = prose.collect::<Vec<_>>().join(" ");
         let spans = prose.split('`').skip(1).step_by(2);
@@ -156,9 +157,9 @@ fn every_command_of_the_book_is_understood() {
                 let parsed = <velomotion::cli::Cli as clap::Parser>::try_parse_from(&words);
                 let is_accepted = match parsed.map_err(|error| error.kind()) {
                     Ok(_) => true,
-                    // A name such as "velomotion plan", a placeholder, or an abbreviation.
                     Err(ErrorKind::UnknownArgument) => false,
                     Err(ErrorKind::InvalidSubcommand) => line.contains('<'),
+                    // In prose a name such as "velomotion plan", or a placeholder.
                     Err(_) => is_span == 1,
                 };
                 if !is_accepted {
@@ -169,5 +170,5 @@ fn every_command_of_the_book_is_understood() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    assert!(commands[0] > 60 && commands[1] > 25, "{commands:?}");
+    assert!(commands[0] > 60 && commands[1] > 40, "{commands:?}");
 }

@@ -47,6 +47,7 @@ fn what_commands_print_follows_the_schemas() {
         "info scan.pcapng --json".to_owned(),
         format!("info {gps} --json"),
         "simulate hall --explain --truth truth.ply --json".to_owned(),
+        "simulate hdl64e.toml --json".to_owned(),
         "analyze velomotion16:56.25 again.ply scan.pcapng --json".to_owned(),
         "analyze velomotion16 --sweep speed=50..90/3 --json".to_owned(),
         "plan --at 20m --gap 0.8deg --json".to_owned(),
@@ -58,6 +59,8 @@ fn what_commands_print_follows_the_schemas() {
         "info absent.pcap --json".to_owned(),
         "replay --json".to_owned(),
     ];
+    let points = "scene = \"hall\"\nsensor = { model = \"hdl64e\" }\n[motion]\nkind = \"fixed\"\nduration_s = 0.1\n";
+    std::fs::write(place.path("hdl64e.toml"), points).unwrap();
     let mut input = String::new();
     for line in &lines {
         if line.contains("cut.pcapng") {

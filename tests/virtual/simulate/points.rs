@@ -70,6 +70,55 @@ fn a_lidar_without_packets_gives_its_cloud() {
     }
 }
 
+/// The measured cloud has errors of the lasers and of a base that moves.
+#[test]
+fn a_measured_cloud_is_placed_by_the_nominal_sensor() {
+    for (more, sd_m, least_mm) in [
+        ("[base]\nvelocity_m_s = [0.5, 0, 0]\n", 0.0, 30.0),
+        (
+            "[effects]\nlaser_errors = { azimuth_sd_deg = 0.5 }\n",
+            0.0,
+            30.0,
+        ),
+        ("", 0.0, 0.0),
+    ] {
+        let text = scene("hdl64e", "").replace("sd_m = 0.02", &format!("sd_m = {sd_m}"));
+        let without = "divergence = false\nreflectance = false\n";
+        let more = match more.strip_prefix("[effects]\n") {
+            Some(laser_errors) => format!("[effects]\n{without}{laser_errors}"),
+            None => format!("{more}[effects]\n{without}"),
+        };
+        let (_, measured, truth) = clouds(&format!("{text}{more}"));
+        let errors = measured.iter().zip(&truth).map(|(a, b)| {
+            let square: f64 = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum();
+            square.sqrt() * 1e3
+        });
+        let worst_mm = errors.fold(0.0, f64::max);
+        // Steps of 2 mm remain.
+        assert!(
+            worst_mm >= least_mm && (least_mm > 0.0 || worst_mm < 1.1),
+            "{more}: {worst_mm}"
+        );
+    }
+}
+
+#[test]
+fn one_laser_of_the_upper_half_is_simulated_alone() {
+    let text = scene("hdl64e", "").replace("[mount]", "only_laser = 40\n[mount]");
+    let (report, measured, _) = clouds(&text);
+    assert!(report.shots > 1_000 && measured.len() as u64 == report.returns);
+    // Laser 40 points 12.83 degrees down: level and below, all points are at least so far down.
+    assert!(report.returned > 1_000);
+}
+
+/// Without a return the end of a run is found too.
+#[test]
+fn a_scene_without_objects_is_simulated_to_its_end() {
+    let text = scene("utm30lx", "").replace("scene = \"hall\"\n", "");
+    let (report, measured, truth) = clouds(&text);
+    assert!(measured.is_empty() && truth.is_empty() && report.shots > 1_000);
+}
+
 /// Fog is measured and not true.
 #[test]
 fn returns_from_fog_are_in_the_measured_cloud_alone() {

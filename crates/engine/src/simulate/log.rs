@@ -35,36 +35,41 @@ const BATCH: usize = 16_384;
 /// Cause and scene time of an early end.
 pub(super) type Cut = (Failure, Span);
 
-/// Columns of a measured cloud.
-pub(super) const MEASURED: Fields = Fields::FILE.union(Fields::SD);
-
 /// A cloud of returns.
 pub(super) struct ReturnCloud {
     target: Target,
     batch: Points,
-    is_true: bool,
-    /// Standard deviation of its points, metres.
-    sd_m: f64,
+    kind: ReturnKind,
+    failed: bool,
+}
+
+/// The places of a cloud's points.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum ReturnKind {
+    /// Those that beams hit.
+    True,
+    /// Those that a lidar without packets measures.
+    Measured,
 }
 
 impl ReturnCloud {
-    /// The cloud of the places that beams hit.
-    pub fn of_truth(target: Target) -> Self {
+    pub fn new(target: Target, kind: ReturnKind) -> Self {
         Self {
             target,
             batch: Points::with_capacity(Fields::FILE, BATCH),
-            is_true: true,
-            sd_m: 0.0,
+            kind,
+            failed: false,
         }
     }
 
-    /// The cloud of the distances that a lidar measures, with their standard deviation in metres.
-    pub fn measured(target: Target, sd_m: f64) -> Self {
-        Self {
-            target,
-            batch: Points::with_capacity(MEASURED, BATCH),
-            is_true: false,
-            sd_m,
+    const fn help(&self) -> &'static str {
+        match self.kind {
+            ReturnKind::True => {
+                "free some space or choose another folder with --truth, and run the command again: the other output ends here, too"
+            }
+            ReturnKind::Measured => {
+                "free some space or choose another folder with -o, and run the command again: the other output ends here, too"
+            }
         }
     }
 
@@ -72,20 +77,17 @@ impl ReturnCloud {
         let written = self.target.sink().points(&self.batch);
         self.batch.clear();
         written.map_err(|error| {
-            sink_failure(self.target.path(), &error).help(
-                "free some space or choose another folder, and run the command again: the simulation ends here",
-            )
+            self.failed = true;
+            sink_failure(self.target.path(), &error).help(self.help())
         })
     }
 
     /// Takes a return of a lidar whose clock was at `clock_ns` at the start.
     fn push(&mut self, point: &TruePoint, ring: u8, clock_ns: i64) -> Result<(), Failure> {
-        if self.is_true && !point.range_m.is_finite() {
-            return Ok(());
-        }
-        let position_m = match self.is_true {
-            true => point.position_m,
-            false => point.measured_m,
+        let position_m = match self.kind {
+            ReturnKind::True if !point.range_m.is_finite() => return Ok(()),
+            ReturnKind::True => point.position_m,
+            ReturnKind::Measured => point.measured_m,
         };
         self.batch.push(Point {
             position_m: position_m.to_array(),
@@ -96,7 +98,7 @@ impl ReturnCloud {
             device_time: Stamp::<Lidar>::from_nanos(point.device_ns)
                 .saturating_add(Span::from_nanos(clock_ns)),
             tilt: Degrees(point.tilt_deg),
-            sd_m: self.sd_m,
+            sd_m: 0.0,
             echo: 0,
         });
         match self.batch.len() >= BATCH {
@@ -105,12 +107,17 @@ impl ReturnCloud {
         }
     }
 
-    /// Completes the file and returns its path.
-    fn finish(mut self) -> Result<PathBuf, Failure> {
+    /// Completes the file and returns its path; `None` for a cloud that failed before, of which no
+    /// part is kept under its name.
+    fn finish(mut self) -> Result<Option<PathBuf>, Failure> {
+        if self.failed {
+            return Ok(None);
+        }
         self.flush()?;
         let path = self.target.path().to_owned();
-        self.target.commit()?;
-        Ok(path)
+        let help = self.help();
+        self.target.commit().map_err(|failure| failure.help(help))?;
+        Ok(Some(path))
     }
 }
 
@@ -143,8 +150,6 @@ pub(super) struct Log<'a> {
     began: Stamp<Host>,
     last: Stamp<Host>,
     failure: Option<Failure>,
-    /// Whether a cloud could not be written.
-    cloud_failed: bool,
 }
 
 impl<'a> Log<'a> {
@@ -165,7 +170,6 @@ impl<'a> Log<'a> {
             began: simulation.start,
             last: simulation.start,
             failure: None,
-            cloud_failed: false,
         }
     }
 
@@ -231,16 +235,13 @@ impl<'a> Log<'a> {
                 .finish()
                 .map_err(|error| cannot_write(&path, &error))?;
         }
-        let (mut failure, is_kept) = (self.failure, !self.cloud_failed);
+        let mut failure = self.failure;
         let mut finish = |cloud: Option<ReturnCloud>| {
-            // Part of a cloud is not kept under its name.
-            let finished = cloud.filter(|_| is_kept)?.finish();
-            let error = match finished {
-                Ok(path) => return Some(path),
-                Err(error) => error,
-            };
-            failure.get_or_insert(error);
-            None
+            cloud?.finish().unwrap_or_else(|error| {
+                // A cloud that is lost matters more than a run that the user stopped.
+                failure = Some(error);
+                None
+            })
         };
         let (measured, truth) = (finish(measured), finish(truth));
         let after = self.last - self.began;
@@ -273,20 +274,20 @@ impl SimulationSink for Log<'_> {
         }
     }
 
+    fn reached(&mut self, at: Stamp<Host>) -> ControlFlow<()> {
+        self.reach(at)
+    }
+
     fn wants_truth(&self) -> bool {
         self.outputs.measured.is_some() || self.outputs.truth.is_some()
     }
 
     fn truth(&mut self, points: &[TruePoint]) -> ControlFlow<()> {
-        if let (None, Some(point)) = (&self.outputs.log, points.first()) {
-            self.reach(point.host)?;
-        }
         for point in points {
             let ring = self.rings.get(usize::from(point.laser)).copied();
             let outputs = &mut self.outputs;
             for cloud in outputs.measured.iter_mut().chain(&mut outputs.truth) {
                 if let Err(failure) = cloud.push(point, ring.unwrap_or(0), self.clock_ns) {
-                    self.cloud_failed = true;
                     return self.fail(failure);
                 }
             }

@@ -98,6 +98,31 @@ pub struct Sampler<'a> {
     interrupt: Option<&'a AtomicBool>,
 }
 
+/// Firings from one of a sample to the next, of a lidar without packets: for as many shots as of a
+/// VLP-16, over all azimuths. With a divisor in common with the firings of a revolution it would
+/// meet the same azimuths in all of them.
+fn every_of_points(scene: &SceneFile, sampled_s: f64) -> u64 {
+    const VLP16_LASERS: f64 = 16.0;
+    let (sensor, rotation) = (&scene.simulation.sensor, scene.simulation.rotation);
+    let per_s = sensor.firings_at_once() as f64 / (1e-9 * sensor.firing_period_ns as f64);
+    let lasers = sensor.beams.len() as f64 / sensor.firings_at_once() as f64;
+    let shots = FIRINGS * VLP16_LASERS;
+    let mut every = ((sampled_s * per_s * lasers / shots) as u64).max(1);
+    let revolution = (60.0 * per_s / f64::from(rotation.rpm)).round() as u64;
+    while divisor(every, revolution) > 1 {
+        every += 1;
+    }
+    every
+}
+
+/// The greatest common divisor.
+const fn divisor(mut a: u64, mut b: u64) -> u64 {
+    while b > 0 {
+        (a, b) = (b, a % b);
+    }
+    a
+}
+
 impl<'a> Sampler<'a> {
     /// A sampler of a scene with the effects that it has now.
     #[must_use]
@@ -105,13 +130,13 @@ impl<'a> Sampler<'a> {
         let sampled_s = scene.simulation.motion.end_s.min(SAMPLED_S);
         let period_s = 1e-9 * scene.simulation.sensor.firing_period_ns as f64;
         let usage = scene.effects.effects.usage();
-        let at_once = scene.simulation.sensor.firings_at_once();
-        let every = (sampled_s * at_once as f64 / period_s / FIRINGS) as u64;
         Self {
             scene,
             on: usage.iter().map(|used| used.name).collect(),
-            // An odd number meets each of the firings of an instant.
-            every: if at_once > 1 { every | 1 } else { every },
+            every: match scene.simulation.sensor.packets {
+                Some(_) => (sampled_s / period_s / FIRINGS) as u64,
+                None => every_of_points(scene, sampled_s),
+            },
             threads,
             interrupt: None,
         }
@@ -238,7 +263,7 @@ impl<'a> Sampler<'a> {
             .map_err(|error| failed(&error))?;
         if self.is_interrupted() {
             let stopped = "stopped by the user while effects were compared";
-            return Err(Failure::new(Kind::Interrupted, stopped).help("no log was written"));
+            return Err(Failure::new(Kind::Interrupted, stopped).help("nothing was written"));
         }
         let took_s = began.elapsed().as_secs_f64();
         let busy_ns = 1e9 * took_s * self.threads.get() as f64;
@@ -432,6 +457,10 @@ impl SimulationSink for SampleLog<'_> {
         self.go_on(host)
     }
 
+    fn reached(&mut self, at: Stamp<Host>) -> ControlFlow<()> {
+        self.go_on(Some(at))
+    }
+
     fn wants_truth(&self) -> bool {
         self.measured.is_some()
     }
@@ -444,7 +473,7 @@ impl SimulationSink for SampleLog<'_> {
         if let Some(measured) = &mut self.measured {
             measured.extend(by_key);
         }
-        self.go_on(points.last().map(|point| point.host))
+        ControlFlow::Continue(())
     }
 }
 

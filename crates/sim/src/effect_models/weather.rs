@@ -48,7 +48,7 @@ pub struct WeatherSettings {
     pub overlap_m: [f64; 2],
     /// The effect that decides which returns are detected, if it is on.
     #[serde(skip)]
-    pub(super) reflectance: Option<ReflectanceSettings>,
+    reflectance: Option<ReflectanceSettings>,
 }
 
 impl Default for WeatherSettings {
@@ -58,6 +58,16 @@ impl Default for WeatherSettings {
             rain_mm_h: None,
             overlap_m: [0.9, 10.0],
             reflectance: None,
+        }
+    }
+}
+
+impl WeatherSettings {
+    /// The same weather, whose returns the reflectance effect detects, if it is on.
+    pub(crate) fn detected_by(self, reflectance: Option<ReflectanceSettings>) -> Self {
+        Self {
+            reflectance,
+            ..self
         }
     }
 }

@@ -1,8 +1,8 @@
 //! Names of patterns with options: `rmbl:120,rpm=600,tilt=stepped`.
 
 use super::{
-    Pattern, PatternError, PatternSensor, PatternSettings, PatternTilt, PlanarFront,
-    RevolutionEnds, TiltSteps,
+    Pattern, PatternError, PatternSettings, PatternTilt, PlanarFront, RevolutionEnds, SensorModel,
+    TiltSteps,
 };
 
 /// How a named pattern moves without options.
@@ -16,17 +16,17 @@ enum PatternMotion {
     Spin,
 }
 
-const SENSORS: [(&str, PatternSensor, PatternMotion); 10] = [
-    ("vlp16", PatternSensor::Vlp16, PatternMotion::Free),
-    ("hi-res", PatternSensor::HiRes, PatternMotion::Free),
-    ("hdl32e", PatternSensor::Hdl32e, PatternMotion::Free),
-    ("vlp32c", PatternSensor::Vlp32c, PatternMotion::Free),
-    ("hdl64e", PatternSensor::Hdl64e, PatternMotion::Free),
-    ("utm30lx", PatternSensor::Utm30lx, PatternMotion::Free),
-    ("lms151", PatternSensor::Lms151, PatternMotion::Free),
-    ("rmbl", PatternSensor::Vlp16, PatternMotion::Spin),
-    ("rsbl", PatternSensor::SingleBeam, PatternMotion::Spin),
-    ("velomotion16", PatternSensor::Vlp16, PatternMotion::Tilt),
+const SENSORS: [(&str, SensorModel, PatternMotion); 10] = [
+    ("vlp16", SensorModel::Vlp16, PatternMotion::Free),
+    ("hi-res", SensorModel::HiRes, PatternMotion::Free),
+    ("hdl32e", SensorModel::Hdl32e, PatternMotion::Free),
+    ("vlp32c", SensorModel::Vlp32c, PatternMotion::Free),
+    ("hdl64e", SensorModel::Hdl64e, PatternMotion::Free),
+    ("utm30lx", SensorModel::Utm30lx, PatternMotion::Free),
+    ("lms151", SensorModel::Lms151, PatternMotion::Free),
+    ("rmbl", SensorModel::Vlp16, PatternMotion::Spin),
+    ("rsbl", SensorModel::SingleBeam, PatternMotion::Spin),
+    ("velomotion16", SensorModel::Vlp16, PatternMotion::Tilt),
 ];
 
 /// All names: sensors, and the patterns of the paper: rotating multi- and single-beam lidar, and

@@ -7,7 +7,7 @@ use crate::sensor::{DetectionRange, LidarSensor};
 /// Sensors of patterns and scenes.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
-pub enum PatternSensor {
+pub enum SensorModel {
     /// VLP-16, 16 lasers.
     #[default]
     Vlp16,
@@ -27,7 +27,7 @@ pub enum PatternSensor {
     SingleBeam,
 }
 
-impl PatternSensor {
+impl SensorModel {
     /// The sensor in a scene.
     #[must_use]
     pub fn sensor(self) -> LidarSensor {

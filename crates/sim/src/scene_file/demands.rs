@@ -127,7 +127,10 @@ impl SceneFacts<'_> {
     pub fn demands(&self) -> Vec<EffectDemand> {
         let detection = self.config.reflectance.settings().copied();
         let weather = self.config.weather.settings();
-        let weather = weather.and_then(|weather| Weather::new(weather, 0).ok());
+        let weather = weather.and_then(|weather| {
+            let weather = weather.detected_by(detection);
+            Weather::new(&weather, 0).ok()
+        });
         let survey = match self.is_ideal && self.movers.is_empty() && weather.is_none() {
             true => SceneSurvey::default(),
             false => SceneSurvey::new(

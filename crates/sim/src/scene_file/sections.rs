@@ -10,7 +10,7 @@ use crate::effect_models::settings_of::{
 };
 use crate::motion::{AxisMotion, MotionError, Sweeps};
 use crate::packet_maker::HeadRotation;
-use crate::patterns::PatternSensor;
+use crate::patterns::SensorModel;
 use crate::scenery::InvalidValue;
 use crate::sensor::{DetectionRange, LidarMount, LidarSensor, ReturnMode};
 use crate::simulate::Polls;
@@ -26,7 +26,7 @@ pub(super) fn invalid(path: impl Into<String>, what: impl Into<String>) -> Inval
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct SensorSection {
-    model: PatternSensor,
+    model: SensorModel,
     /// Number of the only active laser in firing order; absent: all.
     only_laser: Option<usize>,
     /// Whether all lasers of a firing start from one point at one instant.
@@ -59,7 +59,7 @@ const USUAL_RPM: u32 = 600;
 impl Default for SensorSection {
     fn default() -> Self {
         Self {
-            model: PatternSensor::default(),
+            model: SensorModel::default(),
             only_laser: None,
             ideal: false,
             range_m: None,

@@ -390,12 +390,15 @@ fn a_scene_states_its_tolerance() {
     assert!(line == 2 && what.contains("5mm,0.1%"), "{line} {what}");
 }
 
-/// In [effects] stands `true` only.
+/// Where `[effects]` has no settings of its own.
 #[test]
 fn an_invalid_fact_is_named_where_it_is_stated() {
     let text = format!("{LEAST}[weather]\nvisibility_m = 0.1\n[effects]\nweather = true\n");
     let (line, what) = error(&text);
-    assert!(line == 6 && what.contains("visibility_m"), "{line} {what}");
+    assert!(
+        line == 6 && what.starts_with("weather.visibility_m:"),
+        "{line} {what}"
+    );
 }
 
 /// Fog returns shots that nothing else would: in the open most of what it changes.

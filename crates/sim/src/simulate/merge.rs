@@ -102,6 +102,7 @@ impl<'a, E: EncoderEffect, L: LinkEffect> Merge<'a, E, L> {
         self.summary.returned += u64::from(packet.counts.returned);
         self.summary.returns += u64::from(packet.counts.returns);
         if self.simulation.sensor.packets.is_none() {
+            self.sink.reached(self.simulation.host(leaves_ns))?;
             return self.release(leaves_ns);
         }
         let message = |kind, number| LinkMessage {

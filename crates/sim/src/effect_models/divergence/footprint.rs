@@ -14,7 +14,8 @@ pub(super) struct Footprint {
     across: DVec3,
 }
 
-/// Direction of the scan: perpendicular to the fan of the lasers, or level with a single laser.
+/// Direction of the scan: perpendicular to the fan of the lasers, or to the head's axis with a
+/// single laser.
 pub(super) fn scan_axis(firing: &SimulatedFiring) -> Option<DVec3> {
     let lasers = firing.directions.get(..firing.lasers)?;
     let first = *lasers.first()?;
@@ -26,7 +27,7 @@ pub(super) fn scan_axis(firing: &SimulatedFiring) -> Option<DVec3> {
         }
     });
     let fan = first.cross(widest).try_normalize();
-    fan.or_else(|| first.cross(DVec3::Z).try_normalize())
+    fan.or_else(|| first.cross(firing.head_axis).try_normalize())
 }
 
 impl Footprint {

@@ -3,14 +3,13 @@
 mod words;
 
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
 
 use engine::document::Document;
 use engine::failure::Failure;
 use engine::output::{self, Target};
 use engine::simulate::{
     Sampler, SimulationFiles, SimulationOutput, SimulationReport, SimulationRequest,
-    choose_effects, find, make, nanoseconds, read, stem, unmet,
+    choose_effects, find, make, nanoseconds, read, unmet,
 };
 use engine::words::counted;
 use sim::effects::Stopwatch;
@@ -36,7 +35,7 @@ pub fn run(arguments: &cli::Simulate, common: &Common) -> Result<CommandOutput, 
     };
     let cores = || std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
     let threads = arguments.threads.unwrap_or_else(cores);
-    let default = || PathBuf::from(stem(&name)).with_extension(SimulationOutput::extension(&scene));
+    let default = || SimulationOutput::default_path(&scene, &name);
     let path = arguments.output.clone().unwrap_or_else(default);
     for cloud in [Some(path.as_path()), arguments.truth.as_deref()] {
         output::one_for_stdout(cloud, common.json)?;
