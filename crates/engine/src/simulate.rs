@@ -34,7 +34,7 @@ use utoipa::ToSchema;
 use crate::failure::{Failure, Kind};
 use crate::output::{self, Target};
 use crate::reconstruct::report::PacketCounts;
-use log::{Log, Outputs, ReturnCloud, ReturnKind, Written, cannot_write, scan_config};
+use log::{Log, Outputs, ReturnCloud, ReturnPlace, Written, cannot_write, scan_config};
 
 /// Report on a simulation.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
@@ -288,7 +288,8 @@ pub fn choose_effects(
     Ok(choice)
 }
 
-/// Simulates a scene into a log or a cloud. A failure with usable files is returned with the report.
+/// Simulates a scene into a log or a cloud. A failure with usable files is returned with the
+/// report.
 ///
 /// # Errors
 /// [`Failure`] without a log.
@@ -323,13 +324,13 @@ pub fn make(
         SimulationOutput::Cloud(mut target) => {
             let what = "measured with exact times and angles in the simulated scene";
             begin_cloud(&mut target, what, &name, mount)?;
-            outputs.measured = Some(ReturnCloud::new(target, ReturnKind::Measured));
+            outputs.measured = Some(ReturnCloud::new(target, ReturnPlace::Measured));
         }
     }
     if let Some(truth) = &mut truth {
         begin_cloud(truth, "the truth of the simulated scene", &name, mount)?;
     }
-    outputs.truth = truth.map(|target| ReturnCloud::new(target, ReturnKind::True));
+    outputs.truth = truth.map(|target| ReturnCloud::new(target, ReturnPlace::True));
     let log = outputs
         .log
         .as_ref()

@@ -39,13 +39,13 @@ pub(super) type Cut = (Failure, Span);
 pub(super) struct ReturnCloud {
     target: Target,
     batch: Points,
-    kind: ReturnKind,
+    kind: ReturnPlace,
     failed: bool,
 }
 
 /// The places of a cloud's points.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum ReturnKind {
+pub(super) enum ReturnPlace {
     /// Those that beams hit.
     True,
     /// Those that a lidar without packets measures.
@@ -53,7 +53,7 @@ pub(super) enum ReturnKind {
 }
 
 impl ReturnCloud {
-    pub fn new(target: Target, kind: ReturnKind) -> Self {
+    pub fn new(target: Target, kind: ReturnPlace) -> Self {
         Self {
             target,
             batch: Points::with_capacity(Fields::FILE, BATCH),
@@ -64,10 +64,10 @@ impl ReturnCloud {
 
     const fn help(&self) -> &'static str {
         match self.kind {
-            ReturnKind::True => {
+            ReturnPlace::True => {
                 "free some space or choose another folder with --truth, and run the command again: the other output ends here, too"
             }
-            ReturnKind::Measured => {
+            ReturnPlace::Measured => {
                 "free some space or choose another folder with -o, and run the command again: the other output ends here, too"
             }
         }
@@ -85,9 +85,9 @@ impl ReturnCloud {
     /// Takes a return of a lidar whose clock was at `clock_ns` at the start.
     fn push(&mut self, point: &TruePoint, ring: u8, clock_ns: i64) -> Result<(), Failure> {
         let position_m = match self.kind {
-            ReturnKind::True if !point.range_m.is_finite() => return Ok(()),
-            ReturnKind::True => point.position_m,
-            ReturnKind::Measured => point.measured_m,
+            ReturnPlace::True if !point.range_m.is_finite() => return Ok(()),
+            ReturnPlace::True => point.position_m,
+            ReturnPlace::Measured => point.measured_m,
         };
         self.batch.push(Point {
             position_m: position_m.to_array(),
