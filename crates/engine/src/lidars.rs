@@ -7,11 +7,6 @@ use scanner::LidarConfig;
 use sim::patterns::{PlanarFront, SensorModel};
 
 /// A lidar by its data sheet.
-///
-/// The noise of a range is the spread from shot to shot, one standard deviation. Where a maker
-/// gives a bound without a definition ("+-3 cm, typical"), the bound counts as three: of three
-/// recorded VLP-16s the ranges of a laser spread by 7 to 13 mm about local planes, of an HDL-32E by
-/// 5. Constant errors of a laser are not noise: 2 to 10 mm in these recordings.
 #[derive(Debug)]
 pub struct LidarSheet {
     /// The name that `--lidar` takes.
@@ -24,33 +19,27 @@ pub struct LidarSheet {
     pub sensor: SensorModel,
     /// Steps of its ranges, metres.
     range_step_m: f64,
-    /// Standard deviation of a range up to 10 m, and beyond, metres.
-    range_sd_m: [f64; 2],
     /// Where these are from.
     pub source: &'static str,
 }
 
 /// VLP-16.
 pub static VLP_16: LidarSheet = LidarSheet {
-    range_sd_m: [0.01; 2],
     source: "its manual's 3 cm as three standard deviations",
     ..of_model("vlp16", &models::VLP_16, SensorModel::Vlp16)
 };
 /// Puck Hi-Res.
 pub static HI_RES: LidarSheet = LidarSheet {
-    range_sd_m: [0.01; 2],
     source: "its manual's 3 cm as three standard deviations",
     ..of_model("hi-res", &models::PUCK_HI_RES, SensorModel::HiRes)
 };
 /// HDL-32E.
 pub static HDL_32E: LidarSheet = LidarSheet {
-    range_sd_m: [0.02 / 3.0; 2],
     source: "its manual's 2 cm as three standard deviations",
     ..of_model("hdl32e", &models::HDL_32E, SensorModel::Hdl32e)
 };
 /// VLP-32C.
 pub static VLP_32C: LidarSheet = LidarSheet {
-    range_sd_m: [0.01; 2],
     source: "its manual's 3 cm as three standard deviations",
     ..of_model("vlp32c", &models::VLP_32C, SensorModel::Vlp32c)
 };
@@ -61,7 +50,6 @@ pub static HDL_64E: LidarSheet = LidarSheet {
     model: None,
     sensor: SensorModel::Hdl64e,
     range_step_m: 0.002,
-    range_sd_m: [0.02; 2],
     source: "its data sheet's 2 cm, one sigma",
 };
 /// Hokuyo UTM-30LX.
@@ -71,7 +59,6 @@ static UTM_30LX: LidarSheet = LidarSheet {
     model: None,
     sensor: SensorModel::Utm30lx,
     range_step_m: 0.001,
-    range_sd_m: [0.01, 0.03],
     source: "its data sheet's repeated accuracy: sigma 10 mm up to 10 m, 30 mm beyond",
 };
 /// SICK LMS151.
@@ -81,7 +68,6 @@ static LMS_151: LidarSheet = LidarSheet {
     model: None,
     sensor: SensorModel::Lms151,
     range_step_m: 0.001,
-    range_sd_m: [0.012; 2],
     source: "its maker's typical statistical error of 12 mm",
 };
 
@@ -109,7 +95,6 @@ const fn of_model(
         model: Some(model),
         sensor,
         range_step_m: model.distance_unit_m,
-        range_sd_m: [0.0; 2],
         source: "",
     }
 }
@@ -169,7 +154,7 @@ impl LidarSheet {
     /// Standard deviation of a range from shot to shot, quantisation included, metres.
     #[must_use]
     pub const fn range_sd_m(&self, range_m: f64) -> f64 {
-        let [near, far] = self.range_sd_m;
+        let [near, far] = self.sensor.range_sd_m();
         if range_m > NEAR_M { far } else { near }
     }
 

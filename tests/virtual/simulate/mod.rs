@@ -6,6 +6,7 @@ mod light;
 mod models;
 mod points;
 mod round_trip;
+mod tolerance;
 
 use std::collections::BTreeMap;
 use std::num::NonZeroUsize;

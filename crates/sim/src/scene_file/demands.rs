@@ -10,8 +10,8 @@ use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::facts::StatedFact;
-use super::survey::{MaterialSurvey, SceneSurvey};
-use crate::cast::Object;
+use super::survey::{MaterialSurvey, SHOTS, SceneSurvey};
+use crate::cast::{Object, Surface};
 use crate::effect_models::{EffectsConfig, Mover, Weather};
 use crate::simulate::Simulation;
 
@@ -39,6 +39,14 @@ pub struct EffectDemand {
 
 /// A moving object: its name and its line.
 pub(super) type MoverName = (String, usize);
+
+/// What a survey saw of a moving object and its copies.
+#[derive(Default)]
+struct MovingSurvey {
+    count: u32,
+    hits: u32,
+    farthest_m: f64,
+}
 
 /// What demands follow from.
 pub(super) struct SceneFacts<'a> {
@@ -140,7 +148,7 @@ impl SceneFacts<'_> {
                 weather.as_ref(),
             ),
         };
-        let mut demands: Vec<EffectDemand> = self.moving(&survey).into_iter().collect();
+        let mut demands = self.moving(&survey);
         for fact in self.stated {
             demands.push(self.stated_demand(fact.effect, &survey).at(Some(fact.line)));
         }
@@ -166,48 +174,95 @@ impl SceneFacts<'_> {
         self.simulation.sensor.packets.is_some()
     }
 
-    fn moving(&self, survey: &SceneSurvey) -> Option<EffectDemand> {
-        let end_s = self.simulation.motion.end_s;
-        let path_m = self.movers.iter().map(|mover| {
-            let travel = &mover.travel;
-            let objects = mover.scene.caster().objects().iter();
-            let lines = objects.filter_map(Object::middle_line);
-            let arms = lines.flat_map(|(ends, half_m)| ends.map(|end| end.length() + half_m));
-            let arm_m = arms.fold(0.0, f64::max);
-            // No point of a turning object is farther off than across its circle.
-            let turned_m = travel.turn_deg_s.length().to_radians() * end_s * arm_m;
-            travel.velocity_m_s.length() * end_s + turned_m.min(2.0 * arm_m)
-        });
-        let farthest_m = path_m.fold(0.0, f64::max);
-        let (name, line) = match self.mover_names.first() {
-            Some((name, line)) => (name.as_str(), Some(*line)),
-            None => ("", self.boxes_line),
-        };
-        let count = self.movers.len();
-        let reason = format!("{count} object(s) move or rotate");
-        (count > 0).then(|| {
-            EffectDemand::new("moving_objects", reason)
+    /// A demand for each object that moves, its copies together, the farthest first.
+    fn moving(&self, survey: &SceneSurvey) -> Vec<EffectDemand> {
+        // Boxes of the effect itself come first and have no names.
+        let unnamed = self.movers.len().saturating_sub(self.mover_names.len());
+        let mut objects: BTreeMap<(&str, Option<usize>), MovingSurvey> = BTreeMap::new();
+        for (number, mover) in self.movers.iter().enumerate() {
+            let named = number.checked_sub(unnamed);
+            let named = named.and_then(|number| self.mover_names.get(number));
+            let key = named.map_or(("", self.boxes_line), |(name, line)| (name, Some(*line)));
+            let object = objects.entry(key).or_default();
+            object.count += 1;
+            object.hits += survey.moving.get(number).copied().unwrap_or(0);
+            object.farthest_m = object.farthest_m.max(self.path_m(mover));
+        }
+        let demand = |((name, line), object): ((&str, Option<usize>), MovingSurvey)| {
+            let (what, verbs) = match object.count {
+                1 => ("object".to_owned(), "moves or rotates"),
+                count => (format!("{count} objects"), "move or rotate"),
+            };
+            let subject = match name {
+                "" => what,
+                name => format!("{what} {name:?}"),
+            };
+            EffectDemand::new("moving_objects", format!("{subject} {verbs}"))
                 .of(name)
                 .at(self.scene_line.or(line))
-                .percent(survey.percent(survey.moving))
-                .displaced(farthest_m)
-        })
+                .percent(survey.percent(object.hits))
+                .displaced(object.farthest_m)
+        };
+        let mut demands: Vec<EffectDemand> = objects.into_iter().map(demand).collect();
+        let path_mm = |demand: &EffectDemand| demand.displaced_mm.unwrap_or(0.0);
+        demands.sort_by(|a, b| path_mm(b).total_cmp(&path_mm(a)));
+        demands
     }
 
+    /// How far a point of a moving object moves at most, metres.
+    fn path_m(&self, mover: &Mover) -> f64 {
+        let end_s = self.simulation.motion.end_s;
+        let travel = &mover.travel;
+        let objects = mover.scene.caster().objects().iter();
+        let lines = objects.filter_map(Object::middle_line);
+        let arms = lines.flat_map(|(ends, half_m)| ends.map(|end| end.length() + half_m));
+        let arm_m = arms.fold(0.0, f64::max);
+        // No point of a turning object is farther off than across its circle.
+        let turned_m = travel.turn_deg_s.length().to_radians() * end_s * arm_m;
+        travel.velocity_m_s.length() * end_s + turned_m.min(2.0 * arm_m)
+    }
+
+    /// Edges within footprints, with the material that most of them are of.
     fn edges(&self, survey: &SceneSurvey) -> Option<EffectDemand> {
-        let objects = self.simulation.scene.placed().objects.len() + self.movers.len();
-        let reason = "edges lie within footprints of beams";
-        let demand = EffectDemand::new("divergence", reason);
+        let about = "edges lie within footprints of beams";
+        let most = survey.materials.values().max_by_key(|seen| seen.edges);
+        let name = most.filter(|seen| seen.edges > 0);
+        let name = name.map_or("", |seen| &seen.material.name);
+        let reason = match name {
+            "" => about.to_owned(),
+            name => format!("{about}, most of material {name:?}"),
+        };
+        let demand = EffectDemand::new("divergence", reason)
+            .of(name)
+            .at(self.line_of_material(name));
         match survey.edges {
-            // A single surface may have none.
-            0 if objects < 2 || survey.returned == 0 => None,
-            // Unseen in n shots: a share below 3 / n (95 %).
-            0 => Some(demand.percent(300.0 / f64::from(survey.returned))),
+            0 if !self.may_have_edges() => None,
+            0 => Some(demand.percent(survey.unseen_percent())),
             edges => Some(
                 demand
                     .percent(survey.percent(edges))
                     .displaced(survey.mixed_m),
             ),
+        }
+    }
+
+    /// Whether there may be edges: a single plane or sphere has none.
+    fn may_have_edges(&self) -> bool {
+        let mut fixed = self.simulation.scene.placed().objects.iter();
+        match (fixed.next(), fixed.next(), self.movers.is_empty()) {
+            (None, _, true) => false,
+            (Some(only), None, true) => {
+                !matches!(only.surface, Surface::Plane | Surface::Sphere(_))
+            }
+            _ => true,
+        }
+    }
+
+    /// The line of a material, or of the built-in scene that has it.
+    fn line_of_material(&self, name: &str) -> Option<usize> {
+        match name {
+            "" => None,
+            name => (self.scene_line).or(self.material_lines.get(name).copied()),
         }
     }
 
@@ -251,8 +306,7 @@ impl SceneFacts<'_> {
                 .of(name)
                 .at(line);
             Some(match seen.returned {
-                // Unseen in n shots: a share below 3 / n (95 %).
-                0 => demand.percent(300.0 / f64::from(survey.returned.max(3))),
+                0 => demand.percent(survey.unseen_percent()),
                 _ => demand.percent(survey.percent(seen.lost)),
             })
         };
@@ -300,7 +354,7 @@ impl SceneFacts<'_> {
                 demand(reason.join(", ")).percent(100.0 * f64::from(changed) / points)
             }),
             "range_noise" => config.range_noise.settings().map(|noise| {
-                let mm = 1e3 * noise.sd_m;
+                let mm = (1e4 * noise.sd_m).round() / 10.0;
                 // One in a hundred is farther than 2.576 standard deviations.
                 demand(format!("ranges have a standard deviation of {mm} mm"))
                     .displaced(2.576 * noise.sd_m)
@@ -389,5 +443,15 @@ impl SceneFacts<'_> {
 impl SceneSurvey {
     fn percent(&self, part: u32) -> f64 {
         100.0 * f64::from(part) / f64::from(self.returned.max(1))
+    }
+
+    /// The most that what n shots did not see may be, percent: 3 / n (95 %).
+    fn unseen_percent(&self) -> f64 {
+        let shots = if self.returned == 0 {
+            SHOTS
+        } else {
+            self.returned.max(3)
+        };
+        300.0 / f64::from(shots)
     }
 }

@@ -2,6 +2,7 @@
 //! for.
 
 use super::Sections;
+use crate::effect_models::settings_of::RangeNoiseSettings;
 use crate::effect_models::{EffectRequest, EffectsConfig};
 use crate::scenery::line_of_value;
 
@@ -47,6 +48,11 @@ pub(super) fn stated(sections: &Sections, text: &str) -> (EffectsConfig, Vec<Sta
         link_jitter = link.delay, "link.delay";
         reorder = link.reorder, "link.reorder";
         batching = link.batching, "link.batching";
+    }
+    if sensor.noise.is_none() {
+        // That of the lidar, at its far ranges.
+        let [_, sd_m] = sensor.model().range_sd_m();
+        config.range_noise = EffectRequest::Settings(RangeNoiseSettings { sd_m });
     }
     (config, facts)
 }

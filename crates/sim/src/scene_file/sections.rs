@@ -78,6 +78,11 @@ impl SensorSection {
         self.ideal
     }
 
+    /// The lidar's model.
+    pub const fn model(&self) -> SensorModel {
+        self.model
+    }
+
     pub fn build(&self) -> Result<(LidarSensor, ReturnMode, HeadRotation), InvalidValue> {
         let mut sensor = self.model.sensor();
         if let Some(laser) = self.only_laser {

@@ -11,7 +11,7 @@ use crate::scenery::{Material, MaterialAssignment};
 use crate::simulate::Simulation;
 
 /// Shots of a survey. A share below 3 / 1000 may be missed (95 %).
-const SHOTS: u32 = 1_000;
+pub(super) const SHOTS: u32 = 1_000;
 /// Azimuth from shot to shot, degrees: the golden angle, which is evenly spread for any number.
 const GOLDEN_DEG: f64 = 137.507_764;
 /// Half the divergence of a VLP-16's beam, along and across the scan (63-9243, appendix F).
@@ -44,8 +44,8 @@ const SEPARATION_M: f64 = 1.0;
 pub(super) struct SceneSurvey {
     /// Shots that meet a returning surface within the sensor's range.
     pub returned: u32,
-    /// Of them, those at moving objects.
-    pub moving: u32,
+    /// Of them, those at moving objects, by the object's number.
+    pub moving: Vec<u32>,
     /// Of them, those whose footprint crosses an edge.
     pub edges: u32,
     /// The greatest difference of depth within a footprint whose surfaces make one return, metres.
@@ -67,6 +67,8 @@ pub(super) struct MaterialSurvey {
     pub returned: u32,
     /// Of them, those whose light is below the threshold of detection.
     pub lost: u32,
+    /// Of them, those whose footprint crosses an edge.
+    pub edges: u32,
 }
 
 /// A surface that a shot meets.
@@ -74,7 +76,8 @@ struct SurveyedSurface<'a> {
     range_m: f64,
     material: &'a Material,
     cosine: f64,
-    is_moving: bool,
+    /// The moving object's number.
+    mover: Option<usize>,
 }
 
 impl SceneSurvey {
@@ -85,7 +88,10 @@ impl SceneSurvey {
         detection: &ReflectanceSettings,
         weather: Option<&Weather>,
     ) -> Self {
-        let mut survey = Self::default();
+        let mut survey = Self {
+            moving: vec![0; movers.len()],
+            ..Self::default()
+        };
         for scene in movers
             .iter()
             .map(|mover| &mover.scene)
@@ -115,8 +121,8 @@ impl SceneSurvey {
             let surfaces = Surfaces {
                 simulation,
                 // Of thousands of moving objects a survey would take longer than the simulation.
-                movers: (movers.iter().take(100))
-                    .filter_map(|mover| Some((mover, mover.travel.at(time_s).ok()?)))
+                movers: (movers.iter().enumerate().take(100))
+                    .filter_map(|(n, mover)| Some((n, mover, mover.travel.at(time_s).ok()?)))
                     .collect(),
             };
             survey.shoot(&surfaces, shot, [origin_m, direction], detection, weather);
@@ -140,6 +146,7 @@ impl SceneSurvey {
                     material: material.clone(),
                     returned: 0,
                     lost: 0,
+                    edges: 0,
                 };
                 self.materials.insert(material.name.clone(), seen);
             }
@@ -165,7 +172,9 @@ impl SceneSurvey {
             return;
         };
         self.returned += 1;
-        self.moving += u32::from(met.is_moving);
+        if let Some(hits) = met.mover.and_then(|mover| self.moving.get_mut(mover)) {
+            *hits += 1;
+        }
         self.farthest_m = self.farthest_m.max(met.range_m);
         let material = met.material;
         let light = detection.detection(
@@ -182,6 +191,9 @@ impl SceneSurvey {
         self.dimmed += u32::from(light >= 1.0 && light * left < 1.0);
         if let Some(depth_m) = surfaces.edge(origin_m, direction, met.range_m) {
             self.edges += 1;
+            if let Some(seen) = self.materials.get_mut(&material.name) {
+                seen.edges += 1;
+            }
             if depth_m <= SEPARATION_M {
                 self.mixed_m = self.mixed_m.max(depth_m);
             }
@@ -192,31 +204,31 @@ impl SceneSurvey {
 /// The surfaces of an instant.
 struct Surfaces<'a> {
     simulation: &'a Simulation,
-    movers: Vec<(&'a Mover, Placement)>,
+    movers: Vec<(usize, &'a Mover, Placement)>,
 }
 
 impl<'a> Surfaces<'a> {
     /// The first surface along a ray, if it returns.
     fn first(&self, origin_m: DVec3, direction: DVec3) -> Option<SurveyedSurface<'a>> {
         let reach = self.simulation.sensor.range();
-        let of_scene = |scene: &'a Scene, origin_m, direction, is_moving| {
+        let of_scene = |scene: &'a Scene, origin_m, direction, mover| {
             let hit = scene.nearest(origin_m, direction, reach.max_m)?;
             let normal = (scene.caster()).normal(&hit, origin_m + hit.range_m * direction);
             Some(SurveyedSurface {
                 range_m: hit.range_m,
                 material: scene.material(&hit)?,
                 cosine: normal.dot(direction).abs(),
-                is_moving,
+                mover,
             })
         };
-        let fixed = of_scene(&self.simulation.scene, origin_m, direction, false);
-        let moving = self.movers.iter().filter_map(|(mover, placement)| {
+        let fixed = of_scene(&self.simulation.scene, origin_m, direction, None);
+        let moving = self.movers.iter().filter_map(|(number, mover, placement)| {
             let origin_m = placement.own_point(origin_m);
             of_scene(
                 &mover.scene,
                 origin_m,
                 placement.own_direction(direction),
-                true,
+                Some(*number),
             )
         });
         let first = moving.chain(fixed);

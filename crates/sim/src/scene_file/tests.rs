@@ -262,11 +262,21 @@ fn the_facts_of_a_scene_call_for_its_effects() {
             Some("plate"),
             line_of("plate"),
         ),
-        ("moving_objects", "1 object(s) move", Some("tram"), tram),
+        (
+            "moving_objects",
+            "object \"tram\" moves",
+            Some("tram"),
+            tram,
+        ),
         ("weather", "visibility of 80 m", None, line_of("[weather]")),
         ("servo_lag", "20 Hz", None, line_of("servo")),
         ("batching", "10 ms", None, line_of("batching")),
-        ("divergence", "edges", None, None),
+        (
+            "divergence",
+            "most of material \"tar\"",
+            Some("tar"),
+            line_of("tar"),
+        ),
     ] {
         let found = demand(effect, about);
         assert_eq!(
@@ -399,6 +409,53 @@ fn an_invalid_fact_is_named_where_it_is_stated() {
         line == 6 && what.starts_with("weather.visibility_m:"),
         "{line} {what}"
     );
+}
+
+/// Copies are one object; the farthest comes first.
+#[test]
+fn each_moving_object_is_a_demand() {
+    let mover = |name: &str, y_m: f64, speed: f64, copies: &str| {
+        format!(
+            "[[objects]]\nname = \"{name}\"\nposition_m = [5, {y_m}, 0]\nvelocity_m_s = [0, {speed}, 0]\n\
+             box = {{ size_m = [1, 2, 2] }}\n{copies}"
+        )
+    };
+    let text = LEAST.replace("scene = \"hall\"\n", "")
+        + &mover("cart", 0.0, 1.0, "")
+        + &mover(
+            "van",
+            9.0,
+            10.0,
+            "copies = { at_m = [[0, 0, 0], [4, 0, 0]] }\n",
+        );
+    let scene = SceneFile::parse(&text, None, None).unwrap();
+    let demands = scene.demands.iter();
+    let found: Vec<_> = (demands.filter(|demand| demand.effect == "moving_objects"))
+        .map(|demand| (demand.reason.as_str(), demand.displaced_mm.unwrap().round()))
+        .collect();
+    let expected = [
+        ("2 objects \"van\" move or rotate", 10_000.0),
+        ("object \"cart\" moves or rotates", 1_000.0),
+    ];
+    assert_eq!(found, expected);
+}
+
+/// Noise by the data sheet of the lidar.
+#[test]
+fn the_usual_noise_is_that_of_the_lidar() {
+    for (model, mm) in [
+        ("vlp16", "10 mm"),
+        ("hdl32e", "6.7 mm"),
+        ("lms151", "12 mm"),
+    ] {
+        let text = format!("{LEAST}[sensor]\nmodel = \"{model}\"\n");
+        let scene = SceneFile::parse(&text, None, None).unwrap();
+        let noise = scene.demand("range_noise").unwrap();
+        assert!(noise.reason.ends_with(mm), "{noise:?}");
+    }
+    let ideal = format!("{LEAST}[sensor]\nideal = true\n");
+    let ideal = SceneFile::parse(&ideal, None, None).unwrap();
+    assert!(!on(&ideal).contains(&"range_noise"));
 }
 
 /// Fog returns shots that nothing else would: in the open most of what it changes.

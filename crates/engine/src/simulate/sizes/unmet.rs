@@ -5,9 +5,8 @@ use sim::scene_file::EffectDemand;
 use super::{EffectSize, Sampler};
 use crate::failure::Failure;
 
-/// Effects that are off are reported from these sizes on: percent of the points, and millimetres of
-/// the 99 % displacement.
-const NOTABLE: (f64, f64) = (0.1, 1.0);
+/// Effects that are off are reported if they would change so many of the points, percent.
+const NOTABLE_PERCENT: f64 = 0.1;
 /// Up to this number, each effect that is off is measured for its warning.
 const FEW: usize = 2;
 
@@ -49,14 +48,13 @@ pub fn unmet(
 }
 
 fn is_notable(size: &EffectSize) -> bool {
-    let (percent, mm) = NOTABLE;
-    size.gained_percent + size.lost_percent >= percent || size.p99_mm >= mm
+    size.gained_percent + size.lost_percent + size.moved_percent >= NOTABLE_PERCENT
 }
 
 fn would(size: &EffectSize) -> String {
     format!(
-        "add {:.1} % of the points, remove {:.1} %, and move 1 in 100 by {:.1} mm or more",
-        size.gained_percent, size.lost_percent, size.p99_mm
+        "add {:.1} % of the points, remove {:.1} %, and move {:.1} % by over 1 mm, the farthest by {:.0} mm",
+        size.gained_percent, size.lost_percent, size.moved_percent, size.worst_mm
     )
 }
 
