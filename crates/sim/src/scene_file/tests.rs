@@ -273,9 +273,9 @@ fn the_facts_of_a_scene_call_for_its_effects() {
         ("batching", "10 ms", None, line_of("batching")),
         (
             "divergence",
-            "most of material \"tar\"",
-            Some("tar"),
-            line_of("tar"),
+            "most of material \"paint\"",
+            Some("paint"),
+            line_of("paint"),
         ),
     ] {
         let found = demand(effect, about);
