@@ -29,6 +29,10 @@ fn main() -> ExitCode {
     std::panic::set_hook(Box::new(|panic| {
         let backtrace = std::backtrace::Backtrace::capture();
         to_stderr(&format!("{panic}\n{backtrace}"));
+        // The process ends with the main thread, which would take unwritten lines with it.
+        if std::thread::current().name() == Some("main") {
+            flush();
+        }
     }));
     start_log(&cli.common);
     let (output, failure) = match velomotion::run(&cli) {

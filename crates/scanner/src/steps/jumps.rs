@@ -332,8 +332,7 @@ impl JumpReport {
             };
             let rise = after.saturating_sub(before);
             let lasting = long_after.saturating_sub(long_before);
-            let is_lasting =
-                lasting.signum() == rise.signum() && lasting.abs() > rise.abs() * 7 / 10;
+            let is_lasting = lasting.signum() == rise.signum() && lasting.abs() > tenths(7, rise);
             let is_inside = at >= MIN_LEVEL_PACKETS && offsets.len() - at >= MIN_LEVEL_PACKETS;
             if rise.abs() < smallest || !is_lasting || !is_inside {
                 continue;
@@ -346,8 +345,8 @@ impl JumpReport {
             match found.last_mut() {
                 // A rise is complete at once, a fall only where it happened.
                 Some(last) if at - last.at <= SMALL_WINDOW => {
-                    let grows = rise.abs() > last.by.as_nanos().abs() * 11 / 10;
-                    if grows || (rise < 0 && rise.abs() > last.by.as_nanos().abs() * 7 / 10) {
+                    let grows = rise.abs() > tenths(11, last.by.as_nanos());
+                    if grows || (rise < 0 && rise.abs() > tenths(7, last.by.as_nanos())) {
                         *last = jump;
                     }
                 }
@@ -391,6 +390,13 @@ impl JumpReport {
         let reordered = device_ns <= 0 && count <= NEAR as i64;
         (ordered || reordered) && off <= QUANTUM_NS + count * 10
     }
+}
+
+/// So many tenths of a magnitude. A clock without battery is set by decades, which ten times would
+/// exceed 64 bits.
+const fn tenths(count: i64, of: i64) -> i64 {
+    let of = of.saturating_abs();
+    (of / 10).saturating_mul(count) + of % 10 * count / 10
 }
 
 /// Whether a spacing occurs in other places too, within the tolerance.

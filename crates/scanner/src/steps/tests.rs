@@ -409,6 +409,22 @@ fn unattributed_small_steps_are_reported_and_within_the_bound() {
     }
 }
 
+/// A laptop without a battery for its clock starts in 1970, until the network sets it.
+#[test]
+fn a_clock_that_is_set_by_decades_is_found() {
+    const YEAR_S: i64 = 31_557_600;
+    for by in [46 * YEAR_S * S, -46 * YEAR_S * S] {
+        let recorded = Recorded::new(60, Some(2_500));
+        let timeline = recorded.stepped(&[(31 * S, by)]).timeline();
+        let step = only(&timeline);
+        assert_eq!(step.clock, SetClock::Host, "{by}");
+        assert!(
+            (step.by.as_nanos() - by).abs() < 1_000_000,
+            "{by}: {step:?}"
+        );
+    }
+}
+
 /// After a silence of the lidar alone, packets that take longer are no step of the host's clock.
 #[test]
 fn a_slower_network_after_a_silence_of_the_lidar_is_no_step() {
