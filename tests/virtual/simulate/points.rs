@@ -102,13 +102,16 @@ fn a_measured_cloud_is_placed_by_the_nominal_sensor() {
     }
 }
 
+/// Lasers from 32 on are those of the second firing at an instant.
 #[test]
-fn one_laser_of_the_upper_half_is_simulated_alone() {
-    let text = scene("hdl64e", "").replace("[mount]", "only_laser = 40\n[mount]");
-    let (report, measured, _) = clouds(&text);
-    assert!(report.shots > 1_000 && measured.len() as u64 == report.returns);
-    // Laser 40 points 12.83 degrees down: level and below, all points are at least so far down.
-    assert!(report.returned > 1_000);
+fn a_laser_of_the_second_firing_is_simulated_alone() {
+    let text = scene("hdl64e", "");
+    let (all, ..) = clouds(&text);
+    let (one, measured, _) = clouds(&text.replace("[mount]", "only_laser = 40\n[mount]"));
+    assert!(all.shots > 100_000);
+    assert_eq!(64 * one.shots, all.shots);
+    assert_eq!(measured.len() as u64, one.returns);
+    assert!(one.returned > one.shots / 2);
 }
 
 /// Without a return the end of a run is found too.

@@ -65,10 +65,10 @@ impl ReturnCloud {
     const fn help(&self) -> &'static str {
         match self.kind {
             ReturnPlace::True => {
-                "free some space or choose another folder with --truth, and run the command again: the other output ends here, too"
+                "free some space or choose another folder with --truth, and run the command again: the simulation ended here"
             }
             ReturnPlace::Measured => {
-                "free some space or choose another folder with -o, and run the command again: the other output ends here, too"
+                "free some space or choose another folder with -o, and run the command again: the simulation ended here"
             }
         }
     }
