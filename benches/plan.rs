@@ -6,11 +6,11 @@
 use std::time::Instant;
 
 use analysis::plan::PlanLimits;
-use engine::capture::scan_plan::{PlanRequest, ScanPlanner};
+use engine::capture::scan_planner::{PlanRequest, ScanPlanner};
 use engine::config::{Config, Device};
 use engine::lidars::{self, LidarSheet};
 
-/// What is asked of a lidar: distance in metres, error in millimetres, gap in degrees.
+/// Request for a plan with a lidar: distance in metres, error in millimetres, gap in degrees.
 struct Request {
     lidar: &'static LidarSheet,
     rpm: &'static [u32],

@@ -39,7 +39,7 @@ pub enum Wire<'a> {
     },
     /// A frame to or from the tilt drive.
     Drive {
-        /// How the bytes are framed.
+        /// Link, whose framing the bytes have.
         link: DriveLink,
         /// To or from the drive.
         direction: Direction,

@@ -1,7 +1,7 @@
 //! Clocks that are set or restarted, and times that make arithmetic hard.
 
 use scanner::clock::{Arrival, LidarClock, OnlineClock};
-use scanner::steps::SetClock;
+use scanner::clock_steps::SetClock;
 use sim::Attachment;
 use units::{Host, Lidar, Span, Stamp};
 use velomotion_tests::capture::{Captured, Setting};

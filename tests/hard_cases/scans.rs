@@ -5,6 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use cloud::{Fields, Points};
 use engine::failure::Failure;
+use engine::reconstruct::frames::FramePlan;
 use engine::reconstruct::replay::{self, Reconstruction};
 use engine::reconstruct::report::ScanReport;
 use engine::reconstruct::source::Source;
@@ -281,6 +282,63 @@ fn no_packet_is_misplaced_where_the_clock_of_the_lidar_is_set_back() {
     }
 }
 
+/// The same for frames, whose points come from the packets of the cloud.
+#[test]
+fn frames_are_the_cloud_where_the_clock_of_the_lidar_is_set_back() {
+    let captured = Captured::new(Setting::default());
+    let (from, to) = captured.sweep_span();
+    let folder = tempfile::tempdir().unwrap();
+    let log = folder.path().join("stepped.pcapng");
+    std::fs::write(
+        &log,
+        set_back(&captured.log(), from + (to - from).half(), 300),
+    )
+    .unwrap();
+    let (_, cloud) = scan(&log);
+    let shots = cloud.time().iter().zip(cloud.ring());
+    let mut expected: Vec<_> = shots
+        .map(|(time, ring)| (*ring, time.as_nanos() / 1_000))
+        .collect();
+    expected.sort_unstable();
+    for (organised, output) in [(false, "plain/frame.pcd"), (true, "organised/frame.pcd")] {
+        let output = folder.path().join(output);
+        std::fs::create_dir(output.parent().unwrap()).unwrap();
+        let plan = FramePlan {
+            cut: Degrees(90.0),
+            organised,
+            fields: Fields::FILE,
+            output: output.clone(),
+            force: false,
+        };
+        let source = Source::open(&log, None).unwrap();
+        let interrupt = AtomicBool::new(false);
+        replay::frames(&request(&source, &interrupt), &plan).unwrap();
+        let mut found: Vec<(u8, i64)> = Vec::new();
+        for file in std::fs::read_dir(output.parent().unwrap()).unwrap() {
+            let bytes = std::fs::read(file.unwrap().path()).unwrap();
+            let mark = b"DATA binary\n";
+            let at = bytes.windows(mark.len()).position(|text| text == mark);
+            // x, y, z; intensity, ring, time; tilt.
+            for row in bytes[at.unwrap() + mark.len()..].chunks(29) {
+                if f32::from_le_bytes(row[..4].try_into().unwrap()).is_finite() {
+                    let time_s = f64::from_le_bytes(row[17..25].try_into().unwrap());
+                    found.push((row[16], (time_s * 1e6).floor() as i64));
+                }
+            }
+        }
+        found.sort_unstable();
+        assert_eq!(found.len(), expected.len(), "organised: {organised}");
+        for (found, expected) in found.iter().zip(&expected) {
+            // A packet at the wrong time would be 300 us off; doubles of today step by 0.2 us.
+            let apart_us = (found.1 - expected.1).abs();
+            assert!(
+                found.0 == expected.0 && apart_us <= 1,
+                "organised: {organised}: {found:?}, {expected:?}"
+            );
+        }
+    }
+}
+
 /// The bytes of a log whose lidar has set its clock back when a packet of time `at` is received.
 fn set_back(log: &Path, at: Stamp<units::Host>, by_us: u32) -> Vec<u8> {
     let config = LogConfig {
@@ -361,8 +419,16 @@ fn scan(log: &Path) -> (ScanReport, Points) {
 
 fn try_scan(log: &Path) -> Result<(ScanReport, Points), Failure> {
     let mut points = Points::new(Fields::ALL);
-    let request = Reconstruction {
-        recording: &Source::open(log, None).unwrap(),
+    let source = Source::open(log, None).unwrap();
+    let interrupt = AtomicBool::new(false);
+    let request = request(&source, &interrupt);
+    let scan = replay::scan(&request, &mut points, Path::new("memory"))?;
+    Ok((scan, points))
+}
+
+fn request<'a>(recording: &'a Source, interrupt: &'a AtomicBool) -> Reconstruction<'a> {
+    Reconstruction {
+        recording,
         tilt: TiltSource::Log,
         options: lidar::Options::default(),
         time: engine::reconstruct::replay::TimeReference::Host,
@@ -371,8 +437,6 @@ fn try_scan(log: &Path) -> Result<(ScanReport, Points), Failure> {
         truth: None,
         live: false,
         lost_records: 0,
-        interrupt: &AtomicBool::new(false),
-    };
-    let scan = replay::scan(&request, &mut points, Path::new("memory"))?;
-    Ok((scan, points))
+        interrupt,
+    }
 }

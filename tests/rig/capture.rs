@@ -15,7 +15,7 @@ use analysis::truth::TruthReport;
 use cloud::{Fields, Points};
 use drive::{DriveClient, Observation};
 use engine::capture::moves as motion;
-use engine::capture::request::scan_config;
+use engine::capture::plan::scan_config;
 use engine::capture::run_moves;
 use engine::config::{AxisSettings, Config};
 use engine::devices::drive_port::BusLine;
@@ -34,7 +34,7 @@ use protocol::epos2::DeviceError;
 use protocol::epos2::message::WriteObject;
 use protocol::epos2::rs232;
 use protocol::record::{DriveLink, Record, Wire};
-use scanner::{LidarConfig, TiltSource};
+use scanner::{RangeAccuracy, TiltSource};
 use sim::cast::{Object, Sphere};
 
 use sim::{Attachment, Rig, Scene};
@@ -116,7 +116,7 @@ impl Captured {
         config.rs232_baud = (setting.links.attached == Attachment::Rs232).then_some(115_200);
         let mut rig = simulated::rig(&axis, &config, setting.start);
         if let Some(range_sd_m) = setting.range_sd_m {
-            config.lidar = LidarConfig { range_sd_m };
+            config.lidar = RangeAccuracy { range_sd_m };
         }
         rig.lidar.clock_at_start_us = setting.lidar_clock_us;
         rig.lidar.rpm = setting.lidar_rpm;

@@ -8,7 +8,7 @@ use analysis::density::{gaps, quantile};
 use analysis::plan::{
     PlanLimits, PlanRow, PlannedPlace, PlannedRays, PlannedScan, StartedSweep, TiltSweep,
 };
-use engine::capture::scan_plan::{PlanReport, PlanRequest, ScanPlanner};
+use engine::capture::scan_planner::{PlanReport, PlanRequest, ScanPlanner};
 use engine::capture_request::CaptureRequest;
 use engine::config::{Config, Device};
 use engine::lidars;

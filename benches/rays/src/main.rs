@@ -23,7 +23,7 @@ fn seconds(clock: ClockId) -> f64 {
     Duration::from(clock_gettime(clock).expect("Linux has this clock")).as_secs_f64()
 }
 
-/// How many rays went through, how long the process computed for it, and how long it took.
+/// Repeats the work; returns the number of rays, the CPU time and the elapsed time.
 fn timed(rays: usize, mut work: impl FnMut()) -> String {
     work();
     let (cpu, wall) = (

@@ -20,11 +20,11 @@
 
 pub mod cloud_statistics;
 pub mod density;
-pub mod device;
 mod draw;
 pub mod figures;
 pub mod k;
 mod noise;
 pub mod plan;
+pub mod tilted_sensor;
 pub mod tradeoff;
 pub mod truth;

@@ -1,6 +1,8 @@
 //! Seeded random numbers.
 
-/// SplitMix64 (Steele, Lea and Flood 2014): the same numbers on every machine.
+use units::random::{split_mix_64, unit_interval};
+
+/// Numbers that follow from a seed.
 #[derive(Clone, Debug)]
 pub struct SeededNoise(pub u64);
 
@@ -8,15 +10,12 @@ impl SeededNoise {
     /// The next 64 bits.
     #[inline]
     pub const fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
+        split_mix_64(&mut self.0)
     }
 
     /// The next number, uniform in 0..1.
     pub fn uniform(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+        unit_interval(self.bits())
     }
 
     /// The next number of nearly normal distribution with standard deviation 1 (Irwin-Hall: the sum

@@ -1,4 +1,4 @@
-//! How accurate the points of scans are, from the scans themselves.
+//! Accuracy of the points of scans, from the scans themselves.
 //!
 //! Surface elements of half a metre, those of the calibration, show the noise of ranges and what
 //! depends on range, incidence, tilt, speed, laser, reflectivity or time (`bins`); elements that
@@ -49,7 +49,7 @@ pub struct StudyRequest<'a> {
     pub truth: &'a [Vec<PointError>],
 }
 
-/// What scans say of their accuracy.
+/// Accuracy of scans, measured from the scans themselves.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct AccuracyStudy {

@@ -50,7 +50,7 @@ pub struct ParameterEstimate {
     pub at_20_m: [f64; 2],
 }
 
-/// What a calibration rests on.
+/// Evidence for a calibration.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct CalibrationEvidence {
@@ -74,11 +74,11 @@ pub struct CalibrationEvidence {
     pub after_m: Vec<[f64; 2]>,
     /// Root mean square of all residuals before and after, metres.
     pub rms_m: [f64; 2],
-    /// That of each surface element.
+    /// Root mean square of each surface element before and after, metres.
     pub patches_m: [Vec<f64>; 2],
 }
 
-/// What a scan says of the motion of its base.
+/// Evidence of a scan on the motion of its base.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct BaseEvidence {
@@ -148,8 +148,8 @@ pub enum CalibrationRefusal {
     /// The caller ended it.
     #[error("interrupted")]
     Interrupted,
-    /// A name to be fixed that no parameter begins with.
-    #[error("no parameter begins with {name:?}; there are {}", known.join(", "))]
+    /// A name to be fixed that is neither a parameter nor the first words of one.
+    #[error("{name:?} is neither a parameter nor the first words of one; there are {}", known.join(", "))]
     UnknownParameter {
         /// The name.
         name: String,

@@ -95,12 +95,7 @@ pub fn calibrate(
     progress: &mut dyn FnMut(usize, f64) -> bool,
 ) -> Result<Calibration, CalibrationRefusal> {
     let estimator = Estimator::new(request);
-    let is_known = |name: &str| {
-        estimator
-            .parameters
-            .iter()
-            .any(|p| p.name.starts_with(name))
-    };
+    let is_known = |name: &str| estimator.parameters.iter().any(|p| p.is_in(name));
     if let Some(name) = request.fixed.iter().find(|name| !is_known(name)) {
         let known = estimator
             .parameters
@@ -109,7 +104,7 @@ pub fn calibrate(
             .map(|p| p.name.clone());
         return Err(CalibrationRefusal::UnknownParameter {
             name: name.clone(),
-            known: known.chain(["laser_".into(), "drift_".into()]).collect(),
+            known: known.chain(["laser".into(), "drift".into()]).collect(),
         });
     }
     let residuals = estimator.residuals(&estimator.start)?;
@@ -137,7 +132,7 @@ impl<'a> Estimator<'a> {
         start[POSITION_Z] = z;
         let is_fixed = |p: &Parameter| {
             let mut names = request.fixed.iter();
-            names.any(|name| p.name.starts_with(name.as_str()))
+            names.any(|name| p.is_in(name))
         };
         let priors = parameters.iter();
         let priors = priors.map(|p| if is_fixed(p) { 0.0 } else { p.prior_sd });

@@ -1,4 +1,4 @@
-//! What the flatness of large surfaces says, of the common range of all lasers above all.
+//! Evidence from the flatness of large surfaces, mainly on the common range of all lasers.
 //!
 //! A common error of ranges bends a wall towards the scanner where it is near and not where it is
 //! far. Within an element of half a metre its curvature hides that; over metres walls are flatter.
@@ -12,7 +12,7 @@ use crate::linear::{Cholesky, Matrix, Vec3, add, dot};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WallElement {
     pub log: usize,
-    /// Where the mean of its shots lies.
+    /// Mean position of its shots.
     pub centre: Vec3,
     /// Change of that by the common range, through all parameters that go with it.
     pub slope: Vec3,

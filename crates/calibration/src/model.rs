@@ -55,7 +55,7 @@ struct LaserModel {
     vertical_offset_m: f64,
 }
 
-/// Where a shot ends, and its direction.
+/// End point of a shot, and its direction.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ShotRay {
     pub end: Vec3,

@@ -59,6 +59,15 @@ pub struct Parameter {
     pub(crate) m_at_20_m: f64,
 }
 
+impl Parameter {
+    /// Whether this is the parameter `name`, or one of a group by its first words: `laser_1` and
+    /// `laser` are groups of `laser_1_range_m`, and of `laser_12_range_m` only `laser` is.
+    pub(crate) fn is_in(&self, name: &str) -> bool {
+        let rest = self.name.strip_prefix(name.trim_end_matches('_'));
+        rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('_'))
+    }
+}
+
 /// The list of parameters of a scanner with `lasers` lasers and `logs` logs.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Layout {
@@ -184,5 +193,20 @@ mod tests {
         names.sort_unstable();
         names.dedup();
         assert_eq!(names.len(), all.len());
+    }
+
+    #[test]
+    fn a_group_is_named_by_whole_words() {
+        let layout = Layout {
+            lasers: 16,
+            logs: 1,
+        };
+        let all = layout.parameters();
+        let count = |name: &str| all.iter().filter(|p| p.is_in(name)).count();
+        assert_eq!(
+            ["laser_1", "laser", "laser_1_range_m"].map(count),
+            [3, 48, 1]
+        );
+        assert_eq!(["drift_", "play", "pl", "p"].map(count), [6, 1, 0, 0]);
     }
 }

@@ -3,6 +3,8 @@
 mod oracle;
 pub(crate) mod scans;
 
+use units::random::{split_mix_64, unit_interval};
+
 use crate::model::Fixed;
 use crate::parameters::Layout;
 use crate::shots::{NominalLaser, RangeShot};
@@ -10,14 +12,7 @@ use crate::shots::{NominalLaser, RangeShot};
 /// Draws from -1 to 1 (SplitMix64).
 pub(crate) fn draws(seed: u64) -> impl FnMut() -> f64 {
     let mut state = seed;
-    move || {
-        state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = state;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^= z >> 31;
-        (z >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
+    move || 2.0 * unit_interval(split_mix_64(&mut state)) - 1.0
 }
 
 /// A VLP-16 on a mount with this rotation about y and position along y.

@@ -4,7 +4,7 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(u8)]
 pub enum DiagnosticLevel {
-    /// As it should be.
+    /// No problem.
     Ok = 0,
     /// A limitation that users of the cloud have to know.
     Warn = 1,

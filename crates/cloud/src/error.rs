@@ -5,7 +5,7 @@ use std::io;
 
 use crate::MissingColumns;
 
-/// Why a sink could not take points.
+/// Reason why a sink could not take points.
 #[derive(Debug, thiserror::Error)]
 pub enum SinkError {
     /// The output refused bytes (disk full, pipe closed, ...).
@@ -38,7 +38,7 @@ pub enum SinkError {
     Coordinate {
         /// The format being written.
         format: &'static str,
-        /// Which coordinate.
+        /// Axis of the coordinate.
         axis: char,
         /// Index of the point among all points of the sink.
         point: u64,

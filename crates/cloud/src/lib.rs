@@ -43,6 +43,6 @@ pub use diagnostic::{Diagnostic, DiagnosticLevel};
 pub use error::SinkError;
 pub use metadata::Metadata;
 pub use points::{Point, Points, Spare};
-pub use sink::{Companion, Sink};
+pub use sink::{Companion, Revolution, Sink};
 pub use summary::{Bounds, Summary};
 pub use tilt_track::TiltTrack;

@@ -1,4 +1,4 @@
-//! How the lidar sits on the tilt axis: Eq. 4-6 of "Analysis of 3D Scan Measurement Distribution
+//! Pose of the lidar on the tilt axis: Eq. 4-6 of "Analysis of 3D Scan Measurement Distribution
 //! with Application to a Multi-Beam Lidar on a Rotating Platform" (2018).
 //!
 //! Frames are x right, y forward, z up. The platform turns about Y. The paper's lidar is upright at

@@ -27,6 +27,17 @@ impl Companion {
     }
 }
 
+/// A revolution of the lidar, which ends at an azimuth.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Revolution {
+    /// Number from 0.
+    pub index: u64,
+    /// Number of firings.
+    pub firings: u64,
+    /// Whether it extends from cut to cut.
+    pub whole: bool,
+}
+
 /// A consumer of points. Only [`Sink::points`] is required. The order of calls is begin, tilt,
 /// points and revolution (any number), diagnostics, finish, companion.
 pub trait Sink {
@@ -69,7 +80,8 @@ pub trait Sink {
     ///
     /// # Errors
     /// [`SinkError`] if the points so far cannot be stored.
-    fn revolution(&mut self) -> Result<(), SinkError> {
+    fn revolution(&mut self, revolution: &Revolution) -> Result<(), SinkError> {
+        let _ = revolution;
         Ok(())
     }
 
@@ -141,9 +153,9 @@ impl<A: Sink, B: Sink> Sink for (A, B) {
         self.1.tilt(track)
     }
 
-    fn revolution(&mut self) -> Result<(), SinkError> {
-        self.0.revolution()?;
-        self.1.revolution()
+    fn revolution(&mut self, revolution: &Revolution) -> Result<(), SinkError> {
+        self.0.revolution(revolution)?;
+        self.1.revolution(revolution)
     }
 
     fn diagnostics(&mut self, diagnostics: &[Diagnostic]) -> Result<(), SinkError> {
@@ -187,8 +199,8 @@ macro_rules! forward {
                 (**self).tilt(track)
             }
 
-            fn revolution(&mut self) -> Result<(), SinkError> {
-                (**self).revolution()
+            fn revolution(&mut self, revolution: &Revolution) -> Result<(), SinkError> {
+                (**self).revolution(revolution)
             }
 
             fn diagnostics(&mut self, diagnostics: &[Diagnostic]) -> Result<(), SinkError> {
@@ -266,7 +278,7 @@ mod tests {
                 self.0 += 1;
                 Ok(())
             }
-            fn revolution(&mut self) -> Result<(), SinkError> {
+            fn revolution(&mut self, _: &Revolution) -> Result<(), SinkError> {
                 self.0 += 10;
                 Ok(())
             }
@@ -287,7 +299,7 @@ mod tests {
             Box::new((&mut first, (Points::new(Fields::NONE), &mut second)));
         assert!(pair.wants_tilt());
         pair.tilt(&TiltTrack::default()).unwrap();
-        pair.revolution().unwrap();
+        pair.revolution(&Revolution::default()).unwrap();
         pair.diagnostics(&[]).unwrap();
         assert_eq!(pair.companion("scan").unwrap().text, "scan");
         drop(pair);

@@ -236,9 +236,9 @@ impl Client {
     fn gone(&self, why: &str) -> Failure {
         Failure::new(
             Kind::Incomplete,
-            format!("the daemon at {} went away: {why}", self.socket.display()),
+            format!("the connection to the daemon at {} is lost: {why}", self.socket.display()),
         )
-        .help("see what the daemon says (journalctl -u velomotion); what it had recorded is found when it starts again")
+        .help("see its log (journalctl -u velomotion); the daemon keeps what it recorded and lists it after its next start")
     }
 
     fn request(&self, method: &str, path: &str, body: Option<&[u8]>) -> Result<Answer, Failure> {
@@ -298,7 +298,7 @@ impl Client {
                         length: length.unwrap_or(0),
                         body: answer,
                     }),
-                    (None, _) => Err(std::io::Error::other("it speaks no HTTP")),
+                    (None, _) => Err(std::io::Error::other("its answer is not HTTP")),
                 };
             }
             if let Some((name, value)) = line.split_once(':')
@@ -307,7 +307,9 @@ impl Client {
                 length = value.trim().parse().ok();
             }
         }
-        Err(std::io::Error::other("it says too much"))
+        Err(std::io::Error::other(
+            "its answer has too many header lines",
+        ))
     }
 }
 

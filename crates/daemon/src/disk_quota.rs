@@ -46,7 +46,7 @@ pub struct DiskQuota {
     refused: OnceLock<Failure>,
 }
 
-/// What the file is made for, which decides how much of the disk it may use.
+/// Purpose of the file, which decides how much of the disk it may use.
 #[derive(Clone, Copy)]
 enum Purpose {
     Download,

@@ -15,7 +15,7 @@ use crate::http::unix_socket::UnixSocket;
 use crate::limits::{LOCAL_CONNECTIONS, Waits};
 use crate::sockets;
 
-/// What a command does with its devices.
+/// Task of a command on its devices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LocalTask {
     /// Read the drive's state.

@@ -5,8 +5,8 @@ use protocol::vlp16::models;
 
 use crate::health_monitor::disk_full;
 use crate::state::DaemonState;
-use engine::capture::request::CapturePlan;
-use engine::capture::scan_plan::ScanPlanner;
+use engine::capture::plan::CapturePlan;
+use engine::capture::scan_planner::ScanPlanner;
 use engine::capture_request::CaptureRequest;
 use engine::failure::Failure;
 use serde::Serialize;

@@ -45,7 +45,7 @@ pub(crate) struct CanServices {
     out: VecDeque<CanFrame>,
     heartbeat: HeartbeatConsumer,
     operational: bool,
-    /// When the host's next heartbeat is due; `None` while it sends none.
+    /// Time at which the host's next heartbeat is due; `None` while it sends none.
     pub next_heartbeat: Option<Stamp<Host>>,
     /// Longest time between two heartbeats of the host since its monitoring began in this command,
     /// if the node does not tolerate it.

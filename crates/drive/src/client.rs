@@ -157,7 +157,7 @@ impl DriveClient {
         self.advance(now);
     }
 
-    /// When [`DriveClient::handle_timeout`] is due without input.
+    /// Time at which [`DriveClient::handle_timeout`] is due without input.
     #[must_use]
     pub fn poll_timeout(&self) -> Option<Stamp<Host>> {
         let core = lock(&self.core);

@@ -54,16 +54,16 @@ pub struct AxisConfig {
 /// Largest deviations of a moving axis from its plan before it is stopped.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionGuardConfig {
-    /// How far the axis may lag behind its plan at low speed.
+    /// Greatest lag of the axis behind its plan at low speed.
     pub behind: Degrees,
     /// Lag of the servo, added to `behind` in proportion to the speed.
     pub servo_lag: Span,
-    /// How far the axis may be ahead of its plan, beyond its target, or away from a position that
-    /// it holds: the overshoot of the servo.
+    /// Greatest distance ahead of the plan, beyond the target, or away from a position that the
+    /// axis holds: the overshoot of the servo.
     pub ahead: Degrees,
-    /// How far the axis may be beyond its limits.
+    /// Greatest distance of the axis beyond its limits.
     pub beyond_limits: Degrees,
-    /// How far homing may move beyond the range between the limits and the home offset.
+    /// Greatest travel of homing beyond the range between the limits and the home offset.
     pub homing_margin: Degrees,
 }
 

@@ -277,7 +277,7 @@ pub enum DriveError {
     /// The samples show another motion than the plan.
     #[error("the axis {deviation}: expected {:.2} deg, got {:.2} deg", expected.0, got.0)]
     OffPlan {
-        /// How the motion differs.
+        /// Deviation from the plan.
         deviation: Deviation,
         /// The nearest angle that the plan has at that time, or the limit.
         expected: Degrees,
@@ -343,7 +343,7 @@ pub enum DriveError {
     },
 }
 
-/// How a motion differs from its plan.
+/// Deviation of a motion from its plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Deviation {
     /// It goes in the opposite direction.

@@ -14,13 +14,13 @@ use crate::plan::MovePlan;
 /// A position of the shaft with bounds of the time at which the drive sampled it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShaftSample {
-    /// When the request was sent: on RS232 its body, for the stream of a CAN bus the SYNC.
+    /// Time at which the request was sent: on RS232 its body, for the stream of a CAN bus the SYNC.
     pub request: Stamp<Host>,
-    /// When the reply was read; for a listener on RS232, when it was announced.
+    /// Time at which the reply was read; for a listener on RS232, at which it was announced.
     pub answer: Stamp<Host>,
     /// Position actual value (6064).
     pub position: Quadcounts,
-    /// What made the drive sample.
+    /// Trigger of the sample.
     pub trigger: SampleTrigger,
     /// The drive's clock at the sample (1013) in us, with an arbitrary zero, wrapping every 71
     /// minutes; `None` if the reply does not contain it.
@@ -74,7 +74,7 @@ pub enum CommandProgress {
     Homing,
     /// Homing continues. This is not a sample, as the axis may lose its zero at any time.
     Searching {
-        /// When the drive reported the position.
+        /// Time at which the drive reported the position.
         at: Stamp<Host>,
         /// Position demand value (6062), relative to the zero before homing.
         demand: Quadcounts,
@@ -96,33 +96,33 @@ pub enum CommandProgress {
 /// Result of a successful command.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CommandOutcome {
-    /// Of [`crate::DriveCommand::Connect`].
+    /// Outcome of [`crate::DriveCommand::Connect`].
     Connected(ConnectionReport),
-    /// Of [`crate::DriveCommand::Home`].
+    /// Outcome of [`crate::DriveCommand::Home`].
     Homed {
         /// Position of the axis.
         position: Quadcounts,
         /// The position as an angle.
         angle: Degrees,
     },
-    /// Of [`crate::DriveCommand::Goto`] and [`crate::DriveCommand::Sweep`].
+    /// Outcome of [`crate::DriveCommand::Goto`] and [`crate::DriveCommand::Sweep`].
     Arrived(MoveReport),
-    /// Of [`crate::DriveCommand::Hold`].
+    /// Outcome of [`crate::DriveCommand::Hold`].
     Held,
-    /// Of [`crate::DriveCommand::Stop`] and [`crate::DriveCommand::Brake`].
+    /// Outcome of [`crate::DriveCommand::Stop`] and [`crate::DriveCommand::Brake`].
     Stopped(StopReport),
-    /// Of [`crate::DriveCommand::ClearFaults`]: the error history before, newest first.
+    /// Outcome of [`crate::DriveCommand::ClearFaults`]: the error history before, newest first.
     FaultsCleared(Vec<DeviceError>),
-    /// Of [`crate::DriveCommand::Status`].
+    /// Outcome of [`crate::DriveCommand::Status`].
     Status(DriveStatus),
-    /// Of [`crate::DriveCommand::Read`].
+    /// Outcome of [`crate::DriveCommand::Read`].
     Read {
         /// The object.
         address: Address,
         /// Its bytes in little-endian order.
         bytes: Vec<u8>,
     },
-    /// Of [`crate::DriveCommand::Write`].
+    /// Outcome of [`crate::DriveCommand::Write`].
     Written(Address),
 }
 
@@ -208,9 +208,9 @@ pub struct MoveReport {
     pub position: Quadcounts,
     /// The position as an angle.
     pub angle: Degrees,
-    /// When the drive confirmed the command to move.
+    /// Time at which the drive confirmed the command to move.
     pub started: Stamp<Host>,
-    /// When the axis was observed at its target.
+    /// Time at which the axis was observed at its target.
     pub arrived: Stamp<Host>,
 }
 

@@ -1,4 +1,4 @@
-//! How accurate a scanner is, by its logs.
+//! Accuracy of a scanner, by its logs.
 
 mod report;
 mod truth;
@@ -42,7 +42,7 @@ pub struct AccuracyRequest<'a> {
 /// A study with its origin.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
-pub struct Studied {
+pub struct AccuracyResult {
     /// The result.
     pub study: AccuracyStudy,
     /// The lidar.
@@ -67,7 +67,7 @@ const MOTION_PARAMETERS: f64 = 6.0;
 pub fn accuracy(
     request: &AccuracyRequest<'_>,
     reading: &mut dyn FnMut(&Path),
-) -> Result<Studied, Failure> {
+) -> Result<AccuracyResult, Failure> {
     if request.truth.is_some() && request.logs.len() != 1 {
         return Err(Failure::new(Kind::Usage, "the truth is of one log").help("name one log"));
     }
@@ -115,7 +115,7 @@ pub fn accuracy(
         angles,
         truth: &truth,
     });
-    Ok(Studied {
+    Ok(AccuracyResult {
         study: made.map_err(|refusal| refused(&refusal, request))?,
         model,
         simulated,

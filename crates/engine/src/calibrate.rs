@@ -54,7 +54,7 @@ pub enum CalibrateProgress<'a> {
 /// A calibration with its origin.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
-pub struct Calibrated {
+pub struct CalibrationResult {
     /// The result.
     pub calibration: Calibration,
     /// The lidar.
@@ -82,7 +82,7 @@ pub(crate) struct ReadLog {
 pub fn calibrate(
     request: &CalibrateRequest<'_>,
     progress: &mut dyn FnMut(CalibrateProgress<'_>),
-) -> Result<Calibrated, Failure> {
+) -> Result<CalibrationResult, Failure> {
     let mut logs = Vec::new();
     for path in request.logs {
         progress(CalibrateProgress::Reading(path));
@@ -113,7 +113,7 @@ pub fn calibrate(
             .map_err(|refusal| refused(&refusal, request))?;
     }
     let shots = scans.iter().map(Scan::len);
-    Ok(Calibrated {
+    Ok(CalibrationResult {
         calibration,
         model,
         simulated,

@@ -10,7 +10,7 @@ use utoipa::openapi::{RefOr, Schema};
 
 use crate::accuracy::AccuracyReport;
 use crate::calibrate::CalibrateReport;
-use crate::capture::scan_plan::PlanReport;
+use crate::capture::scan_planner::PlanReport;
 use crate::failure::Failure;
 use crate::reconstruct::lidar_copy::LidarCopyReport;
 use crate::reconstruct::report::{InfoReport, ScanReport};

@@ -1,7 +1,8 @@
 //! The engine shared by the command line, the daemon and the ROS 2 node.
 //!
-//! `devices` opens the drive and the lidar, `capture` plans and records a scan, `reconstruct` makes
-//! a cloud of a log or recording. The engine parses no arguments and prints nothing.
+//! `service` owns the devices, which `devices` opens; `capture` plans and records a scan,
+//! `reconstruct` makes a cloud of a log or recording. The engine parses no arguments and prints
+//! nothing.
 //!
 //! ```no_run
 //! use engine::reconstruct::source::Source;

@@ -3,8 +3,8 @@
 use analysis::plan::{PlanLaser, PlanLidar};
 use firmware_sim::vlp16::DISTANCE_UNIT_MM;
 use protocol::vlp16::{LidarModel, models};
-use scanner::LidarConfig;
-use sim::patterns::{PlanarFront, SensorModel};
+use scanner::RangeAccuracy;
+use sim::patterns::{PlanarFront, SensorName};
 
 /// A lidar by its data sheet.
 #[derive(Debug)]
@@ -16,39 +16,39 @@ pub struct LidarSheet {
     /// Its packets, where velomotion reads them.
     pub model: Option<&'static LidarModel>,
     /// Its lasers, rates, aperture and ranges.
-    pub sensor: SensorModel,
+    pub sensor: SensorName,
     /// Steps of its ranges, metres.
     range_step_m: f64,
-    /// Where these are from.
+    /// Source of the standard deviation of its ranges.
     pub source: &'static str,
 }
 
 /// VLP-16.
 pub static VLP_16: LidarSheet = LidarSheet {
     source: "its manual's 3 cm as three standard deviations",
-    ..of_model("vlp16", &models::VLP_16, SensorModel::Vlp16)
+    ..of_model("vlp16", &models::VLP_16, SensorName::Vlp16)
 };
 /// Puck Hi-Res.
 pub static HI_RES: LidarSheet = LidarSheet {
     source: "its manual's 3 cm as three standard deviations",
-    ..of_model("hi-res", &models::PUCK_HI_RES, SensorModel::HiRes)
+    ..of_model("hi-res", &models::PUCK_HI_RES, SensorName::HiRes)
 };
 /// HDL-32E.
 pub static HDL_32E: LidarSheet = LidarSheet {
     source: "its manual's 2 cm as three standard deviations",
-    ..of_model("hdl32e", &models::HDL_32E, SensorModel::Hdl32e)
+    ..of_model("hdl32e", &models::HDL_32E, SensorName::Hdl32e)
 };
 /// VLP-32C.
 pub static VLP_32C: LidarSheet = LidarSheet {
     source: "its manual's 3 cm as three standard deviations",
-    ..of_model("vlp32c", &models::VLP_32C, SensorModel::Vlp32c)
+    ..of_model("vlp32c", &models::VLP_32C, SensorName::Vlp32c)
 };
 /// HDL-64E S2.
 pub static HDL_64E: LidarSheet = LidarSheet {
     name: "hdl64e",
     title: "HDL-64E",
     model: None,
-    sensor: SensorModel::Hdl64e,
+    sensor: SensorName::Hdl64e,
     range_step_m: 0.002,
     source: "its data sheet's 2 cm, one sigma",
 };
@@ -57,7 +57,7 @@ static UTM_30LX: LidarSheet = LidarSheet {
     name: "utm30lx",
     title: "UTM-30LX",
     model: None,
-    sensor: SensorModel::Utm30lx,
+    sensor: SensorName::Utm30lx,
     range_step_m: 0.001,
     source: "its data sheet's repeated accuracy: sigma 10 mm up to 10 m, 30 mm beyond",
 };
@@ -66,7 +66,7 @@ static LMS_151: LidarSheet = LidarSheet {
     name: "lms151",
     title: "LMS151",
     model: None,
-    sensor: SensorModel::Lms151,
+    sensor: SensorName::Lms151,
     range_step_m: 0.001,
     source: "its maker's typical statistical error of 12 mm",
 };
@@ -87,7 +87,7 @@ const AZIMUTH_STEP_DEG: f64 = 0.01;
 const fn of_model(
     name: &'static str,
     model: &'static LidarModel,
-    sensor: SensorModel,
+    sensor: SensorName,
 ) -> LidarSheet {
     LidarSheet {
         name,
@@ -216,9 +216,9 @@ impl LidarSheet {
 
 /// Accuracy of the simulated lidar: ranges are quantised and have no other error.
 #[must_use]
-pub fn simulated() -> LidarConfig {
+pub fn simulated() -> RangeAccuracy {
     let step_m = f64::from(DISTANCE_UNIT_MM) * 1e-3;
-    LidarConfig {
+    RangeAccuracy {
         range_sd_m: step_m / f64::sqrt(12.0),
     }
 }

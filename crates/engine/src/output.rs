@@ -52,18 +52,19 @@ impl Target {
             Failure::new(Kind::Usage, format!("{}: {error}", path.display()))
                 .help("use one of those extensions, or - for PLY on stdout")
         })?;
-        let lacks = format.lacks();
+        let refused = format.refused_columns();
         if let Some(column) = fields
             .columns()
-            .find(|column| lacks.contains(column.field()))
+            .find(|column| refused.contains(column.field()))
         {
             let what = format!(
                 "{}: .{format} has no column {}",
                 path.display(),
                 column.name()
             );
-            return Err(Failure::new(Kind::Usage, what)
-                .help("omit --uncertainty and --echo, or write another format, such as .ply"));
+            return Err(Failure::new(Kind::Usage, what).help(
+                "omit --uncertainty, --echo and --laser, or write another format, such as .ply",
+            ));
         }
         if format.needs_companion() {
             check_beside(path)?;

@@ -33,7 +33,7 @@ pub use lease::{AxisLease, LeaseError};
 pub use options::{Environment, Lifetime, ServiceOptions};
 
 use crate::capture::jog::{self, JogRequest};
-use crate::capture::request::CapturePlan;
+use crate::capture::plan::CapturePlan;
 use crate::capture::run::Outcome;
 use crate::config::{Config, Device};
 use crate::devices::lidar_receiver::{LidarReceiver, PacketTap};

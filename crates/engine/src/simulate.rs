@@ -34,7 +34,7 @@ use utoipa::ToSchema;
 use crate::failure::{Failure, Kind};
 use crate::output::{self, Target};
 use crate::reconstruct::report::PacketCounts;
-use log::{Log, Outputs, ReturnCloud, ReturnPlace, Written, cannot_write, scan_config};
+use log::{Log, Outputs, ReturnCloud, ReturnPlace, WrittenClouds, cannot_write, scan_config};
 
 /// Report on a simulation.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
@@ -90,7 +90,7 @@ pub struct SimulationReport {
     pub choice: Option<EffectChoice>,
 }
 
-/// What a simulation makes besides the truth.
+/// Output of a simulation besides the truth.
 pub enum SimulationOutput {
     /// A log.
     Log {
@@ -349,7 +349,7 @@ pub fn make(
         }
     };
     let summary = summary.map_err(|error| cannot_simulate(&name, &error))?;
-    let Written {
+    let WrittenClouds {
         measured,
         truth,
         cut,

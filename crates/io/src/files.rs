@@ -339,7 +339,7 @@ impl ReopenableFile {
         })
     }
 
-    /// As [`scratch_in`], in [`scratch_folder`]. It goes with this value.
+    /// Like [`scratch_in`], in [`scratch_folder`]. The file is removed with this value.
     ///
     /// # Errors
     /// As [`scratch_in`].

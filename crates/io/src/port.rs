@@ -6,7 +6,7 @@ mod child;
 mod delimit;
 mod descriptor;
 mod pty;
-mod recorder;
+mod recording_port;
 mod serial;
 pub(crate) mod wait;
 
@@ -17,7 +17,7 @@ use units::{Host, Span, Stamp};
 pub use child::{PortChild, shared_port};
 pub use descriptor::DescriptorPort;
 pub use pty::Pty;
-pub use recorder::RecordingPort;
+pub use recording_port::RecordingPort;
 pub use serial::{LatencyTimer, SerialPort};
 
 /// A byte stream to a device.

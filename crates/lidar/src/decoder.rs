@@ -116,7 +116,7 @@ impl Decoder {
         self.finish_blocks(&mut |block| one_by_one(block, emit));
     }
 
-    /// As [`Decoder::packet`], but emits the firings of a block together.
+    /// Like [`Decoder::packet`], but emits the firings of a block together.
     pub fn decode_blocks(
         &mut self,
         host: Stamp<Host>,
@@ -140,7 +140,7 @@ impl Decoder {
         }
     }
 
-    /// As [`Decoder::finish`], but emits the firings of a block together.
+    /// Like [`Decoder::finish`], but emits the firings of a block together.
     pub fn finish_blocks(&mut self, emit: &mut impl FnMut(&FiringBlock<'_>)) {
         if let Some(pending) = self.pending.take() {
             self.emitted = Some(pending.start);

@@ -33,7 +33,7 @@ pub struct Stats {
     pub clock_steps: u64,
     /// Data packets missing, by device time.
     pub lost_packets: u64,
-    /// Where packets are missing: the first [`Stats::MAX_GAPS`] places.
+    /// Places of missing packets: the first [`Stats::MAX_GAPS`] of them.
     pub gaps: Vec<PacketGap>,
     /// Emitted firings of all lasers.
     pub firings: u64,

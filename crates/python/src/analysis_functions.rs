@@ -17,7 +17,7 @@ use crate::binding_error::BindingError;
 use crate::table::to_python;
 use crate::work;
 
-/// What is measured.
+/// Source of the measured directions.
 enum DirectionSource {
     Pattern(String),
     /// Positions, metres from the scanner.

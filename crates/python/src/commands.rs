@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use analysis::plan::PlanLimits;
 use engine::calibrate::{CalibrateReport, CalibrateRequest, to_toml};
-use engine::capture::scan_plan::{PlanRequest, ScanPlanner};
+use engine::capture::scan_planner::{PlanRequest, ScanPlanner};
 use engine::config;
 use engine::devices::profile;
 use engine::document::Document;

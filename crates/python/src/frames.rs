@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use cloud::{Fields, Points, Sink, SinkError, TiltTrack};
+use cloud::{Fields, Points, Revolution, Sink, SinkError, TiltTrack};
 use pyo3::prelude::*;
 use units::Degrees;
 
@@ -17,7 +17,7 @@ use crate::work::LOOK_AGAIN;
 /// Revolutions that the reader may be ahead.
 const AHEAD: usize = 4;
 
-/// What the reader sends.
+/// Message from the reader.
 enum FrameMessage {
     /// The rows of a revolution.
     Rows(Vec<u8>),
@@ -59,7 +59,7 @@ impl Sink for FrameRows {
         Ok(())
     }
 
-    fn revolution(&mut self) -> Result<(), SinkError> {
+    fn revolution(&mut self, _: &Revolution) -> Result<(), SinkError> {
         // The next revolution is about as long.
         let room = Vec::with_capacity(self.rows.bytes.len());
         let bytes = std::mem::replace(&mut self.rows.bytes, room);

@@ -1,4 +1,4 @@
-//! What a log holds, as arrays.
+//! Contents of a log, as arrays.
 
 use std::path::PathBuf;
 

@@ -19,20 +19,20 @@ const GID_BYTES: usize = 16;
 /// Identity of a publisher or a client in `rmw_zenoh`.
 pub type Gid = [u8; GID_BYTES];
 
-/// What is offered (`rmw/types.h`): history is keep last, and deadline, lifespan and liveliness are
-/// without limit.
+/// Offered quality of service (`rmw/types.h`): history is keep last, and deadline, lifespan and
+/// liveliness are without limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct QualityOfService {
     /// Reliable, else best effort.
     pub reliable: bool,
     /// Transient local, else volatile.
     pub latched: bool,
-    /// How many samples are kept.
+    /// Number of samples kept.
     pub depth: u32,
 }
 
 impl QualityOfService {
-    /// As tokens have it: what is `rmw_zenoh`'s default is left empty.
+    /// Text in liveliness tokens; `rmw_zenoh`'s defaults are left empty.
     fn text(self) -> String {
         let reliability = if self.reliable { "" } else { "2" };
         let durability = if self.latched { "1" } else { "" };
@@ -116,8 +116,8 @@ pub fn gid(token: &str) -> Gid {
     xxh3_128(token.as_bytes()).to_le_bytes()
 }
 
-/// What goes with a message: its number, from 1, when it was sent (nanoseconds since 1970), and who
-/// sent it.
+/// Attachment of a message: its number, from 1, its time of sending (nanoseconds since 1970), and
+/// its sender.
 #[must_use]
 pub fn attachment(number: i64, sent_ns: i64, gid: &Gid) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(ATTACHMENT_BYTES);

@@ -16,9 +16,9 @@ use units::{Degrees, Host, Lidar, Stamp};
 
 use crate::calibration::PointCalibration;
 use crate::clock::{LidarClock, Moment};
+use crate::clock_steps::{ClockStep, DelayChange};
 use crate::residuals::ResidualInterval;
 use crate::sample_gaps::SampleGaps;
-use crate::steps::{ClockStep, DelayChange};
 use crate::sweeps::Sweep;
 use crate::tolerance::MethodChoice;
 use crate::trajectory::{Method, Trajectory};

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use units::{Degrees, Gearing};
 use utoipa::ToSchema;
 
-/// What a calibration says beside the mount.
+/// Results of a calibration except the mount.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(default)]
 pub struct DeviceCalibration {

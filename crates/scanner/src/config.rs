@@ -22,7 +22,7 @@ pub struct ScanConfig {
     /// Mount of the lidar on the tilt axis.
     pub mount: MountConfig,
     /// Accuracy of the lidar.
-    pub lidar: LidarConfig,
+    pub lidar: RangeAccuracy,
     /// The tilt axis.
     pub axis: TiltAxisConfig,
     /// Speed of the drive's RS232 line, baud; absent on every other link.
@@ -32,7 +32,7 @@ pub struct ScanConfig {
     /// Calibration of axis and lasers; absent without one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub calibration: Option<DeviceCalibration>,
-    /// What was simulated, in a log of `velomotion simulate`.
+    /// Simulated scene, in a log of `velomotion simulate`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub simulation: Option<SimulatedScene>,
 }
@@ -101,7 +101,7 @@ fn is_zero(numbers: &[f64; 3]) -> bool {
 /// Accuracy of the lidar.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(default, deny_unknown_fields)]
-pub struct LidarConfig {
+pub struct RangeAccuracy {
     /// Standard deviation of a range, including quantisation, metres.
     pub range_sd_m: f64,
 }
@@ -144,7 +144,7 @@ impl Default for ScanConfig {
             device: "unknown".to_owned(),
             simulated: false,
             mount: MountConfig::default(),
-            lidar: LidarConfig::default(),
+            lidar: RangeAccuracy::default(),
             axis: TiltAxisConfig::default(),
             rs232_baud: None,
             sweep: None,
@@ -161,7 +161,7 @@ impl Default for MountConfig {
     }
 }
 
-impl Default for LidarConfig {
+impl Default for RangeAccuracy {
     /// A third of the typical accuracy of the VLP-16, 3 cm by its manual (63-9243, specifications).
     /// The manual does not define it. As three standard deviations it agrees with recordings of
     /// three VLP-16s, whose ranges spread by 7 to 13 mm within a laser.

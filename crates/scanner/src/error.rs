@@ -25,9 +25,9 @@ pub enum ScanError {
         "no positions of the sweep from {:.3} to {:.3} deg: expected answers of the drive while the axis moved, got none", from.0, to.0
     )]
     UnseenSweep {
-        /// Where it began.
+        /// Angle at which it began.
         from: Degrees,
-        /// Where it ended.
+        /// Angle at which it ended.
         to: Degrees,
     },
     /// The axis moved, but the log lacks the target.
@@ -35,9 +35,9 @@ pub enum ScanError {
         "no sweep: the axis moved from {:.3} to {:.3} deg, not to the end of the plan, and the log lacks the target of the move", from.0, to.0
     )]
     AmbiguousMotion {
-        /// Where it began.
+        /// Angle at which it began.
         from: Degrees,
-        /// Where it ended.
+        /// Angle at which it ended.
         to: Degrees,
     },
     /// The plan of the log begins once more after its last sweep: the log holds several scans.
@@ -45,9 +45,9 @@ pub enum ScanError {
         "more sweeps than the log's configuration plans: after the last one another goes from {:.3} to {:.3} deg", from.0, to.0
     )]
     SurplusSweep {
-        /// Where it began.
+        /// Angle at which it began.
         from: Degrees,
-        /// Where it ended.
+        /// Angle at which it ended.
         to: Degrees,
     },
     /// The host's clock was set by hours in mid-sweep, while nothing was recorded.

@@ -29,7 +29,7 @@ use crate::fast::{FiringBlockPlacer, MAX_PACKET_POINTS, returns};
 use crate::survey::RecordReader;
 use crate::sweeps::{MoveWatch, SweepWatch};
 use crate::trajectory::{Method, StreamingFit, Trajectory};
-use host_steps::{HostSteps, Shown};
+use host_steps::{HostSteps, PacketDecision};
 use stamp_grid::StampGrid;
 
 /// Places points while records come in.
@@ -207,12 +207,12 @@ impl<'a> Live<'a> {
             let due = self.clock.moment(arrival.device);
             let late = due.map(|due| arrival.host.saturating_since(due.host));
             match self.host_steps.packet(arrival, late) {
-                Shown::Packets(arrivals) => {
+                PacketDecision::Packets(arrivals) => {
                     for arrival in arrivals {
                         self.clock.observe(arrival);
                     }
                 }
-                Shown::LidarStep(by, arrivals) => {
+                PacketDecision::LidarStep(by, arrivals) => {
                     self.grid.set(by);
                     arrival.device = arrival.device.saturating_add(by);
                     let fired = self.waiting.iter_mut().rev();
@@ -227,7 +227,7 @@ impl<'a> Live<'a> {
                         });
                     }
                 }
-                Shown::Doubt => {}
+                PacketDecision::Undecided => {}
             }
             LiveFiring {
                 stamp: recorded.device,

@@ -1,8 +1,8 @@
 //! Second pass over the records: decodes every firing and hands its points to a sink.
 
-use cloud::{Points, Sink, SinkError};
+use cloud::{Points, Revolution, Sink, SinkError};
 use drive::record::{Record, Wire};
-use lidar::{Decoder, FiringBlock, FrameCutter, Options, Stats};
+use lidar::{Decoder, FiringBlock, FrameCutter, Options, RevolutionFrame, Stats};
 
 use crate::alignment::{Alignment, PlacementCounts};
 use crate::fast::{FiringBlockPlacer, MAX_PACKET_POINTS};
@@ -81,7 +81,7 @@ impl<'a> Placer<'a> {
         self.decoder.finish_blocks(&mut |block| batches.add(block));
         let last = batches.cutter.as_mut().and_then(FrameCutter::finish);
         match last {
-            Some(_) => batches.end_revolution(),
+            Some(frame) => batches.end_revolution(&frame),
             None => batches.flush(),
         }
         match batches.error {
@@ -99,16 +99,16 @@ impl BatchWriter<'_> {
         let firings = block.firings();
         let count = firings.len();
         let cuts = firings.enumerate();
-        let cuts: Vec<usize> = cuts
-            .filter_map(|(n, firing)| cutter.firing(&firing).map(|_| n))
+        let cuts: Vec<(usize, RevolutionFrame)> = cuts
+            .filter_map(|(n, firing)| Some((n, cutter.firing(&firing)?)))
             .collect();
         if cuts.is_empty() {
             return self.blocks.place(block, &mut self.batch, &mut self.counts);
         }
         let mut placed = 0;
-        for cut in cuts {
+        for (cut, frame) in cuts {
             self.place_firings(block, placed..cut);
-            self.end_revolution();
+            self.end_revolution(&frame);
             placed = cut;
         }
         self.place_firings(block, placed..count);
@@ -119,9 +119,14 @@ impl BatchWriter<'_> {
             .place_firings(block, firings, &mut self.batch, &mut self.counts);
     }
 
-    fn end_revolution(&mut self) {
+    fn end_revolution(&mut self, frame: &RevolutionFrame) {
         self.flush();
-        if let Err(error) = self.sink.revolution() {
+        let revolution = Revolution {
+            index: frame.index,
+            firings: frame.firings,
+            whole: frame.whole,
+        };
+        if let Err(error) = self.sink.revolution(&revolution) {
             self.error.get_or_insert(error);
         }
     }

@@ -7,7 +7,7 @@ use units::{Host, Span, Stamp};
 
 /// Makes the receive times of packets in order of recording distinct.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct ReceiveOrder {
+pub struct ReceiveOrder {
     last: Option<Stamp<Host>>,
 }
 

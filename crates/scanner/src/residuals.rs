@@ -112,7 +112,7 @@ mod tests {
 
     use super::*;
     use crate::clock::{Joint, Stretch};
-    use crate::steps::{ClockSteps, Timeline};
+    use crate::clock_steps::{ClockSteps, Timeline};
     use crate::trajectory::Method;
 
     const SECOND: i64 = 1_000_000_000;

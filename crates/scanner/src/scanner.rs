@@ -8,21 +8,15 @@
 use cloud::{Sink, SinkError};
 use drive::record::Record;
 use lidar::{Options, Stats};
-use units::Span;
 
 use crate::alignment::{Alignment, PlacementCounts};
 use crate::config::ScanConfig;
 use crate::error::ScanError;
 use crate::placer::Placer;
 use crate::residuals;
-use crate::steps::Timeline;
 use crate::survey::Survey;
-use crate::sweeps::FoundSweeps;
 use crate::tilt_source::TiltSource;
 use crate::tolerance::Accuracy;
-
-/// A log that goes on for longer after the last position of a sweep lacks positions.
-const LEAST_REST: Span = Span::from_millis(100);
 
 /// First pass: solves for clock and trajectory of a log written with `config`.
 ///
@@ -55,55 +49,37 @@ impl Survey {
         tilt: &TiltSource,
         accuracy: Accuracy,
     ) -> Result<Alignment, ScanError> {
-        // `steps`, `clock`: the lower envelope of packet delays (Olson 2010, Pitman 1939).
-        let Timeline {
-            clock,
-            steps,
-            delay_changes,
-            drive,
-            arrivals,
-        } = self.timeline().ok_or(ScanError::NoLidarPackets)?;
+        // `clock_steps`, `clock`: the lower envelope of packet delays (Olson 2010, Pitman 1939).
+        let timeline = self.timeline().ok_or(ScanError::NoLidarPackets)?;
         let recorded = self.take_arrivals();
         // `survey`: stamps of the drive's records on the same host clock.
-        let shaft = self.into_shaft_records(&drive);
+        let shaft = self.into_shaft_records(&timeline.drive);
+        let (clock, arrivals) = (timeline.clock, timeline.arrivals);
         // `angles`: encoder positions at the middle of their polls, or by the drive's own clock.
         let angles = tilt.resolve(&shaft, &arrivals, config)?;
         // `sweeps`: profile moves as commanded, found in the angles.
-        let FoundSweeps {
-            seen: sweeps,
-            unseen: unseen_sweeps,
-            inferred: inferred_sweeps,
-            unfinished,
-            ambiguous: ambiguous_motions,
-            surplus: _,
-        } = angles.sweeps(&shaft.moves, config.sweep.as_ref())?;
+        let found = angles.sweeps(&shaft.moves, config.sweep.as_ref())?;
         let last_packet = arrivals.iter().map(|arrival| arrival.host).max();
-        let goes_on = |index: &usize| {
-            let end = sweeps.get(*index).map(|sweep| sweep.end + LEAST_REST);
-            end < last_packet
-        };
-        let unobserved_ends = unfinished.into_iter().filter(goes_on).collect();
-        let spans = angles.spans(&sweeps);
-        let sample_gaps = angles.gaps(&sweeps);
+        let spans = angles.spans(&found.seen);
         // `trajectory`: the commanded profile or a spline, by least squares (Levenberg-Marquardt).
-        let (trajectory, choice) = angles.trajectory(&sweeps, &spans, accuracy, clock.bound())?;
-        let residuals = residuals::over_time(&arrivals, &recorded, &clock, &trajectory, &spans);
+        let (trajectory, choice) =
+            angles.trajectory(&found.seen, &spans, accuracy, clock.bound())?;
         Ok(Alignment {
+            residuals: residuals::over_time(&arrivals, &recorded, &clock, &trajectory, &spans),
             clock,
-            steps,
-            delay_changes,
+            steps: timeline.steps,
+            delay_changes: timeline.delay_changes,
             trajectory,
             choice,
-            sweeps,
-            unseen_sweeps,
-            inferred_sweeps,
-            unobserved_ends,
-            ambiguous_motions,
+            unobserved_ends: found.unobserved_ends(last_packet),
+            sample_gaps: angles.gaps(&found.seen),
+            sweeps: found.seen,
+            unseen_sweeps: found.unseen,
+            inferred_sweeps: found.inferred,
+            ambiguous_motions: found.ambiguous,
             mount: angles.mount,
             calibration: angles.calibration,
             implausible: angles.implausible,
-            sample_gaps,
-            residuals,
             range_sd_m: config.lidar.range_sd_m,
             spans,
         })

@@ -9,10 +9,10 @@ use lidar::{Options, Timekeeper};
 use units::{Gearing, Host, Span, Stamp};
 
 use crate::clock::Arrival;
+use crate::clock_steps::{ClockStep, ClockSteps, HostTimeline, Timeline};
 use crate::config::ScanConfig;
 use crate::error::ScanError;
 use crate::receive_order::ReceiveOrder;
-use crate::steps::{ClockStep, ClockSteps, HostTimeline, Timeline};
 use crate::sweeps::MoveWatch;
 
 /// First pass: collects what the records show about time and tilt.

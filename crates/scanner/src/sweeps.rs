@@ -110,6 +110,20 @@ pub struct FoundSweeps {
     pub surplus: Vec<(Degrees, Degrees)>,
 }
 
+/// A log that goes on for longer after the last position of a sweep lacks positions.
+const LEAST_REST: Span = Span::from_millis(100);
+
+impl FoundSweeps {
+    /// Indices of the sweeps whose end the positions do not show, though packets go on.
+    pub(crate) fn unobserved_ends(&self, last_packet: Option<Stamp<Host>>) -> Vec<usize> {
+        let goes_on = |index: &usize| {
+            let sweep = self.seen.get(*index);
+            sweep.map(|sweep| sweep.end + LEAST_REST) < last_packet
+        };
+        self.unfinished.iter().copied().filter(goes_on).collect()
+    }
+}
+
 /// The motion after a command.
 struct Motion {
     sweep: Sweep,
@@ -147,7 +161,7 @@ pub struct MoveWatch {
     controlword: u16,
     mode: i8,
     moves: Vec<Move>,
-    /// What a move would do that starts at these times: target and motion.
+    /// Targets and motions of moves, by the time from which they start.
     settings: Vec<Setting>,
 }
 
@@ -337,7 +351,7 @@ impl MoveWatch {
         found
     }
 
-    /// What the axis did after each command, and where it moved without one.
+    /// Motions of the axis after each command, and those without one.
     fn motions(&self, samples: &[AngleSample], rest: f64, plan: Option<&SweepPlan>) -> Vec<Motion> {
         let mut motions = Vec::new();
         let mut next = 0;

@@ -26,7 +26,7 @@ pub struct Tolerance {
 /// Requested accuracy of the angles.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Accuracy {
-    /// As accurate as the recording allows.
+    /// Best accuracy that the recording allows.
     #[default]
     Best,
     /// A given method.

@@ -131,7 +131,7 @@ impl std::fmt::Display for Remark {
                 let parts: Vec<&str> = parts.iter().filter(|p| p.0).map(|p| p.1).collect();
                 write!(
                     f,
-                    "too few samples of its {}: taken near what was commanded",
+                    "too few samples of its {}: kept near the commanded values",
                     parts.join(" and ")
                 )
             }

@@ -8,7 +8,7 @@ mod common;
 
 use std::sync::Arc;
 
-use cloud::{Fields, Points, Sink, SinkError};
+use cloud::{Fields, Points, Revolution, Sink, SinkError};
 use common::{RECORDINGS, Recording};
 use drive::record::Wire;
 use lidar::{Corrections, Decoder, Duplicates, FrameCutter, Options};
@@ -149,7 +149,7 @@ impl Sink for RevolutionEnds {
         Ok(())
     }
 
-    fn revolution(&mut self) -> Result<(), SinkError> {
+    fn revolution(&mut self, _: &Revolution) -> Result<(), SinkError> {
         self.ends.push(self.points);
         Ok(())
     }

@@ -28,14 +28,14 @@ const VIEW: usize = 520;
 const PANORAMA: usize = 256;
 /// Samples of a pixel along either side.
 const FINE: usize = 2;
-/// Where the panorama ends, degrees above the horizon.
+/// Ends of the panorama, degrees above the horizon.
 const TOP_DEG: f64 = 60.0;
 const BOTTOM_DEG: f64 = -45.0;
 const SUN: DVec3 = dvec3(-0.42, -0.5, 0.76);
 /// Points of the scan.
 const DOT: DVec3 = dvec3(0.8, 0.02, 0.01);
 
-/// Where pictures are taken from, and what of: metres.
+/// Position of the camera and the point at which it looks, metres.
 fn usual_camera(scene: &str) -> [f64; 6] {
     match scene {
         "hollow-sphere" => [-29.0, -15.0, 14.0, 0.0, 0.0, 0.0],

@@ -239,7 +239,8 @@ pub struct LinkMessage {
     pub kind: MessageKind,
     /// Its number among messages of its kind, from 0.
     pub number: u64,
-    /// When it is sent, and after an effect when it arrives: host nanoseconds since the start.
+    /// Time at which it is sent, and after an effect at which it arrives: host nanoseconds since
+    /// the start.
     pub time_ns: i64,
 }
 

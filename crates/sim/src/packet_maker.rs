@@ -36,11 +36,11 @@ pub struct HeadRotation {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct TruePoint {
-    /// Where the middle of the beam meets the scene, metres in the frame of the base: origin on the
-    /// tilt axis, x right, y forward, z up.
+    /// Point at which the middle of the beam meets the scene, metres in the frame of the base. Its
+    /// origin is on the tilt axis; x right, y forward, z up.
     pub position_m: DVec3,
-    /// Where the measured distance puts it: on the beam, or of a lidar without packets for a reader
-    /// who knows time and tilt exactly, the nominal sensor, and nothing of a base that moves.
+    /// Position by the measured distance, on the beam. For a lidar without packets: the result of a
+    /// reader who knows time, tilt and nominal sensor exactly, but no motion of the base.
     pub measured_m: DVec3,
     /// Host time of the laser's firing.
     pub host: Stamp<Host>,
@@ -90,7 +90,7 @@ pub(crate) struct SimulatedLidar {
 #[derive(Debug)]
 pub(crate) struct SimulatedPacket {
     pub payload: [u8; DATA_LEN],
-    /// When it leaves, host nanoseconds since the start.
+    /// Time at which it leaves, host nanoseconds since the start.
     pub leaves_ns: i64,
     /// The lidar's clock at that time, microseconds past the hour.
     pub stamp_us: u32,

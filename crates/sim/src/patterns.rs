@@ -20,7 +20,7 @@ use crate::motion::{AxisMotion, Sweeps};
 use crate::sensor::DetectionRange;
 
 pub use request::{NAMES, PatternRequest};
-pub use sensor::SensorModel;
+pub use sensor::SensorName;
 pub use settings::{PatternSettings, PatternTilt, PlanarFront, RevolutionEnds, TiltSteps};
 pub use view::FieldOfView;
 

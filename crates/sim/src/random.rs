@@ -6,8 +6,9 @@
 
 use core::f64::consts::TAU;
 
-/// The odd number next to 2^64 divided by the golden ratio.
-pub(crate) const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
+use units::random::split_mix_64;
+pub(crate) use units::random::{GOLDEN, mix, unit_interval};
+
 /// Another odd number with as little structure (from the same paper's second mixer).
 const SECOND: u64 = 0xD605_BBB5_8C8A_BC03;
 
@@ -54,14 +55,13 @@ impl Draws {
     /// 64 random bits.
     #[inline]
     pub const fn bits(&mut self) -> u64 {
-        self.state = self.state.wrapping_add(GOLDEN);
-        mix(self.state)
+        split_mix_64(&mut self.state)
     }
 
     /// Uniform from 0 to below 1, in steps of 2^-53.
     #[inline]
     pub const fn unit(&mut self) -> f64 {
-        unit(self.bits())
+        unit_interval(self.bits())
     }
 
     /// Uniform between two numbers.
@@ -90,20 +90,6 @@ impl Draws {
     }
 }
 
-/// The upper 53 bits as a number from 0 to below 1.
-#[inline]
-pub(crate) const fn unit(bits: u64) -> f64 {
-    (bits >> 11) as f64 * (1.0 / (1_u64 << 53) as f64)
-}
-
-/// A bijection in which every output bit depends on every input bit.
-#[inline]
-pub(crate) const fn mix(mut z: u64) -> u64 {
-    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    z ^ (z >> 31)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -122,15 +108,6 @@ mod tests {
         ] {
             assert_ne!(other.clone().bits(), once);
         }
-    }
-
-    /// First outputs of Vigna's reference implementation for seeds 0 and 1234567.
-    #[test]
-    fn sequences_are_splitmix64() {
-        assert_eq!(Draws::new(0).bits(), 0xE220_A839_7B1D_CDAF);
-        let mut draws = Draws::new(1_234_567);
-        assert_eq!(draws.bits(), 6_457_827_717_110_365_317);
-        assert_eq!(draws.bits(), 3_203_168_211_198_807_973);
     }
 
     /// Means, variances and correlations of 2^18 draws, each with its own standard error.

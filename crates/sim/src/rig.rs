@@ -106,7 +106,7 @@ const GEARING: Gearing = match Gearing::new(500, 120, 1) {
 /// A UDP datagram of the lidar.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Datagram {
-    /// When it left the lidar.
+    /// Time at which it left the lidar.
     pub at: Stamp<Host>,
     /// The destination port: [`DATA_PORT`] or [`POSITION_PORT`].
     pub port: u16,
@@ -118,7 +118,7 @@ pub struct Datagram {
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct DriveOutput {
-    /// When they left the drive.
+    /// Time at which they left the drive.
     pub at: Stamp<Host>,
     /// The bytes.
     pub bytes: Vec<u8>,
@@ -281,7 +281,7 @@ impl Rig {
         self.lidar.start.saturating_add(since)
     }
 
-    /// When the next data packet leaves.
+    /// Time at which the next data packet leaves.
     fn next_packet(&self) -> Stamp<Host> {
         let firings = (self.packets + 1).saturating_mul(self.maker.firings() as u64);
         let since_ns = self.lidar.clock.host_ns(self.lidar.device_ns(firings));

@@ -15,7 +15,7 @@ pub struct Scene {
     caster: Caster,
 }
 
-/// Where a ray meets the scene.
+/// Intersection of a ray with the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SceneHit {
     /// Distance along the ray, metres.

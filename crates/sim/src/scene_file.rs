@@ -9,7 +9,7 @@ mod demands;
 mod facts;
 mod sections;
 mod surroundings;
-mod survey;
+mod trial_shots;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -104,13 +104,13 @@ number!(f64);
 
 /// Sine and cosine of an angle that changes.
 pub trait Sine<T: Float> {
-    /// Of an angle in degrees: the standard library's.
+    /// Sine and cosine of an angle in degrees: the standard library's.
     #[inline(always)]
     fn at(&self, degrees: T) -> (T, T) {
         degrees.radians().sin_cos()
     }
 
-    /// Of an angle `ahead_deg` beyond `degrees`, whose sine and cosine are `from`.
+    /// Sine and cosine of an angle `ahead_deg` beyond `degrees`; `from` has those of `degrees`.
     #[inline(always)]
     fn ahead(&self, from: (T, T), degrees: T, ahead_deg: T) -> (T, T) {
         let _ = from;

@@ -3,6 +3,7 @@
 
 mod angle;
 mod gearing;
+pub mod random;
 mod real;
 mod short_number;
 mod time;

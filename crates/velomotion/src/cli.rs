@@ -225,7 +225,7 @@ pub struct Calibrate {
     /// Mount to start from [default: the first log's]
     #[arg(long, value_name = "FILE")]
     pub mount: Option<PathBuf>,
-    /// Parameters to keep at their start: all whose names begin so, such as laser or play
+    /// Parameters to keep at their start: a name or its first words, such as laser or play
     #[arg(long, value_name = "NAME,..", value_delimiter = ',')]
     pub fix: Vec<String>,
     /// Folder for a page that draws the residuals, and the JSON object
@@ -370,6 +370,9 @@ pub struct Output {
     /// Add a column echo: 1 strongest, 2 last, 3 both in one, 4 second return, 0 unknown
     #[arg(long)]
     pub echo: bool,
+    /// Add a column laser: the number of each point's laser, in firing order from 0
+    #[arg(long)]
+    pub laser: bool,
     /// Overwrite existing files
     #[arg(long)]
     pub force: bool,

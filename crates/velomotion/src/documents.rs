@@ -87,7 +87,7 @@ mod tests {
     use analysis::tradeoff::TradeoffReport;
     use engine::accuracy::AccuracyReport;
     use engine::calibrate::CalibrateReport;
-    use engine::capture::scan_plan::PlanReport;
+    use engine::capture::scan_planner::PlanReport;
     use engine::document::{ErrorReport, schema};
     use engine::reconstruct::lidar_copy::LidarCopyReport;
     use engine::reconstruct::report::{InfoReport, ScanReport};

@@ -22,7 +22,6 @@ mod entry;
 mod errors;
 mod fixed;
 mod following;
-mod garbage;
 mod gateway;
 mod generator;
 mod homing;

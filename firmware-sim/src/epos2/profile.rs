@@ -45,7 +45,7 @@ struct FinalLeg {
     deceleration: u32,
     shape: RampShape,
     duration: i128,
-    /// Where it begins: its speed and what is left to go. The duration is rounded up, so its
+    /// State at its start: its speed and the remaining distance. The duration is rounded up, so its
     /// formula alone would begin a fraction above both.
     peak: Speed,
     length: Fine,

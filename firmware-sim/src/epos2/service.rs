@@ -11,8 +11,8 @@ use protocol::epos2::message::{
 };
 use protocol::epos2::objects::Address;
 use protocol::epos2::{AbortCode, BoundedVec, SerialFrame};
+use units::random::split_mix_64;
 
-use super::garbage::GarbageGenerator;
 use super::gateway;
 use super::node::SimulatedDrive;
 use super::value::{LONGEST, ObjectValue};
@@ -20,7 +20,8 @@ use super::value::{LONGEST, ObjectValue};
 /// State of a serial interface between commands.
 #[derive(Clone, Debug)]
 pub(super) struct CommandService {
-    garbage: GarbageGenerator,
+    /// State of the arbitrary numbers in unused words.
+    garbage: u64,
     /// The value of a segmented read under way. None is longer than one segment.
     upload: Option<ObjectValue>,
     download: Option<Download>,
@@ -39,7 +40,7 @@ struct Download {
 impl CommandService {
     pub const fn new(seed: u64) -> Self {
         Self {
-            garbage: GarbageGenerator::new(seed),
+            garbage: seed,
             upload: None,
             download: None,
         }
@@ -85,7 +86,7 @@ impl CommandService {
     /// The answer to a request that is not executed, two words or four.
     pub fn refuse(&mut self, error: AbortCode) -> SerialFrame {
         let mut answer = SerialAnswer::bare(error);
-        let garbage = self.garbage.next();
+        let garbage = split_mix_64(&mut self.garbage);
         if garbage & 1 != 0 {
             answer
                 .data
@@ -105,7 +106,7 @@ impl CommandService {
         let raw = value.raw().ok_or(AbortCode::TOO_LONG)?;
         let used = 8 * value.bytes().len() as u32;
         let unused = u32::MAX.checked_shl(used).unwrap_or(0);
-        let garbage = self.garbage.next() as u32 & unused;
+        let garbage = split_mix_64(&mut self.garbage) as u32 & unused;
         Ok(ReadObject::answer(Ok(raw | garbage)))
     }
 

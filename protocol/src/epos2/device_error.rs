@@ -26,7 +26,7 @@ pub struct ErrorDescription {
     pub meaning: &'static str,
     /// Remedy.
     pub remedy: &'static str,
-    /// How the drive stops.
+    /// Reaction of the drive.
     pub reaction: Reaction,
 }
 
@@ -95,7 +95,7 @@ impl DeviceError {
         self.0 == 0
     }
 
-    /// How the drive stops on this error; codes that are not listed switch the power off.
+    /// Reaction of the drive to this error; codes that are not listed switch the power off.
     #[must_use]
     pub fn reaction(self) -> Reaction {
         self.meaning()

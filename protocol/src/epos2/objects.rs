@@ -134,11 +134,11 @@ objects! {
     ABORT_CONNECTION_OPTION: i16 = 0x6007, 0, "Abort Connection Option Code";
     /// See [`crate::epos2::cia402::status`].
     STATUSWORD: u16 = 0x6041, 0, "Statusword";
-    /// How "shutdown" stops: 0 at once, 1 by the profile deceleration.
+    /// Kind of stop by "shutdown": 0 at once, 1 by the profile deceleration.
     SHUTDOWN_OPTION: i16 = 0x605B, 0, "Shutdown Option Code";
-    /// How "disable operation" stops: 0 at once, 1 by the profile deceleration.
+    /// Kind of stop by "disable operation": 0 at once, 1 by the profile deceleration.
     DISABLE_OPTION: i16 = 0x605C, 0, "Disable Operation Option Code";
-    /// How a fault stops: 0 at once, 1 by the profile deceleration, 2 by the quick-stop
+    /// Kind of stop by a fault: 0 at once, 1 by the profile deceleration, 2 by the quick-stop
     /// deceleration.
     FAULT_OPTION: i16 = 0x605E, 0, "Fault Reaction Option Code";
     /// See [`crate::epos2::cia402::mode`].

@@ -54,7 +54,7 @@ pub struct ChannelReturn {
 }
 
 byte_codes! {
-    /// Which returns the packet carries (first factory byte, manual table 9-2).
+    /// Returns that the packet carries (first factory byte, manual table 9-2).
     pub enum ReturnMode {
         /// The strongest return.
         Strongest = 0x37,
@@ -67,7 +67,7 @@ byte_codes! {
 }
 
 byte_codes! {
-    /// Which sensor the packet is from (second factory byte, manual table 9-2). Firmware before
+    /// Sensor that the packet is from (second factory byte, manual table 9-2). Firmware before
     /// 3.0.29 has no factory bytes.
     pub enum Product {
         /// HDL-32E.

@@ -8,7 +8,7 @@ pub enum PacketError {
     /// The payload's length is not the packet's.
     #[error("{layer}: expected {expected} bytes, got {got}")]
     Length {
-        /// Which packet it was taken for.
+        /// Kind of packet it was taken for.
         layer: &'static str,
         /// Length of such a packet in bytes.
         expected: usize,
@@ -18,7 +18,7 @@ pub enum PacketError {
     /// A block does not open with `FF EE`.
     #[error("{layer} offset {offset}: expected block flag FF EE, got {:02X} {:02X}", got[0], got[1])]
     BlockFlag {
-        /// Which packet it was taken for.
+        /// Kind of packet it was taken for.
         layer: &'static str,
         /// Offset of the flag in the payload in bytes.
         offset: usize,
@@ -30,7 +30,7 @@ pub enum PacketError {
         "{layer} offset {offset}: expected an azimuth of 0 to 36000 hundredths of a degree, got {got}"
     )]
     Azimuth {
-        /// Which packet it was taken for.
+        /// Kind of packet it was taken for.
         layer: &'static str,
         /// Offset of the azimuth in the payload in bytes.
         offset: usize,

@@ -1,4 +1,4 @@
-// What axe leaves out: targets below 44 px, contrast over several layers, scrolling sideways. Runs in the page; gives a list of sentences.
+// What axe leaves out: targets below 44 px, controls under others, contrast over several layers, scrolling sideways. Runs in the page; gives a list of sentences.
 const complaints = [];
 const seen = (element) => {
   const box = element.getBoundingClientRect();
@@ -18,6 +18,29 @@ if (innerWidth < 900) {
     if (width < 44 || height < 44) complaints.push(`a target of ${width.toFixed(0)} by ${height.toFixed(0)} px: ${called(element)}`);
   }
 }
+
+// Every control can be scrolled to where nothing else covers it, but for open dialogs, and open tools on a narrow screen.
+const scrollers = [...document.querySelectorAll("*")].filter((element) => element.scrollHeight > element.clientHeight || element.scrollWidth > element.clientWidth);
+const before = scrollers.map(({ scrollLeft, scrollTop }) => [scrollLeft, scrollTop]);
+for (const element of document.querySelectorAll("button, select, summary, input, textarea")) {
+  if (!seen(element) || element.closest(".unseen, .skip")) continue;
+  element.scrollIntoView({ block: "center", inline: "center" });
+  const { x, y, width, height } = element.getBoundingClientRect();
+  const hit = document.elementFromPoint(x + width / 2, y + height / 2);
+  if (hit !== null && (element.contains(hit) || (element.closest("label")?.contains(hit) ?? false))) continue;
+  if (hit?.closest("dialog, .undo") || (innerWidth < 900 && hit?.closest(".tools[open]"))) continue;
+  complaints.push(`${called(element)} is under ${hit === null ? "nothing: out of the window" : called(hit)}`);
+}
+scrollers.forEach((element, i) => element.scrollTo({ left: before[i][0], top: before[i][1], behavior: "instant" }));
+
+// Neither do the parts of the view cover each other.
+const parts = [".caption", ".legend", ".tools", ".picked", ".bar"].flatMap((css) => [...document.querySelectorAll(css)]).filter(seen);
+parts.forEach((one, i) => parts.slice(i + 1).forEach((other) => {
+  if (innerWidth < 900 && [one, other].some((part) => part.matches(".tools[open]"))) return;
+  const [a, b] = [one.getBoundingClientRect(), other.getBoundingClientRect()];
+  const [wide, high] = [Math.min(a.right, b.right) - Math.max(a.left, b.left), Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top)];
+  if (wide > 1 && high > 1) complaints.push(`${one.className} and ${other.className} overlap by ${wide.toFixed(0)} by ${high.toFixed(0)} px`);
+}));
 
 const rgb = (text) => {
   const srgb = /^color\(srgb ([\d.]+) ([\d.]+) ([\d.]+)(?: \/ ([\d.]+))?\)$/.exec(text);

@@ -7,8 +7,8 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use fantoccini::actions::{
-    InputSource, KeyAction, KeyActions, MOUSE_BUTTON_LEFT, MouseActions, PointerAction,
-    TouchActions,
+    Actions, InputSource, KeyAction, KeyActions, MOUSE_BUTTON_LEFT, MouseActions, PointerAction,
+    TouchActions, WheelAction, WheelActions,
 };
 use fantoccini::{Client, ClientBuilder, Locator};
 use hyper_util::client::legacy::connect::HttpConnector;
@@ -27,6 +27,8 @@ pub struct Screen {
     height: u32,
     ratio: u32,
     dark: bool,
+    /// Whether the user wants no animations.
+    still: bool,
 }
 
 /// A laptop's screen.
@@ -36,6 +38,7 @@ pub const DESKTOP: Screen = Screen {
     height: 900,
     ratio: 1,
     dark: true,
+    still: true,
 };
 /// A phone next to the tripod.
 pub const PHONE: Screen = Screen {
@@ -44,6 +47,7 @@ pub const PHONE: Screen = Screen {
     height: 844,
     ratio: 1,
     dark: true,
+    still: true,
 };
 /// The narrowest supported screen.
 pub const NARROW: Screen = Screen {
@@ -52,9 +56,40 @@ pub const NARROW: Screen = Screen {
     height: 640,
     ratio: 1,
     dark: true,
+    still: true,
 };
 
+/// Every screen with both colour schemes.
+pub const SCREENS: [Screen; 6] = [
+    DESKTOP,
+    DESKTOP.light(),
+    PHONE,
+    PHONE.light(),
+    NARROW,
+    NARROW.light(),
+];
+
 impl Screen {
+    /// A window of this size.
+    pub const fn of(width: u32, height: u32) -> Self {
+        Self {
+            name: "window",
+            width,
+            height,
+            ratio: 1,
+            dark: true,
+            still: true,
+        }
+    }
+
+    /// The same screen of a user who wants animations.
+    pub const fn moving(self) -> Self {
+        Self {
+            still: false,
+            ..self
+        }
+    }
+
     /// The same screen with the light colour scheme.
     pub const fn light(self) -> Self {
         Self {
@@ -130,13 +165,16 @@ impl Driver {
             "--use-angle=swiftshader".to_owned(),
             "--enable-unsafe-swiftshader".to_owned(),
             "--disable-background-networking".to_owned(),
-            "--force-prefers-reduced-motion".to_owned(),
             format!("--window-size={},{}", screen.width, screen.height),
             format!(
                 "--blink-settings=preferredColorScheme={}",
                 if screen.dark { 0 } else { 1 }
             ),
         ];
+        let still = screen
+            .still
+            .then(|| "--force-prefers-reduced-motion".to_owned());
+        let arguments: Vec<String> = arguments.into_iter().chain(still).collect();
         let phone = screen.width < 600;
         let mut options = json!({ "args": arguments });
         options["mobileEmulation"] = json!({ "deviceMetrics": {
@@ -285,6 +323,7 @@ impl Page {
             let last = null;
             const look = () => {
                 const element = document.querySelector(css);
+                if (element === null) return void requestAnimationFrame(look);
                 element.scrollIntoView({ block: 'center' });
                 const { x, y, width, height } = element.getBoundingClientRect();
                 const place = [x + width / 2, y + height / 2];
@@ -297,7 +336,7 @@ impl Page {
         self.client
             .execute_async(script, vec![json!(css)])
             .await
-            .unwrap();
+            .unwrap_or_else(|error| panic!("{css}: {error}"));
         let element = self.client.find(Locator::Css(css)).await.unwrap();
         element.click().await.unwrap();
     }
@@ -324,6 +363,78 @@ impl Page {
             }
         };
         tapped.unwrap();
+    }
+
+    /// Drags from one place of the window to another with the mouse or a finger, with a key down.
+    pub async fn drag(&self, [from, to]: [[f64; 2]; 2], key: Option<char>) {
+        let button = MOUSE_BUTTON_LEFT;
+        let place = |[x, y]: [f64; 2]| PointerAction::MoveTo {
+            duration: None,
+            x,
+            y,
+        };
+        let half = [0, 1].map(|axis| f64::midpoint(from[axis], to[axis]));
+        let (down, up) = (PointerAction::Down { button }, PointerAction::Up { button });
+        let way = [place(from), down, place(half), place(to), up];
+        if let Some(value) = key {
+            self.hold(KeyAction::Down { value }).await;
+        }
+        let dragged = match self.is_phone() {
+            true => {
+                let finger = TouchActions::new("finger".to_owned());
+                let finger = way.into_iter().fold(finger, InputSource::then);
+                self.client.perform_actions(finger).await
+            }
+            false => {
+                let mouse = MouseActions::new("mouse".to_owned());
+                let mouse = way.into_iter().fold(mouse, InputSource::then);
+                self.client.perform_actions(mouse).await
+            }
+        };
+        dragged.unwrap();
+        if let Some(value) = key {
+            self.hold(KeyAction::Up { value }).await;
+        }
+    }
+
+    async fn hold(&self, action: KeyAction) {
+        let keyboard = KeyActions::new("keyboard".to_owned()).then(action);
+        self.client.perform_actions(keyboard).await.unwrap();
+    }
+
+    /// Two fingers left and right of a place move apart, from one distance to another.
+    pub async fn pinch(&self, [x, y]: [f64; 2], [from, to]: [f64; 2]) {
+        let finger = |name: &str, side: f64| {
+            let place = |apart: f64| PointerAction::MoveTo {
+                duration: None,
+                x: x + side * apart / 2.0,
+                y,
+            };
+            let button = MOUSE_BUTTON_LEFT;
+            TouchActions::new(name.to_owned())
+                .then(place(from))
+                .then(PointerAction::Down { button })
+                .then(place(f64::midpoint(from, to)))
+                .then(place(to))
+                .then(PointerAction::Up { button })
+        };
+        let both = Actions::from(finger("left", -1.0)).and(finger("right", 1.0));
+        self.client.perform_actions(both).await.unwrap();
+    }
+
+    /// Turns the wheel over a place, in pixels.
+    pub async fn wheel(&self, [x, y]: [f64; 2], down: i64) {
+        #[expect(clippy::cast_possible_truncation, reason = "a place in a window")]
+        let (x, y) = (x as i64, y as i64);
+        let mut wheel = WheelActions::new("wheel".to_owned());
+        wheel.push(WheelAction::Scroll {
+            duration: None,
+            x,
+            y,
+            delta_x: 0,
+            delta_y: down,
+        });
+        self.client.perform_actions(wheel).await.unwrap();
     }
 
     /// Whether the window is a phone's.

@@ -5,6 +5,7 @@
 //! pictures, as for docs/src/page.
 
 mod browser;
+mod look;
 mod quality;
 mod refusals;
 mod scans;
@@ -288,8 +289,10 @@ fn the_axis_is_moved_by_hand_within_its_limits_and_stopped() {
             // Beyond the limit: the field says so, and nothing is sent.
             page.fill("#goto", "10").await;
             page.click("#go").await;
-            page.until_true("document.querySelector('#goto').validity.rangeOverflow")
+            page.until_has("#goto-wrong", "Angle: expected a number from \u{2212}")
                 .await;
+            until_in_sight(&page, "#goto-wrong").await;
+            page.audit("an angle beyond the limit").await;
             assert_eq!(page.text("#doing").await, "Ready");
             page.fill("#goto-speed", "1").await;
             page.fill("#goto", "-45").await;

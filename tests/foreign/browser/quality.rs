@@ -111,6 +111,12 @@ fn two_scans_are_compared_and_shown_together() {
             })
             .await;
 
+            page.run("document.querySelector('#swap').click()").await;
+            page.until_has("#view-title", "before compared with after")
+                .await;
+            page.until_has("#view-note", "of after").await;
+            assert_eq!(page.run(FIELD).await, "distance");
+
             page.click("#scans .scan:nth-child(1) [data-role=open]")
                 .await;
             page.until("#view-title", "one scan", |text| text == "after")

@@ -63,7 +63,9 @@ fn view(files: Vec<PathBuf>) -> (String, JoinHandle<Result<(), engine::Failure>>
 }
 
 /// Picks a point somewhere in the view and returns the numbers of the last column: x, y, z, range.
-async fn pick(page: &Page, count: usize) -> [f64; 4] {
+pub async fn pick(page: &Page, count: usize) -> [f64; 4] {
+    page.run("document.querySelector('#canvas').scrollIntoView({ block: 'center', behavior: 'instant' })")
+        .await;
     let canvas = "document.querySelector('#canvas').getBoundingClientRect()";
     let size = page
         .run(&format!(
@@ -170,7 +172,27 @@ fn files_are_shown_played_and_end_with_their_tab() {
 
 #[test]
 #[ignore = "needs chromium and chromedriver"]
-fn a_cloud_is_downloaded_with_uncertainty_and_echo() {
+fn a_log_plays_by_itself_unless_the_user_wants_no_animations() {
+    let driver = Driver::start();
+    let folder = tempfile::tempdir().unwrap();
+    let log = scanned(&driver, folder.path()).join("log.pcapng");
+    for (screen, button) in [(DESKTOP.moving(), "Pause"), (DESKTOP, "Play")] {
+        let (url, viewing) = view(vec![log.clone()]);
+        driver.test(screen, async |page| {
+            page.goto(&url).await;
+            page.until_loaded().await;
+            page.until_has("#play", button).await;
+            page.until_has("#time-now", " of ").await;
+            // It ends with all points.
+            page.until_has("#play", "Play").await;
+        });
+        viewing.join().unwrap().unwrap();
+    }
+}
+
+#[test]
+#[ignore = "needs chromium and chromedriver"]
+fn a_cloud_is_downloaded_with_uncertainty_echo_and_laser() {
     let (driver, _folder, daemon, url) = browser_and_simulator();
     driver.test(DESKTOP, async |page| {
         ready(&page, &url).await;
@@ -183,7 +205,12 @@ fn a_cloud_is_downloaded_with_uncertainty_and_echo() {
             .run("return window.blob.text().then((text) => text.slice(0, 2000))")
             .await;
         let head = head.as_str().unwrap();
-        assert!(head.contains("sd_m") && head.contains("echo"), "{head}");
+        assert!(
+            ["sd_m", "echo", "laser"]
+                .iter()
+                .all(|name| head.contains(name)),
+            "{head}"
+        );
     });
     daemon.stop(|| true).unwrap();
 }

@@ -5,7 +5,7 @@ use std::fs::File;
 
 use daemon::scans::{LOG, Scans};
 use drive::DriveError;
-use engine::capture::log_recorder::CaptureCounts;
+use engine::capture::capture_log::CaptureCounts;
 use engine::capture::run::RecordingEnd;
 use engine::capture_request::CaptureRequest;
 use engine::devices::drive_session::SessionError;

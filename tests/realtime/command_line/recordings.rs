@@ -201,6 +201,16 @@ fn info_names_file_start_sensor_sweeps_configuration_and_position() {
         let value = info["gps"]["position"][key].as_f64().unwrap();
         assert!(range.contains(&value) && value != 0.0, "{info}");
     }
+    let line = format!("replay {} --tilt none -o gps.ply", gps.display());
+    assert!(place.run(&line).status.success(), "{line}");
+    let cloud = std::fs::read(place.path("gps.ply")).unwrap();
+    let head = String::from_utf8_lossy(&cloud[..2_000]).into_owned();
+    let latitude = info["gps"]["position"]["latitude_deg"].as_f64().unwrap();
+    let expected = format!("comment satellite receiver at {latitude:.6}, ");
+    assert!(
+        head.contains(&expected) && head.contains("pulse locked"),
+        "{head}"
+    );
 }
 
 #[test]

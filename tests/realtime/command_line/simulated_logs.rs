@@ -52,7 +52,10 @@ fn a_calibration_needs_different_scans_and_replaces_only_a_calibration() {
     place.fails(
         "calibrate swept.pcapng --fix lasers",
         2,
-        &["no parameter begins with \"lasers\"", "play_deg"],
+        &[
+            "\"lasers\" is neither a parameter nor the first words of one",
+            "play_deg",
+        ],
     );
     place.fails(
         "calibrate swept.pcapng -o swept.toml --force",

@@ -37,8 +37,8 @@ fn a_scan_is_listed_downloaded_like_its_replay_and_deleted() {
     for (query, option, extension) in [
         ("", "", "ply"),
         (
-            "?format=ply&uncertainty=true&echo=true",
-            "--uncertainty --echo",
+            "?format=ply&uncertainty=true&echo=true&laser=true",
+            "--uncertainty --echo --laser",
             "ply",
         ),
         ("?format=pcd", "", "pcd"),
@@ -53,6 +53,11 @@ fn a_scan_is_listed_downloaded_like_its_replay_and_deleted() {
             "{}",
             cloud.head
         );
+        // Also made ones, which are made again.
+        if ["ply", "csv"].contains(&extension) {
+            let path = format!("/api/v1/scans/{id}/cloud{query}");
+            downloads_go_on_where_they_ended(&rig, &path, &cloud.body);
+        }
         let file = folder.join(format!("again.{extension}"));
         let line = format!(
             "replay {} -o {} --force {option}",
@@ -65,7 +70,7 @@ fn a_scan_is_listed_downloaded_like_its_replay_and_deleted() {
             "{query}: differs from the replay"
         );
     }
-    let wrong = rig.get(&format!("/api/v1/scans/{id}/cloud?format=obj"));
+    let wrong = rig.get(&format!("/api/v1/scans/{id}/cloud?format=nonsense"));
     assert!(wrong.refused(400, "format").to_string().contains(" laz "));
     rig.get(&format!("/api/v1/scans/{id}/cloud?formt=ply"))
         .refused(400, "misspelt");
@@ -461,7 +466,7 @@ fn a_download_leaves_the_space_reserved_for_a_scan() {
         scan["points"].as_u64().unwrap(),
     );
     let path = |format: Format| {
-        format!("/api/v1/scans/{id}/cloud?format={format}&uncertainty=true&echo=true")
+        format!("/api/v1/scans/{id}/cloud?format={format}&uncertainty=true&echo=true&laser=true")
     };
     for format in Format::ALL {
         if format.needs_companion() {

@@ -6,6 +6,7 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use firmware_sim::epos2::BrakeState;
+use units::random::split_mix_64;
 
 use crate::bench::{Aftermath, Bench, wait};
 
@@ -69,14 +70,8 @@ struct Program {
 impl Case {
     /// A kill at a random moment of a random motion.
     pub fn random(seed: u64) -> Self {
-        // SplitMix64.
         let mut state = seed;
-        let mut below = |limit: u64| {
-            state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-            let z = (state ^ (state >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-            let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-            (z ^ (z >> 31)) % limit
-        };
+        let mut below = |limit: u64| split_mix_64(&mut state) % limit;
         let motion = Motion::ALL[usize::try_from(below(4)).unwrap()];
         // Of connecting, homing and moving.
         let most_us = match motion {

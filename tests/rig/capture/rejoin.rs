@@ -17,7 +17,7 @@ use crate::port::VirtualPort;
 /// Motion of the drive after its client disconnected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rejoined {
-    /// How long it kept moving.
+    /// Time for which it kept moving.
     pub went_on: Span,
     /// Whether it stopped before the next client connected.
     pub by_itself: bool,

@@ -13,7 +13,7 @@ pub struct Columns {
 }
 
 impl Columns {
-    /// So many rows, every page of them touched.
+    /// Creates columns of this many rows and touches every page of them.
     pub fn new(rows: usize) -> Self {
         Self {
             wide: [(); 5].map(|()| vec![1.0; rows]),

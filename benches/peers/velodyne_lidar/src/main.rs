@@ -13,7 +13,7 @@ use velodyne_lidar::types::frame_xyz::FrameXyz;
 use velodyne_lidar::types::measurements::Measurement;
 use velodyne_lidar::{Config, DataPacket, iter};
 
-/// As in the other workers.
+/// Minimum duration of a measurement, seconds: that of the other workers.
 const LEAST_S: f64 = 0.1;
 const PACKET: usize = 1206;
 const HOST_TIME: usize = 8;

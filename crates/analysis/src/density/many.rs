@@ -24,7 +24,7 @@ fn places() -> Vec<DVec3> {
     (0..7).map(at).collect()
 }
 
-/// So many points so far from z.
+/// Evenly spaced points on a circle at an angle from z.
 fn circle(points: u32, from_z_rad: f64) -> Vec<DVec3> {
     let (r, z) = from_z_rad.sin_cos();
     let at = |k: u32| {

@@ -2,7 +2,7 @@
 
 use super::number;
 
-/// How an axis maps values to positions.
+/// Mapping of an axis from values to positions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
     /// Even steps.

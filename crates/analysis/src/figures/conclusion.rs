@@ -52,7 +52,7 @@ fn of_one(scan: &AnalyzedScan) -> String {
     }
 }
 
-/// Which of several scans is best in each measure.
+/// Sentence that names the best of several scans in each measure.
 fn of_all(scans: &[AnalyzedScan]) -> Option<String> {
     if scans.len() < 2 {
         return None;

@@ -53,7 +53,7 @@ pub struct AnalyzedScan {
     pub counts: BinCounts,
     /// K on a sphere of [`SPHERE_M`].
     pub k: KCurve,
-    /// How the pairs were counted.
+    /// Method by which the pairs were counted.
     pub method: &'static str,
     /// Intersections of its rays with planes.
     pub planes: Planes,

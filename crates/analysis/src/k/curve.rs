@@ -28,7 +28,7 @@ pub struct KCurve {
     pub d_max: f64,
     /// The smallest `D`; at most 0.
     pub d_min: f64,
-    /// How far any `D` may be off by the method: 0 for exact counts.
+    /// Bound of the error of any `D` by the method: 0 for exact counts.
     pub d_error_bound: f64,
 }
 

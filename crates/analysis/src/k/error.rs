@@ -6,7 +6,7 @@ use thiserror::Error;
 /// Tolerance of the length of a direction.
 pub const UNIT_WITHIN: f64 = 1e-6;
 
-/// Why pairs cannot be counted.
+/// Reason why pairs cannot be counted.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum KError {
     /// No bins, or too many.

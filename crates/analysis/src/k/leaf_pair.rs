@@ -13,7 +13,7 @@ use super::sign_mask::SignMask;
 use super::tree::Leaf;
 use super::{Edges, KError};
 
-/// How far a dot product less a cosine in f32 may be off: 2^-21.
+/// Bound of the error of a dot product less a cosine in f32: 2^-21.
 ///
 /// With u = 2^-24, lengths within 1e-6 of 1 and the cosine c: rounding of coordinates 2 u, of c 1
 /// u, of products (none where they are fused) 1 u, of the first sum 1 u, of the second 1 u, of the

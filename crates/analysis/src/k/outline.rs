@@ -196,7 +196,7 @@ fn dot<S: Simd>(a: [f32x16<S>; 3], b: [f32x16<S>; 3]) -> f32x16<S> {
     a[2].mul_add(b[2], a[1].mul_add(b[1], a[0] * b[0]))
 }
 
-/// How far an outline reaches along a vector with these parts along `e` and `f`.
+/// Extent of an outline along a vector with the parts `p` along `e` and `q` along `f`.
 ///
 /// With `|p| >= |q|`, the vector is `|p| - |q|` of `e` and `|q| sqrt 2` of the sum's direction, or
 /// of the difference's where the signs differ.

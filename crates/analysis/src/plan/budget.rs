@@ -45,7 +45,7 @@ impl LinkTiming {
     };
 }
 
-/// What the error of a point depends on besides the motion.
+/// Quantities besides the motion that determine the error of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorModel {
     /// Distance of the point, metres.
@@ -145,13 +145,13 @@ impl ErrorModel {
 }
 
 impl ErrorBudget {
-    /// What 95 % of points are within by their ranges alone.
+    /// Error of 95 % of points by their ranges alone, millimetres.
     #[must_use]
     pub fn of_ranges(&self) -> f64 {
         SDS_OF_95_PERCENT * self.range.hypot(self.range_step)
     }
 
-    /// What 95 % of points are within by everything but ranges and mount.
+    /// Error of 95 % of points by everything but ranges and mount, millimetres.
     #[must_use]
     pub fn without_ranges(&self) -> f64 {
         let terms = [self.azimuth, self.tilt, self.clock, self.delay];

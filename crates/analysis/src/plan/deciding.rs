@@ -45,21 +45,21 @@ const ROUGH_STRIDE: usize = 8;
 /// At most so many of the worst azimuths by the evenly spread directions are decided, and give the
 /// figures of a row.
 const MOST_DECIDED: usize = 6;
-/// Of fewer evenly spread directions, numbers without a point rank no azimuths: 1 % of them is
+/// Fewest evenly spread directions whose number without a point ranks azimuths: 1 % of fewer is
 /// within the doubt.
 const FEW_PLACES: usize = 784;
 /// Directions examined by all cores at a time.
 const AT_A_TIME: usize = 2_048;
-/// What a number of directions without a point may be off by chance, in standard deviations of
-/// random ones; that of evenly spread ones varies less.
+/// Possible deviation by chance of a number of directions without a point, in standard deviations
+/// of random ones; that of evenly spread ones varies less.
 const DOUBT_SD: f64 = 2.8;
-/// So many standard deviations below 1 % of the deciding directions may have no point: by chance
-/// these have more points than others. Of 50 choices with 40 random azimuths or 120 pairs of them
-/// each, three broke the limit in 200,000 other directions: at most 1.024 % of them had no point,
-/// and the standard deviation of such a share is 0.022 %.
+/// Margin below the 1 % of the deciding directions that may have no point, standard deviations: by
+/// chance they have more points than others. Of 50 choices with 40 random azimuths or 120 pairs of
+/// them each, three broke the limit in 200,000 other directions: at most 1.024 % of them had no
+/// point, and the standard deviation of such a share is 0.022 %.
 const MARGIN_SD: f64 = 1.0;
 
-/// What the deciding directions give with several azimuths of the lidar at the start.
+/// Gaps in the deciding directions with several azimuths of the lidar at the start.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DecidingGaps {
     /// The widest gap of 99 %, degrees.
@@ -106,7 +106,7 @@ pub(super) struct Examiners<'a> {
 }
 
 impl<'a> Examiner<'a> {
-    /// Of these directions 1 % may have no point, and so many standard deviations more.
+    /// Examiner of directions of which 1 % may have no point, plus `more_sd` standard deviations.
     fn new(places: impl Iterator<Item = &'a PlannedPlace>, more_sd: f64) -> Self {
         let places: Vec<&PlannedPlace> = places.collect();
         Self {
@@ -126,7 +126,7 @@ impl<'a> Examiner<'a> {
         is_unseen
     }
 
-    /// Which of the directions have no point within a gap, up to one too many.
+    /// Numbers of the directions without a point within a gap, up to one too many.
     fn unseen(&self, scan: &StartedScan, gap_deg: f64) -> Vec<usize> {
         let numbers = self.order.iter().copied();
         let unseen = numbers.filter(|number| self.is_unseen(*number, scan, gap_deg));
@@ -169,8 +169,8 @@ impl Examiners<'_> {
         self.even.places.iter().filter(out_of_reach).count() > self.even.most
     }
 
-    /// How many evenly spread directions have no point with the first azimuth at the start, unless
-    /// they are too many.
+    /// Number of evenly spread directions without a point with the first azimuth at the start,
+    /// unless they are too many.
     pub(super) fn unseen_at_first(&self, scan: &StartedScan, gap_deg: f64) -> Option<usize> {
         let unseen = |places: &Examiner| {
             let unseen = places.unseen(scan, gap_deg).len();
@@ -196,7 +196,7 @@ impl ScanPredictor {
         }
     }
 
-    /// How many of the worst azimuths at the start are decided.
+    /// Greatest number of the worst azimuths at the start that are decided.
     const fn most_decided(&self) -> usize {
         match self.places.len() < FEW_PLACES {
             true => usize::MAX,

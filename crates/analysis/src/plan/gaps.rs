@@ -64,7 +64,7 @@ impl Aperture {
         off - off.round()
     }
 
-    /// What leads to the nearest azimuth inside; 0 inside.
+    /// Signed distance to the nearest azimuth inside, revolutions; 0 inside.
     fn inwards(&self, azimuth: f64) -> f64 {
         let off = self.off(azimuth);
         off.clamp(-self.half, self.half) - off

@@ -1,6 +1,6 @@
 //! The lidar of a plan: where its lasers point, and when they fire.
 
-use crate::device::vertical_resolution_deg;
+use crate::tilted_sensor::vertical_resolution_deg;
 
 use super::TiltSweep;
 

@@ -30,7 +30,7 @@ pub struct PlannedPlace {
 /// The tilt at which a laser has the elevation of a direction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LaserPass {
-    /// Which of the lasers by elevation.
+    /// Number of the laser by elevation.
     pub number: usize,
     pub tilt_deg: f64,
     /// Azimuth of the lidar when the laser points there, revolutions.

@@ -13,7 +13,7 @@ const LEAST_STEP_RAD: f64 = 5e-4;
 /// Random directions to draw from at most, of which those in view are used.
 const MOST_DRAWN: usize = 1_000_000;
 
-/// So many directions on a spiral about the tilt axis, by the golden ratio: all have equal areas,
+/// `count` directions on a spiral about the tilt axis, by the golden ratio: all have equal areas,
 /// the poles as well.
 pub(super) fn evenly_spread(count: u32) -> impl Iterator<Item = DVec3> {
     const GOLDEN: f64 = 0.618_033_988_749_895;

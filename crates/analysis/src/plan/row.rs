@@ -12,7 +12,7 @@ use super::places::{climb, evenly_spread, random};
 use super::{ErrorBudget, ErrorModel, PlanLidar, PlannedPlace, PlannedRays, TiltSweep};
 use crate::density::quantile;
 
-/// What a capture sets.
+/// Settings of a capture.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct ScanSetting {
     /// Cruise speed, degrees per second: whole revolutions per minute of the motor.
@@ -40,18 +40,18 @@ pub struct PlannedScan {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 #[non_exhaustive]
 pub struct GapQuantiles {
-    /// Of half of the directions in view.
+    /// Gap of half of the directions in view.
     pub p50: f64,
-    /// Of 95 %.
+    /// Gap of 95 %.
     pub p95: f64,
-    /// Of 99 %.
+    /// Gap of 99 %.
     pub p99: f64,
     /// The widest found, from the widest of those examined to the widest nearby. In fewer than 1 in
     /// 1000 directions it is wider, with a risk of 1 in 1000.
     pub worst: f64,
 }
 
-/// What a scan gives.
+/// Predicted results of a scan.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[non_exhaustive]
 pub struct PlanRow {
@@ -71,7 +71,7 @@ pub struct PlanRow {
     pub gap_mm: GapQuantiles,
     /// Smallest distance that 99 % of directions are within, at the best azimuth at the start.
     pub best_start_p99_deg: f64,
-    /// That azimuth of the lidar, degrees; a capture does not control it.
+    /// Best azimuth of the lidar at the start, degrees; a capture does not control it.
     pub best_start_deg: f64,
     /// Share of directions in view without a point within the requested gap; 0.5 deg without one.
     pub share_without_point: f64,
@@ -112,7 +112,7 @@ const CLIMBS: usize = 6;
 /// Part of the requested gap from which on the 99 % gap of a choice binds it.
 const BINDING: f64 = 0.9;
 
-/// How finely gaps are looked for.
+/// Resolution of the search for gaps.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct GapEffort {
     /// One of so many directions.
@@ -128,8 +128,8 @@ impl GapEffort {
         starts: 4,
     };
 
-    /// What a capture gives, and a row of a table. Of fast sweeps both ways the 99 % gap depends on
-    /// the pair of azimuths: 4 pairs missed a third of it, 12 are within 5 % of 48.
+    /// Effort for a capture, and for a row of a table. The 99 % gap of fast sweeps both ways
+    /// depends on the pair of azimuths: 4 pairs missed a third of it, 12 are within 5 % of 48.
     const USUAL: Self = Self {
         stride: 1,
         starts: 12,
@@ -153,7 +153,7 @@ impl GapEffort {
 pub struct ScanPredictor {
     /// The lidar.
     pub lidar: PlanLidar,
-    /// What the error depends on.
+    /// Model of the error of a point.
     pub errors: ErrorModel,
     /// Requested gap, degrees.
     pub gap_deg: Option<f64>,
@@ -202,7 +202,7 @@ impl ScanPredictor {
         self.random_places.len() == RANDOM_DIRECTIONS && self.places.len() >= 100
     }
 
-    /// What a scan gives.
+    /// Predicts the results of a scan.
     #[must_use]
     pub fn row(&self, scan: &PlannedScan) -> PlanRow {
         self.row_decided(scan, &[])

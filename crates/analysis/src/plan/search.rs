@@ -27,7 +27,7 @@ pub enum LimitKind {
     Time,
 }
 
-/// What comes nearest to a limit that no scan keeps.
+/// Scan that comes nearest to a limit which none keeps.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct NearestScan {
@@ -37,21 +37,21 @@ pub struct NearestScan {
     pub with_others: bool,
     /// The least value that there is: millimetres, degrees or seconds.
     pub least: f64,
-    /// What it gives.
+    /// Predicted results of the scan.
     pub row: PlanRow,
 }
 
-/// Of so many directions one ranks settings of which the best are compared anew.
+/// Stride through the directions that rank settings, of which the best are compared anew.
 const RANKING_STRIDE: usize = 31;
 /// Ratio of a gap to the least one that counts as reaching it.
 pub(super) const NEARLY_LEAST: f64 = 1.04;
-/// What a limit is widened by where a choice by its own margin finds none.
+/// Factor by which a limit is widened where a choice by its own margin finds none.
 const MARGIN: f64 = 1.01;
 /// Ratio of a time to the shortest one that counts as reaching it.
 const NEARLY_FASTEST: f64 = 1.03;
 /// Ratio of times that are alike.
 const ALIKE: f64 = 1.01;
-/// So many scans of alike times are examined at all azimuths at the start: those that leave the
+/// Number of scans of alike times that are examined at all azimuths at the start: those with the
 /// fewest directions without a point at the first one. With 16, choices took the same time to 1 %.
 const HOPEFUL: usize = 4;
 /// Settings of which the densest is chosen by some of the directions, and of these by all.
@@ -231,7 +231,7 @@ impl ScanPredictor {
         self.row_decided(found.scan, &found.azimuths)
     }
 
-    /// Of the fastest scans, which take nearly the same time, the densest.
+    /// Densest of the fastest scans, which take nearly the same time.
     fn densest_of_fastest(&self, mut scans: Vec<&PlannedScan>) -> Option<PlanRow> {
         let most_s = NEARLY_FASTEST * scans.first()?.scan_s;
         scans.retain(|scan| scan.scan_s <= most_s);

@@ -77,7 +77,7 @@ impl TiltSweep {
 pub(super) struct SweepMotion {
     pub sweep: TiltSweep,
     way_deg: f64,
-    /// Of its tilts: 1 or -1.
+    /// Direction of its tilts: 1 or -1.
     sign: f64,
     pub peak_deg_s: f64,
     s_per_deg: f64,

@@ -8,7 +8,7 @@ use crate::tradeoff::front::front;
 
 /// Rows at most.
 const ROWS: usize = 12;
-/// Of so many directions one ranks scans of alike times.
+/// Stride through the directions that rank scans of alike times.
 const RANKING_STRIDE: usize = 12;
 /// Classes of time from the fastest scan to the slowest, each a constant factor longer than the one
 /// before: 12 % for times of 2 to 1800 s. Of each the scan with the least gap is compared with

@@ -30,9 +30,9 @@ pub struct TradeoffStudy {
     pub name: &'static str,
     /// Title.
     pub title: &'static str,
-    /// What is chosen between.
+    /// Subject of the choice.
     pub choice: &'static str,
-    /// What is measured of each choice.
+    /// Quantities measured of each choice.
     pub columns: Vec<TradeoffColumn>,
     /// The choices.
     pub rows: Vec<TradeoffRow>,

@@ -59,7 +59,7 @@ pub struct UnknownStudy {
     pub known: Vec<&'static str>,
 }
 
-/// Why a study failed.
+/// Reason why a study failed.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
     /// A sink refused points.

@@ -35,7 +35,7 @@ pub struct ResidualBin {
     pub mean_m: f64,
     /// Root mean square, metres.
     pub rms_m: f64,
-    /// What noise and pointing let expect, metres.
+    /// Root mean square expected from noise and pointing, metres.
     pub expected_m: f64,
     /// Root mean square of the points' errors against the truth and of their stated standard
     /// deviations, metres, and of the first over the second.

@@ -129,7 +129,7 @@ impl FlatSurface {
     }
 }
 
-/// Where three planes meet.
+/// Intersection of three planes.
 fn meeting(a: &FlatSurface, b: &FlatSurface, c: &FlatSurface) -> Option<Vec3> {
     let [bc, ca, ab] = [(b, c), (c, a), (a, b)].map(|(u, v)| cross(u.normal, v.normal));
     let volume = dot(a.normal, bc);

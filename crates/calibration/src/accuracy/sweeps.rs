@@ -21,7 +21,7 @@ pub struct SweepPair {
     pub mean_m: f64,
     /// Root mean square of the elements' differences, metres.
     pub rms_m: f64,
-    /// What the noise of their shots lets expect, metres.
+    /// Root mean square expected from the noise of their shots, metres.
     pub expected_m: f64,
     /// The tilt by which the second is ahead, radians, and its standard deviation.
     pub tilt_rad: [f64; 2],

@@ -9,7 +9,7 @@ const DRIFT_SD: f64 = 8.0;
 const DRIFT_MM_S: f64 = 1.0;
 /// Distance at which a rotating base moves points, metres.
 const DRIFT_AT_M: f64 = 20.0;
-/// How a base that stands may creep, one standard deviation: 72 mm in an hour.
+/// Creep of a base that stands, one standard deviation: 72 mm in an hour.
 const CREEP_M_S: f64 = 2e-5;
 /// Chi-squared that the drift of a base that stands exceeds with a probability of 0.1 %, by the
 /// number of its free parts. In 100 simulated scans it was 1.3 times as large as expected.
@@ -19,7 +19,7 @@ const FOUND_SD: f64 = 5.5;
 /// A scan that would not show a drift of this speed, or of 5 mm/s at 5 m (0.06 deg/s), does not
 /// show that its base stands.
 const POWER_M_S: f64 = 0.02;
-/// How a base may then drift, one standard deviation.
+/// Possible drift of the base of such a scan, one standard deviation.
 const UNSEEN_M_S: f64 = 1e-3;
 
 impl BaseEvidence {

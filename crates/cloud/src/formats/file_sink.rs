@@ -43,7 +43,7 @@ pub trait FormatEncoder {
     /// [`EncodeError`] if the output or the library fails.
     fn finish(&mut self, summary: &Summary) -> Result<(), EncodeError>;
 
-    /// As [`Sink::companion`].
+    /// Like [`Sink::companion`].
     fn companion(&self, file_name: &str) -> Option<Companion> {
         let _ = file_name;
         None

@@ -27,9 +27,12 @@ use super::file_sink::EncodeError;
 use super::stage::Stage;
 use crate::messages::cdr::Cdr;
 use crate::messages::{
-    Cloud, Cutting, Frames, Time, Topic, diagnostic_array, joint_state, tf_message,
+    Cloud, Frames, MessageSplitter, Time, Topic, diagnostic_array, joint_state, tf_message,
 };
-use crate::{Companion, Diagnostic, Fields, Metadata, Points, Sink, SinkError, Summary, TiltTrack};
+use crate::{
+    Companion, Diagnostic, Fields, Metadata, Points, Revolution, Sink, SinkError, Summary,
+    TiltTrack,
+};
 
 pub use crate::messages::{MOST_POINTS, MOST_SPAN};
 
@@ -46,7 +49,7 @@ const CHUNK_BYTES: u64 = 1 << 20;
 /// A file whose output failed cannot be completed; `mcap recover` restores its whole chunks.
 pub struct McapWriter<W: Write + Seek> {
     stage: Stage,
-    clouds: Cutting,
+    clouds: MessageSplitter,
     log: McapLog<W>,
 }
 
@@ -86,7 +89,7 @@ impl<W: Write + Seek> McapWriter<W> {
         let (output, fault) = ErrorHidingOutput::new(output);
         Self {
             stage: Stage::default(),
-            clouds: Cutting::new(FORMAT, fields, Frames::default()),
+            clouds: MessageSplitter::new(FORMAT, fields, Frames::default()),
             log: McapLog {
                 fault,
                 state: McapState::Idle(output),
@@ -312,7 +315,7 @@ impl<W: Write + Seek> Sink for McapWriter<W> {
         Ok(())
     }
 
-    fn revolution(&mut self) -> Result<(), SinkError> {
+    fn revolution(&mut self, _: &Revolution) -> Result<(), SinkError> {
         self.stage.points(FORMAT)?;
         self.clouds.revolution(|cloud| self.log.write_cloud(cloud))
     }

@@ -103,11 +103,12 @@ impl Format {
         formats.filter(|format| !format.needs_companion())
     }
 
-    /// Optional columns that the format refuses.
+    /// Columns whose request is an error, as the format has no place for them. It omits others
+    /// that it lacks.
     #[must_use]
-    pub fn lacks(self) -> Fields {
+    pub fn refused_columns(self) -> Fields {
         match self {
-            Self::Kitti => Fields::SD | Fields::ECHO,
+            Self::Kitti => Fields::SD | Fields::ECHO | Fields::LASER,
             _ => Fields::NONE,
         }
     }

@@ -27,7 +27,7 @@ pub struct Cloud<'a> {
 }
 
 /// Splits batches into messages. `format` is the name in errors.
-pub(crate) struct Cutting {
+pub(crate) struct MessageSplitter {
     format: &'static str,
     frames: Frames,
     tilts: bool,
@@ -42,7 +42,7 @@ pub(crate) struct Cutting {
     pub(crate) summary: Summary,
 }
 
-impl Cutting {
+impl MessageSplitter {
     /// One cloud per sweep, with these columns beside x, y, z, intensity, ring and time, in these
     /// frames.
     pub(crate) fn new(format: &'static str, fields: Fields, frames: Frames) -> Self {
@@ -175,13 +175,13 @@ impl Cutting {
 /// Passes each cloud to `take`.
 pub struct Clouds<F> {
     take: F,
-    cutting: Cutting,
+    cutting: MessageSplitter,
 }
 
 impl<F: FnMut(Cloud<'_>) -> Result<(), SinkError>> Clouds<F> {
     /// Clouds with x, y, z, intensity, ring and time, in these frames.
     pub fn new(frames: Frames, take: F) -> Self {
-        let cutting = Cutting::new(FORMAT, Fields::NONE, frames);
+        let cutting = MessageSplitter::new(FORMAT, Fields::NONE, frames);
         Self { take, cutting }
     }
 }

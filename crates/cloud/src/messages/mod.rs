@@ -18,7 +18,7 @@ use units::{Host, Stamp};
 
 use self::cdr::Cdr;
 
-pub(crate) use clouds::Cutting;
+pub(crate) use clouds::MessageSplitter;
 pub use clouds::{Cloud, Clouds, MOST_POINTS, MOST_SPAN};
 pub use diagnostics::diagnostic_array;
 pub use joint_state::joint_state;
@@ -148,7 +148,7 @@ pub struct Time {
     "messages: time {got_ns} ns, expected between 1970 and 2038, as ROS counts seconds in 31 bits"
 )]
 #[non_exhaustive]
-pub struct UnsayableTime {
+pub struct TimeOutOfRange {
     /// The time, nanoseconds since 1970.
     pub got_ns: i64,
 }
@@ -157,8 +157,8 @@ impl Time {
     /// A time of the host's clock.
     ///
     /// # Errors
-    /// [`UnsayableTime`] before 1970 and from 2038 on.
-    pub fn of(stamp: Stamp<Host>) -> Result<Self, UnsayableTime> {
+    /// [`TimeOutOfRange`] before 1970 and from 2038 on.
+    pub fn of(stamp: Stamp<Host>) -> Result<Self, TimeOutOfRange> {
         let got_ns = stamp.as_nanos();
         let parts = (
             i32::try_from(got_ns.div_euclid(1_000_000_000)),
@@ -166,7 +166,7 @@ impl Time {
         );
         match parts {
             (Ok(sec), Ok(nanosec)) if sec >= 0 => Ok(Self { sec, nanosec }),
-            _ => Err(UnsayableTime { got_ns }),
+            _ => Err(TimeOutOfRange { got_ns }),
         }
     }
 }
@@ -194,8 +194,8 @@ mod tests {
         );
         let last = 0x7FFF_FFFF * 1_000_000_000 + 999_999_999;
         assert!(of(0).is_ok() && of(last).is_ok());
-        assert_eq!(of(-1), Err(UnsayableTime { got_ns: -1 }));
-        assert_eq!(of(last + 1), Err(UnsayableTime { got_ns: last + 1 }));
+        assert_eq!(of(-1), Err(TimeOutOfRange { got_ns: -1 }));
+        assert_eq!(of(last + 1), Err(TimeOutOfRange { got_ns: last + 1 }));
     }
 
     /// Every type that a definition names is defined in it.

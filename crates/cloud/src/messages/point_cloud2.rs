@@ -9,7 +9,7 @@ use std::ops::Range;
 use units::{Host, Lidar, Stamp};
 
 use super::cdr::Cdr;
-use super::{Time, UnsayableTime, header};
+use super::{Time, TimeOutOfRange, header};
 use crate::points::ColumnValues;
 use crate::rows::{NumberType, fill_values};
 use crate::{Column, Fields, MissingColumns, Points};
@@ -61,7 +61,7 @@ struct LengthPlaceholders {
     length: usize,
 }
 
-/// Why points do not fit a message.
+/// Reason why points do not fit a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CloudMessageError {
     /// A column is missing.
@@ -69,7 +69,7 @@ pub enum CloudMessageError {
     Columns(#[from] MissingColumns),
     /// A time outside the range of ROS.
     #[error(transparent)]
-    Time(#[from] UnsayableTime),
+    Time(#[from] TimeOutOfRange),
 }
 
 impl CloudMessage {
@@ -166,7 +166,7 @@ impl CloudMessage {
     }
 
     /// Writes everything before the points.
-    fn begin(&mut self, first: Stamp<Host>, frame: &str) -> Result<(), UnsayableTime> {
+    fn begin(&mut self, first: Stamp<Host>, frame: &str) -> Result<(), TimeOutOfRange> {
         let stamp = Time::of(first)?;
         self.first = first;
         let cdr = &mut self.cdr;

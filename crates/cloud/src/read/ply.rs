@@ -6,7 +6,7 @@ use crate::formats::Format;
 /// The header.
 struct PlyHeader {
     data: PlyEncoding,
-    /// Where the data begins.
+    /// Offset of the data, bytes.
     start: usize,
     elements: Vec<PlyElement>,
 }

@@ -7,7 +7,7 @@ use crate::formats::Format;
 /// x, y and z in metres.
 pub type Positions = Vec<[f64; 3]>;
 
-/// Why a cloud cannot be read.
+/// Reason why a cloud cannot be read.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("{format}: byte {offset}: expected {expected}, got {got}")]
 #[non_exhaustive]

@@ -1,4 +1,4 @@
-//! What a client accepts: qualities in headers (RFC 9110, 12.4.2).
+//! Preferences of a client: quality values in headers (RFC 9110, 12.4.2).
 
 /// The quality that a header gives to the first of these names that it has, 0 without one.
 pub(super) fn quality(header: &str, names: &[&str]) -> f64 {

@@ -29,7 +29,7 @@ use super::{
 use crate::limits::{CONNECTIONS, DOWNLOADS, LOCAL_CONNECTIONS, MAKING, Waits};
 use crate::state::{Counters, DaemonState};
 
-/// What requests are answered with.
+/// Shared state of the request handlers.
 pub struct Api {
     /// The daemon's state.
     pub state: Arc<DaemonState>,

@@ -50,7 +50,7 @@ const ASSETS: [Asset; 6] = [
     ),
 ];
 
-/// What clients get of an asset.
+/// Asset as it is sent to clients.
 struct CompressedFile {
     tag: String,
     gzip: Vec<u8>,

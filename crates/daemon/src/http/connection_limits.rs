@@ -13,13 +13,13 @@ use tokio::time::{Sleep, sleep};
 
 use crate::limits::{SHARE, Waits};
 
-/// What the requests of a connection have proved.
+/// Credentials proved by the requests of a connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Trust {
     /// Nothing: only the page that signs in is answered.
     None,
-    /// That it comes from this machine, where no token is needed.
+    /// Origin on this machine, where no token is needed.
     Local,
     /// The token.
     Token,

@@ -1,11 +1,14 @@
 //! Files of scans. A cloud in another format is made from the log into an unnamed file and streamed
 //! from there, never all of it in memory.
 
+use std::fs::Metadata;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::{Seek, SeekFrom};
 use std::os::fd::AsRawFd;
 use std::path::{Path as FilePath, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, LazyLock};
+use std::time::SystemTime;
 
 use axum::extract::rejection::QueryRejection;
 use axum::extract::{Path, Query, State};
@@ -20,8 +23,9 @@ use utoipa::IntoParams;
 
 use super::api::Api;
 use super::openapi::{NotNow, StoredFile, StoredPicture};
+use super::partial::{is_known, tag_of};
 use super::refusal::Refusal;
-use super::send_file::{OpenFile, send};
+use super::send_file::{OpenFile, not_modified, send};
 use crate::cloud_builder::defect;
 use crate::disk_quota::{self, DiskQuota, QuotaFile};
 use crate::plan;
@@ -44,12 +48,26 @@ pub struct CloudQuery {
     uncertainty: bool,
     /// Whether to add the column echo.
     echo: bool,
+    /// Whether to add the column laser.
+    laser: bool,
+}
+
+impl CloudQuery {
+    fn fields(&self) -> Fields {
+        let more = [
+            (self.uncertainty, Fields::SD),
+            (self.echo, Fields::ECHO),
+            (self.laser, Fields::LASER),
+        ];
+        let wanted = more.into_iter().filter(|(is_wanted, _)| *is_wanted);
+        wanted.fold(Fields::FILE, |fields, (_, field)| fields | field)
+    }
 }
 
 /// The cloud of a scan.
 ///
-/// In PLY it is a stored file, of which a part can be requested. Other formats and more columns are
-/// made on request.
+/// In PLY it is a stored file. Other formats and more columns are made on request: always the same
+/// bytes while the daemon runs, so that an interrupted download can go on, too.
 #[utoipa::path(get, path = "/api/v1/scans/{id}/cloud", tag = "scans",
     params(("id" = String, Path, description = "Id of a scan"), CloudQuery, ("Range" = Option<String>, Header, description = "The requested part (RFC 9110)")), responses(StoredFile,
     (status = 409, response = NotNow), (status = 507, response = NotNow),
@@ -69,26 +87,32 @@ pub async fn cloud(
         return Err(being_made());
     }
     let permit = downloading(&api)?;
-    let plain = !wanted.uncertainty && !wanted.echo;
+    let fields = wanted.fields();
     if format == Format::Ply
-        && plain
+        && fields == Fields::FILE
         && let Ok(stored) = open(api.state.cloud(&id)).await?
     {
-        return Ok(send(stored, &stem(&record), "ply", permit, Some(&headers)));
+        let tag = tag_of(&stored.1);
+        return Ok(send(
+            stored,
+            (&stem(&record), "ply"),
+            permit,
+            (&headers, &tag),
+        ));
+    }
+    let log = api.state.log(&id);
+    let (_, log_metadata) = open(log.clone())
+        .await?
+        .map_err(|_| Refusal::no_file(LOG))?;
+    let accuracy = record.accuracy();
+    let tag = tag_of_made(&log_metadata, (format, fields, accuracy));
+    if is_known(&headers, &tag) {
+        return Ok(not_modified(&tag));
     }
     let making = Arc::clone(&api.making).try_acquire_owned();
     let making = making.map_err(|_| Refusal::too_many("clouds being made"))?;
     let stem = stem(&record);
     let (points, state) = (record.points, Arc::clone(&api.state));
-    let accuracy = record.accuracy();
-    let mut fields = Fields::FILE;
-    if wanted.uncertainty {
-        fields |= Fields::SD;
-    }
-    if wanted.echo {
-        fields |= Fields::ECHO;
-    }
-    let log = api.state.log(&id);
     let client = ClientGuard::default();
     let interrupt = client.interrupt();
     let made = tokio::task::spawn_blocking(move || {
@@ -107,7 +131,18 @@ pub async fn cloud(
     });
     let file = made.await.map_err(|_| defect())??;
     drop(client);
-    Ok(send(file, &stem, format.extension(), permit, None))
+    let file_name = (stem.as_str(), format.extension());
+    Ok(send(file, file_name, permit, (&headers, &tag)))
+}
+
+/// Validator of a cloud that is made of a log. The same log gives the same bytes, but perhaps not
+/// with the program that runs after the next start.
+fn tag_of_made(log: &Metadata, (format, fields, accuracy): (Format, Fields, Accuracy)) -> String {
+    static START: LazyLock<SystemTime> = LazyLock::new(SystemTime::now);
+    let mut hasher = DefaultHasher::new();
+    (*START, tag_of(log), format.extension(), fields).hash(&mut hasher);
+    format!("{accuracy:?}").hash(&mut hasher);
+    format!("\"made-{:x}\"", hasher.finish())
 }
 
 /// The format of an extension. A download is one file, without a companion.
@@ -221,7 +256,8 @@ async fn stored(
     let permit = downloading(api)?;
     let file = open(api.state.scans.place(id).join(name)).await?;
     let file = file.map_err(|_| Refusal::no_file(name))?;
-    Ok(send(file, &stem, extension, permit, Some(headers)))
+    let tag = tag_of(&file.1);
+    Ok(send(file, (&stem, extension), permit, (headers, &tag)))
 }
 
 fn downloading(api: &Api) -> Result<OwnedSemaphorePermit, Refusal> {

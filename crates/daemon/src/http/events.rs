@@ -93,7 +93,7 @@ pub async fn events(
     }))
 }
 
-/// Why a client is disconnected.
+/// Reason for the disconnection of a client.
 enum Disconnect {
     /// The client or the network closed the connection.
     Gone,

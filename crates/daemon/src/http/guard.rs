@@ -180,7 +180,7 @@ fn check(api: &Api, peer: Peer, request: &Request) -> Result<Trust, (Refusal, bo
         return Err((
             denied(
                 format!("{host:?} is not a name of this daemon"),
-                "use http://127.0.0.1, or set a token to let others in under another name",
+                "use http://127.0.0.1, or set a token to allow other host names",
             ),
             false,
         ));

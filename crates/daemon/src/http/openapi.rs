@@ -172,7 +172,7 @@ pub fn formats() -> Schema {
 )]
 struct Description;
 
-/// What holds for all requests: their refusals, and how a client identifies itself.
+/// Parts shared by all requests: their refusals, and the identification of a client.
 struct SharedParts;
 
 /// Responses of every request.

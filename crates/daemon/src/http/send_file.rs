@@ -11,7 +11,7 @@ use futures_util::stream::try_unfold;
 use tokio::io::AsyncReadExt;
 use tokio::sync::OwnedSemaphorePermit;
 
-use super::partial::{FileRange, is_known, range_of, tag_of};
+use super::partial::{FileRange, is_known, range_of};
 use super::refusal::Refusal;
 
 /// Bytes that are read at once.
@@ -37,18 +37,37 @@ fn attachment(name: &str) -> String {
     format!("attachment; filename=\"{plain}\"; filename*=UTF-8''{escaped}")
 }
 
-/// Sends a file as it is now, a piece at a time: as fast as the client takes it. Of a stored file
-/// the client may ask, by the headers of its request, for a part.
+/// Headers of a file that the client may keep, but asks for each time, as a token may protect it.
+fn validators(tag: &str) -> HeaderMap {
+    let mut headers = HeaderMap::new();
+    if let Ok(tag) = HeaderValue::from_str(tag) {
+        headers.insert(header::ETAG, tag);
+    }
+    headers.insert(
+        header::CACHE_CONTROL,
+        HeaderValue::from_static("private, no-cache"),
+    );
+    headers
+}
+
+/// The answer to a client that has the file.
+pub fn not_modified(tag: &str) -> Response {
+    (StatusCode::NOT_MODIFIED, validators(tag)).into_response()
+}
+
+/// Sends a file as it is now, a piece at a time: as fast as the client takes it. The client may ask
+/// for a part by the headers of its request, if its bytes have the same validator.
 pub fn send(
     (mut file, metadata): OpenFile,
-    stem: &str,
-    extension: &str,
+    (stem, extension): (&str, &str),
     permit: OwnedSemaphorePermit,
-    request_headers: Option<&HeaderMap>,
+    (request_headers, tag): (&HeaderMap, &str),
 ) -> Response {
+    if is_known(request_headers, tag) {
+        return not_modified(tag);
+    }
     let length = metadata.len();
-    let tag = tag_of(&metadata);
-    let mut headers = HeaderMap::new();
+    let mut headers = validators(tag);
     let mut set = |name, value: String| {
         if let Ok(value) = HeaderValue::from_str(&value) {
             headers.insert(name, value);
@@ -64,33 +83,24 @@ pub fn send(
         header::CONTENT_DISPOSITION,
         attachment(&format!("{stem}.{extension}")),
     );
-    // A token may protect it: only the client itself may keep it, and asks each time.
-    let cache = request_headers.map_or("no-store", |_| "private, no-cache");
-    set(header::CACHE_CONTROL, cache.to_owned());
+    set(header::ACCEPT_RANGES, "bytes".to_owned());
     let mut status = StatusCode::OK;
     let mut range = 0..length;
-    if let Some(request_headers) = request_headers {
-        set(header::ETAG, tag.clone());
-        set(header::ACCEPT_RANGES, "bytes".to_owned());
-        if is_known(request_headers, &tag) {
-            return (StatusCode::NOT_MODIFIED, headers).into_response();
+    match range_of(request_headers, tag, length) {
+        FileRange::Whole => {}
+        FileRange::Bytes(bytes) if file.seek(SeekFrom::Start(bytes.start)).is_ok() => {
+            status = StatusCode::PARTIAL_CONTENT;
+            let last = bytes.end.saturating_sub(1);
+            let place = format!("bytes {}-{last}/{length}", bytes.start);
+            set(header::CONTENT_RANGE, place);
+            range = bytes;
         }
-        match range_of(request_headers, &tag, length) {
-            FileRange::Whole => {}
-            FileRange::Bytes(bytes) if file.seek(SeekFrom::Start(bytes.start)).is_ok() => {
-                status = StatusCode::PARTIAL_CONTENT;
-                let last = bytes.end.saturating_sub(1);
-                let place = format!("bytes {}-{last}/{length}", bytes.start);
-                set(header::CONTENT_RANGE, place);
-                range = bytes;
-            }
-            FileRange::Bytes(_) | FileRange::Unsatisfiable => {
-                let (code, reason) = (StatusCode::RANGE_NOT_SATISFIABLE, Kind::Usage);
-                let error = format!("the range of bytes: expected a part of {length} bytes");
-                let refusal = Refusal::new(code, reason, error, "ask for the whole file");
-                let place = [(header::CONTENT_RANGE, format!("bytes */{length}"))];
-                return (place, refusal).into_response();
-            }
+        FileRange::Bytes(_) | FileRange::Unsatisfiable => {
+            let (code, reason) = (StatusCode::RANGE_NOT_SATISFIABLE, Kind::Usage);
+            let error = format!("the range of bytes: expected a part of {length} bytes");
+            let refusal = Refusal::new(code, reason, error, "ask for the whole file");
+            let place = [(header::CONTENT_RANGE, format!("bytes */{length}"))];
+            return (place, refusal).into_response();
         }
     }
     let length = range.end.saturating_sub(range.start);

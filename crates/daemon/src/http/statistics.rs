@@ -10,7 +10,7 @@ use analysis::plan::ErrorBudget;
 use axum::extract::{Path, State};
 use axum::http::StatusCode;
 use axum::response::Response;
-use engine::capture::scan_plan::ScanPlanner;
+use engine::capture::scan_planner::ScanPlanner;
 use engine::failure::Failure;
 use engine::reconstruct::source::Source;
 use engine::reconstruct::statistics::{LogStatistics, statistics};

@@ -11,7 +11,7 @@ use tokio_rustls::rustls::crypto::ring;
 use tokio_rustls::rustls::pki_types::pem::PemObject;
 use tokio_rustls::rustls::pki_types::{CertificateDer, PrivateKeyDer};
 
-/// What accepts connections with the configured certificate; `None` without one.
+/// TLS acceptor of connections with the configured certificate; `None` without one.
 ///
 /// # Errors
 /// [`Kind::Usage`] for a certificate without a key or the reverse, [`Kind::BadInput`] for unusable

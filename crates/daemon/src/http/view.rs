@@ -23,6 +23,7 @@ use tokio::time::sleep;
 
 use super::assets;
 use super::connection_limits::{Connection, Trust};
+use super::partial::tag_of;
 use super::refusal::Refusal;
 use super::request_limits;
 use super::secret::secret;
@@ -106,7 +107,7 @@ pub struct ViewedFiles {
 #[derive(Debug, Default)]
 struct Pages {
     open: usize,
-    /// When the last one was closed.
+    /// Time at which the last one was closed.
     left: Option<Instant>,
 }
 
@@ -274,7 +275,9 @@ async fn cloud_of(
     });
     let opened = opened.await?.map_err(|_| no_cloud())?;
     let name = format!("velomotion-{index}");
-    Ok(send_file::send(opened, &name, "ply", permit, Some(headers)))
+    let tag = tag_of(&opened.1);
+    let name = (name.as_str(), "ply");
+    Ok(send_file::send(opened, name, permit, (headers, &tag)))
 }
 
 /// The files now and after each change, as server-sent events (HTML, section 9.2).

@@ -140,7 +140,7 @@ fn interrupted() -> Failure {
         Kind::Incomplete,
         "the daemon or the machine was stopped in the middle of this scan",
     )
-    .help("what the log held by then is here; scan again for the rest")
+    .help("the scan has what was recorded until then; scan again for the rest")
 }
 
 fn modified_s(path: &Path) -> f64 {

@@ -29,7 +29,7 @@ pub(super) fn of(record: &ScanRecord, place: &Path, has_log: bool) -> Option<Str
     Some(all.join(" ").replace(&format!("{}/", place.display()), ""))
 }
 
-/// Where the last sweep of a stopped scan ended, as its report says.
+/// End angle of the last sweep of a stopped scan, from its report.
 fn last_sweep(record: &ScanRecord) -> Option<String> {
     let cause = record.cause.as_ref().or(record.why.as_ref())?;
     let sweeps = record.report.as_ref()?.get("sweeps")?.as_array()?;

@@ -1,5 +1,7 @@
 // Requests to the daemon and its answers (docs: The daemon).
 
+import { whole } from "./download.ts";
+
 /** An error and its remedy. */
 export interface Problem {
   message: string;
@@ -237,7 +239,11 @@ async function answered(url: string, init: RequestInit): Promise<Response> {
 
 /** URL to save a file from. Files that exist may be large and are not held here; others are made now. */
 export async function fileUrl(url: string, exists: boolean): Promise<string> {
-  if (!exists) return URL.createObjectURL(await (await answered(url, {})).blob());
+  if (!exists) {
+    // An answer that breaks off is not a refusal. What was made for it may count until the daemon knows of its end.
+    const is_lost = (error: unknown) => !(error instanceof RequestError) || [0, 429, 503].includes(error.status);
+    return URL.createObjectURL(await whole((headers) => answered(url, { headers }), is_lost));
+  }
   // A refusal of HEAD has no text: GET has it.
   await answered(url, { method: "HEAD" }).catch(() => answered(url, {}).then((answer) => answer.body?.cancel()));
   return url;
@@ -280,8 +286,8 @@ export const api = {
 };
 
 /** URL of a scan's cloud, with the further columns. */
-export function cloudUrl(id: string, format: string, uncertainty = false, echo = false): string {
-  const more = `${uncertainty ? "&uncertainty=true" : ""}${echo ? "&echo=true" : ""}`;
+export function cloudUrl(id: string, format: string, complete: boolean): string {
+  const more = complete ? "&uncertainty=true&echo=true&laser=true" : "";
   return `${ROOT}scans/${encodeURIComponent(id)}/cloud?format=${format}${more}`;
 }
 

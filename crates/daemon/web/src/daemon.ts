@@ -27,7 +27,7 @@ let connected = false;
 /** The cloud of a scan. */
 function source(scan: Scan): CloudSource {
   const { id, simulated, state } = scan;
-  return { id, title: title(scan), simulated, partial: state === "partial", url: (uncertainty) => cloudUrl(id, "ply", uncertainty), certain: true, scanner: true, plays: false };
+  return { id, title: title(scan), simulated, partial: state === "partial", url: (complete) => cloudUrl(id, "ply", complete), completes: true, scanner: true, plays: false };
 }
 
 const listener: Listener = {

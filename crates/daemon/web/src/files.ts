@@ -98,7 +98,7 @@ function source(place: number): CloudSource | null {
   if (file === undefined) return null;
   const { simulated, scanner, log } = file;
   const title = file.error ? `${file.name}: ${file.error}` : file.name;
-  return { id: key(place), title, simulated, partial: Boolean(file.error), url: () => `clouds/${place}.ply`, certain: false, scanner, plays: log };
+  return { id: key(place), title, simulated, partial: Boolean(file.error), url: () => `clouds/${place}.ply`, completes: false, scanner, plays: log };
 }
 
 function open(place: number, other: CloudSource | null = null): void {

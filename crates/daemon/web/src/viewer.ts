@@ -2,12 +2,14 @@
 
 import { attribute, id, show, text } from "./dom.ts";
 import { MOST_M } from "./distance.ts";
+import * as fields from "./fields.ts";
 import { count, digits, fixed, length, mm } from "./format.ts";
 import { COLUMNS, type Columns, type Frame } from "./frame.ts";
 import * as clip from "./panels/clip.ts";
 import { announce } from "./panels/messages.ts";
 import * as picked from "./panels/picks.ts";
 import { Player } from "./panels/player.ts";
+import type { Picked } from "./picked.ts";
 import * as picture from "./picture.ts";
 import { type Field, type Range, type Ranges, tiltAt } from "./sample.ts";
 import { Live, Loaded, draw } from "./view/cloud.ts";
@@ -15,7 +17,7 @@ import { type ViewState, fromHash, toHash } from "./view/link.ts";
 import { scaleBar } from "./view/measure.ts";
 import { type MapName, MARKS, css, table } from "./view/maps.ts";
 import { Overlay } from "./view/overlay.ts";
-import { type Picked, type Preset, RING_STEP_M, Stage } from "./view/stage.ts";
+import { type Preset, RING_STEP_M, Stage } from "./view/stage.ts";
 import type { LoadRequest, LoadEvent } from "./worker.ts";
 
 const FIELDS: Field[] = ["height", "range", "intensity", "ring", "time", "sd", "distance"];
@@ -33,10 +35,10 @@ export interface CloudSource {
   id: string;
   title: string;
   simulated: boolean;
-  /** Address of its PLY. */
-  url: (uncertainty: boolean) => string;
-  /** Whether the column sd can be requested. */
-  certain: boolean;
+  /** Address of its PLY; complete with the columns that stored clouds lack. */
+  url: (complete: boolean) => string;
+  /** Whether it can be requested complete. */
+  completes: boolean;
   /** Whether a part of the scan is missing. */
   partial: boolean;
   /** Whether the origin is on velomotion's tilt axis. */
@@ -71,6 +73,8 @@ export class Viewer {
   private origin: [number, number, number] = [0, 0, 0];
   private known = NO_COLUMNS;
   private picks: Picked[] = [];
+  /** Whether the complete cloud is shown or being loaded. */
+  private complete = false;
   private fitted = false;
   private legend_ms = 0;
   /** The view of the page's address, until its scan is shown. */
@@ -149,11 +153,12 @@ export class Viewer {
 
   /**
    * Shows a finished cloud; with another one, coloured by the distance from that. Live points of the same scan stay in
-   * view until the cloud is loaded.
+   * view until the cloud is loaded, and points that are picked stay.
    */
-  open(source: CloudSource, other: CloudSource | null = null): void {
+  open(source: CloudSource, other: CloudSource | null = null, complete = false): void {
     const follows = this.live !== null && this.shown === source.id && other === null;
     const again = this.shown === source.id;
+    const kept = again ? this.picks : [];
     // A comparison that is loaded again keeps its colours.
     const field = other !== null && other === this.other ? this.field : "distance";
     if (follows) this.worker?.terminate();
@@ -171,7 +176,10 @@ export class Viewer {
       this.colour();
     }
     text(id("view-note"), follows ? "live points; the cloud is loading" : other !== null ? `loading ${other.title}` : "");
-    this.download(source, this.field === "sd" && source.certain, follows);
+    this.complete = source.completes && (complete || this.field === "sd");
+    this.picks = kept;
+    this.show_picks();
+    this.download(source, follows);
     this.changed(source.id);
   }
 
@@ -215,6 +223,7 @@ export class Viewer {
     if (field === this.field) return;
     this.field = id<HTMLSelectElement>("field").value = field;
     for (const limit of ["limit-low", "limit-high"]) id<HTMLInputElement>(limit).value = "";
+    fields.report(id("tools"));
   }
 
   private show_both(): void {
@@ -223,7 +232,8 @@ export class Viewer {
     this.stage.draw();
   }
 
-  private download(source: CloudSource, uncertainty: boolean, follows: boolean): void {
+  private download(source: CloudSource, follows: boolean): void {
+    const kept = this.picks;
     const worker = new Worker("worker.js", { type: "module" });
     const cloud = new Loaded(this.stage.points);
     this.worker = worker;
@@ -258,7 +268,9 @@ export class Viewer {
         this.origin = data.origin;
         if (data.simulated) show(id("view-simulated"), true);
         this.range(cloud.ranges);
+        this.picks = this.picks.map((pick) => data.picked[kept.indexOf(pick)] ?? pick);
         this.whole = data;
+        this.show_picks();
         this.describe_whole(data);
         if (data.other !== null && other_points !== null) {
           const from = data.other.origin;
@@ -274,7 +286,9 @@ export class Viewer {
       }
     };
     worker.onerror = () => this.failed("the cloud cannot be read");
-    const order: LoadRequest = { url: new URL(source.url(uncertainty), location.href).href, most: small.matches ? 3_000_000 : 24_000_000 };
+    const order: LoadRequest = {
+      url: new URL(source.url(this.complete), location.href).href, most: small.matches ? 3_000_000 : 24_000_000, picked: kept.map((pick) => pick.position),
+    };
     if (other !== null) order.other = new URL(other.url(false), location.href).href;
     worker.postMessage(order);
   }
@@ -304,6 +318,9 @@ export class Viewer {
 
   private failed(error: string): void {
     show(id("view-progress"), false);
+    this.complete = false;
+    // What is left of them is of two clouds.
+    if (this.live === null) this.unpick();
     if (this.live !== null) return text(id("view-note"), error);
     if (this.other !== null) text(id("view-note"), "");
     text(id("view-failed"), error);
@@ -321,6 +338,7 @@ export class Viewer {
     this.other_points = null;
     this.compare(null, this.field === "distance" ? this.field_before : this.field);
     this.opened = null;
+    this.complete = false;
     this.whole = null;
     this.ranges = null;
     this.origin = [0, 0, 0];
@@ -378,6 +396,7 @@ export class Viewer {
   private pick(x: number, y: number, touch: boolean): void {
     const found = this.stage.pickAt(x, y, touch);
     if (found === null) return announce("No point there");
+    found.complete = this.known.lasers;
     this.picks = this.picks.length === 1 ? [...this.picks, found] : [found];
     this.show_picks();
     announce(id("picked").textContent ?? "");
@@ -389,9 +408,16 @@ export class Viewer {
   }
 
   private show_picks(): void {
-    picked.draw(this.picks, this.known, this.origin, () => {
-      this.unpick();
-      id("canvas").focus();
+    const { opened, other } = this;
+    const load = () => {
+      if (opened !== null) this.open(opened, other, true);
+    };
+    picked.draw(this.picks, this.known, this.origin, {
+      clear: () => {
+        this.unpick();
+        id("canvas").focus();
+      },
+      load: opened?.completes !== true ? null : this.complete ? "loading" : load,
     });
     this.stage.draw();
   }
@@ -458,7 +484,7 @@ export class Viewer {
   private choose_field(field: Field): void {
     this.field = field;
     // Stored clouds mostly lack that column; the daemon adds it on request.
-    if (field === "sd" && this.ranges !== null && this.ranges.sd === null && this.opened?.certain === true) this.open(this.opened, this.other);
+    if (field === "sd" && this.ranges !== null && this.ranges.sd === null && this.opened?.completes === true) this.open(this.opened, this.other);
     this.colour();
   }
 
@@ -507,6 +533,7 @@ export class Viewer {
     const limits = ["limit-low", "limit-high"].map((name) => id<HTMLInputElement>(name));
     field.addEventListener("change", () => {
       for (const limit of limits) limit.value = "";
+      fields.report(id("tools"));
       this.choose_field(field.value as Field);
     });
     for (const limit of limits) limit.addEventListener("input", () => this.colour());
@@ -526,10 +553,15 @@ export class Viewer {
     check("cutaway", (on) => this.stage.uniform("cutaway", on));
     check("shading", (on) => this.stage.setShading(on));
     check("both-clouds", () => this.show_both());
+    id("swap").addEventListener("click", () => {
+      const { opened, other } = this;
+      if (opened !== null && other !== null) this.open(other, opened);
+    });
     check("parallel", (on) => this.stage.orbit.setParallel(on));
     id("fit").addEventListener("click", () => this.fit());
     for (const preset of ["top", "front", "side", "scanner"] as const) id(preset).addEventListener("click", () => this.fit(preset));
     clip.wire(this.stage);
+    fields.watch(id("tools"));
     id("picture").addEventListener("click", () => void this.save_picture());
     id("link").addEventListener("click", () => void this.copy_link());
     id("large").addEventListener("click", () => this.enlarge(!document.body.classList.contains("large")));

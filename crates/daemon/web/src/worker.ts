@@ -8,6 +8,7 @@ import { MOST_M, PointTree } from "./distance.ts";
 import { COLUMNS, type Columns, placed } from "./frame.ts";
 import { along_curve } from "./order.ts";
 import { PlyReader } from "./ply.ts";
+import { type Found, type Picked, type Position, nearer } from "./picked.ts";
 import { type Ranges, Sample } from "./sample.ts";
 
 export interface LoadRequest {
@@ -16,11 +17,13 @@ export interface LoadRequest {
   most: number;
   /** Address of a cloud from which the distances of the points are measured. */
   other?: string;
+  /** Positions of picked points, whose values are read anew. */
+  picked: Position[];
 }
 
 /** The other cloud of a comparison. */
 export interface Other {
-  origin: [number, number, number];
+  origin: Position;
   /** Every how manyth of its points is compared. */
   every: number;
 }
@@ -28,7 +31,7 @@ export interface Other {
 export type LoadEvent =
   | { kind: "other"; parts: Columns[]; read: number; total: number }
   | { kind: "points"; parts: Columns[]; ranges: Ranges; read: number; total: number; every: number }
-  | { kind: "done"; read: number; total: number; every: number; origin: [number, number, number]; simulated: boolean; other: Other | null; beyond: number }
+  | { kind: "done"; read: number; total: number; every: number; origin: Position; simulated: boolean; other: Other | null; beyond: number; picked: (Picked | null)[] }
   | { kind: "failed"; error: string };
 
 const BATCH = 262_144;
@@ -53,13 +56,17 @@ async function load(order: LoadRequest): Promise<void> {
   const other = order.other === undefined ? null : await readOther(order.other);
   const sample = new Sample();
   let beyond = 0;
+  const found = order.picked.map((): Found | null => null);
   const ply = await download(order.url, (columns, { count, done, origin }) => {
     const every = stride(count, order.most);
     if (other !== null) {
-      const [x, y, z] = origin.map((m, axis) => m - (other.origin[axis] ?? 0)) as Other["origin"];
+      const [x, y, z] = origin.map((m, axis) => m - (other.origin[axis] ?? 0)) as Position;
       columns.distances = other.tree.distances(columns.positions, [x, y, z]);
       for (const distance of columns.distances) if (distance >= MOST_M) beyond += 1;
     }
+    order.picked.forEach((position, i) => {
+      found[i] = nearer(columns, position, found[i] ?? null);
+    });
     sample.add(columns);
     const ranges = sample.ranges();
     if (ranges === null) return;
@@ -69,6 +76,7 @@ async function load(order: LoadRequest): Promise<void> {
   });
   here.postMessage({
     kind: "done", read: ply.done, total: ply.count ?? 0, every: stride(ply.count, order.most), origin: ply.origin, simulated: ply.simulated, beyond,
+    picked: found.map((one) => one?.picked ?? null),
     other: other === null ? null : { origin: other.origin, every: other.every },
   });
 }

@@ -21,3 +21,19 @@ test("scale bars have round lengths and fit", () => {
     assert.ok(Math.abs(bar.px * metres_per_px - bar.m) < 1e-9);
   }
 });
+
+test("a picked point is read anew from the nearest point within 5 cm", async () => {
+  const { nearer } = await load("picked.ts");
+  const none = new Uint8Array(0);
+  const columns = (x) => ({
+    count: 2, positions: new Float32Array([x, 2, 3, x, 2, 3.1]), times: new Float32Array([4, 5]), sds: new Float32Array([0.001, 0.002]), tilts: none, intensities: none,
+    rings: new Uint8Array([7, 8]), lasers: new Uint8Array([9, 10]), echoes: none, distances: none,
+  });
+  const first = nearer(columns(1.01), [1, 2, 3.1], null);
+  assert.deepEqual([first.picked.time_s, first.picked.ring, first.picked.laser, first.picked.intensity, first.picked.complete], [5, 8, 10, 0, true]);
+  assert.ok(Math.abs(first.off_m - 0.01) < 1e-6);
+  const exact = nearer(columns(1), [1, 2, 3], first);
+  assert.deepEqual([exact.off_m, exact.picked.ring], [0, 7]);
+  assert.equal(nearer(columns(1.02), [1, 2, 3], exact), exact);
+  assert.equal(nearer(columns(1.06), [1, 2, 3], null), null);
+});

@@ -158,7 +158,7 @@ impl Codec {
         }
     }
 
-    /// When [`Codec::expire`] is due.
+    /// Time at which [`Codec::expire`] is due.
     pub fn deadline(&self) -> Option<Stamp<Host>> {
         self.rs232()?.deadline()
     }

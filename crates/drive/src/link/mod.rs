@@ -118,7 +118,7 @@ impl RequestLink {
         self.frames.pop_front()
     }
 
-    /// When [`RequestLink::expire`] is due without input.
+    /// Time at which [`RequestLink::expire`] is due without input.
     pub fn deadline(&self) -> Option<Stamp<Host>> {
         let state = match self.state {
             LinkState::AwaitReply { deadline, .. } | LinkState::Probing { deadline, .. } => {

@@ -81,7 +81,7 @@ pub(super) struct ActiveRequest {
     pub attempts: u8,
     pub rejections: u8,
     pub damaged: bool,
-    /// When the link first processed it.
+    /// Time at which the link first processed it.
     pub started: Option<Stamp<Host>>,
     /// A copy was sent since the link was last synchronised.
     pub is_sent_early: bool,
@@ -124,7 +124,7 @@ impl ActiveRequest {
         silent.is_some_and(|silent| silent < self.request.silence_limit)
     }
 
-    /// When a last attempt is given up.
+    /// Time at which a last attempt is given up.
     pub fn final_deadline(&self) -> Option<Stamp<Host>> {
         let started = self.started.filter(|_| self.request.is_last_attempt)?;
         Some(started.saturating_add(self.request.timeout))

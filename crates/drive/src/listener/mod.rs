@@ -22,7 +22,7 @@ use crate::event::{SampleTrigger, ShaftSample};
 use crate::exchange::{ObjectAccess, Reply, TransferRequest};
 use crate::request_matcher::{ReplyMatch, RequestMatcher, SentRequest};
 use can::{CanEvent, CanListener};
-use recent_times::{LateAfter, RecentTimes};
+use recent_times::{LatenessThreshold, RecentTimes};
 use rs232::{Rs232Listener, SerialEvent};
 use slow_polls::SlowPolls;
 
@@ -37,9 +37,9 @@ pub enum Observation {
     Statusword {
         /// The statusword.
         value: u16,
-        /// When the request was sent.
+        /// Time at which the request was sent.
         request: Stamp<Host>,
-        /// When the reply was complete.
+        /// Time at which the reply was complete.
         answer: Stamp<Host>,
     },
     /// Another object was read.
@@ -48,9 +48,9 @@ pub enum Observation {
         address: Address,
         /// 32 bits as received; those above the object's width are undefined.
         value: u32,
-        /// When the request was sent.
+        /// Time at which the request was sent.
         request: Stamp<Host>,
-        /// When the reply was complete.
+        /// Time at which the reply was complete.
         answer: Stamp<Host>,
     },
     /// An object was written. Reported with the drive's confirmation, or as soon as later traffic
@@ -60,9 +60,9 @@ pub enum Observation {
         address: Address,
         /// The value as sent.
         value: u32,
-        /// When the request was sent.
+        /// Time at which the request was sent.
         request: Stamp<Host>,
-        /// When the confirmation was complete; `None` if it is not in the log.
+        /// Time at which the confirmation was complete; `None` if it is not in the log.
         answer: Option<Stamp<Host>>,
     },
     /// The drive refused a request.
@@ -71,45 +71,45 @@ pub enum Observation {
         address: Address,
         /// The drive's error code.
         error: AbortCode,
-        /// When the request was sent.
+        /// Time at which the request was sent.
         request: Stamp<Host>,
-        /// When the reply was complete.
+        /// Time at which the reply was complete.
         answer: Stamp<Host>,
     },
     /// An EMCY message (CAN).
     Emergency {
         /// The error; [`DeviceError::NONE`] at the end of one.
         error: DeviceError,
-        /// When the message arrived.
+        /// Time at which the message arrived.
         host: Stamp<Host>,
     },
     /// A boot-up message (CAN): the drive lost its position and settings.
     Restarted {
-        /// When the message arrived.
+        /// Time at which the message arrived.
         host: Stamp<Host>,
     },
     /// An unmatched reply, a damaged frame, or one that is invalid in its direction.
     Noise {
         /// Direction of the frame.
         direction: Direction,
-        /// When it was recorded.
+        /// Time at which it was recorded.
         host: Stamp<Host>,
     },
 }
 
 /// A position is late after 3 ms, and another value after the shortest timeout of this client: one
 /// of many positions is not missed. A busy host hardly delays its links by more than it did before.
-const LATE_POSITION: LateAfter = LateAfter {
+const LATE_POSITION: LatenessThreshold = LatenessThreshold {
     time: Span::from_millis(3),
     ratio: 4,
 };
-const LATE_VALUE: LateAfter = LateAfter {
+const LATE_VALUE: LatenessThreshold = LatenessThreshold {
     time: Span::from_millis(40),
     ..LATE_POSITION
 };
 /// The words of an answer on RS232 follow its announcement evenly: eleven bytes take 1 ms at
 /// 115,200 baud. Beyond three times that the words may be of another answer.
-const LATE_WORDS: LateAfter = LateAfter {
+const LATE_WORDS: LatenessThreshold = LatenessThreshold {
     time: Span::from_millis(3),
     ratio: 2,
 };
@@ -121,12 +121,12 @@ pub struct DriveListener {
     to_device: UsbDecoder,
     from_device: UsbDecoder,
     rs232: Rs232Listener,
-    /// When the answer on RS232 was announced.
+    /// Time at which the answer on RS232 was announced.
     announced: Stamp<Host>,
     can: CanListener,
     matcher: RequestMatcher,
     last_id: u64,
-    /// When the last request, or probe, was sent.
+    /// Time at which the last request, or probe request, was sent.
     last_sent: Stamp<Host>,
     /// From the last request or probe to a value.
     silences: RecentTimes,

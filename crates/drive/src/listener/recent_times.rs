@@ -17,7 +17,7 @@ pub(super) struct RecentTimes {
 
 /// A time that is later than usual: after both this time and this multiple of the longest usual.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct LateAfter {
+pub(super) struct LatenessThreshold {
     pub time: Span,
     pub ratio: i64,
 }
@@ -40,7 +40,7 @@ impl RecentTimes {
 
     /// Whether a time is later than usual; else it is learned. The second late one in a row is of a
     /// link that has become slower.
-    pub fn is_late(&mut self, time: Span, after: LateAfter) -> bool {
+    pub fn is_late(&mut self, time: Span, after: LatenessThreshold) -> bool {
         let limit = |(_, longest): (Span, Span)| {
             let multiple = longest.as_nanos().saturating_mul(after.ratio);
             after.time.max(Span::from_nanos(multiple))
@@ -60,7 +60,7 @@ mod tests {
 
     #[test]
     fn one_late_time_is_not_usual_and_two_are_of_a_slower_link() {
-        let after = LateAfter {
+        let after = LatenessThreshold {
             time: Span::from_millis(3),
             ratio: 2,
         };

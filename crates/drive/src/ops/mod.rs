@@ -30,14 +30,14 @@ pub(crate) struct Core {
     pub can: Option<CanServices>,
     /// The axis has been referenced since it was connected.
     pub referenced: bool,
-    /// How far the axis lagged behind its demand, as far as known: a stop takes this distance more.
+    /// Lag of the axis behind its demand, as far as known: a stop takes this distance more.
     pub lag: Option<Degrees>,
-    /// When the host was last delayed.
+    /// Time at which the host was last delayed.
     pub host_delayed: Option<Stamp<Host>>,
     pub now: Stamp<Host>,
     /// A command was started, but [`Core::begin`] has not run yet.
     pub is_starting: bool,
-    /// When the running procedure continues without input.
+    /// Time at which the running procedure continues without input.
     pub wake: Option<Stamp<Host>>,
     pub events: VecDeque<DriveEvent>,
 }

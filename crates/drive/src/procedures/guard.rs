@@ -33,7 +33,7 @@ pub(super) struct MotionGuard {
     highest: f64,
     /// Whether the latest sample and the one before it deviated.
     deviated: [bool; 2],
-    /// How far the latest sample was behind the plan.
+    /// Lag of the latest sample behind the plan.
     pub lag: Degrees,
 }
 

@@ -184,7 +184,7 @@ struct HomingTravel {
     rest: Option<RestInHoming>,
 }
 
-/// Where demand and position have been, and since when.
+/// Angles at which demand and position rest, and the start of the rest.
 struct RestInHoming {
     since: Stamp<Host>,
     ways: [f64; 2],
@@ -249,8 +249,8 @@ impl HomingTravel {
         }
     }
 
-    /// How long neither the demand nor the position has moved, if that is too long: the switch may
-    /// be dead, and both values frozen.
+    /// Time for which neither the demand nor the position has moved, if that is too long: the
+    /// switch may be dead, and both values frozen.
     fn rest(&mut self, config: &AxisConfig, now: Stamp<Host>) -> Option<Span> {
         let ways = [self.demand.angle(config), self.position.angle(config)];
         let spread = config.standstill_spread.0;

@@ -18,7 +18,7 @@ pub(super) struct QuickStopRamp {
     deg_per_qc: f64,
     /// Deceleration, deg/s2.
     deceleration: f64,
-    /// How far the axis may be beyond the ramp, degrees.
+    /// Greatest distance of the axis beyond the ramp, degrees.
     tolerance: f64,
     first: Option<ShaftSample>,
     /// Speed at the first sample, deg/s.

@@ -18,7 +18,7 @@ pub(super) struct SwitchWatch {
 }
 
 impl SwitchWatch {
-    /// Of a move from `from` to `to`, qc, which may leave the switch behind it.
+    /// Watch of a move from `from` to `to`, qc, which may leave the switch behind it.
     pub fn of_move(config: &AxisConfig, from: i32, to: i32) -> Self {
         let tolerance = config.tolerance_qc(config.arrival_tolerance).0;
         let leaving = match to.saturating_sub(from) {
@@ -30,8 +30,8 @@ impl SwitchWatch {
         Self::new(config, leaving)
     }
 
-    /// Of homing: a method that searches a limit switch must not reach the other one. A search for
-    /// a home switch may turn at either.
+    /// Watch of homing: a method that searches a limit switch must not reach the other one. A
+    /// search for a home switch may turn at either.
     pub fn of_homing(config: &AxisConfig) -> Self {
         let ignored = match config.homing.method {
             1 | 17 => input::NEGATIVE_LIMIT,

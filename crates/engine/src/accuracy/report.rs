@@ -4,7 +4,7 @@ use calibration::{BudgetBin, ResidualBin, StationPair, SweepPair};
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::Studied;
+use super::AccuracyResult;
 use crate::calibrate::LogReport;
 
 /// Report of a study of accuracy.
@@ -177,7 +177,7 @@ pub struct BudgetReport {
 impl AccuracyReport {
     /// The report of a study.
     #[must_use]
-    pub fn new(studied: &Studied) -> Self {
+    pub fn new(studied: &AccuracyResult) -> Self {
         let study = &studied.study;
         let logs = studied.logs.iter().map(|(path, shots)| LogReport {
             path: path.display().to_string(),

@@ -78,7 +78,7 @@ fn no_seed(simulated: &SimulatedScene) -> Failure {
     Failure::new(Kind::BadInput, what).help("simulate the scene again")
 }
 
-/// What the logs say of their simulation; none if the first says nothing.
+/// Simulated scene that the logs record; `None` without logs.
 ///
 /// # Errors
 /// [`Kind::Usage`] where it is not this scene with this seed.

@@ -7,7 +7,7 @@ use scanner::config::{
 use serde::Serialize;
 
 use super::report::correlations;
-use super::{Calibrated, mount_config};
+use super::{CalibrationResult, mount_config};
 
 #[derive(Serialize)]
 struct CalibrationFileText<'a> {
@@ -32,7 +32,7 @@ struct EvidenceTable<'a> {
 ///
 /// # Errors
 /// The serialiser's error.
-pub fn to_toml(calibrated: &Calibrated, version: &str) -> Result<String, toml::ser::Error> {
+pub fn to_toml(calibrated: &CalibrationResult, version: &str) -> Result<String, toml::ser::Error> {
     let evidence = &calibrated.calibration.evidence;
     let file = CalibrationFileText {
         calibration: device_calibration(calibrated),
@@ -59,8 +59,8 @@ pub fn to_toml(calibrated: &Calibrated, version: &str) -> Result<String, toml::s
     Ok(format!("{first}{text}"))
 }
 
-/// What the calibration says beside the mount.
-fn device_calibration(calibrated: &Calibrated) -> DeviceCalibration {
+/// Results of the calibration besides the mount.
+fn device_calibration(calibrated: &CalibrationResult) -> DeviceCalibration {
     let calibration = &calibrated.calibration;
     let value = |kind| calibration.value(kind);
     let scanner = calibration.of_the_scanner();

@@ -5,7 +5,7 @@ use scanner::config::MountConfig;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::{Calibrated, mount_config};
+use super::{CalibrationResult, mount_config};
 
 /// Report of a calibration.
 #[derive(Clone, Debug, Serialize, ToSchema)]
@@ -124,7 +124,7 @@ const DETERMINED: f64 = 0.3;
 impl CalibrateReport {
     /// The report of a calibration.
     #[must_use]
-    pub fn new(calibrated: &Calibrated) -> Self {
+    pub fn new(calibrated: &CalibrationResult) -> Self {
         let calibration = &calibrated.calibration;
         let evidence = &calibration.evidence;
         let [before, after] = evidence.rms_m.map(|rms| 1e3 * rms);
@@ -219,7 +219,7 @@ impl ParameterReport {
     }
 }
 
-/// What determines a parameter.
+/// Advice on scans that determine a parameter.
 const fn help(kind: ParameterKind) -> &'static str {
     match kind {
         ParameterKind::Delay | ParameterKind::Play => "scan both ways, at two speeds",

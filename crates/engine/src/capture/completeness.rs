@@ -96,7 +96,7 @@ pub fn missing(scan: &ScanReport) -> Option<Failure> {
     })
 }
 
-/// How many lidar packets are missing, and where.
+/// Number of missing lidar packets, and the time of the first gap.
 #[must_use]
 pub fn missing_packets(contents: &Contents) -> Option<String> {
     let lost = contents.lost_packets;

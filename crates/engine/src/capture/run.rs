@@ -14,9 +14,9 @@ use protocol::record::{DriveLink, Record};
 use scanner::{Accuracy, ScanConfig};
 use sim::Truth;
 
+use crate::capture::capture_log::{CaptureCounts, CaptureLog};
 use crate::capture::completeness::{self, SilenceWatch};
-use crate::capture::log_recorder::{CaptureCounts, CaptureLog};
-use crate::capture::request::CapturePlan;
+use crate::capture::plan::CapturePlan;
 use crate::capture::run_moves::{self, MoveProgress};
 use crate::devices::drive_session::{Session, SessionError};
 use crate::devices::guardian::{Guardian, GuardianError};
@@ -49,7 +49,7 @@ pub struct CaptureJob<'a> {
     pub guardian: Option<&'a mut Guardian>,
     /// Whether the machine stays awake while the axis may move: it is no simulated device.
     pub keeps_awake: bool,
-    /// How the drive is attached.
+    /// Link of the drive.
     pub link: DriveLink,
     /// Speed of an RS232 line.
     pub rs232_baud: Option<u32>,
@@ -74,7 +74,7 @@ pub enum CaptureEvent<'a> {
 pub struct RecordingEnd {
     motion: Result<(), SessionError>,
     log: Result<CaptureCounts, Failure>,
-    /// Why the capture itself stopped the axis.
+    /// Reason for which the capture itself stopped the axis.
     stopped: Option<Failure>,
     /// Whether it failed before the axis had power: no log is left then.
     pub is_empty: bool,
@@ -253,7 +253,7 @@ impl RecordingEnd {
         }
     }
 
-    /// Why the motion failed.
+    /// Error of the motion, if it failed.
     #[must_use]
     pub fn motion_error(&self) -> Option<&SessionError> {
         self.motion.as_ref().err()
@@ -296,14 +296,14 @@ impl RecordingEnd {
     }
 }
 
-/// Why a scan is incomplete, and where what was captured is.
+/// Cause of an incomplete scan, and the location of the captured data.
 #[derive(Debug)]
 pub struct ScanFailure {
-    /// What went wrong first.
+    /// The first failure.
     pub cause: Failure,
-    /// Why there is no cloud, where that is another reason.
+    /// Reason for the missing cloud, where it differs from the cause.
     pub no_cloud: Option<String>,
-    /// Where what was captured is.
+    /// Location of the captured data.
     saved: String,
 }
 
@@ -362,7 +362,7 @@ pub fn conclude(
             saved: match making.kind {
                 // It needs a choice, such as one of two lidars, or lacks the positions of a sweep.
                 Kind::BadInput => format!(
-                    "the log is saved; make the cloud with velomotion replay {log} and what is named above{earlier}"
+                    "the log is saved; make the cloud with velomotion replay {log} and the options named above{earlier}"
                 ),
                 _ => format!("the log is saved: velomotion replay {log} makes the cloud{earlier}"),
             },

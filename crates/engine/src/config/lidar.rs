@@ -1,6 +1,6 @@
 //! The lidar of the configuration.
 
-use scanner::config::LidarConfig;
+use scanner::config::RangeAccuracy;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer};
 
@@ -35,10 +35,10 @@ impl Default for LidarSettings {
 impl LidarSettings {
     /// Its accuracy, which logs state.
     #[must_use]
-    pub fn accuracy(&self) -> LidarConfig {
+    pub fn accuracy(&self) -> RangeAccuracy {
         // The same at all ranges for these lidars.
         let usual_m = self.sheet.range_sd_m(0.0);
-        LidarConfig {
+        RangeAccuracy {
             range_sd_m: self.range_sd_m.unwrap_or(usual_m),
         }
     }

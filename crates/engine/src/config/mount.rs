@@ -17,7 +17,7 @@ pub struct MountSettings {
     /// The pose, that of the file if there is one.
     pose: MountConfig,
     file: Option<PathBuf>,
-    /// What the file says beside the pose.
+    /// Contents of the file besides the pose.
     calibration: Option<DeviceCalibration>,
 }
 

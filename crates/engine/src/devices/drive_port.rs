@@ -40,7 +40,7 @@ pub struct OpenPort {
     pub warning: Option<String>,
 }
 
-/// How a guardian is started.
+/// Options for the start of a guardian.
 #[derive(Clone, Copy, Debug)]
 pub struct GuardianOptions<'a> {
     /// The program, which runs [`guardian::run`](super::guardian::run) if it is started with
@@ -50,7 +50,7 @@ pub struct GuardianOptions<'a> {
     pub axis: &'a AxisSettings,
 }
 
-/// How long the caller searches for a drive.
+/// Duration of the search for a drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Search {
     /// The caller searches once.
@@ -90,7 +90,7 @@ pub fn port_path(
             ),
         )
         .help(format!(
-            "add {key} = \"{example}\" (or what it is) to [device.{name}] of the configuration"
+            "add {key} = \"{example}\" (or its actual value) to [device.{name}] of the configuration"
         ))
     })
 }
@@ -232,7 +232,7 @@ fn start_guardian(
 fn slow_answers(timer: LatencyTimer) -> Option<String> {
     match timer {
         LatencyTimer::High { ms } => Some(format!(
-            "the adapter's latency timer is {ms} ms and cannot be set: every angle is that much less certain (velomotion doctor)"
+            "the adapter's latency timer is {ms} ms and cannot be set: angles are less certain by that time (velomotion doctor)"
         )),
         LatencyTimer::Unknown | LatencyTimer::Low => None,
     }

@@ -16,7 +16,7 @@ use units::{Host, Span, Stamp};
 use super::guardian::{Guardian, GuardianError};
 use super::sleep_inhibitor::SleepInhibitor;
 
-/// Why a procedure ended early.
+/// Reason for the early end of a procedure.
 #[derive(Debug, Error)]
 pub enum SessionError {
     /// The user asked to stop; the axis has stopped.
@@ -71,7 +71,7 @@ impl SessionError {
     }
 }
 
-/// How a fault is cleared.
+/// Ways to clear a fault.
 pub const CLEARING: &str = "tilt faults --clear clears it, and so does homing the axis";
 
 /// A drive client on a port. Dropped while the axis may move, it sends a stop; if that fails too,

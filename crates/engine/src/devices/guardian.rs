@@ -89,7 +89,7 @@ pub struct GuardianReport {
     pub failure: Option<String>,
 }
 
-/// Why a motion ended because of its guardian.
+/// End of a motion caused by its guardian.
 #[derive(Debug, Error)]
 pub enum GuardianError {
     /// This process was suspended or stuck.
@@ -97,7 +97,7 @@ pub enum GuardianError {
     Acted {
         /// Gap in the drive loop.
         gap: Duration,
-        /// What the guardian did, if it has reported.
+        /// Actions of the guardian, if it has reported.
         report: Option<GuardianReport>,
     },
     /// The guardian failed after such a gap; this process has stopped the axis since.
@@ -105,7 +105,7 @@ pub enum GuardianError {
     Replaced {
         /// Gap in the drive loop.
         gap: Duration,
-        /// What the guardian did, if it has reported.
+        /// Actions of the guardian, if it has reported.
         report: Option<GuardianReport>,
     },
     /// The guardian has ended or does not answer.

@@ -47,7 +47,7 @@ enum SimulatorRequest {
     Forget(Stamp<Host>),
 }
 
-/// Why the devices stopped.
+/// Reason for which the devices stopped.
 #[derive(Debug, Error)]
 enum SimulatorError {
     #[error("pseudo-terminal: {0}")]

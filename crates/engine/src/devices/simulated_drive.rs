@@ -20,7 +20,7 @@ pub enum SimulatedPort {
     Can(SocketCan),
 }
 
-/// Why the drive stopped.
+/// Reason for which the drive stopped.
 #[derive(Debug, Error)]
 pub enum SimulatedDriveError {
     /// The pseudo-terminal failed.

@@ -3,15 +3,15 @@
 use io::recording::DatagramKind;
 use lidar::{Decoder, Options, PacketGap, Stats, UtcClock, UtcState};
 use protocol::record::{DriveLink, Record, Wire};
-use protocol::vlp16::{GpsPosition, PositionPacket, Pps, ReturnMode};
-use scanner::steps::{ClockStep, SetClock};
+use protocol::vlp16::{PositionPacket, ReturnMode};
+use scanner::clock_steps::{ClockStep, SetClock};
 use scanner::{Accuracy, ScanConfig, Survey, TiltSource};
 
 use super::failures::scan_failure;
+use super::satellite::{SatelliteReceiver, pps_name};
 use crate::failure::Failure;
 use crate::reconstruct::report::{
-    Contents, Gps, GpsReport, InfoReport, MissingPackets, PacketCounts, SensorReport, SweepReport,
-    TiltReport,
+    Contents, Gps, InfoReport, MissingPackets, PacketCounts, SensorReport, SweepReport, TiltReport,
 };
 use crate::reconstruct::source::{PassSummary, SensorAddress, Source};
 
@@ -72,8 +72,7 @@ struct SensorSurvey {
     port: Option<u16>,
     decoder: Decoder,
     utc: UtcClock,
-    pps: Option<Pps>,
-    position: Option<GpsPosition>,
+    receiver: SatelliteReceiver,
 }
 
 /// Sensors with statistics of their own. Packets of further sensors are only counted.
@@ -170,8 +169,7 @@ impl SensorSurveys {
             port,
             decoder: Decoder::new(self.options.clone()),
             utc: UtcClock::new(),
-            pps: None,
-            position: None,
+            receiver: SatelliteReceiver::default(),
         });
         Some(self.sensors.len() - 1)
     }
@@ -223,9 +221,7 @@ impl SensorSurvey {
     fn position(&mut self, record: &Record<'_>, payload: &[u8]) {
         self.decoder.packet(record.host, payload, &mut |_| {});
         if let Ok(packet) = PositionPacket::new(payload) {
-            self.pps = Some(packet.pps());
-            let position = packet.rmc().ok().and_then(|rmc| rmc.position);
-            self.position = position.or(self.position);
+            self.receiver.observe(&packet);
             self.utc.position(record.host, &packet);
         }
     }
@@ -253,7 +249,7 @@ impl SensorSurvey {
 
     /// State of the satellite receiver; `None` without position packets.
     fn gps(&self) -> Option<Gps> {
-        let pps = self.pps?;
+        let pps = self.receiver.pps?;
         let state = self.utc.state();
         let locked = matches!(state, UtcState::Locked { .. });
         let counts_with_text = match self.utc.ends() {
@@ -264,21 +260,8 @@ impl SensorSurvey {
             pps: pps_name(pps),
             locked,
             state: counts_with_text,
-            position: self.position.map(|position| GpsReport {
-                latitude_deg: position.latitude_deg,
-                longitude_deg: position.longitude_deg,
-            }),
+            position: self.receiver.position(),
         })
-    }
-}
-
-fn pps_name(pps: Pps) -> String {
-    match pps {
-        Pps::Absent => "absent".to_owned(),
-        Pps::Synchronising => "synchronising".to_owned(),
-        Pps::Locked => "locked".to_owned(),
-        Pps::Error => "error".to_owned(),
-        Pps::Unknown(byte) => format!("unknown (0x{byte:02x})"),
     }
 }
 
@@ -325,7 +308,7 @@ fn lost_packets(stats: &Stats, steps: &[ClockStep]) -> u64 {
     phantoms.fold(stats.lost_packets, u64::saturating_sub)
 }
 
-/// Where packets are missing, without the steps of the lidar's clock that look like it.
+/// Gaps in the packets, without the steps of the lidar's clock that look like gaps.
 fn packet_gaps(stats: &Stats, steps: &[ClockStep]) -> Vec<MissingPackets> {
     let mut gaps = stats.gaps.clone();
     for step in steps.iter().filter(|step| step.phantom_packets > 0) {

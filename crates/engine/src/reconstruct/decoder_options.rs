@@ -20,7 +20,7 @@ const MAX_CALIBRATION: u64 = 1 << 20;
 /// Characters of the longest message on a calibration.
 const MAX_MESSAGE: usize = 200;
 
-/// How a user wants packets decoded.
+/// Options of a user for decoding packets.
 #[derive(Clone, Debug, Default)]
 pub struct DecoderRequest {
     /// Model, if the packets do not tell it right.

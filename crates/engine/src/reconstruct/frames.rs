@@ -6,16 +6,15 @@
 use std::path::{Path, PathBuf};
 
 use cloud::formats::Format;
-use cloud::{Fields, Metadata, Point, Points};
+use cloud::{Diagnostic, Fields, Metadata, Point, Points, Revolution, Sink, SinkError, TiltTrack};
 use lidar::{
-    Decoder, Duplicates, Firing, FrameCutter, Options, OrganisedFrame, ReturnKind, RevolutionFrame,
-    Stats, UtcClock,
+    Decoder, Duplicates, Firing, FiringBlock, FrameCutter, Options, OrganisedFrame, ReturnKind,
+    RevolutionFrame, Stats, UtcClock,
 };
 use protocol::record::{Record, Wire};
-use scanner::{Alignment, PlacementCounts};
+use scanner::{Alignment, PlacementCounts, ReceiveOrder};
 use units::{Degrees, Host, Lidar, Span, Stamp};
 
-use super::replay::tilt_track;
 use crate::failure::{Failure, Kind};
 use crate::output::{Target, sink_failure};
 
@@ -34,61 +33,25 @@ pub struct FramePlan {
     pub force: bool,
 }
 
-/// Writes one cloud per frame.
-pub struct FrameWriter<'a> {
+/// Writes one cloud per revolution: a file each, or a message each in one MCAP.
+pub(super) struct FrameFiles<'a> {
     plan: &'a FramePlan,
     metadata: Metadata,
-    decoder: Decoder,
-    builder: FrameBuilder<'a>,
     /// The single file of formats that hold many clouds.
     mcap: Option<Target>,
-}
-
-/// Totals over all frames.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct FrameTotals {
-    /// Points, and returns without a tilt angle.
-    pub placed: PlacementCounts,
-    /// Points omitted because the lidar's clock was not locked to UTC.
-    pub without_utc: u64,
+    points: Points,
     /// Clouds written.
     pub clouds: u64,
+    failure: Option<Failure>,
 }
 
-/// The frame under construction.
-struct FrameBuilder<'a> {
-    alignment: &'a Alignment,
-    /// UTC clock of the lidar's receiver, if point times are in UTC.
-    utc: Option<&'a UtcClock>,
-    organised: bool,
-    /// Whether two equal returns of a pulse become one point.
-    merge_equal: bool,
-    cutter: FrameCutter,
-    points: Points,
-    grid: OrganisedFrame,
-    totals: FrameTotals,
-    /// Completed frames with their row counts, not written yet.
-    ended: Vec<(RevolutionFrame, Points, u64)>,
-    error: Option<Failure>,
-    /// Receive time of the last record.
-    received: Option<Stamp<Host>>,
-}
-
-impl<'a> FrameWriter<'a> {
-    /// Creates a writer.
+impl<'a> FrameFiles<'a> {
+    /// Checks the plan, and opens the file that holds all frames.
     ///
     /// # Errors
-    /// [`Kind::Usage`] for an invalid azimuth, for stdout, or for an organised cloud that is not a
-    /// PCD.
-    pub fn new(
-        plan: &'a FramePlan,
-        alignment: &'a Alignment,
-        utc: Option<&'a UtcClock>,
-        options: Options,
-        metadata: Metadata,
-    ) -> Result<Self, Failure> {
-        let cutter = frame_cutter(plan.cut)?;
+    /// [`Kind::Usage`] for stdout, for an organised cloud that is not a PCD, and for frames of an
+    /// earlier run.
+    pub fn new(plan: &'a FramePlan) -> Result<Self, Failure> {
         if plan.output == Path::new("-") {
             return Err(Failure::new(
                 Kind::Usage,
@@ -112,97 +75,115 @@ impl<'a> FrameWriter<'a> {
             )
             .help("give -o another name, remove the earlier frames, or overwrite those of the same number with --force"));
         }
-        let merge_equal = options.duplicates == Duplicates::Unique;
         let mcap = match Format::from_path(&plan.output) {
-            Ok(Format::Mcap) => Some(open_mcap(plan, alignment, utc.is_some(), &metadata)?),
+            Ok(Format::Mcap) => Some(Target::by_revolution(
+                &plan.output,
+                plan.fields,
+                plan.force,
+            )?),
             _ => None,
         };
         Ok(Self {
-            mcap,
             plan,
-            metadata,
-            decoder: Decoder::new(options),
-            builder: FrameBuilder {
-                merge_equal,
-                alignment,
-                utc,
-                organised: plan.organised,
-                cutter,
-                // LAS numbers the returns of a pulse by their echo.
-                points: Points::new(plan.fields | Fields::ECHO),
-                grid: OrganisedFrame::new(),
-                totals: FrameTotals::default(),
-                ended: Vec::new(),
-                error: None,
-                received: None,
-            },
+            metadata: Metadata::default(),
+            mcap,
+            // LAS numbers the returns of a pulse by their echo.
+            points: Points::new(plan.fields | Fields::ECHO),
+            clouds: 0,
+            failure: None,
         })
     }
 
-    /// Processes a record.
-    ///
-    /// # Errors
-    /// A cloud cannot be written, or the lidar's model changes within a frame.
-    pub fn observe(&mut self, record: &Record<'_>) -> Result<(), Failure> {
-        let Wire::Lidar { payload, .. } = record.wire else {
-            return Ok(());
-        };
-        let builder = &mut self.builder;
-        builder.received = Some(record.host);
-        self.decoder
-            .packet(record.host, payload, &mut |firing| builder.firing(firing));
-        self.write()
+    /// The reason why a file could not be written, if that was the cause of `failure`.
+    pub fn cause(&mut self, failure: Failure) -> Failure {
+        self.failure.take().unwrap_or(failure)
     }
 
-    /// Writes the last frame. Returns the totals, and the uncommitted target that holds all frames.
+    /// Commits the file that holds all frames.
     ///
     /// # Errors
-    /// As [`FrameWriter::observe`].
-    pub fn finish(mut self) -> Result<(FrameTotals, Stats, Option<Target>), Failure> {
-        let builder = &mut self.builder;
-        self.decoder.finish(&mut |firing| builder.firing(firing));
-        if let Some(frame) = self.builder.cutter.finish() {
-            self.builder.end(frame);
-        }
-        self.write()?;
-        let stats = self.decoder.stats().clone();
-        Ok((self.builder.totals, stats, self.mcap))
+    /// As [`Target::commit`].
+    pub fn commit(self) -> Result<(), Failure> {
+        self.mcap.map_or(Ok(()), Target::commit)
     }
 
-    fn write(&mut self) -> Result<(), Failure> {
-        if let Some(error) = self.builder.error.take() {
-            return Err(error);
-        }
-        for (frame, points, rows) in std::mem::take(&mut self.builder.ended) {
-            self.builder.totals.clouds += 1;
-            if let Some(target) = &mut self.mcap {
-                let sink = target.sink();
-                sink.points(&points)
-                    .and_then(|()| sink.revolution())
-                    .map_err(|error| sink_failure(&self.plan.output, &error))?;
-                continue;
-            }
-            let path = name(&self.plan.output, frame.index);
-            let mut target = if self.plan.organised {
-                Target::organised(&path, self.plan.fields, self.plan.force, rows)?
-            } else {
-                Target::open(&path, self.plan.fields, self.plan.force)?
-            };
-            let mut metadata = self.metadata.clone();
-            metadata.comments.push(frame_comment(&frame));
-            if self.plan.organised {
-                metadata.comments.push(
-                    "organised: a row a ring, the lowest first, a column a firing; in dual return the second returns' rings follow"
-                        .to_owned(),
-                );
-            }
+    /// Writes a frame with `rows` rows of points. Frames without points have none.
+    fn write(&mut self, frame: &Revolution, points: &Points, rows: u64) -> Result<(), Failure> {
+        self.clouds += 1;
+        let plan = self.plan;
+        if let Some(target) = &mut self.mcap {
             let sink = target.sink();
-            sink.begin(&metadata)
-                .and_then(|()| sink.points(&points))
-                .map_err(|error| sink_failure(&path, &error))?;
-            target.commit()?;
+            return sink
+                .points(points)
+                .and_then(|()| sink.revolution(frame))
+                .map_err(|error| sink_failure(&plan.output, &error));
         }
-        Ok(())
+        let path = name(&plan.output, frame.index);
+        let mut target = match plan.organised {
+            true => Target::organised(&path, plan.fields, plan.force, rows)?,
+            false => Target::open(&path, plan.fields, plan.force)?,
+        };
+        let mut metadata = self.metadata.clone();
+        metadata.comments.push(frame_comment(frame));
+        if plan.organised {
+            metadata.comments.push(
+                "organised: one row per ring, the lowest first, and one column per firing; in dual return the rings of the second returns follow"
+                    .to_owned(),
+            );
+        }
+        let sink = target.sink();
+        sink.begin(&metadata)
+            .and_then(|()| sink.points(points))
+            .map_err(|error| sink_failure(&path, &error))?;
+        target.commit()
+    }
+
+    fn keep(&mut self, written: Result<(), Failure>) -> Result<(), SinkError> {
+        written.map_err(|failure| {
+            let error = SinkError::Other(failure.message.clone().into());
+            self.failure = Some(failure);
+            error
+        })
+    }
+}
+
+impl Sink for FrameFiles<'_> {
+    fn points(&mut self, batch: &Points) -> Result<(), SinkError> {
+        Ok(self.points.append(batch)?)
+    }
+
+    fn fields(&self) -> Fields {
+        self.points.fields()
+    }
+
+    fn begin(&mut self, metadata: &Metadata) -> Result<(), SinkError> {
+        self.metadata = metadata.clone();
+        let mcap = self.mcap.as_mut();
+        mcap.map_or(Ok(()), |target| target.sink().begin(metadata))
+    }
+
+    fn wants_tilt(&self) -> bool {
+        self.mcap.is_some()
+    }
+
+    fn tilt(&mut self, track: &TiltTrack) -> Result<(), SinkError> {
+        let mcap = self.mcap.as_mut();
+        mcap.map_or(Ok(()), |target| target.sink().tilt(track))
+    }
+
+    fn revolution(&mut self, revolution: &Revolution) -> Result<(), SinkError> {
+        if self.points.is_empty() {
+            return Ok(());
+        }
+        let empty = Points::new(self.points.fields());
+        let points = std::mem::replace(&mut self.points, empty);
+        let written = self.write(revolution, &points, 1);
+        self.keep(written)
+    }
+
+    fn diagnostics(&mut self, diagnostics: &[Diagnostic]) -> Result<(), SinkError> {
+        let mcap = self.mcap.as_mut();
+        mcap.map_or(Ok(()), |target| target.sink().diagnostics(diagnostics))
     }
 }
 
@@ -214,113 +195,177 @@ pub(super) fn frame_cutter(cut: Degrees) -> Result<FrameCutter, Failure> {
     })
 }
 
-/// Opens the file that holds all frames.
-fn open_mcap(
-    plan: &FramePlan,
-    alignment: &Alignment,
-    in_utc: bool,
-    metadata: &Metadata,
-) -> Result<Target, Failure> {
-    let mut target = Target::by_revolution(&plan.output, plan.fields, plan.force)?;
-    let mut track = tilt_track(alignment);
-    if in_utc {
-        // Samples carry host times, points carry UTC.
-        track.samples.clear();
+/// Builds organised frames, which keep shots without a return, and writes them.
+pub(super) struct OrganisedFrames<'a, 'f> {
+    files: &'f mut FrameFiles<'a>,
+    decoder: Decoder,
+    receive_order: ReceiveOrder,
+    builder: FrameBuilder<'f>,
+}
+
+/// The frame under construction.
+struct FrameBuilder<'a> {
+    alignment: &'a Alignment,
+    /// UTC clock of the lidar's receiver, if point times are in UTC.
+    utc: Option<&'a UtcClock>,
+    /// Whether two equal returns of a pulse become one point.
+    merge_equal: bool,
+    cutter: FrameCutter,
+    grid: OrganisedFrame,
+    /// Receive time of each column's packet.
+    received: Vec<Stamp<Host>>,
+    counts: PlacementCounts,
+    /// Points omitted because the lidar's clock was not locked to UTC.
+    without_utc: u64,
+    /// Completed frames with their row counts, not written yet.
+    ended: Vec<(RevolutionFrame, Points, u64)>,
+    fields: Fields,
+    error: Option<Failure>,
+}
+
+impl<'a, 'f> OrganisedFrames<'a, 'f> {
+    /// Frames of `alignment` for `files`.
+    ///
+    /// # Errors
+    /// [`Kind::Usage`] for an invalid azimuth.
+    pub fn new(
+        files: &'f mut FrameFiles<'a>,
+        alignment: &'f Alignment,
+        utc: Option<&'f UtcClock>,
+        options: Options,
+        metadata: &Metadata,
+    ) -> Result<Self, Failure> {
+        files.metadata = metadata.clone();
+        let builder = FrameBuilder {
+            alignment,
+            utc,
+            merge_equal: options.duplicates == Duplicates::Unique,
+            cutter: frame_cutter(files.plan.cut)?,
+            grid: OrganisedFrame::new(),
+            received: Vec::new(),
+            counts: PlacementCounts::default(),
+            without_utc: 0,
+            ended: Vec::new(),
+            fields: files.fields(),
+            error: None,
+        };
+        Ok(Self {
+            files,
+            decoder: Decoder::new(options),
+            receive_order: ReceiveOrder::default(),
+            builder,
+        })
     }
-    let sink = target.sink();
-    sink.begin(metadata)
-        .and_then(|()| sink.tilt(&track))
-        .map_err(|error| sink_failure(&plan.output, &error))?;
-    Ok(target)
+
+    /// Processes a record.
+    ///
+    /// # Errors
+    /// A cloud cannot be written, or the lidar's model changes within a frame.
+    pub fn observe(&mut self, record: &Record<'_>) -> Result<(), Failure> {
+        let Wire::Lidar { payload, .. } = record.wire else {
+            return Ok(());
+        };
+        let host = self.receive_order.distinct(record.host);
+        let builder = &mut self.builder;
+        self.decoder
+            .decode_blocks(host, payload, &mut |block| builder.block(block));
+        self.write()
+    }
+
+    /// Writes the last frame. Returns the counts of points, and of those omitted without UTC.
+    ///
+    /// # Errors
+    /// As [`OrganisedFrames::observe`].
+    pub fn finish(mut self) -> Result<(PlacementCounts, u64, Stats), Failure> {
+        let builder = &mut self.builder;
+        self.decoder
+            .finish_blocks(&mut |block| builder.block(block));
+        if let Some(frame) = self.builder.cutter.finish() {
+            self.builder.end(frame);
+        }
+        self.write()?;
+        let stats = self.decoder.stats().clone();
+        Ok((self.builder.counts, self.builder.without_utc, stats))
+    }
+
+    fn write(&mut self) -> Result<(), Failure> {
+        if let Some(error) = self.builder.error.take() {
+            return Err(error);
+        }
+        for (frame, points, rows) in self.builder.ended.drain(..) {
+            self.files.write(&revolution_of(&frame), &points, rows)?;
+        }
+        Ok(())
+    }
 }
 
 impl FrameBuilder<'_> {
-    fn firing(&mut self, firing: &Firing<'_>) {
+    fn block(&mut self, block: &FiringBlock<'_>) {
+        for firing in block.firings() {
+            self.firing(&firing, block.began);
+        }
+    }
+
+    fn firing(&mut self, firing: &Firing<'_>, received: Stamp<Host>) {
         if let Some(frame) = self.cutter.firing(firing) {
             self.end(frame);
         }
-        if self.organised {
-            if self.utc.is_some_and(|clock| !has_utc(clock, firing)) {
-                self.totals.without_utc += firing.points().count() as u64;
-                return;
-            }
-            if let Err(error) = self.grid.push(firing) {
+        if self.utc.is_some_and(|clock| !has_utc(clock, firing)) {
+            self.without_utc += firing.points().count() as u64;
+            return;
+        }
+        match self.grid.push(firing) {
+            Ok(()) => self.received.push(received),
+            Err(error) => {
                 let error = Failure::new(Kind::BadInput, error.to_string())
                     .help("set the model with --model");
                 self.error.get_or_insert(error);
             }
-            return;
         }
-        for seen in firing.points() {
-            match self.alignment.place_received(&seen, self.received) {
-                Some(point) => self.push(point),
-                None => self.totals.placed.outside += 1,
-            }
-        }
-    }
-
-    /// Adds a point to an unorganised frame.
-    fn push(&mut self, mut point: Point) {
-        if let Some(clock) = self.utc {
-            let Some(time) = in_utc(clock, point.device_time) else {
-                self.totals.without_utc += 1;
-                return;
-            };
-            point.time = time;
-        }
-        self.totals.placed.points += 1;
-        self.points.push(point);
     }
 
     /// Completes the frame; frames without points are dropped.
     fn end(&mut self, frame: RevolutionFrame) {
-        let before = self.totals.placed.points;
-        let fields = self.points.fields();
-        let mut rows = 1;
-        if self.organised {
-            rows = (self.grid.layers() * self.grid.rings()) as u64;
-            self.append_grid();
-            self.grid.clear();
-        }
-        let points = std::mem::replace(&mut self.points, Points::new(fields));
-        let any = if self.organised {
-            self.totals.placed.points > before
-        } else {
-            !points.is_empty()
-        };
-        if any {
+        let before = self.counts.points;
+        let rows = (self.grid.layers() * self.grid.rings()) as u64;
+        let points = self.points();
+        self.grid.clear();
+        self.received.clear();
+        if self.counts.points > before {
             self.ended.push((frame, points, rows));
         }
     }
 
-    /// Converts the grid to points, row by row.
-    fn append_grid(&mut self) {
+    /// The grid's points, row by row.
+    fn points(&mut self) -> Points {
         let (grid, alignment) = (&self.grid, self.alignment);
+        let mut points = Points::new(self.fields);
         for layer in 0..grid.layers() {
             for ring in 0..grid.rings() {
-                for column in 0..grid.columns().len() {
+                for (column, received) in self.received.iter().enumerate() {
+                    let received = Some(*received);
                     let seen = grid.cell(layer, ring, column).filter(|seen| {
                         !(self.merge_equal
                             && layer > 0
                             && seen.echo == ReturnKind::LastAndStrongest)
                     });
-                    let placed =
-                        seen.and_then(|seen| alignment.place_received(seen, self.received));
+                    let placed = seen.and_then(|seen| alignment.place_received(seen, received));
                     match (seen, placed) {
-                        (_, Some(_)) => self.totals.placed.points += 1,
-                        (Some(_), None) => self.totals.placed.outside += 1,
+                        (_, Some(_)) => self.counts.points += 1,
+                        (Some(_), None) => self.counts.outside += 1,
                         (None, None) => {}
                     }
-                    let empty_cell = || empty_cell(alignment, self.received, grid, ring, column);
+                    let empty_cell = || empty_cell(alignment, received, grid, ring, column);
                     let mut point = placed.unwrap_or_else(empty_cell);
                     let fired = grid.time(ring, column);
                     if let Some(time) = fired.zip(self.utc).and_then(|(at, utc)| in_utc(utc, at)) {
                         point.time = time;
                     }
-                    self.points.push(point);
+                    points.push(point);
                 }
             }
         }
+        points
     }
 }
 
@@ -360,8 +405,16 @@ fn empty_cell(
     }
 }
 
+fn revolution_of(frame: &RevolutionFrame) -> Revolution {
+    Revolution {
+        index: frame.index,
+        firings: frame.firings,
+        whole: frame.whole,
+    }
+}
+
 /// Comment in a frame's cloud.
-fn frame_comment(frame: &RevolutionFrame) -> String {
+fn frame_comment(frame: &Revolution) -> String {
     let whole = if frame.whole { "whole" } else { "not whole" };
     format!("frame {}, {whole}: {} firings", frame.index, frame.firings)
 }

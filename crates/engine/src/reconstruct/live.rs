@@ -12,7 +12,7 @@ use super::report::LiveReport;
 use crate::failure::Failure;
 use crate::output::sink_failure;
 
-/// Of the live points one firing in this many is compared, which bounds the memory.
+/// Stride of the compared firings of the live points: one in this many, which bounds the memory.
 const STRIDE: i64 = 8;
 
 /// Identity of a point: device time of its firing, laser, echo.

@@ -22,8 +22,8 @@ pub struct LogView {
 }
 
 impl LogView {
-    /// What a scan sees at all distances of a range, metres; `None` for an unknown model or several
-    /// lidars.
+    /// Field of view of a scan at all distances of a range, metres; `None` for an unknown model or
+    /// several lidars.
     #[must_use]
     pub fn new(scan: &ScanReport, track: &TiltTrack, distance_m: [f64; 2]) -> Option<Self> {
         if scan.contents.sensors.len() > 1 {

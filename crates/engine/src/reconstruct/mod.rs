@@ -11,6 +11,7 @@ pub mod live;
 pub mod log_view;
 pub mod replay;
 pub mod report;
+mod satellite;
 pub mod source;
 pub mod statistics;
 pub mod tilt_table;

@@ -8,8 +8,8 @@ use cloud::{Metadata, Sink, SinkError, TiltTrack};
 use io::recording::{Gap, Pacer, Wait};
 use lidar::{FrameCutter, Options, Stats, UtcClock, is_dual};
 use protocol::record::{DriveLink, Record, Wire};
-use protocol::vlp16::{DATA_LEN, DataPacket};
-use scanner::steps::SetClock;
+use protocol::vlp16::{DATA_LEN, DataPacket, PositionPacket};
+use scanner::clock_steps::SetClock;
 use scanner::trajectory::Method;
 use scanner::{
     Accuracy, Alignment, PlacementCounts, Placer, ScanConfig, ScanError, Survey, TiltSource,
@@ -19,8 +19,9 @@ use units::{Degrees, Host, Span, Stamp};
 
 use super::contents::contents;
 use super::failures::scan_failure;
-use super::frames::{FramePlan, FrameWriter, frame_cutter};
+use super::frames::{FrameFiles, FramePlan, OrganisedFrames, frame_cutter};
 use super::live::{LiveDifference, LivePoints};
+use super::satellite::SatelliteReceiver;
 use super::warnings::{alignment_warnings, incomplete_sweeps};
 use crate::failure::{Failure, Kind};
 use crate::output::{Target, sink_failure};
@@ -145,6 +146,7 @@ struct FirstPass {
     dual_return: bool,
     /// UTC clock of the lidar's receiver, if requested.
     utc: Option<UtcClock>,
+    receiver: SatelliteReceiver,
 }
 
 /// First pass: clocks, angles and sweeps.
@@ -160,16 +162,19 @@ fn survey(request: &Reconstruction<'_>) -> Result<FirstPass, Failure> {
         (request.time == TimeReference::Utc).then(|| UtcSurvey::new(request.options.clone()));
     let mut data_span: Option<[Stamp<Host>; 2]> = None;
     let mut dual_return = None;
+    let mut receiver = SatelliteReceiver::default();
     let pass = source.read(|record| {
         survey.observe(record);
-        if let Wire::Lidar { payload, .. } = record.wire
-            && payload.len() == DATA_LEN
-        {
-            let [first, last] = data_span.unwrap_or([record.host; 2]);
-            data_span = Some([first.min(record.host), last.max(record.host)]);
-            dual_return.get_or_insert_with(|| {
-                DataPacket::new(payload).is_ok_and(|packet| is_dual(&packet))
-            });
+        if let Wire::Lidar { payload, .. } = record.wire {
+            if payload.len() == DATA_LEN {
+                let [first, last] = data_span.unwrap_or([record.host; 2]);
+                data_span = Some([first.min(record.host), last.max(record.host)]);
+                dual_return.get_or_insert_with(|| {
+                    DataPacket::new(payload).is_ok_and(|packet| is_dual(&packet))
+                });
+            } else if let Ok(packet) = PositionPacket::new(payload) {
+                receiver.observe(&packet);
+            }
         }
         if let Some(utc) = &mut utc {
             utc.observe(record);
@@ -199,6 +204,7 @@ fn survey(request: &Reconstruction<'_>) -> Result<FirstPass, Failure> {
         data_span,
         dual_return: dual_return == Some(true),
         utc: utc.map(|utc| utc.clock),
+        receiver,
     })
 }
 
@@ -245,7 +251,7 @@ fn scan_into(
     let (mut placed, stats) = place(request, &first_pass, cutter, &mut in_utc, output)?;
     let without = in_utc.without;
     placed.points -= without;
-    if placed.points == 0 {
+    if placed.points == 0 && without > 0 {
         return Err(utc_never_locked(request));
     }
     let mut scan = report(request, &first_pass, placed, &stats, output)?;
@@ -283,7 +289,7 @@ fn utc_never_locked(request: &Reconstruction<'_>) -> Failure {
     .help("velomotion info shows the reason; omit --time utc to use the recording host's clock")
 }
 
-/// Where returns that do not become points were fired.
+/// Times of firings whose returns do not become points, as text.
 const fn outside_of(alignment: &Alignment) -> &'static str {
     match alignment.sweeps.is_empty() {
         false => "fired before, between or after the sweeps, or without a known angle",
@@ -341,30 +347,42 @@ fn place(
 /// # Errors
 /// As [`make`], and [`Kind::Usage`] for invalid frame settings.
 pub fn frames(request: &Reconstruction<'_>, plan: &FramePlan) -> Result<ScanReport, Failure> {
+    let mut files = FrameFiles::new(plan)?;
+    let made = match plan.organised {
+        true => organised(request, &mut files, &plan.output),
+        false => scan_by_revolution(request, plan.cut, &mut files, &plan.output),
+    };
+    let mut scan = made.map_err(|failure| files.cause(failure))?;
+    scan.clouds = Some(files.clouds);
+    files.commit()?;
+    Ok(scan)
+}
+
+/// Both passes, with organised frames.
+fn organised(
+    request: &Reconstruction<'_>,
+    files: &mut FrameFiles<'_>,
+    output: &Path,
+) -> Result<ScanReport, Failure> {
     let first_pass = survey(request)?;
     let metadata = metadata(&first_pass, request);
     let mut pace = pacer(request.pace)?;
+    let (alignment, utc) = (&first_pass.alignment, first_pass.utc.as_ref());
     let options = request.options.clone();
-    let utc = first_pass.utc.as_ref();
-    let mut writer = FrameWriter::new(plan, &first_pass.alignment, utc, options, metadata)?;
+    let mut frames = OrganisedFrames::new(files, alignment, utc, options, &metadata)?;
     request.recording.read(|record| {
         if let Some(pace) = &mut pace {
             wait_until_due(pace, record, request.interrupt);
         }
-        writer.observe(record)?;
+        frames.observe(record)?;
         request.check_interrupt()
     })?;
-    let (written, stats, target) = writer.finish()?;
-    if written.placed.points == 0 && written.without_utc > 0 {
+    let (placed, without_utc, stats) = frames.finish()?;
+    if placed.points == 0 && without_utc > 0 {
         return Err(utc_never_locked(request));
     }
-    let mut scan = report(request, &first_pass, written.placed, &stats, &plan.output)?;
-    scan.clouds = Some(written.clouds);
-    omit_without_utc(&mut scan, written.without_utc);
-    if let Some(mut target) = target {
-        send_summary(target.sink(), &scan, &plan.output)?;
-        target.commit()?;
-    }
+    let mut scan = report(request, &first_pass, placed, &stats, output)?;
+    omit_without_utc(&mut scan, without_utc);
     Ok(scan)
 }
 
@@ -525,6 +543,6 @@ fn metadata(first_pass: &FirstPass, request: &Reconstruction<'_>) -> Metadata {
         .to_owned(),
         dual_return: first_pass.dual_return,
         sensor_frame: request.tilt == TiltSource::None,
-        comments: Vec::new(),
+        comments: first_pass.receiver.comment().into_iter().collect(),
     }
 }

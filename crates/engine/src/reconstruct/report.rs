@@ -1,6 +1,6 @@
 //! Reports of reconstructions, serialised as the JSON of `info`, `replay` and `capture`.
 
-use scanner::steps::{ClockStep, SetClock};
+use scanner::clock_steps::{ClockStep, SetClock};
 use scanner::{MethodChoice, ScanConfig};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;

@@ -40,7 +40,7 @@ pub struct SensorAddress {
 pub struct PassSummary {
     /// Packet counts by kind.
     pub counts: RecordingCounts,
-    /// Where and why the file ends early.
+    /// Place and cause of an early end of the file.
     pub truncated: Option<String>,
     /// Data packets that the file has twice. The second ones were left out.
     pub doubled_packets: u64,

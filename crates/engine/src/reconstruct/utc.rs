@@ -3,7 +3,10 @@
 //! Points measured while the lidar's clock was not locked have no UTC; they are omitted and
 //! counted.
 
-use cloud::{Companion, Diagnostic, Fields, Metadata, Points, Sink, SinkError, Summary, TiltTrack};
+use cloud::{
+    Companion, Diagnostic, Fields, Metadata, Points, Revolution, Sink, SinkError, Summary,
+    TiltTrack,
+};
 use lidar::{Options, Timekeeper, UtcClock};
 use protocol::record::{Record, Wire};
 use protocol::vlp16::PositionPacket;
@@ -96,8 +99,8 @@ impl Sink for InUtc<'_> {
         })
     }
 
-    fn revolution(&mut self) -> Result<(), SinkError> {
-        self.sink.revolution()
+    fn revolution(&mut self, revolution: &Revolution) -> Result<(), SinkError> {
+        self.sink.revolution(revolution)
     }
 
     fn diagnostics(&mut self, diagnostics: &[Diagnostic]) -> Result<(), SinkError> {

@@ -21,7 +21,7 @@ use super::lease::AxisLease;
 use super::status::AxisTask;
 use super::{CaptureResult, DeviceService, Lifetime};
 use crate::capture::jog;
-use crate::capture::request::CapturePlan;
+use crate::capture::plan::CapturePlan;
 use crate::devices::drive_port;
 use crate::devices::drive_session::SessionError;
 use crate::devices::simulated::SimulatedDevices;
@@ -137,7 +137,7 @@ impl Backoff {
     }
 }
 
-/// Why a port is given up.
+/// Reason for giving up a port.
 pub(super) enum ConnectionLoss {
     /// The service is ending.
     Ending,

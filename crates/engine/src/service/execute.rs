@@ -13,7 +13,7 @@ use super::motion_reporter::MotionReporter;
 use super::status::DeviceHealth;
 use super::{CaptureEnd, CaptureResult, Lifetime, suspension};
 use crate::capture::jog::{self, Homing};
-use crate::capture::request::CapturePlan;
+use crate::capture::plan::CapturePlan;
 use crate::capture::run::{self, CaptureEvent, CaptureJob, Outcome};
 use crate::capture::run_moves::MoveProgress;
 use crate::devices::drive_port;

@@ -40,7 +40,7 @@ pub struct AxisLease {
     stop: StopSignal,
 }
 
-/// Why the axis cannot be moved now.
+/// Reason for which the axis cannot be moved now.
 #[derive(Clone, Debug)]
 pub enum LeaseError {
     /// The axis is in use.

@@ -89,7 +89,7 @@ impl PreviewFrame {
     }
 }
 
-/// Where both devices put their records while a preview runs. Clones share it.
+/// Queue for the records of both devices while a preview runs. Clones share it.
 #[derive(Clone, Default)]
 pub(super) struct PreviewInput {
     queue: Arc<Mutex<Option<PreviewQueue>>>,

@@ -36,7 +36,7 @@ impl Default for Environment {
     }
 }
 
-/// How long the service keeps its devices.
+/// Period for which the service keeps its devices.
 #[derive(Clone)]
 pub enum Lifetime {
     /// Until it ends: absent devices are waited for, lost ones are opened again.
@@ -58,7 +58,7 @@ pub struct ServiceOptions {
     pub name: String,
     /// The device.
     pub device: Device,
-    /// How long the devices are kept.
+    /// Period for which the devices are kept.
     pub lifetime: Lifetime,
     /// The machine.
     pub environment: Environment,

@@ -14,7 +14,7 @@ use protocol::epos2::objects::{self, Address};
 use protocol::epos2::{SerialFrame, usb};
 use protocol::record::{Direction, DriveLink, Record, Wire};
 use scanner::config::{MountConfig, SimulatedScene, TiltAxisConfig};
-use scanner::{LidarConfig, ScanConfig, SweepPlan};
+use scanner::{RangeAccuracy, ScanConfig, SweepPlan};
 use sim::TruePoint;
 use sim::effects::SurfaceEffect;
 use sim::scene_file::SceneFile;
@@ -121,7 +121,7 @@ impl ReturnCloud {
     }
 }
 
-/// Where a simulation goes.
+/// Destinations of a simulation's output.
 #[derive(Default)]
 pub(super) struct Outputs {
     /// The log of a lidar with packets.
@@ -133,7 +133,7 @@ pub(super) struct Outputs {
 }
 
 /// The clouds that were written, and what ended the simulation early.
-pub(super) struct Written {
+pub(super) struct WrittenClouds {
     pub measured: Option<PathBuf>,
     pub truth: Option<PathBuf>,
     pub cut: Option<Cut>,
@@ -224,7 +224,7 @@ impl<'a> Log<'a> {
     }
 
     /// Completes the files.
-    pub fn finish(self) -> Result<Written, Failure> {
+    pub fn finish(self) -> Result<WrittenClouds, Failure> {
         let Outputs {
             log,
             measured,
@@ -245,7 +245,7 @@ impl<'a> Log<'a> {
         };
         let (measured, truth) = (finish(measured), finish(truth));
         let after = self.last - self.began;
-        Ok(Written {
+        Ok(WrittenClouds {
             measured,
             truth,
             cut: failure.map(|failure| (failure, after)),
@@ -395,7 +395,7 @@ pub(super) fn scan_config(name: &str, scene: &SceneFile, gearing: Option<Gearing
         device: "simulate".to_owned(),
         simulated: true,
         mount: mount_config(&simulation.mount),
-        lidar: LidarConfig {
+        lidar: RangeAccuracy {
             range_sd_m: (step_m * step_m / 12.0 + noise_m2).sqrt(),
         },
         axis,

@@ -1,4 +1,4 @@
-//! What effects change in the cloud, and their cost: a sample of the scene's firings is simulated
+//! Changes of the cloud by effects, and their cost: a sample of the scene's firings is simulated
 //! with an effect and without it, and both logs become clouds as `replay` makes them.
 //!
 //! Random draws depend on seed, effect and firing alone, so that the difference of the two is that
@@ -38,7 +38,8 @@ use crate::failure::{Failure, Kind};
 const FIRINGS: f64 = 4_096.0;
 /// The beginning of a scene that is sampled, seconds of it: ten times as long as a usual scan.
 const SAMPLED_S: f64 = 300.0;
-/// Of a longer sample not all packets without a return are kept, but one in so many, for the clock.
+/// Longest sample of which all packets without a return are kept, seconds. Of a longer one, one in
+/// `EMPTY_KEPT` of them is kept, for the clock.
 const ALL_KEPT_S: f64 = 20.0;
 const EMPTY_KEPT: u64 = 16;
 
@@ -197,7 +198,7 @@ impl<'a> Sampler<'a> {
         wanted.iter().copied().map(size).collect()
     }
 
-    /// What these effects, which are off, would change together, in the name of the first.
+    /// Change that these effects, which are off, would make together, in the name of the first.
     ///
     /// # Errors
     /// As [`Sampler::sizes`].
@@ -306,7 +307,7 @@ impl<'a> Sampler<'a> {
 }
 
 impl SampleCloud {
-    /// How this cloud differs from one without an effect.
+    /// Difference of this cloud from one without an effect.
     fn difference(&self, without: &Self) -> Difference {
         let mut displaced_m = Vec::new();
         for (key, a) in &self.points {

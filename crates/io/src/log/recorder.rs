@@ -141,7 +141,7 @@ impl LogRecorder {
         self.finish_while(|| {})
     }
 
-    /// As [`LogRecorder::finish`], calling `waiting` every few milliseconds meanwhile.
+    /// Like [`LogRecorder::finish`], calling `waiting` every few milliseconds meanwhile.
     ///
     /// # Errors
     /// As [`LogRecorder::finish`].

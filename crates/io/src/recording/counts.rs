@@ -35,9 +35,9 @@ pub struct RecordingCounts {
     pub malformed: u64,
     /// The first unusable packet.
     pub first_malformed: Option<MalformedPacket>,
-    /// Of `malformed`: truncated packets (snap length).
+    /// Truncated packets (snap length), a part of `malformed`.
     pub snapped: u64,
-    /// Of `malformed`: damaged stretches of the file, after which reading continued.
+    /// Damaged stretches of the file, a part of `malformed`; reading continued after them.
     pub damaged: u64,
     /// Bytes in those stretches.
     pub damaged_bytes: u64,

@@ -117,7 +117,7 @@ pub enum PacketFault {
     /// A layer is longer than the packet.
     #[error("{layer} at byte {offset} of the packet: expected {expected} bytes, got {got}")]
     Short {
-        /// Which header or payload.
+        /// Name of the header or payload.
         layer: String,
         /// Bytes from the start of the packet.
         offset: usize,

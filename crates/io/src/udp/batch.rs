@@ -30,7 +30,7 @@ pub(super) struct ReceivedDatagram {
 pub(super) struct Batch {
     buffers: Vec<u8>,
     received: Vec<ReceivedDatagram>,
-    /// How many of `received` were taken.
+    /// Number of datagrams taken from `received`.
     taken: usize,
 }
 

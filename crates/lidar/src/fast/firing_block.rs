@@ -26,8 +26,8 @@ pub struct ReturnLayer<'a> {
 pub struct FiringBlock<'a> {
     /// Firing time of channel 0.
     pub start: Stamp<Lidar>,
-    /// When its packet was received, less the time that the lidar takes to fill it: the host's time
-    /// of the packet's first firing, but for the delay of the link.
+    /// Receive time of its packet, less the time that the lidar takes to fill it. This is the
+    /// host's time of the packet's first firing, but for the delay of the link.
     pub began: Stamp<Host>,
     pub(crate) azimuth_cdeg: i32,
     pub(crate) step_per_block_cdeg: f64,

@@ -243,7 +243,7 @@ mod tests {
         );
     }
 
-    /// As after a step of the host's clock: one such pair would tilt the clock for all.
+    /// Wrong pair, as after a step of the host's clock: one such pair would tilt the clock for all.
     #[test]
     fn a_sample_paired_with_a_later_sync_does_not_count() {
         // The second one on an adapter so slow that even a later SYNC precedes the arrival.

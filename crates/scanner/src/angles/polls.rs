@@ -199,8 +199,8 @@ mod tests {
         assert!(kept(0.06) && !kept(0.15), "{samples:?}");
     }
 
-    /// Of 40 minutes at 400 Hz, in which a tenth of the polls are slow. The time grows with their
-    /// number; with its square this test would take minutes.
+    /// Polls of 40 minutes at 400 Hz, a tenth of them slow. The time grows with their number; with
+    /// its square this test would take minutes.
     #[test]
     fn a_million_polls_are_filtered() {
         let slow = |i: i64| i % 11 == 5;

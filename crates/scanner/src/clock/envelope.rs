@@ -82,7 +82,7 @@ struct EnvelopeBlock<'a> {
     line: OffsetLine,
     /// Standard deviations of the line.
     ends: Ends,
-    /// How many of them contain it, in 99 of 100 recordings.
+    /// Number of standard deviations that contain the line, in 99 of 100 recordings.
     sds: f64,
 }
 

@@ -29,7 +29,7 @@ pub(crate) struct ClockSegment {
     pub to_ns: f64,
     pub first: OffsetLine,
     pub second: Option<OffsetLine>,
-    /// Where `first` and `second` hold alone.
+    /// Device times up to which `first` and from which `second` holds alone.
     pub blend_ns: (f64, f64),
 }
 

@@ -24,7 +24,7 @@ pub(crate) struct Stretch<C = Lidar> {
     pub received: Stamp<Host>,
 }
 
-/// What happened between two stretches.
+/// Event between two stretches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Joint {
     /// The host's clock was set; host times continue from the stretch before.

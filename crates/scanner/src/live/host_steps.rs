@@ -54,14 +54,14 @@ impl HeldFrame {
     }
 }
 
-/// What a packet shows.
-pub(super) enum Shown {
+/// Decision about a packet.
+pub(super) enum PacketDecision {
     /// These packets belong to the clock; the first ones may have waited.
     Packets(Vec<Arrival>),
     /// The lidar's clock was set back by so much before these packets.
     LidarStep(Span, Vec<Arrival>),
     /// Nothing yet.
-    Doubt,
+    Undecided,
 }
 
 /// Converts stamps to the host's clock as it was at the beginning.
@@ -104,7 +104,7 @@ impl HostSteps {
     }
 
     /// Takes a converted packet that is late by so much; `None` if the clock is not known.
-    pub fn packet(&mut self, arrival: Arrival, late: Option<Span>) -> Shown {
+    pub fn packet(&mut self, arrival: Arrival, late: Option<Span>) -> PacketDecision {
         let late = late.unwrap_or(Span::ZERO);
         // The first packets may be the late ones.
         if (-LEAST < late && late < LEAST) || self.on_time < MIN_ON_TIME {
@@ -112,7 +112,7 @@ impl HostSteps {
             self.doubtful.clear();
             self.on_time += 1;
             self.blocked += 1;
-            return Shown::Packets(vec![arrival]);
+            return PacketDecision::Packets(vec![arrival]);
         }
         self.doubtful.push((arrival, late));
         let recent = self.doubtful.len().checked_sub(LEVEL);
@@ -130,19 +130,22 @@ impl HostSteps {
             Some((least, most)) if most.saturating_sub(least) < ALIKE => {
                 let first = self.first_after(least);
                 if first.is_none() && !self.frames.is_empty() {
-                    return Shown::LidarStep(least, waited(Span::ZERO, &mut self.doubtful));
+                    return PacketDecision::LidarStep(
+                        least,
+                        waited(Span::ZERO, &mut self.doubtful),
+                    );
                 }
                 self.shift = self.shift.saturating_add(least);
                 let after = self.frames.iter_mut().skip(first.unwrap_or(0));
                 for frame in after {
                     frame.shift = self.shift;
                 }
-                Shown::Packets(waited(least, &mut self.doubtful))
+                PacketDecision::Packets(waited(least, &mut self.doubtful))
             }
             _ if self.doubtful.len() >= MAX_DOUBTFUL => {
-                Shown::Packets(waited(Span::ZERO, &mut self.doubtful))
+                PacketDecision::Packets(waited(Span::ZERO, &mut self.doubtful))
             }
-            _ => Shown::Doubt,
+            _ => PacketDecision::Undecided,
         }
     }
 

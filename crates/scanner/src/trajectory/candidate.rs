@@ -316,8 +316,8 @@ mod tests {
         assert!(!Autocorrelation::of(&residuals(|_| 0.0)).is_of_ages);
     }
 
-    /// As where the acceleration rises evenly, but the fitted motion has a corner: the residual
-    /// autocorrelation, a mean over the sweep, does not show how great it is.
+    /// Misfit as where the acceleration rises evenly, but the fitted motion has a corner. The
+    /// residual autocorrelation, a mean over the sweep, does not show how great it is.
     #[test]
     fn a_misfit_of_a_ramp_is_bounded_there() {
         assert!(misfits(&residuals(|_| 0.0)).is_empty());

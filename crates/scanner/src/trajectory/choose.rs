@@ -76,7 +76,7 @@ pub(super) struct Candidates<'a> {
     /// Standard deviations of the polls of `samples`, degrees: the unit of their residuals, alike
     /// for all candidates.
     pub unit_deg: Vec<f64>,
-    /// How often the curves' samples were moved to the renewals of a latch.
+    /// Number of times that the curves' samples were moved to the renewals of a latch.
     pub renewed: usize,
     pub renewals: Option<Renewals>,
     pub origin: Stamp<Host>,

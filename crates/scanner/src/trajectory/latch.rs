@@ -32,8 +32,8 @@ const MIN_SCATTER: f64 = 1e-3;
 /// Greatest duration of an encoder count at which a grid is visible.
 pub(super) const MAX_COUNT_S: f64 = 0.3e-3;
 
-/// Where the samples cannot show a latch, the angles take the middle of the possible ages if that
-/// moves them by at most so many encoder counts.
+/// Greatest shift of the angles to the middle of the possible ages, where the samples cannot show a
+/// latch, encoder counts.
 const MAX_SHIFT_COUNTS: f64 = 2.0;
 
 /// Residual of a sample.
@@ -54,7 +54,7 @@ impl Residual {
     }
 }
 
-/// What samples show of a latch.
+/// Evidence of a latch in samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LatchEvidence {
     /// Positions are renewed once per cycle.
@@ -73,7 +73,7 @@ fn quick(residuals: &[Residual]) -> Vec<Residual> {
     quick.copied().collect()
 }
 
-/// What `residuals` of a curve of few parameters show.
+/// Evidence of a latch in `residuals` of a curve of few parameters.
 pub(super) fn evidence(residuals: &[Residual], angle_sd_deg: f64) -> LatchEvidence {
     let quick = quick(residuals);
     let fastest = quick.iter().map(|r| r.rate_deg_s.abs()).fold(0.0, f64::max);
@@ -100,8 +100,8 @@ pub(super) fn evidence(residuals: &[Residual], angle_sd_deg: f64) -> LatchEviden
     }
 }
 
-/// What residuals show if the instants of sampling are known to less than a cycle: those of a latch
-/// are the ages of the samples, up to the phase of the cycle.
+/// Evidence of a latch in residuals if the instants of sampling are known to less than a cycle.
+/// Residuals of a latch are the ages of the samples, up to the phase of the cycle.
 fn evidence_of_ages(residuals: &[Residual], count_s: f64) -> LatchEvidence {
     let unseen = (count_s * count_s / 12.0 + UNCERTAINTY_S * UNCERTAINTY_S) * WINDOW as f64;
     let (mut plain, mut aged) = (0.0, 0.0);
@@ -242,8 +242,8 @@ mod tests {
         assert_eq!(seen(None), LatchEvidence::Absent);
     }
 
-    /// As by SYNCs of 1 kHz: their ages jump by a cycle if their jitter crosses its end, and where
-    /// it does not, positions lack their jitter.
+    /// Polls as by SYNCs of 1 kHz: their ages jump by a cycle if their jitter crosses its end.
+    /// Where it does not, positions lack their jitter.
     #[test]
     fn polls_in_step_with_the_cycle_show_a_latch_by_their_jitter() {
         let seen = |latch| evidence(&residuals(1e-3, 0.1e-3, latch), 0.0004);

@@ -38,7 +38,7 @@ pub struct Profile {
 pub(super) type Gradient = [f64; 8];
 
 impl Profile {
-    /// When the deceleration begins, seconds after the start.
+    /// Time at which the deceleration begins, seconds after the start.
     #[must_use]
     pub fn braking_s(&self) -> f64 {
         self.way_deg / self.speed_deg_s + (self.ramp_up_s - self.ramp_down_s) / 2.0

@@ -65,7 +65,7 @@ impl Packets for Piece<'_> {
 }
 
 impl Caster {
-    /// As [`Caster::nearest`] for every ray, up to the length of the shorter list.
+    /// Like [`Caster::nearest`] for every ray, up to the length of the shorter list.
     ///
     /// Rays are in firing order, `beams` of them per firing (zero counts as one); the last firing
     /// may be partial. Rays of one beam in consecutive firings are cast together.

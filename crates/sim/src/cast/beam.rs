@@ -34,7 +34,7 @@ impl Spread {
 /// Along one axis, where rays of one sign of direction meet the planes of boxes.
 #[derive(Clone, Copy, Debug, Default)]
 struct Axis {
-    /// Which of the node's slabs is met first, 0..6.
+    /// Number of the node's slab that is met first, 0..6.
     near: usize,
     far: usize,
     near_origin: f32,
@@ -113,8 +113,8 @@ impl<const THICK: bool> Beam<THICK> {
         far * SLACK
     }
 
-    /// Where the beam may enter each of a node's boxes, and which of them it enters no farther than
-    /// `up_to`.
+    /// Distances at which the beam may enter a node's boxes, and the mask of those that it enters
+    /// no farther than `up_to`.
     #[inline(always)]
     pub(super) fn enter<S: Simd>(
         &self,

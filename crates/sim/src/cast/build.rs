@@ -15,19 +15,19 @@ pub struct Quality {
     /// is made. Below two, every cut goes through the middle of the triangles along their widest
     /// axis.
     pub bins: usize,
-    /// So many triangles may share a box, 1 to 16.
+    /// Greatest number of triangles that share a box, 1 to 16.
     pub sharing: usize,
 }
 
 impl Quality {
-    /// Of the triangles of a mesh. Rays take a sixth less time than with a box per triangle
-    /// (docs/src/studies.md, Quality of the tree of boxes).
+    /// Quality for the triangles of a mesh. Rays take a sixth less time than with a box per
+    /// triangle (docs/src/studies.md, Quality of the tree of boxes).
     pub const MESH: Self = Self {
         bins: 16,
         sharing: 4,
     };
 
-    /// Of objects: each has a box, since a mesh takes longer than a box.
+    /// Quality for objects: each has a box, since a mesh takes longer than a box.
     pub(super) const OBJECTS: Self = Self {
         bins: 16,
         sharing: 1,
@@ -206,7 +206,7 @@ fn cut(items: &mut [BuildItem], part: &BuildRange, bins: Option<&mut Bins>) -> u
     middle
 }
 
-/// Which bin an item's centre falls into.
+/// Assignment of items to bins by their centres.
 struct Binning {
     axis: usize,
     low: f64,

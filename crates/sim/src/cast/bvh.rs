@@ -11,7 +11,7 @@ use super::build::{self, Quality};
 
 /// Set in a child that is items.
 const LEAF: u32 = 1 << 31;
-/// Where a leaf has how many items follow its first.
+/// Bit position in a leaf of the number of items that follow its first.
 const MORE: u32 = 27;
 /// The most items of a leaf.
 pub(super) const MOST_SHARING: usize = 16;
@@ -127,7 +127,7 @@ struct Waiting {
     node: u32,
 }
 
-/// Where children wait; made once for many rays.
+/// Stack of waiting children; made once for many rays.
 #[derive(Clone, Debug)]
 pub(super) struct Stack([Waiting; STACK]);
 

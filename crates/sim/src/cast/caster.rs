@@ -52,13 +52,13 @@ pub struct Caster {
     /// All others, by number, in the order of the tree's leaves.
     leaves: Vec<u32>,
     tree: Bvh,
-    /// Where the tree's coordinates begin.
+    /// Origin of the tree's coordinates.
     middle_m: DVec3,
-    /// Which registers there are. They change no result.
+    /// Available SIMD registers. They change no result.
     pub(super) level: Level,
 }
 
-/// Where children wait, for the tree of objects and that of one object.
+/// Stacks of waiting children, for the tree of objects and that of one object.
 pub(super) struct Stacks {
     objects: Stack,
     inner: Stack,

@@ -24,7 +24,7 @@ pub struct Mesh {
     vertices: Vec<[f64; 3]>,
     /// In the order of the tree's leaves.
     faces: Vec<Face>,
-    /// Where each triangle of the list is among the faces.
+    /// Index among the faces of each triangle of the list.
     places: Vec<u32>,
     bvh: Bvh,
     bounds: BoundingBox,
@@ -164,7 +164,7 @@ impl Mesh {
         self.faces.len()
     }
 
-    /// Where the mesh's own coordinates begin, metres.
+    /// Origin of the mesh's own coordinates, metres.
     #[inline(always)]
     pub(super) fn origin_m(&self) -> DVec3 {
         self.origin_m

@@ -208,7 +208,7 @@ impl Nearest {
         self.what[lane % LANES] = best.what;
     }
 
-    /// As [`Best::offer`] for the lanes with a hit above the lower limit, each with its own
+    /// Like [`Best::offer`] for the lanes with a hit above the lower limit, each with its own
     /// primitive. Returns whether any was taken.
     #[inline(always)]
     pub(super) fn offer8<S: Simd>(

@@ -99,14 +99,14 @@ impl Placement {
         )
     }
 
-    /// As [`Placement::own_point`] of eight.
+    /// Like [`Placement::own_point`], for eight points.
     #[inline(always)]
     pub(super) fn own_points<S: Simd>(&self, [x, y, z]: [f64x8<S>; 3]) -> [f64x8<S>; 3] {
         let at = self.translation_m;
         self.own_directions([x - at.x, y - at.y, z - at.z])
     }
 
-    /// As [`Placement::own_direction`] of eight.
+    /// Like [`Placement::own_direction`], for eight directions.
     #[inline(always)]
     pub(super) fn own_directions<S: Simd>(&self, [x, y, z]: [f64x8<S>; 3]) -> [f64x8<S>; 3] {
         if !self.turned {

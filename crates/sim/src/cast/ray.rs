@@ -53,14 +53,14 @@ impl Ray {
         })
     }
 
-    /// Where it starts, metres.
+    /// Origin of the ray, metres.
     #[inline]
     #[must_use]
     pub const fn origin_m(&self) -> DVec3 {
         self.origin_m
     }
 
-    /// Where it goes, length 1.
+    /// Direction of the ray, length 1.
     #[inline]
     #[must_use]
     pub const fn direction(&self) -> DVec3 {
@@ -141,7 +141,7 @@ impl ObjectId {
 pub struct Hit {
     /// Distance along the ray, metres.
     pub range_m: f64,
-    /// Which object.
+    /// Object that the ray hits.
     pub object: ObjectId,
     /// Part of the object: the triangle of a mesh by its number, the face of a box (-x, +x, -y, +y,
     /// -z, +z), of a cylinder 0 for the mantle, 1 for the bottom, 2 for the top; else 0.

@@ -149,7 +149,7 @@ impl Cuboid {
         }
     }
 
-    /// Of a face.
+    /// Normal of a face.
     pub(super) fn normal(face: u32) -> DVec3 {
         let outward = if face & 1 == 0 { -1.0 } else { 1.0 };
         match face >> 1 {
@@ -236,7 +236,7 @@ impl Cylinder {
         }
     }
 
-    /// Of a primitive at a point of it.
+    /// Normal of a primitive at a point of it.
     pub(super) fn normal(primitive: u32, point: DVec3) -> DVec3 {
         match primitive {
             1 => DVec3::NEG_Z,

@@ -9,10 +9,10 @@ use super::solids::{Cuboid, Cylinder, Plane, Sphere};
 
 /// Coordinates of eight points or directions.
 type Eight<S> = [f64x8<S>; 3];
-/// Where each line crosses a surface: as [`super::solids::Crossings`].
+/// Intersections of each line with a surface, like [`super::solids::Crossings`].
 type Crossings8<S> = [(f64x8<S>, u64x8<S>); 2];
 
-/// As [`super::solids::first_above`].
+/// Like [`super::solids::first_above`], for eight lines.
 #[inline(always)]
 pub(super) fn first_above8<S: Simd>(
     [first, second]: Crossings8<S>,
@@ -160,7 +160,7 @@ fn where_there<S: Simd>(
     ]
 }
 
-/// As [`super::solids::slab`]; the mask is of those lines that are ever within.
+/// Like [`super::solids::slab`], for eight lines; the mask is of those that are ever within.
 #[inline(always)]
 fn slab8<S: Simd>(
     simd: S,

@@ -165,7 +165,7 @@ impl Object {
         (origin, direction)
     }
 
-    /// Where a line crosses a surface that is not a mesh.
+    /// Intersections of a line with a surface that is not a mesh.
     #[inline(always)]
     fn crossings(&self, origin: DVec3, direction: DVec3) -> Crossings {
         match &self.surface {

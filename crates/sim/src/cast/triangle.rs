@@ -125,7 +125,7 @@ impl<S: Simd> ShearedRays<S> {
         }
     }
 
-    /// As [`ShearedRay::sheared`].
+    /// Like [`ShearedRay::sheared`], for eight rays.
     #[inline(always)]
     fn sheared(&self, corner: [f64; 3]) -> [f64x8<S>; 3] {
         let [x, y, z] = turned(self.axis, corner);
@@ -161,7 +161,7 @@ impl<S: Simd> ShearedRays<S> {
     }
 }
 
-/// As [`edge`], of eight rays.
+/// Like [`edge`], for eight rays.
 #[inline(always)]
 fn edge8<S: Simd>(p: [f64x8<S>; 3], q: [f64x8<S>; 3]) -> f64x8<S> {
     let product = p[1] * q[0];

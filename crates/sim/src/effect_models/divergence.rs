@@ -26,7 +26,7 @@ use serde::Deserialize;
 use super::returns::reported;
 use super::settings::{InvalidSetting, SettingCheck};
 use footprint::{Footprint, scan_axis};
-use plain::Plain;
+use plain::UniformCells;
 use pulses::{MOST_SAMPLES, Pulse, PulseSample};
 
 /// `[effects.divergence]`.
@@ -70,7 +70,7 @@ pub struct Divergence {
     /// Half the width and height of the footprint at 1 m.
     half: [f64; 2],
     settings: DivergenceSettings,
-    plain: OnceLock<Plain>,
+    plain: OnceLock<UniformCells>,
 }
 
 /// Sub-rays cast together.
@@ -108,11 +108,11 @@ impl Divergence {
         !surroundings.may_move_near(patch.origin_m, patch.direction, half)
             && self
                 .plain
-                .get_or_init(|| Plain::new(surroundings, self.settings.flat_m))
+                .get_or_init(|| UniformCells::new(surroundings, self.settings.flat_m))
                 .is_around(patch.origin_m, patch.direction, range_m)
     }
 
-    /// As [`BeamEffect::receive`], with sub-rays at every shot: the reference for the search for
+    /// Like [`BeamEffect::receive`], with sub-rays at every shot: the reference for the search for
     /// edges.
     pub fn receive_everywhere(
         &self,

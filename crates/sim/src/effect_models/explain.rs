@@ -25,7 +25,7 @@ pub struct EffectExplanation {
     pub effect: &'static str,
     /// The line of the scene file that configures it, from 1.
     pub line: Option<usize>,
-    /// What it was called for: firings, polls...
+    /// Unit of its calls: firings, polls...
     pub each: &'static str,
     /// Calls.
     pub asked: u64,
@@ -37,7 +37,7 @@ pub struct EffectExplanation {
     pub changed: u64,
     /// Its share of the run's time, percent; `None` if not measured.
     pub time_percent: Option<f64>,
-    /// Why it was not needed, if it never acted.
+    /// Reason why it was not needed, if it never acted.
     pub not_needed: Option<&'static str>,
 }
 

@@ -37,7 +37,7 @@ pub type ConfiguredEffects = Effects<
     OwnedEffects<dyn LinkEffect + Send>,
 >;
 
-/// How often an effect was called and acted, and the time it took.
+/// Numbers of calls and actions of an effect, and the time it took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct UsageCounts {
@@ -57,7 +57,7 @@ pub struct UsageCounts {
 pub struct EffectUsage {
     /// Its key in the scene file.
     pub name: &'static str,
-    /// What it is called for: firings, polls...
+    /// Unit of its calls: firings, polls...
     pub each: &'static str,
     /// Its counts.
     pub counts: UsageCounts,

@@ -124,13 +124,13 @@ impl Surroundings {
         self.with_moving(origin_m, direction, first)
     }
 
-    /// As [`Surroundings::meet`], without moving objects.
+    /// Like [`Surroundings::meet`], without moving objects.
     #[cfg(test)]
     pub(crate) fn meet_static(&self, origin_m: DVec3, direction: DVec3) -> Option<SurfaceHit> {
         self.returning(self.first_static(origin_m, direction)?)
     }
 
-    /// As [`Surroundings::meet`] for each direction, up to the length of the shorter list.
+    /// Like [`Surroundings::meet`] for each direction, up to the length of the shorter list.
     pub fn cast_fan(&self, origin_m: DVec3, directions: &[DVec3], mets: &mut [Option<SurfaceHit>]) {
         batch::fan(self, origin_m, directions, &mut |ray, first| {
             if let (Some(met), Some(direction)) = (mets.get_mut(ray), directions.get(ray)) {
@@ -139,7 +139,7 @@ impl Surroundings {
         });
     }
 
-    /// As [`Surroundings::cast_fan`], without moving objects.
+    /// Like [`Surroundings::cast_fan`], without moving objects.
     pub fn cast_fan_static(
         &self,
         origin_m: DVec3,

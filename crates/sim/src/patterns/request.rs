@@ -1,11 +1,11 @@
 //! Names of patterns with options: `rmbl:120,rpm=600,tilt=stepped`.
 
 use super::{
-    Pattern, PatternError, PatternSettings, PatternTilt, PlanarFront, RevolutionEnds, SensorModel,
+    Pattern, PatternError, PatternSettings, PatternTilt, PlanarFront, RevolutionEnds, SensorName,
     TiltSteps,
 };
 
-/// How a named pattern moves without options.
+/// Motion of a named pattern without options.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum PatternMotion {
     /// At rest without a speed; with one it tilts, or spins with `spin`.
@@ -16,17 +16,17 @@ enum PatternMotion {
     Spin,
 }
 
-const SENSORS: [(&str, SensorModel, PatternMotion); 10] = [
-    ("vlp16", SensorModel::Vlp16, PatternMotion::Free),
-    ("hi-res", SensorModel::HiRes, PatternMotion::Free),
-    ("hdl32e", SensorModel::Hdl32e, PatternMotion::Free),
-    ("vlp32c", SensorModel::Vlp32c, PatternMotion::Free),
-    ("hdl64e", SensorModel::Hdl64e, PatternMotion::Free),
-    ("utm30lx", SensorModel::Utm30lx, PatternMotion::Free),
-    ("lms151", SensorModel::Lms151, PatternMotion::Free),
-    ("rmbl", SensorModel::Vlp16, PatternMotion::Spin),
-    ("rsbl", SensorModel::SingleBeam, PatternMotion::Spin),
-    ("velomotion16", SensorModel::Vlp16, PatternMotion::Tilt),
+const SENSORS: [(&str, SensorName, PatternMotion); 10] = [
+    ("vlp16", SensorName::Vlp16, PatternMotion::Free),
+    ("hi-res", SensorName::HiRes, PatternMotion::Free),
+    ("hdl32e", SensorName::Hdl32e, PatternMotion::Free),
+    ("vlp32c", SensorName::Vlp32c, PatternMotion::Free),
+    ("hdl64e", SensorName::Hdl64e, PatternMotion::Free),
+    ("utm30lx", SensorName::Utm30lx, PatternMotion::Free),
+    ("lms151", SensorName::Lms151, PatternMotion::Free),
+    ("rmbl", SensorName::Vlp16, PatternMotion::Spin),
+    ("rsbl", SensorName::SingleBeam, PatternMotion::Spin),
+    ("velomotion16", SensorName::Vlp16, PatternMotion::Tilt),
 ];
 
 /// All names: sensors, and the patterns of the paper: rotating multi- and single-beam lidar, and

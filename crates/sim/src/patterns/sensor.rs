@@ -7,7 +7,7 @@ use crate::sensor::{DetectionRange, LidarSensor};
 /// Sensors of patterns and scenes.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
-pub enum SensorModel {
+pub enum SensorName {
     /// VLP-16, 16 lasers.
     #[default]
     Vlp16,
@@ -27,7 +27,7 @@ pub enum SensorModel {
     SingleBeam,
 }
 
-impl SensorModel {
+impl SensorName {
     /// The sensor in a scene.
     #[must_use]
     pub fn sensor(self) -> LidarSensor {

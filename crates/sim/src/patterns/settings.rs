@@ -1,6 +1,6 @@
 //! Parameters of a pattern and their ranges.
 
-use super::{PatternError, SensorModel};
+use super::{PatternError, SensorName};
 
 /// Motion of the tilt axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,7 +61,7 @@ pub struct PatternTilt {
 #[non_exhaustive]
 pub struct PatternSettings {
     /// The sensor.
-    pub head: SensorModel,
+    pub head: SensorName,
     /// Revolutions per minute.
     pub rpm: f64,
     /// Step of azimuth, degrees.

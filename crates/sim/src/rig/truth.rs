@@ -31,9 +31,9 @@ impl Truth {
         }
     }
 
-    /// Where the beam of `laser` (0..16 in firing order) met the scene at lidar time `device_ns`:
-    /// metres in the frame of the platform's base, as Eq. 4-6 give it (origin on the tilt axis, z
-    /// up).
+    /// Point at which the beam of `laser` (0..16 in firing order) met the scene at lidar time
+    /// `device_ns`. Metres in the frame of the platform's base, as Eq. 4-6 give it (origin on the
+    /// tilt axis, z up).
     ///
     /// `device_ns` is the laser's own time, its packet's stamp + 55.296 us x sequence + 2.304 us x
     /// laser, modulo an hour. The nearest firing of that laser counts, so the time may be off by

@@ -1,7 +1,7 @@
 //! Effects that the facts of a scene call for: its materials, motions, weather, sensor, drive and
 //! links.
 //!
-//! A demand has the fact and an estimate of its size, from a survey of a thousand shots or a bound.
+//! A demand has the fact and an estimate of its size, from a thousand trial shots or a bound.
 //! How much an effect matters is measured with it and without it (`velomotion simulate --explain`).
 
 use std::collections::BTreeMap;
@@ -10,7 +10,7 @@ use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::facts::StatedFact;
-use super::survey::{MaterialSurvey, SHOTS, SceneSurvey};
+use super::trial_shots::{MaterialTrials, SHOTS, TrialShots};
 use crate::cast::{Object, Surface};
 use crate::effect_models::{EffectsConfig, Mover, Weather};
 use crate::simulate::Simulation;
@@ -40,7 +40,7 @@ pub struct EffectDemand {
 /// A moving object: its name and its line.
 pub(super) type MoverName = (String, usize);
 
-/// What a survey saw of a moving object and its copies.
+/// Results of the trial shots at a moving object and its copies.
 #[derive(Default)]
 struct MovingSurvey {
     count: u32,
@@ -48,7 +48,7 @@ struct MovingSurvey {
     farthest_m: f64,
 }
 
-/// What demands follow from.
+/// Facts from which demands follow.
 pub(super) struct SceneFacts<'a> {
     /// Whether the sensor is free of its own errors by request.
     pub is_ideal: bool,
@@ -139,22 +139,22 @@ impl SceneFacts<'_> {
             let weather = weather.detected_by(detection);
             Weather::new(&weather, 0).ok()
         });
-        let survey = match self.is_ideal && self.movers.is_empty() && weather.is_none() {
-            true => SceneSurvey::default(),
-            false => SceneSurvey::new(
+        let trial = match self.is_ideal && self.movers.is_empty() && weather.is_none() {
+            true => TrialShots::default(),
+            false => TrialShots::new(
                 self.simulation,
                 self.movers,
                 &detection.unwrap_or_default(),
                 weather.as_ref(),
             ),
         };
-        let mut demands = self.moving(&survey);
+        let mut demands = self.moving(&trial);
         for fact in self.stated {
-            demands.push(self.stated_demand(fact.effect, &survey).at(Some(fact.line)));
+            demands.push(self.stated_demand(fact.effect, &trial).at(Some(fact.line)));
         }
         if !self.is_ideal {
-            demands.extend(self.edges(&survey));
-            demands.extend(self.materials(&survey));
+            demands.extend(self.edges(&trial));
+            demands.extend(self.materials(&trial));
             // Without packets times and angles are exact.
             let (has_packets, polls) = (self.has_packets(), self.simulation.polls);
             let of_packets = ["lidar_clock", "link_jitter"].into_iter();
@@ -162,7 +162,7 @@ impl SceneFacts<'_> {
             let usual = of_packets.chain(of_drive).filter(|_| has_packets);
             let usual = ["range_noise"].into_iter().chain(usual);
             for effect in usual.filter(|name| self.stated.iter().all(|fact| fact.effect != *name)) {
-                demands.push(self.stated_demand(effect, &survey));
+                demands.push(self.stated_demand(effect, &trial));
             }
         }
         let rank = |name: &str| EffectsConfig::NAMES.iter().position(|known| *known == name);
@@ -175,7 +175,7 @@ impl SceneFacts<'_> {
     }
 
     /// A demand for each object that moves, its copies together, the farthest first.
-    fn moving(&self, survey: &SceneSurvey) -> Vec<EffectDemand> {
+    fn moving(&self, trial: &TrialShots) -> Vec<EffectDemand> {
         // Boxes of the effect itself come first and have no names.
         let unnamed = self.movers.len().saturating_sub(self.mover_names.len());
         let mut objects: BTreeMap<(&str, Option<usize>), MovingSurvey> = BTreeMap::new();
@@ -185,7 +185,7 @@ impl SceneFacts<'_> {
             let key = named.map_or(("", self.boxes_line), |(name, line)| (name, Some(*line)));
             let object = objects.entry(key).or_default();
             object.count += 1;
-            object.hits += survey.moving.get(number).copied().unwrap_or(0);
+            object.hits += trial.moving.get(number).copied().unwrap_or(0);
             object.farthest_m = object.farthest_m.max(self.path_m(mover));
         }
         let demand = |((name, line), object): ((&str, Option<usize>), MovingSurvey)| {
@@ -200,7 +200,7 @@ impl SceneFacts<'_> {
             EffectDemand::new("moving_objects", format!("{subject} {verbs}"))
                 .of(name)
                 .at(self.scene_line.or(line))
-                .percent(survey.percent(object.hits))
+                .percent(trial.percent(object.hits))
                 .displaced(object.farthest_m)
         };
         let mut demands: Vec<EffectDemand> = objects.into_iter().map(demand).collect();
@@ -209,7 +209,7 @@ impl SceneFacts<'_> {
         demands
     }
 
-    /// How far a point of a moving object moves at most, metres.
+    /// Greatest displacement of a point of a moving object, metres.
     fn path_m(&self, mover: &Mover) -> f64 {
         let end_s = self.simulation.motion.end_s;
         let travel = &mover.travel;
@@ -223,9 +223,9 @@ impl SceneFacts<'_> {
     }
 
     /// Edges within footprints, with the material that most of them are of.
-    fn edges(&self, survey: &SceneSurvey) -> Option<EffectDemand> {
+    fn edges(&self, trial: &TrialShots) -> Option<EffectDemand> {
         let about = "edges lie within footprints of beams";
-        let most = survey.materials.values().max_by_key(|seen| seen.edges);
+        let most = trial.materials.values().max_by_key(|seen| seen.edges);
         let name = most.filter(|seen| seen.edges > 0);
         let name = name.map_or("", |seen| &seen.material.name);
         let reason = match name {
@@ -235,13 +235,13 @@ impl SceneFacts<'_> {
         let demand = EffectDemand::new("divergence", reason)
             .of(name)
             .at(self.line_of_material(name));
-        match survey.edges {
+        match trial.edges {
             0 if !self.may_have_edges() => None,
-            0 => Some(demand.percent(survey.unseen_percent())),
+            0 => Some(demand.percent(trial.unseen_percent())),
             edges => Some(
                 demand
-                    .percent(survey.percent(edges))
-                    .displaced(survey.mixed_m),
+                    .percent(trial.percent(edges))
+                    .displaced(trial.mixed_m),
             ),
         }
     }
@@ -267,8 +267,8 @@ impl SceneFacts<'_> {
     }
 
     /// Materials whose light differs from that of a white wall, the most lost shots first.
-    fn materials(&self, survey: &SceneSurvey) -> Vec<EffectDemand> {
-        let mut seen: Vec<&MaterialSurvey> = survey.materials.values().collect();
+    fn materials(&self, trial: &TrialShots) -> Vec<EffectDemand> {
+        let mut seen: Vec<&MaterialTrials> = trial.materials.values().collect();
         seen.retain(|seen| !seen.material.absorbing);
         seen.sort_by_key(|seen| std::cmp::Reverse(seen.lost));
         let detection = self
@@ -277,7 +277,7 @@ impl SceneFacts<'_> {
             .settings()
             .copied()
             .unwrap_or_default();
-        let reason = |seen: &MaterialSurvey| {
+        let reason = |seen: &MaterialTrials| {
             let material = &seen.material;
             let (name, reflectivity) = (&material.name, material.reflectivity);
             let subject = match name.is_empty() {
@@ -299,15 +299,15 @@ impl SceneFacts<'_> {
                 )
             })
         };
-        let demand = |seen: &&MaterialSurvey| {
+        let demand = |seen: &&MaterialTrials| {
             let name = &seen.material.name;
             let line = self.scene_line.or(self.material_lines.get(name).copied());
             let demand = EffectDemand::new("reflectance", reason(seen)?)
                 .of(name)
                 .at(line);
             Some(match seen.returned {
-                0 => demand.percent(survey.unseen_percent()),
-                _ => demand.percent(survey.percent(seen.lost)),
+                0 => demand.percent(trial.unseen_percent()),
+                _ => demand.percent(trial.percent(seen.lost)),
             })
         };
         let mut demands: Vec<EffectDemand> = seen.iter().filter_map(demand).collect();
@@ -319,10 +319,10 @@ impl SceneFacts<'_> {
     }
 
     /// The demand for an effect by its settings.
-    fn stated_demand(&self, effect: &'static str, survey: &SceneSurvey) -> EffectDemand {
+    fn stated_demand(&self, effect: &'static str, trial: &TrialShots) -> EffectDemand {
         let config = self.config;
         let motion = &self.simulation.motion;
-        let arm_m = survey.farthest_m + self.simulation.mount.position_m.length();
+        let arm_m = trial.farthest_m + self.simulation.mount.position_m.length();
         let speeds = motion.moves.iter().map(|next| next.cruise_deg_s.abs());
         let speed_deg_s = speeds.fold(0.0, f64::max);
         let by_angle = |deg: f64| deg.to_radians() * arm_m;
@@ -349,8 +349,8 @@ impl SceneFacts<'_> {
                 let fog = weather.visibility_m.map(|m| format!("visibility of {m} m"));
                 let rain = weather.rain_mm_h.map(|mm_h| format!("rain of {mm_h} mm/h"));
                 let reason: Vec<String> = fog.into_iter().chain(rain).collect();
-                let (changed, air) = (survey.dimmed + survey.in_air, survey.in_air);
-                let points = f64::from((survey.returned + air).max(1));
+                let (changed, air) = (trial.dimmed + trial.in_air, trial.in_air);
+                let points = f64::from((trial.returned + air).max(1));
                 demand(reason.join(", ")).percent(100.0 * f64::from(changed) / points)
             }),
             "range_noise" => config.range_noise.settings().map(|noise| {
@@ -440,7 +440,7 @@ impl SceneFacts<'_> {
     }
 }
 
-impl SceneSurvey {
+impl TrialShots {
     fn percent(&self, part: u32) -> f64 {
         100.0 * f64::from(part) / f64::from(self.returned.max(1))
     }

@@ -10,7 +10,7 @@ use crate::effect_models::settings_of::{
 };
 use crate::motion::{AxisMotion, MotionError, Sweeps};
 use crate::packet_maker::HeadRotation;
-use crate::patterns::SensorModel;
+use crate::patterns::SensorName;
 use crate::scenery::InvalidValue;
 use crate::sensor::{DetectionRange, LidarMount, LidarSensor, ReturnMode};
 use crate::simulate::Polls;
@@ -26,7 +26,7 @@ pub(super) fn invalid(path: impl Into<String>, what: impl Into<String>) -> Inval
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct SensorSection {
-    model: SensorModel,
+    model: SensorName,
     /// Number of the only active laser in firing order; absent: all.
     only_laser: Option<usize>,
     /// Whether all lasers of a firing start from one point at one instant.
@@ -59,7 +59,7 @@ const USUAL_RPM: u32 = 600;
 impl Default for SensorSection {
     fn default() -> Self {
         Self {
-            model: SensorModel::default(),
+            model: SensorName::default(),
             only_laser: None,
             ideal: false,
             range_m: None,
@@ -79,7 +79,7 @@ impl SensorSection {
     }
 
     /// The lidar's model.
-    pub const fn model(&self) -> SensorModel {
+    pub const fn model(&self) -> SensorName {
         self.model
     }
 
@@ -170,7 +170,7 @@ impl MotionSection {
 
     fn fixed(&self) -> Result<AxisMotion, InvalidValue> {
         reject(
-            "an axis that stands has no such key",
+            "not allowed for a fixed axis",
             &[
                 ("from_deg", self.from_deg.is_some()),
                 ("to_deg", self.to_deg.is_some()),
@@ -240,7 +240,7 @@ pub(super) struct MountSection {
     position_m: [f64; 3],
     /// Rotation about x, then y, then z of the platform, degrees.
     rotation_deg: [f64; 3],
-    /// What the scanner's frame and tripod hide.
+    /// Shadow of the scanner's frame and tripod.
     pub shadow: Option<OwnShadowSettings>,
 }
 

@@ -44,9 +44,9 @@ impl fmt::Display for FilePosition {
 pub struct SceneryError {
     /// The position of the value or object, or of its table where several values are involved.
     pub at: FilePosition,
-    /// Which value, what was expected, and the value.
+    /// Name of the value, the expectation, and the value found.
     pub what: String,
-    /// Why a mesh cannot be read.
+    /// Reason why a mesh cannot be read.
     pub source: Option<MeshFileError>,
 }
 

@@ -95,21 +95,21 @@ impl TriangleSoup {
 }
 
 /// Gives the bytes of a file that another names.
-pub(super) type Beside<'a> = &'a mut dyn FnMut(&str) -> Result<Vec<u8>, MeshFileError>;
+pub(super) type ReadReferencedFile<'a> = &'a mut dyn FnMut(&str) -> Result<Vec<u8>, MeshFileError>;
 
 pub(super) fn read(
     format: MeshFormat,
     bytes: &[u8],
-    beside: Beside<'_>,
+    read_referenced: ReadReferencedFile<'_>,
 ) -> Result<TriangleSoup, MeshFileError> {
     match format {
         MeshFormat::Obj => obj::read(bytes),
         MeshFormat::Ply => ply::read(bytes),
-        MeshFormat::Gltf => gltf::read(bytes, beside),
+        MeshFormat::Gltf => gltf::read(bytes, read_referenced),
     }
     .map_err(|fault| match fault {
         Fault::Own(message) => MeshFileError::Contents { format, message },
-        Fault::Beside(error) => error,
+        Fault::ReferencedFile(error) => error,
     })
 }
 
@@ -119,7 +119,7 @@ enum Fault {
     /// In the file itself.
     Own(String),
     /// With a file that it names.
-    Beside(MeshFileError),
+    ReferencedFile(MeshFileError),
 }
 
 impl<T: Into<String>> From<T> for Fault {

@@ -12,7 +12,7 @@ use crate::cast::{Object, Placement, PlacementError};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Travel {
-    /// Where its origin is at the start, metres in the frame of the base.
+    /// Position of its origin at the start, metres in the frame of the base.
     pub from_m: DVec3,
     /// Metres per second along the axes of the base.
     pub velocity_m_s: DVec3,
@@ -44,7 +44,7 @@ pub struct Moving {
     pub objects: Range<usize>,
     /// Their common motion.
     pub travel: Travel,
-    /// Which line of the scene asks for it.
+    /// Line of the scene that requests it.
     pub at: FilePosition,
 }
 

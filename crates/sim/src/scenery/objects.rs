@@ -97,7 +97,7 @@ pub struct CylinderShape {
     pub radius_m: f64,
     /// Metres.
     pub height_m: f64,
-    /// Where it begins, metres.
+    /// Height of its bottom, metres.
     #[serde(default)]
     pub bottom_m: f64,
     /// Whether its ends are closed: a drum, not a pipe.

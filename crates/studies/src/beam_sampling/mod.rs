@@ -53,7 +53,7 @@ const SCENES: [&str; 2] = ["hall", "parking"];
 /// A return farther off than this is a different one, metres: half of the sensor's resolution.
 const ANOTHER_M: f64 = 0.5;
 
-/// How beams are sampled.
+/// Method of sampling beams.
 enum SamplingMethod {
     /// The centre of the beam alone.
     Middle,

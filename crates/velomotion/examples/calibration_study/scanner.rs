@@ -3,18 +3,15 @@
 use std::f64::consts::PI;
 use std::fmt::Write;
 
+use units::random::{split_mix_64, unit_interval};
+
 /// Random numbers of a seed (SplitMix64).
 pub struct StudyDraws(pub u64);
 
 impl StudyDraws {
     /// From -most to most.
     pub fn uniform(&mut self, most: f64) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^= z >> 31;
-        most * ((z >> 11) as f64 / (1_u64 << 52) as f64 - 1.0)
+        most * (2.0 * unit_interval(split_mix_64(&mut self.0)) - 1.0)
     }
 
     /// Normal (Box and Muller).

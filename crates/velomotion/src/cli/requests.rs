@@ -98,7 +98,11 @@ impl Output {
     /// Columns of the cloud in addition to the position.
     #[must_use]
     pub fn fields(&self) -> Fields {
-        let fields = [(self.uncertainty, Fields::SD), (self.echo, Fields::ECHO)];
+        let fields = [
+            (self.uncertainty, Fields::SD),
+            (self.echo, Fields::ECHO),
+            (self.laser, Fields::LASER),
+        ];
         let requested = fields.into_iter().filter(|(is_requested, _)| *is_requested);
         requested.fold(Fields::FILE, |fields, (_, field)| fields | field)
     }

@@ -227,7 +227,7 @@ fn budget(report: &AccuracyReport) -> TitledTable {
     }
 }
 
-/// What the study rests on.
+/// Basis of the study: lidar, calibration, shots and logs.
 fn summary(report: &AccuracyReport) -> String {
     let state = if report.calibrated {
         "calibrated"

@@ -5,9 +5,9 @@ use std::time::SystemTime;
 
 use daemon::client::Client;
 use daemon::local::LocalTask;
-use engine::capture::request::CapturePlan;
+use engine::capture::plan::CapturePlan;
 use engine::capture::run::{self, ScanFailure};
-use engine::capture::scan_plan::ScanPlanner;
+use engine::capture::scan_planner::ScanPlanner;
 use engine::capture_request::CaptureRequest;
 use engine::config::{self, Config};
 use engine::default_paths;

@@ -13,7 +13,7 @@ use cloud::formats::Format;
 use daemon::client::Client;
 use daemon::local::{LocalService, LocalTask};
 use engine::capture::jog::JogRequest;
-use engine::capture::request::CapturePlan;
+use engine::capture::plan::CapturePlan;
 use engine::capture::run::{self, Outcome};
 use engine::capture_request::CaptureRequest;
 use engine::config::{Config, Device};
@@ -129,7 +129,7 @@ impl DeviceBackend {
         }
     }
 
-    /// What a simulated drive of this owner is.
+    /// Description of a simulated drive of this owner.
     #[must_use]
     pub const fn simulated_drive(&self) -> &'static str {
         match self {

@@ -5,7 +5,7 @@ mod text;
 use std::path::PathBuf;
 
 use analysis::plan::{PlanLimits, PlanRow, figure};
-use engine::capture::scan_plan::{PlanReport, PlanRequest, ScanPlanner};
+use engine::capture::scan_planner::{PlanReport, PlanRequest, ScanPlanner};
 use engine::config::{self, Config};
 use engine::devices::profile;
 use engine::document::Document;
@@ -85,7 +85,7 @@ fn request(arguments: &cli::Plan, config: &Config) -> PlanRequest {
     }
 }
 
-/// What to do where no setting keeps the limits.
+/// Advice where no setting keeps the limits.
 fn help(report: &PlanReport) -> String {
     let nearest = report.nearest.as_ref();
     match nearest.and_then(|nearest| nearest.command.as_deref()) {
@@ -112,7 +112,7 @@ fn written(files: &[Option<PathBuf>]) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use engine::capture::scan_plan::CommandRow;
+    use engine::capture::scan_planner::CommandRow;
     use engine::config::{Config, Device};
     use engine::lidars::{self, LIDARS};
 

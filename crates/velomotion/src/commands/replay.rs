@@ -143,9 +143,9 @@ fn replay(
             None => "scan again if what is missing matters",
         };
         let made = match (stdout, arguments.frames) {
-            (true, _) => "what is there is on stdout".to_owned(),
-            (_, Some(_)) => "the clouds of what is there are made".to_owned(),
-            _ => format!("the cloud of what is there is {}", cloud.display()),
+            (true, _) => "the partial cloud is on stdout".to_owned(),
+            (_, Some(_)) => "the partial clouds are made".to_owned(),
+            _ => format!("the partial cloud is {}", cloud.display()),
         };
         Failure::new(Kind::Incomplete, format!("{}: {missing}", input.display()))
             .help(format!("{made}; {help}"))
@@ -207,7 +207,7 @@ fn copy(
     let gaps: Vec<String> = ends_early.into_iter().chain(missing).collect();
     let failure = (!gaps.is_empty()).then(|| {
         let what = format!("{}: {}", source.path().display(), gaps.join(", and "));
-        Failure::new(Kind::Incomplete, what).help(format!("what is there is in {}", pcap.display()))
+        Failure::new(Kind::Incomplete, what).help(format!("the part is in {}", pcap.display()))
     });
     if report.simulated {
         Progress::new(common)

@@ -24,8 +24,8 @@ use crate::tables::table;
 /// it, where the bus fails at once, the command ended before the request was sent.
 const USER_WAIT: Duration = Duration::from_secs(1);
 
-/// How far beyond a limit an axis may rest that was moved there, degrees: a count of a coarse
-/// encoder, as in the page.
+/// Largest distance beyond a limit at which an axis moved there may rest, degrees: a count of a
+/// coarse encoder, as in the page.
 const AT_LIMIT_DEG: f64 = 0.02;
 
 /// Runs the command.

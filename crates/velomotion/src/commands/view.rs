@@ -266,7 +266,7 @@ struct MadeCloud {
     points: u64,
     simulated: bool,
     scanner: bool,
-    /// What it lacks.
+    /// Failure that reports its missing data.
     missing: Option<Failure>,
 }
 

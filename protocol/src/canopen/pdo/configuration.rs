@@ -50,7 +50,7 @@ impl Pdo {
 /// The configuration of a PDO.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Configuration {
-    /// When it is sent or takes effect.
+    /// Event at which it is sent or takes effect.
     pub transmission: TransmissionType,
     /// For a transmit PDO: the shortest interval in 100 us (180x:3). `None` leaves it unchanged. In
     /// CiA 301 it delays events only, not SYNC; 0 is safe for a fast SYNC.

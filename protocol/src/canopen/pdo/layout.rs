@@ -50,7 +50,7 @@ impl MappedObject {
     }
 }
 
-/// As in the object: `60640020`.
+/// Writes the entry as in the object: `60640020`.
 impl fmt::Debug for MappedObject {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:08X}", self.to_u32())

@@ -22,9 +22,9 @@ pub enum TransferError {
     /// The toggle bit of a segment did not alternate: a segment was lost or duplicated.
     #[error("SDO: toggle bit {}, expected {}", u8::from(*got), u8::from(*expected))]
     Toggle {
-        /// As in the request.
+        /// Toggle bit of the request.
         expected: bool,
-        /// As in the response.
+        /// Toggle bit of the response.
         got: bool,
     },
     /// A response of another service.

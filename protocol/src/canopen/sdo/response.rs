@@ -21,7 +21,7 @@ pub enum GenericSdoResponse<const L: usize> {
     UploadSegment(GenericSdoSegment<L>),
     /// Confirms a segment that was written.
     DownloadSegment {
-        /// As in the request.
+        /// Toggle bit of the request.
         toggle: bool,
     },
     /// Starts or completes a read.

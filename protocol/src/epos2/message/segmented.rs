@@ -71,7 +71,7 @@ command!(
 /// A segment that was read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReadSegment {
-    /// As in the request.
+    /// Toggle bit of the request.
     pub toggle: bool,
     /// More segments follow.
     pub more: bool,

@@ -101,7 +101,7 @@ fn written(
     }
     for batch in batches {
         writer.points(batch).unwrap();
-        writer.revolution().unwrap();
+        writer.revolution(&Revolution::default()).unwrap();
     }
     writer.diagnostics(&diagnostics()).unwrap();
     writer.finish().unwrap();

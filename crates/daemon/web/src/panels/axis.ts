@@ -2,6 +2,7 @@
 
 import { type Status, api } from "../api.ts";
 import { attribute, h, id, show } from "../dom.ts";
+import * as fields from "../fields.ts";
 import { fixed } from "../format.ts";
 import { target } from "../jog.ts";
 import { command } from "./control.ts";
@@ -24,14 +25,15 @@ export function wire(): void {
   id("jog").append(...steps.map(({ button }) => button));
   form.addEventListener("submit", (event) => {
     event.preventDefault();
-    move(Number(to.value));
+    if (fields.report(form, true)) move(Number(to.value));
   });
+  fields.watch(form);
 }
 
 /** Moves by a step, within the limits. */
 function jog(step: number): void {
   const end = target(angle_deg, step, bounds);
-  if (end !== null && speed.reportValidity()) move(end);
+  if (end !== null && fields.report(id("goto-speed-field"), true)) move(end);
 }
 
 function move(to_deg: number): void {

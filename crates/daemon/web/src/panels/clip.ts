@@ -1,6 +1,7 @@
 // The box and the section outside of which points are hidden.
 
 import { id, show, text } from "../dom.ts";
+import * as fields from "../fields.ts";
 import { fixed } from "../format.ts";
 import type { ViewState } from "../view/link.ts";
 import type { Stage } from "../view/stage.ts";
@@ -57,6 +58,7 @@ export function set(stage: Stage, { box: limits, section }: Pick<ViewState, "box
   across.value = section?.across ?? "";
   reachOver();
   if (section !== undefined) [offset.value, thick.value] = [String(section.offset_m), String(section.thick_m)];
+  fields.report(id("tools"));
   apply(stage);
 }
 

@@ -74,7 +74,7 @@ function draw(): void {
 
 function draw_measured(found: ScanStatistics): void {
   const { density, gap_deg: gap, sd_mm: sd } = found;
-  const where = found.of === "view" ? "in view" : "on the sphere";
+  const where = found.of === "view" ? "in the field of view" : "on the sphere";
   const rows: Fact[] = [
     [`Bins of 3\u00b0 ${where}`, `${count(density.bins)} of 5,120`],
     ["Points per bin", `${digits(density.mean)} \u00b1 ${digits(density.sd)}`],

@@ -6,7 +6,7 @@ import { bytes, compact, duration, moment } from "../format.ts";
 import { title } from "../found.ts";
 import { announce } from "./messages.ts";
 
-/** Marks the choice of a format with the columns sd and echo. */
+/** Marks the choice of a format with the columns sd, echo and laser. */
 const MORE = "+";
 /** Cloud formats: extension and displayed name. */
 const FORMATS: [string, string][] = [
@@ -81,7 +81,7 @@ export function card(scan: Scan, chosen: boolean, wrong: HTMLElement, actions: A
 }
 
 /** The cells of a scan in the table; index.html has their heads. */
-export function cells(scan: Scan, chosen: boolean, actions: Actions): Node[] {
+export function cells(scan: Scan, chosen: boolean, wrong: HTMLElement, actions: Actions): Node[] {
   const name = title(scan);
   const cell = (kind: string, ...content: (Node | string | null)[]) => h("div", { role: "cell", class: kind }, ...content);
   const texts = scan.summary || scan.notes;
@@ -94,6 +94,7 @@ export function cells(scan: Scan, chosen: boolean, actions: Actions): Node[] {
     cell("state", badge(scan)),
     cell("about", texts ? cut(scan, scan.summary ? "why" : "notes", texts) : null),
     cell("acting", hasCloud(scan) ? button("open", "Open", `Open ${name} in the view`, () => actions.open(scan)) : null,
+      isBusy(scan) ? null : button("download", "Download", `Download ${name}`, () => downloads(scan, name, wrong, actions)),
       button("edit", "Edit", `Edit name and notes of ${name}`, () => actions.edit(scan))),
   ];
 }
@@ -170,7 +171,7 @@ async function download(scan: Scan, name: string, choice: string, wrong: HTMLEle
   const file = `${scan.name || "velomotion"}-${scan.id}.${format === "log" ? "pcapng" : format}`;
   announce(`Downloading ${name}: ${file}`);
   try {
-    const [url, exists] = format === "log" ? [logUrl(scan.id), true] : [cloudUrl(scan.id, format, more, more), format === "ply" && !more];
+    const [url, exists] = format === "log" ? [logUrl(scan.id), true] : [cloudUrl(scan.id, format, more), format === "ply" && !more];
     const href = await fileUrl(url, exists);
     h("a", { href, download: file }).click();
     // The browser has begun to read it by then.

@@ -43,7 +43,7 @@ function content(scan: Scan, place: Place): Node[] {
       return [place === "card" ? editor : h("div", { role: "cell", class: "edit-cell" }, editor)];
     }
     const marked = chosen.has(scan.id);
-    return place === "card" ? parts.card(scan, marked, error_of(scan), actions) : parts.cells(scan, marked, actions);
+    return place === "card" ? parts.card(scan, marked, error_of(scan), actions) : parts.cells(scan, marked, id("scans-error"), actions);
   } catch (error) {
     console.error(error);
     return [h("h3", {}, String(scan.id)), h("p", {}, "This record cannot be displayed.")];

@@ -3,19 +3,22 @@
 import { forget } from "./messages.ts";
 import { RequestError, sendRequest } from "../api.ts";
 import { id, show, text } from "../dom.ts";
+import * as fields from "../fields.ts";
 import { refused } from "./control.ts";
 
 const dialog = id<HTMLDialogElement>("signin");
+const form = id("signin-form");
 const field = id<HTMLInputElement>("token");
 const wrong = id("signin-wrong");
 
 export function wire(signed: () => void): void {
   // Nothing can be shown without the token, so the dialog stays open.
   dialog.addEventListener("cancel", (event) => event.preventDefault());
-  id("signin-form").addEventListener("submit", (event) => {
+  form.addEventListener("submit", (event) => {
     event.preventDefault();
-    void send(signed);
+    if (fields.report(form, true)) void send(signed);
   });
+  fields.watch(form);
   id("sign-out").addEventListener("click", () => void sign_out());
 }
 

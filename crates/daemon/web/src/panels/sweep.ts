@@ -2,6 +2,7 @@
 
 import { type CaptureRequest, type CaptureEstimate, type Status, RequestError, api } from "../api.ts";
 import { attribute, h, id } from "../dom.ts";
+import * as fields from "../fields.ts";
 import { bytes, digits, duration, sentence } from "../format.ts";
 
 const form = id<HTMLFormElement>("sweep");
@@ -28,6 +29,7 @@ export function wire(): void {
     speed.value = String(round(least_deg_s * (most_deg_s / least_deg_s) ** Number(slide.value)));
   });
   both.addEventListener("change", () => attribute(sweeps, "placeholder", both.checked ? "2" : "1"));
+  fields.watch(form);
   form.addEventListener("input", (event) => {
     if (event.target !== slide) align();
     request_plan_later();
@@ -67,24 +69,9 @@ export function setStatus(status: Status): void {
   request_plan_later();
 }
 
-/** The capture request of the form; null if a field is invalid, which the browser then reports. */
+/** The capture request of the form; null if a field is invalid, which is shown then. */
 export function capture_request(): CaptureRequest | null {
-  unfold();
-  if (!form.reportValidity()) return null;
-  return read();
-}
-
-/** Opens folded sections with invalid fields, since the browser cannot point at hidden ones. */
-function unfold(): void {
-  for (const more of form.querySelectorAll("details")) if (more.querySelector(":invalid") !== null) more.open = true;
-}
-
-/** Describes the first invalid field; null if all are valid. */
-function invalid_field(): string | null {
-  const field = form.querySelector<HTMLInputElement>("input:invalid");
-  if (field === null) return null;
-  const label = field.closest("label")?.firstChild?.textContent?.trim() ?? field.name;
-  return `${label}: ${field.validity.patternMismatch ? field.title : field.validationMessage}`;
+  return fields.report(form, true) ? read() : null;
 }
 
 function read(): CaptureRequest {
@@ -107,8 +94,7 @@ function request_plan_later(): void {
 
 async function plan(): Promise<void> {
   const mine = ++serial;
-  const words = invalid_field();
-  if (words !== null) return show_error(words);
+  if (!fields.valid(form)) return out.replaceChildren(h("p", { class: "hint" }, "No plan until the form is valid."));
   try {
     const found = await api.plan(read());
     if (mine === serial) draw(found);

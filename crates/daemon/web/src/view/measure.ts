@@ -1,6 +1,6 @@
 // Distances between picked points, and lengths of the scale bar.
 
-import type { Picked } from "./stage.ts";
+import type { Picked } from "../picked.ts";
 
 /** A distance with its uncertainty, metres; null if a point has none. */
 export interface Distance {

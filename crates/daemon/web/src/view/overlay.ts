@@ -1,8 +1,9 @@
 // What is drawn over the points: axes, scale bar, picked points. A picture for the eye; texts say the same beside it.
 
 import { attribute } from "../dom.ts";
+import type { Picked } from "../picked.ts";
 import { scaleBar } from "./measure.ts";
-import type { Picked, Stage } from "./stage.ts";
+import type { Stage } from "./stage.ts";
 
 const SVG = "http://www.w3.org/2000/svg";
 const AXIS_PX = 26;

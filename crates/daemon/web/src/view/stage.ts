@@ -6,6 +6,7 @@ import {
   Vector2, Vector3, Vector4, WebGLRenderer, WebGLRenderTarget,
 } from "three";
 
+import type { Picked } from "../picked.ts";
 import type { Range } from "../sample.ts";
 import { Eye } from "./detail.ts";
 import { STEPS } from "./maps.ts";
@@ -34,20 +35,6 @@ const MOST_BUDGET = 2e7;
 
 /** A direction to look from. */
 export type Preset = "usual" | "top" | "front" | "side" | "scanner";
-
-/** The values of a point. */
-export interface Picked {
-  position: [number, number, number];
-  time_s: number;
-  sd_m: number;
-  tilt_deg: number;
-  intensity: number;
-  ring: number;
-  laser: number;
-  echo: number;
-  /** From the nearest point of the cloud with which this one is compared, metres. */
-  distance_m: number;
-}
 
 /** Radius in which a pick takes the nearest point, pixels of the page: a finger is less precise. */
 const PICK_PX = { mouse: 6, touch: 16 };
@@ -385,7 +372,7 @@ function nearest(read: Uint32Array, side: number): Picked | null {
   return {
     position: [float(first), float(first + 1), float(first + 2)], time_s: float(first + 3), sd_m: float(second + first), tilt_deg: float(second + first + 1),
     intensity: float(second + first + 2), ring: whole & 255, laser: (whole >> 16) & 255, echo: (whole >> 8) & 255,
-    distance_m: float(2 * second + first),
+    distance_m: float(2 * second + first), complete: false,
   };
 }
 

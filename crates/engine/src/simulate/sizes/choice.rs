@@ -1,4 +1,4 @@
-//! As few effects as a tolerance allows.
+//! Choice of as few effects as a tolerance allows.
 
 use std::time::Instant;
 
@@ -57,9 +57,9 @@ pub struct LeftOut {
 }
 
 impl Sampler<'_> {
-    /// As few of these effects as keep the cloud within the tolerance of that with all of them,
-    /// without those that are forced: effects are left out in the order of their size over their
-    /// cost, as long as the cloud stays close.
+    /// Chooses as few of these effects as keep the cloud within the tolerance of that with all of
+    /// them, without those that are forced. Effects are left out in the order of their size over
+    /// their cost, as long as the cloud stays close.
     ///
     /// # Errors
     /// [`Failure`] for a scene that gives no cloud, and for a share that the sample cannot show.

@@ -77,12 +77,12 @@ impl SecondOrderServo {
 
     /// g, its integral, and the integral's derivatives by lag and inertia. Those of C and S by a
     /// and w2 are -t C, -t S, -t S / 2 and (t C - S) / (2 w2), and a and w2 are functions of both.
-    fn behind_with_gradient(&self, t: f64) -> Behind {
+    fn behind_with_gradient(&self, t: f64) -> LagResponse {
         if t <= 0.0 {
-            return Behind::default();
+            return LagResponse::default();
         }
         if self.w2 > 0.0 && self.a * t > OVER {
-            return Behind {
+            return LagResponse {
                 g: 0.0,
                 sum: self.lag * self.lag - self.inertia,
                 by_lag: 2.0 * self.lag,
@@ -117,7 +117,7 @@ impl SecondOrderServo {
         let by_lag = by(0.5 / inertia, -a / inertia, 2.0 * lag, 1.0);
         let w2_by_inertia = (2.0 * a * a - 1.0 / inertia) / inertia;
         let by_inertia = by(-a / inertia, w2_by_inertia, -1.0, 0.0);
-        Behind {
+        LagResponse {
             g,
             sum,
             by_lag,
@@ -128,7 +128,7 @@ impl SecondOrderServo {
 
 /// g, its integral, and the integral's derivatives.
 #[derive(Clone, Copy, Debug, Default)]
-struct Behind {
+struct LagResponse {
     g: f64,
     sum: f64,
     by_lag: f64,

@@ -1,4 +1,4 @@
-//! Where a scene is one plane all around, so that no footprint spans an edge: a map of directions.
+//! Map of the directions in which a scene is one plane all around: footprints span no edge.
 //!
 //! The map is a cube about the centre of the tilt axis with 96 x 96 cells per side. Each cell is
 //! sampled by 3 x 3 rays, borders included, and by its neighbours' rays. A cell is plain if the
@@ -30,7 +30,7 @@ const MOST_AROUND: i64 = 16;
 
 /// A sample of the map.
 #[derive(Clone, Copy, Debug, Default)]
-struct Seen {
+struct DirectionSample {
     /// Inverse distance to the plane of the cube's side through it; 0 for nothing.
     inverse: f64,
     reflectivity: f64,
@@ -38,12 +38,12 @@ struct Seen {
 
 /// The map of plain cells.
 #[derive(Clone, Debug)]
-pub(super) struct Plain {
+pub(super) struct UniformCells {
     /// By side, row and column.
     cells: Vec<bool>,
 }
 
-impl Plain {
+impl UniformCells {
     /// Samples the surroundings. Deviations below `flat_m` are not edges.
     pub fn new(surroundings: &Surroundings, flat_m: f64) -> Self {
         let mut map = Self {
@@ -159,7 +159,7 @@ fn cell_of(way: DVec3) -> Option<usize> {
 }
 
 /// Samples of a side, row by row.
-fn look(surroundings: &Surroundings, side: usize) -> Vec<Seen> {
+fn look(surroundings: &Surroundings, side: usize) -> Vec<DirectionSample> {
     let place = |step: usize| 2.0 * (step as f64 - 1.0) / (CELLS * STEPS) as f64 - 1.0;
     let mut seen = Vec::with_capacity(GRID * GRID);
     let mut mets = vec![None; GRID];
@@ -169,7 +169,7 @@ fn look(surroundings: &Surroundings, side: usize) -> Vec<Seen> {
             ways.map(|way| (way.length(), way / way.length())).unzip();
         surroundings.cast_fan_static(DVec3::ZERO, &directions, &mut mets);
         seen.extend(lengths.iter().zip(&mets).map(|(length, met)| {
-            met.map_or(Seen::default(), |met| Seen {
+            met.map_or(DirectionSample::default(), |met| DirectionSample {
                 inverse: length / met.range_m,
                 reflectivity: met.reflectivity,
             })
@@ -180,7 +180,7 @@ fn look(surroundings: &Surroundings, side: usize) -> Vec<Seen> {
 
 /// The nearest distance in a cell that is not plain, infinite without a surface; `None` for a plain
 /// cell.
-fn uneven(seen: &[Seen], row: usize, column: usize, flat_m: f64) -> Option<f64> {
+fn uneven(seen: &[DirectionSample], row: usize, column: usize, flat_m: f64) -> Option<f64> {
     let at = |row: usize, column: usize| seen.get(row * GRID + column).copied().unwrap_or_default();
     let (first_row, first_column) = (row * STEPS + 1, column * STEPS + 1);
     let (mut nearest, mut plain, mut hole) = (0.0_f64, true, false);

@@ -180,7 +180,7 @@ fn the_map_of_static_objects_is_valid_near_moving_objects() {
 #[test]
 fn most_shots_of_a_hall_need_no_sub_rays() {
     let surroundings = around(Scene::hall());
-    let map = Plain::new(&surroundings, 0.002);
+    let map = UniformCells::new(&surroundings, 0.002);
     let (mut plain, mut shots) = (0, 0);
     for step in 0..360 {
         let firing = firing(f64::from(step), -0.12 * f64::from(step));

@@ -1,6 +1,6 @@
 //! Random numbers of generators: a sequence per object, and smooth noise over the plane.
 
-use crate::random::{GOLDEN, mix, unit};
+use crate::random::{GOLDEN, mix, unit_interval};
 
 /// The seed of an object's generator from the scene's seed and the object's number.
 pub(in super::super) const fn seed(scene: u64, object: u64) -> u64 {
@@ -12,7 +12,7 @@ pub(super) fn noise(seed: u64, x: f64, y: f64) -> f64 {
     let at = |i: f64, j: f64| {
         let (i, j) = (i as i64 as u64, j as i64 as u64);
         let key = mix(seed.wrapping_add(i.wrapping_mul(GOLDEN)));
-        2.0 * unit(mix(key.wrapping_add(j.wrapping_mul(GOLDEN)))) - 1.0
+        2.0 * unit_interval(mix(key.wrapping_add(j.wrapping_mul(GOLDEN)))) - 1.0
     };
     let (i, j) = (x.floor(), y.floor());
     let ease = |t: f64| t * t * (3.0 - 2.0 * t);

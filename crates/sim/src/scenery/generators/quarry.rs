@@ -18,7 +18,7 @@ pub struct Quarry {
     pub spacing_m: f64,
     /// Mean distance of the first face, metres.
     pub floor_m: f64,
-    /// Where the middle of the floor is, metres: the scanner need not stand there.
+    /// Middle of the floor, metres: the scanner need not be there.
     pub middle_m: [f64; 2],
     /// Relative deviation of faces from a circle.
     pub winding: f64,

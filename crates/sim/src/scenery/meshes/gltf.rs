@@ -10,16 +10,19 @@ use ::gltf::mesh::Mode;
 use ::gltf::{Accessor, Document, Gltf, Node, Primitive};
 use glam::{DMat4, DVec3};
 
-use super::{Beside, Fault, TriangleSoup};
+use super::{Fault, ReadReferencedFile, TriangleSoup};
 
 /// Length of a GLB's header, which the length in it counts.
 const HEADER: u32 = 12;
-/// So deep may nodes be nested.
+/// Greatest depth of nested nodes.
 const DEEPEST: usize = 64;
-/// So many instances of meshes may a file have: nodes can share children.
+/// Greatest number of instances of meshes in a file: nodes can share children.
 const MOST_NODES: usize = 1 << 20;
 
-pub(super) fn read(bytes: &[u8], beside: Beside<'_>) -> Result<TriangleSoup, Fault> {
+pub(super) fn read(
+    bytes: &[u8],
+    read_referenced: ReadReferencedFile<'_>,
+) -> Result<TriangleSoup, Fault> {
     check_length(bytes)?;
     let Gltf { document, mut blob } =
         Gltf::from_slice_without_validation(bytes).map_err(|error| error.to_string())?;
@@ -33,7 +36,7 @@ pub(super) fn read(bytes: &[u8], beside: Beside<'_>) -> Result<TriangleSoup, Fau
             Source::Uri(uri) if uri.starts_with("data:") => {
                 return Err("expected data in a binary chunk or a file, got a data URI".into());
             }
-            Source::Uri(uri) => beside(uri).map_err(Fault::Beside)?,
+            Source::Uri(uri) => read_referenced(uri).map_err(Fault::ReferencedFile)?,
         });
     }
     let mut reader = Reader {

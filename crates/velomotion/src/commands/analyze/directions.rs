@@ -69,7 +69,7 @@ impl Directions {
         Ok(counts)
     }
 
-    /// Where rays meet the planes of the figure, and points on the sphere.
+    /// Intersections of rays with the planes of the figure, and points on the sphere.
     pub fn pictures(&self) -> (Planes, SpherePoints) {
         let (mut planes, mut sphere) = (Planes::default(), SpherePoints::default());
         let Ok(()) = self.each_part::<std::convert::Infallible>(|part| {

@@ -7,7 +7,7 @@
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use analysis::device::{TiltedSensor, vertical_resolution_deg};
+use analysis::tilted_sensor::{TiltedSensor, vertical_resolution_deg};
 use cloud::formats::Format;
 use cloud::read::positions;
 use cloud::{Fields, Points, Sink, SinkError, TiltTrack};
@@ -168,7 +168,7 @@ pub fn device(pattern: &Pattern) -> Option<DeviceReport> {
     })
 }
 
-/// What velomotion's own clouds say of themselves.
+/// Marks in velomotion's own clouds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CloudMarks {
     /// Whether the devices were simulated.
@@ -197,7 +197,7 @@ impl CloudMarks {
     }
 }
 
-/// What to do about a cloud that cannot be read.
+/// Advice on a cloud that cannot be read.
 pub const fn help_on(format: Format) -> &'static str {
     match format {
         Format::Csv | Format::Xyz => {

@@ -469,7 +469,7 @@ fn hole_report(largest: &LargestHole, within_rad: f64) -> HoleReport {
 }
 
 fn failure(name: &str, error: &DensityError) -> Failure {
-    Failure::new(Kind::BadInput, format!("{name}: {error}")).help("take out what is no point")
+    Failure::new(Kind::BadInput, format!("{name}: {error}")).help("remove the invalid points")
 }
 
 /// Checks for an interrupt.

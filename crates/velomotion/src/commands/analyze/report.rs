@@ -1,8 +1,8 @@
 //! Report of `analyze`, serialised as its JSON.
 
 use analysis::density::{BinCounts, EmptyBand, HistogramClass, HoleRow, Statistics};
-use analysis::device::VisibleRange;
 use analysis::k::KCurve;
+use analysis::tilted_sensor::VisibleRange;
 use serde::Serialize;
 use utoipa::ToSchema;
 

@@ -3,7 +3,7 @@
 use std::fmt::{Display, Write};
 
 use analysis::density::{EmptyBand, HistogramClass, Statistics};
-use analysis::device::VisibleRange;
+use analysis::tilted_sensor::VisibleRange;
 use engine::words::counted;
 
 use super::report::{AnalyzeReport, BAND_DEG, DeviceReport, HoleReport, KReport, PatternReport};
@@ -143,7 +143,7 @@ impl PatternReport {
         )
     }
 
-    /// Where the emptiest bins are.
+    /// Line about the location of the emptiest bins.
     fn emptiest_line(&self) -> Option<String> {
         let first = self.emptiest.first()?;
         let angles = self.emptiest.iter().map(|bin| bin.from_axis_deg);

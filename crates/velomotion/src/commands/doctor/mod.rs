@@ -201,7 +201,7 @@ fn profiles(config: &Config, chosen: &str, interfaces: &[CanInterface]) -> Vec<F
             (DeviceKind::Can, _) => match &device.interface {
                 Some(name) => can_profile(what, name, interfaces),
                 None => finding(what, Verdict::Problem, "no interface configured")
-                    .todo("add interface = \"can0\" (or what it is)"),
+                    .todo("add interface = \"can0\" (or its actual value)"),
             },
             (_, Some(port)) if port.exists() => {
                 finding(what, Verdict::Ok, port.display().to_string())
@@ -214,7 +214,7 @@ fn profiles(config: &Config, chosen: &str, interfaces: &[CanInterface]) -> Vec<F
             .todo("connect the drive, or correct `port` in the configuration"),
             (DeviceKind::Usb, None) => finding(what, Verdict::Ok, "the EPOS2 found on USB"),
             (_, None) => finding(what, Verdict::Problem, "names no port")
-                .todo("add port = \"/dev/ttyUSB0\" (or what it is)"),
+                .todo("add port = \"/dev/ttyUSB0\" (or its actual value)"),
         };
         if name != chosen && found.verdict == Verdict::Problem {
             found.verdict = Verdict::Warning;

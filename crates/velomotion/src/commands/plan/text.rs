@@ -3,7 +3,7 @@
 use analysis::plan::PlanRow;
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, Table};
-use engine::capture::scan_plan::{CommandRow, PlanReport};
+use engine::capture::scan_planner::{CommandRow, PlanReport};
 use engine::words::counted;
 
 /// The lidar and the device.
@@ -156,7 +156,7 @@ const DETAILS: [&str; 14] = [
     "\nmount",
 ];
 
-/// Of each setting the start, the density, the gaps at the distance and the parts of the error.
+/// Table by setting: the start, the density, the gaps at the distance and the parts of the error.
 fn details(report: &PlanReport) -> String {
     let cells = by_time(report).into_iter().map(|(found, is_chosen)| {
         let row = &found.row;

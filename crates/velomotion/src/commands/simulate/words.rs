@@ -49,7 +49,7 @@ pub(super) fn table(sizes: &[EffectSize]) -> String {
     }
     for line in [
         "The cloud of a sample of the firings, with the effect against without it.",
-        "  on: what it does. off: the scene calls for it, and this is what it would do.",
+        "  on: measured change. off: the scene calls for it; the change if it were on.",
         "  added, removed: points that only one of the clouds has; moved: by over 1 mm.",
         "  median, 99 %, worst: displacements. time: its share of the computing time.",
     ] {
@@ -58,7 +58,7 @@ pub(super) fn table(sizes: &[EffectSize]) -> String {
     text
 }
 
-/// Why each effect is on or off, how often it acted, and those that are not simulated.
+/// Reasons why effects are on or off, how often they acted, and those that are not simulated.
 pub(super) fn reasons(sizes: &[EffectSize], explanation: &Explanation) -> String {
     let mut text = String::from("why\n");
     let mut add = |line: &str| {

@@ -5,7 +5,7 @@ use analysis::plan::{PlanLimits, PlanRow};
 use analysis::tradeoff::{
     Bench, Measurement, Row, Study, StudyError, StudyFindings, StudyRows, Trade,
 };
-use engine::capture::scan_plan::{PlanRequest, ScanPlanner, USUAL_M};
+use engine::capture::scan_planner::{PlanRequest, ScanPlanner, USUAL_M};
 use engine::capture_request::CaptureRequest;
 use engine::config::{Config, Device};
 use engine::lidars;

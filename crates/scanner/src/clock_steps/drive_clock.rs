@@ -72,7 +72,7 @@ pub(super) fn excludes(samples: &[ShaftSample], at: usize, by: Span) -> bool {
     })
 }
 
-/// How late the answer of a sample is by the drive's clock, relative to that at the index `at`,
+/// Delay of a sample's answer by the drive's clock, relative to that at the index `at`,
 /// nanoseconds.
 fn late_by(samples: &[ShaftSample], at: usize, i: usize) -> Option<i64> {
     let (origin, sample) = (samples.get(at)?, samples.get(i)?);

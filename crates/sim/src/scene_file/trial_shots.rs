@@ -1,4 +1,4 @@
-//! What a sensor sees of a scene: some of its shots, cast at the surfaces of their instant.
+//! Trial shots of a sensor at a scene, cast at the surfaces of their instant.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use crate::scene::Scene;
 use crate::scenery::{Material, MaterialAssignment};
 use crate::simulate::Simulation;
 
-/// Shots of a survey. A share below 3 / 1000 may be missed (95 %).
+/// Number of trial shots. A share below 3 / 1000 may be missed (95 %).
 pub(super) const SHOTS: u32 = 1_000;
 /// Azimuth from shot to shot, degrees: the golden angle, which is evenly spread for any number.
 const GOLDEN_DEG: f64 = 137.507_764;
@@ -41,33 +41,33 @@ const SEPARATION_M: f64 = 1.0;
 
 /// Shots at a scene, and what they meet.
 #[derive(Debug, Default)]
-pub(super) struct SceneSurvey {
+pub(super) struct TrialShots {
     /// Shots that meet a returning surface within the sensor's range.
     pub returned: u32,
-    /// Of them, those at moving objects, by the object's number.
+    /// Shots among `returned` at moving objects, by the object's number.
     pub moving: Vec<u32>,
-    /// Of them, those whose footprint crosses an edge.
+    /// Shots among `returned` whose footprint crosses an edge.
     pub edges: u32,
     /// The greatest difference of depth within a footprint whose surfaces make one return, metres.
     pub mixed_m: f64,
-    /// Of them, those that the weather makes too faint.
+    /// Shots among `returned` that the weather makes too faint.
     pub dimmed: u32,
     /// Shots at the sky that the air returns.
     pub in_air: u32,
     /// The farthest surface, metres.
     pub farthest_m: f64,
     /// The materials that objects have, and shots at them.
-    pub materials: BTreeMap<String, MaterialSurvey>,
+    pub materials: BTreeMap<String, MaterialTrials>,
 }
 
 /// A material, and shots at it.
 #[derive(Debug)]
-pub(super) struct MaterialSurvey {
+pub(super) struct MaterialTrials {
     pub material: Material,
     pub returned: u32,
-    /// Of them, those whose light is below the threshold of detection.
+    /// Shots among `returned` whose light is below the threshold of detection.
     pub lost: u32,
-    /// Of them, those whose footprint crosses an edge.
+    /// Shots among `returned` whose footprint crosses an edge.
     pub edges: u32,
 }
 
@@ -80,7 +80,7 @@ struct SurveyedSurface<'a> {
     mover: Option<usize>,
 }
 
-impl SceneSurvey {
+impl TrialShots {
     /// Shots spread evenly over lasers, azimuths and the time of the simulation.
     pub fn new(
         simulation: &Simulation,
@@ -88,7 +88,7 @@ impl SceneSurvey {
         detection: &ReflectanceSettings,
         weather: Option<&Weather>,
     ) -> Self {
-        let mut survey = Self {
+        let mut trial = Self {
             moving: vec![0; movers.len()],
             ..Self::default()
         };
@@ -97,7 +97,7 @@ impl SceneSurvey {
             .map(|mover| &mover.scene)
             .chain([&simulation.scene])
         {
-            survey.list(scene);
+            trial.list(scene);
         }
         let sensor = &simulation.sensor;
         let lasers: Vec<usize> = (0..sensor.beams.len())
@@ -107,7 +107,7 @@ impl SceneSurvey {
             let share = (f64::from(shot) + 0.5) / f64::from(SHOTS);
             let time_s = share * simulation.motion.end_s;
             let Some(laser) = lasers.get(shot as usize % lasers.len().max(1)) else {
-                return survey;
+                return trial;
             };
             let tilt_deg = simulation.motion.at(time_s).angle_deg;
             let azimuth_deg = (f64::from(shot) * GOLDEN_DEG).rem_euclid(360.0);
@@ -120,14 +120,14 @@ impl SceneSurvey {
             };
             let surfaces = Surfaces {
                 simulation,
-                // Of thousands of moving objects a survey would take longer than the simulation.
+                // Of thousands of moving objects trial shots would take longer than the simulation.
                 movers: (movers.iter().enumerate().take(100))
                     .filter_map(|(n, mover)| Some((n, mover, mover.travel.at(time_s).ok()?)))
                     .collect(),
             };
-            survey.shoot(&surfaces, shot, [origin_m, direction], detection, weather);
+            trial.shoot(&surfaces, shot, [origin_m, direction], detection, weather);
         }
-        survey
+        trial
     }
 
     /// Lists the materials of a scene's objects.
@@ -142,7 +142,7 @@ impl SceneSurvey {
         });
         for material in numbers.filter_map(|number| placed.materials.get(*number as usize)) {
             if !self.materials.contains_key(&material.name) {
-                let seen = MaterialSurvey {
+                let seen = MaterialTrials {
                     material: material.clone(),
                     returned: 0,
                     lost: 0,

@@ -60,11 +60,11 @@ pub(crate) struct Jump {
     pub at: usize,
     /// Change of the delay.
     pub by: Span,
-    /// What shows it, besides the delays.
+    /// Evidence of it, besides the delays.
     pub evidence: Evidence,
 }
 
-/// What shows which clock jumped.
+/// Evidence of which clock jumped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Evidence {
     /// Nothing in the packets.
@@ -79,7 +79,7 @@ pub(crate) enum Evidence {
     Regular(Regular),
 }
 
-/// What a jump of regular packets is worth.
+/// Certainty of a jump of regular packets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Regular {
     /// It may be chance or a slew, unless something else confirms it.
@@ -392,7 +392,7 @@ impl JumpReport {
     }
 }
 
-/// So many tenths of a magnitude. A clock without battery is set by decades, which ten times would
+/// `count` tenths of a magnitude. A clock without battery is set by decades, which ten times would
 /// exceed 64 bits.
 const fn tenths(count: i64, of: i64) -> i64 {
     let of = of.saturating_abs();

@@ -1,4 +1,4 @@
-//! How small a jump of the delays is no chance.
+//! Smallest jump of the delays that is no chance.
 //!
 //! On a quiet network, whose least delays hardly vary from window to window and whose packets are
 //! usually hardly later than the least delayed ones, jumps from 0.1 ms on count.
@@ -32,7 +32,7 @@ pub(super) struct Level {
 }
 
 impl Level {
-    /// Of packets with these offsets.
+    /// Level of packets with these offsets.
     pub(super) fn new(arrivals: &[Arrival], offsets: &[i64], spacing_ns: i64) -> Self {
         let windows = [SMALL_WINDOW, SMALL_WINDOW / 2, SHORT_WINDOW];
         let found = windows
@@ -65,8 +65,8 @@ impl Level {
     }
 }
 
-/// Where and by how much the delays jump near a jump that is no chance and happens at once, between
-/// levels on both sides.
+/// Place and size of the jump near `jump`, if it is no chance and happens at once, between levels
+/// on both sides.
 pub(super) fn certain(offsets: &[i64], jump: &Jump, certain_ns: i64) -> Option<Regular> {
     let rise = |at: usize, window: usize, level: fn(&[i64]) -> Option<i64>| {
         let before = offsets.get(at.checked_sub(window)?..at)?;

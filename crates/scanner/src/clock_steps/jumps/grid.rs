@@ -58,7 +58,7 @@ pub(super) fn without(arrivals: &[Arrival], jumps: &[Jump]) -> Vec<Arrival> {
 
 /// The packets, each shifted by the sum of the steps at it and before, in one pass. A step is its
 /// first packet and its size; steps are in order.
-pub(in crate::steps) fn shifted(
+pub(in crate::clock_steps) fn shifted(
     arrivals: &[Arrival],
     steps: impl IntoIterator<Item = (usize, Span)>,
     shift: impl Fn(Arrival, Span) -> Arrival,

@@ -211,7 +211,7 @@ fn separate(cuts: &mut Vec<Cut>, packets: usize) {
     cuts.retain(|cut| cut.at < packets);
 }
 
-/// What a jump of the delays is.
+/// Cause of a jump of the delays.
 enum Cause {
     /// A clock was set.
     Set(Cut),
@@ -227,7 +227,7 @@ impl From<Option<Cut>> for Cause {
     }
 }
 
-/// Which clock jumped, or whether packets were merely delayed.
+/// Attributes a jump to one of the clocks, or to packets that were merely delayed.
 fn attribute(
     jump: Jump,
     found: &jumps::JumpReport,

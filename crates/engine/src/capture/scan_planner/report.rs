@@ -74,7 +74,7 @@ impl ScanPlanner {
         }
     }
 
-    /// Why settings of these speeds of the lidar have no command.
+    /// Reason for which settings at these speeds of the lidar have no command.
     pub(super) fn no_command(&self, rpm: &[u32]) -> Option<String> {
         let lidar = self.request.lidar;
         match lidar.model {
@@ -157,7 +157,7 @@ impl ScanPlanner {
         unmet.collect()
     }
 
-    /// Which limit no setting meets, what comes nearest, and what it takes.
+    /// Message about the limit that no setting meets: the nearest scan, its time and its setting.
     pub(super) fn unmet(&self, nearest: &NearestScan) -> String {
         let limits = &self.request.limits;
         let (row, at_m) = (&nearest.row, self.request.at_m);
@@ -207,7 +207,7 @@ impl ScanPlanner {
         }
     }
 
-    /// What the figures assume.
+    /// Assumptions of the figures.
     pub(super) fn assumptions(&self) -> Vec<String> {
         let errors = &self.predictor.errors;
         let per_tenth_deg_mm = 1e3 * errors.range_m * 0.1_f64.to_radians();

@@ -15,7 +15,7 @@ use sim::RigLidar;
 use units::{Degrees, ShortNumber};
 
 use super::moves::{self, Step};
-use super::request::{CapturePlan, sweep_request};
+use super::plan::{CapturePlan, sweep_request};
 use crate::capture_request::CaptureRequest;
 use crate::config::{Config, Device, DeviceKind};
 use crate::devices::profile;
@@ -24,7 +24,7 @@ use crate::lidars::{self, LidarSheet};
 
 pub use report::{CommandRow, PlanReport, UnmetLimit};
 
-/// What a plan is about.
+/// Request for a plan: distance, limits, lidar and sweep.
 #[derive(Clone, Debug)]
 pub struct PlanRequest {
     /// Distance from the tilt axis, metres.
@@ -43,7 +43,7 @@ pub struct PlanRequest {
     pub from_deg: Option<f64>,
     /// The other end.
     pub to_deg: Option<f64>,
-    /// Where the axis rests before the scan; without it where the scan before ended.
+    /// Rest angle before the scan, degrees; without it the end of the previous scan.
     pub rest_deg: Option<f64>,
 }
 
@@ -169,7 +169,7 @@ impl ScanPlanner {
         Self::new(config, (&capture.name, &capture.device), request)
     }
 
-    /// What the moves of a capture give.
+    /// Prediction for the moves of a capture.
     #[must_use]
     pub fn row(&self, steps: &[Step]) -> PlanRow {
         let rpm = self.request.rpm.first().copied().unwrap_or_default();
@@ -184,7 +184,7 @@ impl ScanPlanner {
         errors.budget(lidar, &self.scan(steps, rpm).sweeps)
     }
 
-    /// What a capture gives.
+    /// Prediction for a capture.
     ///
     /// # Errors
     /// [`Kind::Usage`] for a request outside the axis's limits.
@@ -192,7 +192,7 @@ impl ScanPlanner {
         Ok(self.row(&self.steps(request)?))
     }
 
-    /// What to expect of a capture, and a warning about its speed, for people.
+    /// Expected results of a capture, and a warning about its speed, as text.
     #[must_use]
     pub fn expectation(&self, request: &CaptureRequest, row: &PlanRow) -> Vec<String> {
         let error = &row.error_mm;
@@ -357,7 +357,7 @@ impl ScanPlanner {
         })
     }
 
-    /// What predicts.
+    /// Predictor of the scans.
     #[must_use]
     pub const fn predictor(&self) -> &ScanPredictor {
         &self.predictor
@@ -412,7 +412,7 @@ fn is_simulated(lidar: &LidarSheet, rpm: &[u32]) -> bool {
     lidar == SIMULATED && rpm.iter().all(|rate| *rate == simulated)
 }
 
-/// Where the standard deviation of a range is from.
+/// Source of the standard deviation of a range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum RangeSource {
     Request,

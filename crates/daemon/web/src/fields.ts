@@ -1,0 +1,69 @@
+// Errors of input fields, in the page's words, beside them.
+
+import { attribute, h, show, text } from "./dom.ts";
+
+/** What is expected of a field with this value; null if the value is valid. */
+export function expected(field: Pick<HTMLInputElement, "validity" | "type" | "min" | "max" | "step" | "title">, unit: string): string | null {
+  const { validity, type, min, max, step, title } = field;
+  if (validity.valid) return null;
+  if (validity.patternMismatch) return title;
+  if (type !== "number") return "a text";
+  const kind = step === "any" ? "a number" : "a whole number";
+  const [from, to] = [min, max].map((limit) => limit.replace("-", "\u2212"));
+  const range = min !== "" && max !== "" ? ` from ${from} to ${to}` : min !== "" ? ` of at least ${from}` : max !== "" ? ` of at most ${to}` : "";
+  return `${kind}${range}${range !== "" && unit !== "" ? `${unit.startsWith("\u00b0") ? "" : " "}${unit}` : ""}`;
+}
+
+/** Name of a field for the user. */
+function title(field: HTMLInputElement): string {
+  return field.getAttribute("aria-label") ?? field.labels?.[0]?.firstChild?.textContent?.trim() ?? field.name;
+}
+
+/** Shows or removes the error of a field; true if its value is valid. */
+function check(field: HTMLInputElement): boolean {
+  const known = `${field.id}-wrong`;
+  let wrong = document.getElementById(known);
+  const unit = field.parentElement?.classList.contains("unit") === true ? (field.nextElementSibling?.textContent ?? "") : "";
+  const words = expected(field, unit);
+  if (wrong === null) {
+    if (words === null) return true;
+    wrong = h("p", { class: "wrong", id: known });
+    (field.closest(".side") ?? field.closest(".pair, .speed, .box, label") ?? field).after(wrong);
+    // Hints that describe the field stay.
+    attribute(field, "aria-describedby", [field.getAttribute("aria-describedby"), known].filter(Boolean).join(" "));
+  }
+  attribute(field, "aria-invalid", String(words !== null));
+  text(wrong, words === null ? "" : `${title(field)}: expected ${words}`);
+  show(wrong, words !== null);
+  return words === null;
+}
+
+const fields = (form: HTMLElement) => [...form.querySelectorAll<HTMLInputElement>("input[id]:not([type=range])")];
+
+/** Checks each field when its value is complete, and one with an error at each change. */
+export function watch(form: HTMLElement): void {
+  if (form instanceof HTMLFormElement) form.noValidate = true;
+  const look = (event: Event) => {
+    const field = event.target;
+    if (!(field instanceof HTMLInputElement) || field.id === "") return;
+    if (event.type === "change" || field.getAttribute("aria-invalid") === "true") check(field);
+  };
+  form.addEventListener("input", look);
+  form.addEventListener("change", look);
+}
+
+/** Whether all fields are valid. */
+export const valid = (form: HTMLElement) => fields(form).every((field) => field.validity.valid);
+
+/** The same; shows the errors of the others, and with `focus` the first of those. */
+export function report(form: HTMLElement, focus = false): boolean {
+  const wrong = fields(form).filter((field) => !check(field));
+  const [first] = wrong;
+  if (first === undefined) return true;
+  if (focus) {
+    // A folded section hides its fields.
+    for (let folded = first.closest("details"); folded !== null; folded = folded.parentElement?.closest("details") ?? null) folded.open = true;
+    first.focus();
+  }
+  return false;
+}
