@@ -82,9 +82,11 @@ pub struct HelpText {
 #[cfg(all(test, devices))]
 mod tests {
     use std::collections::BTreeMap;
+    use std::fmt::Write as _;
     use std::path::Path;
 
     use analysis::tradeoff::TradeoffReport;
+    use clap::{Command, CommandFactory};
     use engine::accuracy::AccuracyReport;
     use engine::calibrate::CalibrateReport;
     use engine::capture::scan_planner::PlanReport;
@@ -96,6 +98,7 @@ mod tests {
     use serde_json::Value;
 
     use super::*;
+    use crate::cli::Cli;
 
     fn schemas() -> BTreeMap<String, Value> {
         fn of<T: Document>() -> (String, Value) {
@@ -143,6 +146,41 @@ mod tests {
             written.insert(name, serde_json::from_str::<Value>(&text).unwrap());
         }
         assert_eq!(written, schemas(), "remake with VELOMOTION_BLESS=1");
+    }
+
+    /// The reference of the book: commands with their arguments and options.
+    fn commands_page() -> String {
+        fn add(command: &Command, page: &mut String) {
+            for command in command.get_subcommands() {
+                let name = command.get_bin_name().unwrap();
+                let help = command
+                    .clone()
+                    .term_width(100)
+                    .render_long_help()
+                    .to_string();
+                let lines = help.lines().map(str::trim_end).collect::<Vec<_>>();
+                let text = lines.join("\n");
+                write!(page, "\n## {name}\n\n```text\n{}\n```\n", text.trim_end()).unwrap();
+                add(command, page);
+            }
+        }
+        let mut cli = Cli::command();
+        cli.build();
+        let mut page = "# Commands\n\nEvery command with its arguments and options, as `velomotion COMMAND --help` prints them.\n".to_owned();
+        add(&cli, &mut page);
+        page.push_str("\nMade by `VELOMOTION_BLESS=1 cargo test -p velomotion --lib documents`.\n");
+        page
+    }
+
+    /// `VELOMOTION_BLESS=1` writes it.
+    #[test]
+    fn the_commands_of_the_book_are_those_of_the_program() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/src/commands.md");
+        if std::env::var_os("VELOMOTION_BLESS").is_some() {
+            std::fs::write(&path, commands_page()).unwrap();
+        }
+        let written = std::fs::read_to_string(&path).unwrap();
+        assert!(written == commands_page(), "remake with VELOMOTION_BLESS=1");
     }
 
     #[test]

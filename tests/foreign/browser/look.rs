@@ -249,10 +249,13 @@ fn wrong_fields_say_beside_them_what_is_expected() {
                 page.until_has("#plan", "per sweep").await;
             }
             // In a folded section.
-            page.run("document.querySelector('#name').value = 'a b'").await;
+            page.run("document.querySelector('#name').value = 'a b'; document.querySelector('#tolerance').value = '2mm'")
+                .await;
             page.click("#start").await;
             page.until_has("#name-wrong", "Name: expected letters, digits, - and _").await;
             until_in_sight(&page, "#name-wrong").await;
+            let expected = "Tolerance: expected an error at a distance, such as 2mm@20m";
+            assert_eq!(page.text("#tolerance-wrong").await, expected);
             page.picture("wrong-field").await;
             assert_eq!(page.text("#doing").await, "Ready");
         });

@@ -101,12 +101,10 @@ pub async fn cloud(
         ));
     }
     let log = api.state.log(&id);
-    let (_, log_metadata) = open(log.clone())
-        .await?
-        .map_err(|_| Refusal::no_file(LOG))?;
+    let log_metadata = open(log.clone()).await?.ok().map(|(_, metadata)| metadata);
     let accuracy = record.accuracy();
-    let tag = tag_of_made(&log_metadata, (format, fields, accuracy));
-    if is_known(&headers, &tag) {
+    let tag = tag_of_made(log_metadata.as_ref(), (format, fields, accuracy));
+    if log_metadata.is_some() && is_known(&headers, &tag) {
         return Ok(not_modified(&tag));
     }
     let making = Arc::clone(&api.making).try_acquire_owned();
@@ -137,10 +135,13 @@ pub async fn cloud(
 
 /// Validator of a cloud that is made of a log. The same log gives the same bytes, but perhaps not
 /// with the program that runs after the next start.
-fn tag_of_made(log: &Metadata, (format, fields, accuracy): (Format, Fields, Accuracy)) -> String {
+fn tag_of_made(
+    log: Option<&Metadata>,
+    (format, fields, accuracy): (Format, Fields, Accuracy),
+) -> String {
     static START: LazyLock<SystemTime> = LazyLock::new(SystemTime::now);
     let mut hasher = DefaultHasher::new();
-    (*START, tag_of(log), format.extension(), fields).hash(&mut hasher);
+    (*START, log.map(tag_of), format.extension(), fields).hash(&mut hasher);
     format!("{accuracy:?}").hash(&mut hasher);
     format!("\"made-{:x}\"", hasher.finish())
 }
