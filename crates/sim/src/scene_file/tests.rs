@@ -512,7 +512,7 @@ fn errors_name_the_line_and_the_fault() {
     let (line, what) = error(&LEAST.replace("hall", "castle"));
     assert!(line == 1 && what.contains("castle"), "{line} {what}");
     let (line, what) = error(&with("from_deg = 1.0"));
-    assert!(line == 5 && what.contains("stands"), "{line} {what}");
+    assert!(line == 5 && what.contains("fixed axis"), "{line} {what}");
     let (line, what) = error("scene = \"hall\"\n\n[motion]\nkind = \"sweeps\"\nfrom_deg = 0.0\n");
     assert!(line == 3 && what.contains("to_deg"), "{line} {what}");
     let sweeps = "scene = \"hall\"\n[motion]\nkind = \"sweeps\"\nfrom_deg = 0\nto_deg = 1\nspeed_deg_s = 0\n";
