@@ -4,8 +4,8 @@
 //! lower edge of (arrival - device time) is therefore the clock; everything above it is delay of
 //! the network and the operating system. [`DeviceClock`] is fitted to a whole recording
 //! (`envelope`), [`OnlineClock`] follows packets as they arrive. The smallest delay (cable,
-//! interrupt: tens of microseconds) cannot be observed and stays in the result. [`crate::steps`]
-//! finds clocks that are set in mid-recording.
+//! interrupt: tens of microseconds) cannot be observed and stays in the result.
+//! [`crate::clock_steps`] finds clocks that are set in mid-recording.
 
 mod device;
 mod endpoint;

@@ -82,7 +82,6 @@ pub struct HelpText {
 #[cfg(all(test, devices))]
 mod tests {
     use std::collections::BTreeMap;
-    use std::fmt::Write as _;
     use std::path::Path;
 
     use analysis::tradeoff::TradeoffReport;
@@ -152,7 +151,7 @@ mod tests {
     fn commands_page() -> String {
         fn add(command: &Command, page: &mut String) {
             for command in command.get_subcommands() {
-                let name = command.get_bin_name().unwrap();
+                let name = command.get_bin_name().unwrap_or_default();
                 let help = command
                     .clone()
                     .term_width(100)
@@ -160,13 +159,16 @@ mod tests {
                     .to_string();
                 let lines = help.lines().map(str::trim_end).collect::<Vec<_>>();
                 let text = lines.join("\n");
-                write!(page, "\n## {name}\n\n```text\n{}\n```\n", text.trim_end()).unwrap();
+                page.push_str(&format!(
+                    "\n## {name}\n\n```text\n{}\n```\n",
+                    text.trim_end()
+                ));
                 add(command, page);
             }
         }
         let mut cli = Cli::command();
         cli.build();
-        let mut page = "# Commands\n\nEvery command with its arguments and options, as `velomotion COMMAND --help` prints them.\n".to_owned();
+        let mut page = "# Commands\n\nEvery command with its arguments and options, as its `--help` prints them.\n".to_owned();
         add(&cli, &mut page);
         page.push_str("\nMade by `VELOMOTION_BLESS=1 cargo test -p velomotion --lib documents`.\n");
         page
