@@ -234,7 +234,7 @@ fn refused(refusal: &CalibrationRefusal, request: &CalibrateRequest<'_>) -> Fail
     }
     if matches!(refusal, CalibrationRefusal::UnknownParameter { .. }) {
         return Failure::new(Kind::Usage, format!("--fix: {refusal}"))
-            .help("name a parameter, or how several begin, such as mount_rotation");
+            .help("name a parameter, or its first words, such as mount_rotation");
     }
     let help = match refusal {
         CalibrationRefusal::FewPatches { .. } => {
