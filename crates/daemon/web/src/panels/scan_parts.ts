@@ -73,7 +73,7 @@ export function card(scan: Scan, chosen: boolean, wrong: HTMLElement, actions: A
     h("div", { class: "texts" }, scan.summary ? cut(scan, "why", scan.summary) : null, scan.notes ? cut(scan, "notes", scan.notes) : null),
     h("div", { class: "row" },
       hasCloud(scan) ? button("open", "Open", `Open ${name} in the view`, () => actions.open(scan)) : null,
-      isBusy(scan) ? null : button("download", "\u2193", `Download ${name}`, () => downloads(scan, name, wrong, actions)),
+      isBusy(scan) ? null : button("download", "Download", `Download ${name}`, () => downloads(scan, name, wrong, actions)),
       button("edit", "Edit", `Edit name and notes of ${name}`, () => actions.edit(scan)),
       isBusy(scan) ? null : button("delete", "Delete", `Delete ${name}`, () => actions.remove(scan))),
     wrong,
