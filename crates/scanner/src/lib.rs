@@ -46,7 +46,7 @@ pub use angles::{AngleSample, AngleTable, AngleTableError, TableTime};
 pub use config::{RangeAccuracy, ScanConfig, SweepPlan};
 pub use error::ScanError;
 pub use live::Live;
-pub use placer::Placer;
+pub use placer::{Placer, revolution_of};
 pub use receive_order::ReceiveOrder;
 pub use residuals::ResidualInterval;
 pub use sample_gaps::SampleGaps;

@@ -121,12 +121,7 @@ impl BatchWriter<'_> {
 
     fn end_revolution(&mut self, frame: &RevolutionFrame) {
         self.flush();
-        let revolution = Revolution {
-            index: frame.index,
-            firings: frame.firings,
-            whole: frame.whole,
-        };
-        if let Err(error) = self.sink.revolution(&revolution) {
+        if let Err(error) = self.sink.revolution(&revolution_of(frame)) {
             self.error.get_or_insert(error);
         }
     }
@@ -136,5 +131,15 @@ impl BatchWriter<'_> {
             self.error.get_or_insert(error);
         }
         self.batch.clear();
+    }
+}
+
+/// A frame as sinks get it.
+#[must_use]
+pub const fn revolution_of(frame: &RevolutionFrame) -> Revolution {
+    Revolution {
+        index: frame.index,
+        firings: frame.firings,
+        whole: frame.whole,
     }
 }

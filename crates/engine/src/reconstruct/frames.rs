@@ -12,7 +12,7 @@ use lidar::{
     RevolutionFrame, Stats, UtcClock,
 };
 use protocol::record::{Record, Wire};
-use scanner::{Alignment, PlacementCounts, ReceiveOrder};
+use scanner::{Alignment, PlacementCounts, ReceiveOrder, revolution_of};
 use units::{Degrees, Host, Lidar, Span, Stamp};
 
 use crate::failure::{Failure, Kind};
@@ -402,14 +402,6 @@ fn empty_cell(
         tilt: Degrees(f64::NAN),
         sd_m: f64::NAN,
         ..Point::default()
-    }
-}
-
-fn revolution_of(frame: &RevolutionFrame) -> Revolution {
-    Revolution {
-        index: frame.index,
-        firings: frame.firings,
-        whole: frame.whole,
     }
 }
 
