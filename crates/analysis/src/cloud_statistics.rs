@@ -45,6 +45,16 @@ pub struct RangeClass {
     pub points: u64,
 }
 
+/// A bin of the sphere.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[non_exhaustive]
+pub struct BinPoints {
+    /// Direction of its centre from the origin, a unit vector in the cloud's frame, to 0.0001.
+    pub direction: [f64; 3],
+    /// Points.
+    pub points: u64,
+}
+
 /// Standard deviations that a cloud states for its points, millimetres, to half a per cent.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 #[non_exhaustive]
@@ -68,6 +78,8 @@ pub struct CloudStatistics {
     pub of: &'static str,
     /// Points per bin of 5120 on a small sphere around the origin.
     pub density: Statistics,
+    /// Those bins.
+    pub bins: Vec<BinPoints>,
     /// Angles from a direction to the nearest point, degrees.
     pub gap_deg: GapQuantiles,
     /// Histogram of the ranges from the origin.
@@ -188,6 +200,16 @@ impl StatisticsCollector {
             density: self
                 .counts
                 .statistics_of(|bin| self.centres.get(bin).is_some_and(sees)),
+            bins: self
+                .centres
+                .iter()
+                .zip(self.counts.by_bin())
+                .filter(|(centre, _)| sees(centre))
+                .map(|(centre, &points)| BinPoints {
+                    direction: ((*centre * 1e4).round() / 1e4).to_array(),
+                    points,
+                })
+                .collect(),
             gap_deg: GapQuantiles {
                 p50: gap(0.5),
                 p95: gap(0.95),
@@ -324,7 +346,8 @@ mod tests {
         let [near_m, far_m] = collector.distance_m().unwrap();
         assert!((near_m - 2.07).abs() < 1e-9 && (far_m - 9.92).abs() < 1e-9);
         let grid = Icosahedron::new(BIN_LEVEL).unwrap();
-        let counts = BinCounts::new(&Locator::new(&grid), &directions).unwrap();
+        let locator = Locator::new(&grid);
+        let counts = BinCounts::new(&locator, &directions).unwrap();
         let (_, places) = centres(GAP_LEVEL).unwrap();
         let nearest = gaps(&directions, &places).unwrap();
         let upper = |direction: DVec3| direction.z;
@@ -339,6 +362,11 @@ mod tests {
                 "{found:?}"
             );
             assert_eq!(found.density.bins, expected.bins);
+            assert_eq!(found.bins.len(), found.density.bins);
+            for bin in &found.bins {
+                let place = counts.by_bin()[locator.bin(DVec3::from(bin.direction)) as usize];
+                assert_eq!(bin.points, place, "{bin:?}");
+            }
             let seen = places
                 .iter()
                 .zip(&nearest)

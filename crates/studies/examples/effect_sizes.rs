@@ -4,7 +4,7 @@
 //! cargo run --release -p studies --example effect_sizes -- docs/src/scenes/effects.svg
 //! ```
 //!
-//! prints the tables of docs/src/effects.md and writes the picture of docs/src/scenes.md.
+//! prints the tables of docs/src/effects.md and writes its picture.
 
 use std::error::Error;
 use std::fmt::Write as _;

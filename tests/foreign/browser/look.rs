@@ -3,7 +3,7 @@
 
 use serde_json::{Value, json};
 
-use super::browser::{DESKTOP, NARROW, PHONE, Page, SCREENS, Screen};
+use super::browser::{DESKTOP, Page, SCREENS, Screen};
 use super::view::pick;
 use super::{browser_and_simulator, points, ready, start, until_in_sight};
 
@@ -51,7 +51,7 @@ fn assert_near(found: f64, expected: f64, what: &str) {
 fn the_camera_follows_mouse_fingers_wheel_and_keys() {
     let (driver, _folder, daemon, url) = browser_and_simulator();
     let half_turn = std::f64::consts::PI;
-    for screen in [DESKTOP, PHONE, NARROW.light()] {
+    for screen in SCREENS {
         driver.test(screen, async |page| {
             with_a_scan(&page, &url).await;
             let (centre, height) = middle(&page).await;
@@ -138,6 +138,20 @@ fn the_camera_follows_mouse_fingers_wheel_and_keys() {
             assert!(picked, "Enter picks in the middle of the view");
             page.keys(DELETE).await;
             page.until_gone("#picked").await;
+
+            // Along its time with the mouse or a finger.
+            page.run("document.querySelector('#time').scrollIntoView({ block: 'center', behavior: 'instant' })")
+                .await;
+            let slider = "const { x, y, width, height } = document.querySelector('#time').getBoundingClientRect();
+                return [x, y + height / 2, width]";
+            let slider = page.run(slider).await;
+            let [x, y, width] = [0, 1, 2].map(|i| slider[i].as_f64().unwrap());
+            page.drag([[x + 0.9 * width, y], [x + 0.5 * width, y]], None)
+                .await;
+            let now = page.until_has("#time-now", " of ").await;
+            let (now_s, end_s) = now.trim_end_matches(" s").split_once(" of ").unwrap();
+            let share = now_s.parse::<f64>().unwrap() / end_s.parse::<f64>().unwrap();
+            assert!((share - 0.5).abs() < 0.1, "{now}");
         });
     }
     daemon.stop(|| true).unwrap();
@@ -147,7 +161,7 @@ fn the_camera_follows_mouse_fingers_wheel_and_keys() {
 #[ignore = "needs chromium and chromedriver"]
 fn picked_points_get_the_columns_that_the_stored_cloud_lacks() {
     let (driver, _folder, daemon, url) = browser_and_simulator();
-    for screen in [DESKTOP, PHONE] {
+    for screen in SCREENS {
         driver.test(screen, async |page| {
             with_a_scan(&page, &url).await;
             let first = pick(&page, 1).await;
@@ -221,7 +235,7 @@ fn nothing_overlaps_in_windows_of_any_width() {
 #[ignore = "needs chromium and chromedriver"]
 fn wrong_fields_say_beside_them_what_is_expected() {
     let (driver, _folder, daemon, url) = browser_and_simulator();
-    for screen in [DESKTOP, PHONE.light(), NARROW] {
+    for screen in SCREENS {
         driver.test(screen, async |page| {
             ready(&page, &url).await;
             page.until_has("#plan", "per sweep").await;
@@ -258,6 +272,18 @@ fn wrong_fields_say_beside_them_what_is_expected() {
             assert_eq!(page.text("#tolerance-wrong").await, expected);
             page.picture("wrong-field").await;
             assert_eq!(page.text("#doing").await, "Ready");
+            // Limits that leave nothing between them.
+            page.click("#tools > summary").await;
+            page.click(".clip > summary").await;
+            page.fill("#x-high", "-1.5").await;
+            page.fill("#x-low", "2").await;
+            page.run("document.querySelector('#x-low').blur()").await;
+            let expected = "x to: expected a number above 2";
+            page.until("#x-high-wrong", expected, |text| text == expected)
+                .await;
+            page.audit(expected).await;
+            page.click("#unclip").await;
+            page.until_gone("#x-high-wrong").await;
         });
     }
     daemon.stop(|| true).unwrap();

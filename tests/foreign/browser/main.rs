@@ -5,6 +5,7 @@
 //! pictures, as for docs/src/page.
 
 mod browser;
+mod keyboard;
 mod look;
 mod quality;
 mod refusals;
@@ -20,7 +21,7 @@ use engine::config::Config;
 use engine::config::daemon::DaemonConfig;
 use serde_json::Value;
 
-use browser::{DESKTOP, Driver, NARROW, PHONE, Page};
+use browser::{DESKTOP, Driver, NARROW, PHONE, Page, SCREENS};
 
 /// A daemon with its own folder; port 0 takes a free one.
 fn daemon(config: Config, device: Option<&str>, folder: &Path, port: u16) -> Daemon {
@@ -210,11 +211,12 @@ fn a_scan_is_started_displayed_and_counted() {
 #[ignore = "needs chromium and chromedriver"]
 fn a_sweep_is_displayed_and_stopped_by_key_and_by_touch() {
     let (driver, _folder, daemon, url) = browser_and_simulator();
-    for (screen, name) in [
-        (PHONE, "by-finger"),
-        (PHONE.light(), "by-finger-in-the-sun"),
-        (DESKTOP, "by-key"),
-    ] {
+    for screen in SCREENS {
+        let name = if screen.width < 600 {
+            "by-finger"
+        } else {
+            "by-key"
+        };
         driver.test(screen, async |page| {
             ready(&page, &url).await;
             // Slow enough to outlast the checks.
@@ -224,6 +226,7 @@ fn a_sweep_is_displayed_and_stopped_by_key_and_by_touch() {
                 points(text) > 20_000
             })
             .await;
+            page.audit("a sweep").await;
             // With software rendering a picture takes seconds, in which the cloud grows by 300,000
             // points.
             if std::env::var_os("VELOMOTION_SCREENSHOTS").is_some() {
@@ -234,7 +237,7 @@ fn a_sweep_is_displayed_and_stopped_by_key_and_by_touch() {
                 "by-key" => {
                     // An open list of downloads does not take the key.
                     page.click("[data-role=download]").await;
-                    page.until_has("#download-title", "by-finger").await;
+                    page.until_has("#download-title", "Download").await;
                     page.keys(ESCAPE).await;
                 }
                 _ => page.click("#stop").await,
@@ -269,9 +272,12 @@ fn a_sweep_is_displayed_and_stopped_by_key_and_by_touch() {
 #[ignore = "needs chromium and chromedriver"]
 fn the_axis_is_moved_by_hand_within_its_limits_and_stopped() {
     let (driver, _folder, daemon, url) = browser_and_simulator();
-    for screen in [DESKTOP, PHONE.light(), NARROW] {
+    for screen in SCREENS {
         driver.test(screen, async |page| {
             ready(&page, &url).await;
+            // The limits are drawn.
+            page.until_true("document.querySelector('#gauge-arc').getTotalLength() > 50 && document.querySelectorAll('#gauge-marks text').length >= 2")
+                .await;
             page.click("#home").await;
             page.until_has("#doing", "Homing").await;
             page.until_has("#doing", "Ready").await;
@@ -329,7 +335,7 @@ fn the_page_asks_for_a_token_once() {
     };
     let daemon = daemon(config, Some("sim"), folder.path(), 0);
     let url = url(&daemon);
-    for screen in [DESKTOP, PHONE.light()] {
+    for screen in SCREENS {
         driver.test(screen, async |page| {
             page.goto(&url).await;
             page.until_has("h1", "velomotion").await;

@@ -1,6 +1,9 @@
 //! The scan in view: losses and residuals, and on request density, gaps, ranges and errors.
 
-use super::browser::{DESKTOP, NARROW, PHONE};
+use std::collections::BTreeSet;
+
+use super::browser::{DESKTOP, SCREENS};
+use super::view::pick;
 use super::{TO_THE_TOP, TOO_MANY, browser_and_simulator, ready, start, until_in_sight};
 
 /// What the points are coloured by.
@@ -16,7 +19,7 @@ fn the_scan_in_view_is_measured_on_request() {
         start(&page, "hall", "20", "-45").await;
         page.until_has(".scan .badge[data-state]", "complete").await;
     });
-    for screen in [DESKTOP, DESKTOP.light(), PHONE, NARROW.light()] {
+    for screen in SCREENS {
         driver.test(screen, async |page| {
             ready(&page, &url).await;
             page.until_has("#quality-facts", "Packet delay").await;
@@ -31,6 +34,15 @@ fn the_scan_in_view_is_measured_on_request() {
                 assert!(facts.contains(part), "{part} in {facts}");
             }
             assert_eq!(page.text("#quality-error").await, "");
+            page.until_has("#sphere-words", "Fewest: ").await;
+            page.until_pixels("#sphere", "bins of many densities", |pixels| {
+                pixels.iter().collect::<BTreeSet<_>>().len() > 50
+            })
+            .await;
+            // It turns with the view.
+            let sphere = page.pixels_of("#sphere").await;
+            page.run("document.querySelector('#top').click()").await;
+            page.until_changed("#sphere", &sphere).await;
             let words = page
                 .until_has("#ranges-words", "half of the points within")
                 .await;
@@ -75,7 +87,7 @@ fn two_scans_are_compared_and_shown_together() {
             .await;
         }
     });
-    for screen in [DESKTOP, PHONE.light(), NARROW] {
+    for screen in SCREENS {
         driver.test(screen, async |page| {
             ready(&page, &url).await;
             page.until_has("#view-title", "after").await;
@@ -110,6 +122,36 @@ fn two_scans_are_compared_and_shown_together() {
                 changed * 100 > now.len()
             })
             .await;
+
+            // A link holds both scans, a picked point of one of them, and how they are drawn.
+            pick(&page, 1).await;
+            page.run("document.querySelector('#link').click()").await;
+            let link = page.run("return location.href").await;
+            page.run("window.before = true; location.reload()").await;
+            page.until_true(
+                "!window.before && document.querySelector('#view-points').textContent !== ''",
+            )
+            .await;
+            page.until_has("#view-title", "after compared with before")
+                .await;
+            page.until_has("#view-note", "of before").await;
+            page.until_true(
+                "document.querySelector('#picked tbody')?.textContent.includes('Distance')",
+            )
+            .await;
+            assert_eq!(page.run(FIELD).await, "distance");
+            page.run("document.querySelector('#link').click()").await;
+            assert_eq!(page.run("return location.href").await, link);
+            // One that is pasted into the same tab, of a scan that was deleted.
+            page.run("window.before = true; location.hash = '#scan=gone'")
+                .await;
+            page.until_true("!window.before").await;
+            page.until_has("#messages", "The scan of the link is not on this daemon")
+                .await;
+            page.run(&format!("location.href = {link}")).await;
+            page.until_has("#view-title", "after compared with before")
+                .await;
+            page.until_has("#view-note", "of before").await;
 
             page.run("document.querySelector('#swap').click()").await;
             page.until_has("#view-title", "before compared with after")

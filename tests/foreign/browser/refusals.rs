@@ -4,7 +4,7 @@ use engine::config::Config;
 use tokio::task::spawn_blocking;
 use velomotion_tests::bench::Bench;
 
-use super::browser::{DESKTOP, Driver, PHONE, Page};
+use super::browser::{DESKTOP, Driver, NARROW, PHONE, Page, SCREENS};
 use super::{
     TO_THE_TOP, TOO_MANY, browser_and_simulator, daemon, points, ready, reserving, simulator,
     start, until_in_sight, url,
@@ -24,7 +24,7 @@ const SILENT: &str = "
 #[ignore = "needs chromium and chromedriver"]
 fn an_unconfirmed_stop_is_repeated_under_an_alarm_of_full_width() {
     let (driver, _folder, daemon, url) = browser_and_simulator();
-    for screen in [DESKTOP, PHONE] {
+    for screen in SCREENS {
         driver.test(screen, async |page| {
             ready(&page, &url).await;
             page.run(SILENT).await;
@@ -34,6 +34,7 @@ fn an_unconfirmed_stop_is_repeated_under_an_alarm_of_full_width() {
             page.until_true("(({ x, y, width }) => x === 0 && y === 0 && width === innerWidth)(document.querySelector('#not-stopped').getBoundingClientRect())")
                 .await;
             page.picture("not-stopped").await;
+            page.audit("an unconfirmed stop").await;
             page.run("window.answer()").await;
             page.until_true("document.querySelector('#not-stopped').hidden").await;
         });
@@ -131,7 +132,7 @@ fn a_refused_download_is_reported_at_its_scan() {
         0,
     );
     let url = url(&full);
-    for screen in [DESKTOP, PHONE] {
+    for screen in SCREENS {
         driver.test(screen, async |page| {
             ready(&page, &url).await;
             page.until_has(".scan", "short").await;
@@ -140,6 +141,7 @@ fn a_refused_download_is_reported_at_its_scan() {
             assert!(no_room.contains("disk"), "{no_room}");
             until_in_sight(&page, ".scan .wrong").await;
             page.picture("no-room").await;
+            page.audit("a refused download").await;
             for format in ["ply", "log"] {
                 page.run(TOO_MANY).await;
                 page.download(format).await;
@@ -207,6 +209,14 @@ fn a_fault_is_shown_with_advice_and_cleared() {
         assert_eq!(start_is_off, true);
         clear_is_refused(&page).await;
     });
+    for screen in [DESKTOP.light(), PHONE, NARROW, NARROW.light()] {
+        driver.test(screen, async |page| {
+            page.goto(&url).await;
+            page.until_has(".problem[data-device=drive]", "What to do")
+                .await;
+            page.audit("a fault").await;
+        });
+    }
     driver.test(PHONE.light(), async |page| {
         page.goto(&url).await;
         page.until_has(".problem[data-device=drive]", "What to do")
@@ -247,28 +257,43 @@ async fn clear_is_refused(page: &Page) {
 fn a_lost_connection_is_reported_and_restored() {
     let driver = Driver::start();
     let folder = tempfile::tempdir().unwrap();
-    let first = simulator(folder.path());
-    let (url, port) = (url(&first), first.address().port());
-    driver.test(PHONE, async |page| {
-        ready(&page, &url).await;
-        // The stop waits for the daemon's threads.
-        spawn_blocking(move || first.stop(|| true).unwrap())
-            .await
-            .unwrap();
-        page.until_has("#lost", "Connection to the daemon lost")
-            .await;
-        assert_eq!(page.text("#chip-link").await, "Offline");
-        page.until_has("#lost", "The daemon on this machine does not answer")
-            .await;
-        page.picture("lost").await;
-        page.audit("no connection").await;
-        let place = folder.path().to_owned();
-        let second = spawn_blocking(move || daemon(Config::default(), Some("sim"), &place, port));
-        let second = second.await.unwrap();
-        page.until_gone("#lost").await;
-        page.until_has("#chip-drive", "Drive ready").await;
-        spawn_blocking(move || second.stop(|| true).unwrap())
-            .await
-            .unwrap();
-    });
+    for screen in SCREENS {
+        let first = simulator(folder.path());
+        let (url, port) = (url(&first), first.address().port());
+        driver.test(screen, async |page| {
+            ready(&page, &url).await;
+            // The stop waits for the daemon's threads.
+            spawn_blocking(move || first.stop(|| true).unwrap())
+                .await
+                .unwrap();
+            page.until_has("#lost", "Connection to the daemon lost")
+                .await;
+            assert_eq!(page.text("#chip-link").await, "Offline");
+            page.until_has("#lost", "The daemon on this machine does not answer")
+                .await;
+            page.picture("lost").await;
+            page.audit("no connection").await;
+            // The daemon is back, and now asks for a token.
+            let place = folder.path().to_owned();
+            let config = Config {
+                daemon: toml::from_str("token = 'a-token-of-this-test'").unwrap(),
+                ..Config::default()
+            };
+            let second = spawn_blocking(move || daemon(config, Some("sim"), &place, port));
+            let second = second.await.unwrap();
+            page.until_has("#signin", "requires its token").await;
+            page.audit("signing in again").await;
+            page.fill("#token", "not-the-token-of-this-test").await;
+            page.click("#signin .start").await;
+            page.until_has("#signin-wrong", "wrong").await;
+            page.fill("#token", "a-token-of-this-test").await;
+            page.click("#signin .start").await;
+            page.until_gone("#signin").await;
+            page.until_gone("#lost").await;
+            page.until_has("#chip-drive", "Drive ready").await;
+            spawn_blocking(move || second.stop(|| true).unwrap())
+                .await
+                .unwrap();
+        });
+    }
 }

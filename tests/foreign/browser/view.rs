@@ -10,7 +10,7 @@ use std::thread::JoinHandle;
 use velomotion::cli::Common;
 use velomotion::commands::view::show;
 
-use super::browser::{DESKTOP, Driver, NARROW, PHONE, Page};
+use super::browser::{DESKTOP, Driver, PHONE, Page, SCREENS};
 use super::{browser_and_simulator, points, ready, simulator, start, until_in_sight, url};
 
 /// Makes a scan with a daemon and returns the folder of its log and cloud.
@@ -127,7 +127,7 @@ fn files_are_shown_played_and_end_with_their_tab() {
     )
     .unwrap();
     let files = vec![scan.join("log.pcapng"), scan.join("cloud.ply"), other];
-    for screen in [DESKTOP, PHONE.light(), NARROW] {
+    for screen in SCREENS {
         let (url, viewing) = view(files.clone());
         driver.test(screen, async |page| {
             page.goto(&url).await;
@@ -211,9 +211,60 @@ fn a_cloud_is_downloaded_with_uncertainty_echo_and_laser() {
                 .all(|name| head.contains(name)),
             "{head}"
         );
+
+        // It breaks off after its first bytes, and goes on from there.
+        page.run(CUT_DOWNLOAD).await;
+        page.run("window.saved = null").await;
+        page.download("csv").await;
+        page.until_true("window.saved?.endsWith('.csv')").await;
+        assert_eq!(page.run("return window.answers").await, serde_json::json!([200, 206]));
+        let same = "const done = arguments[0];
+            (async () => done(await window.blob.text() === await (await fetch(window.made)).text()))()";
+        assert_eq!(page.answer(same).await, true, "the whole file");
+
+        // One that takes long shows its bytes, and is cancelled.
+        page.run(HOLD_DOWNLOAD).await;
+        page.run("window.saved = null").await;
+        page.download("laz").await;
+        page.until_has("#downloads", "12 B").await;
+        page.audit("a download that is being made").await;
+        page.click("#downloads button").await;
+        page.until_gone("#downloads li").await;
+        page.until_has("#announce", "cancelled").await;
+        assert_eq!(page.run("return window.saved").await, serde_json::Value::Null);
+        assert_eq!(page.text(".scan .wrong").await, "", "the user's wish is no error");
     });
     daemon.stop(|| true).unwrap();
 }
+
+/// The answer with a cloud ends after its first bytes; the states of all answers are kept.
+const CUT_DOWNLOAD: &str = "
+    const answered = window.fetch;
+    window.answers = [];
+    window.fetch = async (url, init) => {
+      const answer = await answered(url, init);
+      if (!String(url).includes('/cloud?') || init === undefined) return answer;
+      window.made = String(url);
+      window.answers.push(answer.status);
+      if (window.answers.length > 1) return answer;
+      const reader = answer.body.getReader();
+      const { value } = await reader.read();
+      await reader.cancel();
+      let sent = false;
+      const body = new ReadableStream({ pull: (stream) => {
+        if (sent) stream.error(new TypeError('the network is gone'));
+        else stream.enqueue(value);
+        sent = true;
+      } });
+      return new Response(body, { status: 200, headers: answer.headers });
+    };";
+
+/// A cloud has a few bytes and never ends.
+const HOLD_DOWNLOAD: &str = "
+    window.fetch = async (url, { signal }) => new Response(new ReadableStream({ start: (stream) => {
+      stream.enqueue(new Uint8Array(12));
+      signal.addEventListener('abort', () => stream.error(signal.reason));
+    } }));";
 
 #[test]
 #[ignore = "needs chromium and chromedriver"]
@@ -244,7 +295,7 @@ fn points_are_measured_cut_coloured_and_linked() {
     let driver = Driver::start();
     let folder = tempfile::tempdir().unwrap();
     let scan = scanned(&driver, folder.path());
-    for screen in [DESKTOP, PHONE, NARROW.light()] {
+    for screen in SCREENS {
         let (url, viewing) = view(vec![scan.join("log.pcapng")]);
         driver.test(screen, async |page| {
             page.goto(&url).await;
@@ -302,7 +353,12 @@ fn points_are_measured_cut_coloured_and_linked() {
             page.until_gone("#clipped").await;
             page.choose("#field", "range").await;
             page.fill("#limit-high", "6").await;
+            let shaded = page.pixels_of("#canvas").await;
             page.click("#shading").await;
+            page.until_pixels("#canvas", "points without shading", |now| {
+                now.iter().zip(&shaded).filter(|(a, b)| a != b).count() * 100 > now.len()
+            })
+            .await;
             page.until_has("#legend-above", "above 6.0 m").await;
             page.click("#tools > summary").await;
             page.until_pixels("#canvas", "a point coloured as above the limit", |pixels| {
@@ -312,7 +368,14 @@ fn points_are_measured_cut_coloured_and_linked() {
 
             page.click("#tools > summary").await;
             page.fill("#z-low", "1").await;
+            let before = page.pixels_of("#canvas").await;
             page.choose("#section", "y").await;
+            page.until_pixels("#canvas", "a section", |now| {
+                now.iter().zip(&before).filter(|(a, b)| a != b).count() * 100 > now.len()
+            })
+            .await;
+            page.run("const size = document.querySelector('#size'); size.value = '3'; size.dispatchEvent(new Event('input'))")
+                .await;
             page.click("#link").await;
             page.until("#tool-done", "an answer", |text| !text.is_empty()).await;
             let link = page.run("return location.href").await;
@@ -323,6 +386,8 @@ fn points_are_measured_cut_coloured_and_linked() {
             page.until_loaded().await;
             page.until_true("document.querySelector('#z-low').value === '1' && document.querySelector('#limit-high').value === '6'").await;
             page.until_true("document.querySelector('#parallel').checked && document.querySelector('#section').value === 'y'").await;
+            page.until_true("!document.querySelector('#shading').checked && document.querySelector('#size').value === '3'").await;
+            page.until_has("#picked", "Point A").await;
             page.click("#tools > summary").await;
             page.click("#link").await;
             assert_eq!(page.run("return location.href").await, link, "the view is the linked one");
@@ -341,7 +406,7 @@ fn points_are_measured_cut_coloured_and_linked() {
 #[ignore = "needs chromium and chromedriver"]
 fn the_stop_stays_in_full_screen_and_leaving_that_stops_the_axis() {
     let (driver, _folder, daemon, url) = browser_and_simulator();
-    for screen in [DESKTOP, NARROW] {
+    for screen in SCREENS {
         driver.test(screen, async |page| {
             ready(&page, &url).await;
             start(&page, "slow", "1", "-45").await;
@@ -380,7 +445,7 @@ fn the_stop_stays_in_full_screen_and_leaving_that_stops_the_axis() {
 }
 
 /// Keeps the next download instead of saving it.
-const CATCH_DOWNLOAD: &str = "
+pub const CATCH_DOWNLOAD: &str = "
     HTMLAnchorElement.prototype.click = function () { window.saved = this.download; };
     URL.createObjectURL = (blob) => { window.blob = blob; return 'blob:kept'; };";
 

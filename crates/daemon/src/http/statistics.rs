@@ -41,6 +41,7 @@ const POLL: Duration = Duration::from_millis(50);
         "bins": 2_462, "mean": 105.6, "sd": 51.9, "min": 0, "max": 267, "mean_per_deg2": 13.1,
         "sd_per_deg2": 6.4, "empty": 1, "sd_over_mean": 0.49, "coverage": 0.9996,
     },
+    "bins": [{"direction": [-0.5774, -0.5774, 0.5774], "points": 98}],
     "gap_deg": {"p50": 0.142, "p95": 0.649, "p99": 0.890, "worst": 2.102},
     "ranges": [{"from_m": 1.0, "to_m": 1.5, "points": 244}],
     "sd_mm": {"p50": 0.693, "p95": 0.881, "p99": 0.958},

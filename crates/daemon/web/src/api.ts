@@ -1,6 +1,7 @@
 // Requests to the daemon and its answers (docs: The daemon).
 
 import { whole } from "./download.ts";
+import type { Bin } from "./view/density_sphere.ts";
 
 /** An error and its remedy. */
 export interface Problem {
@@ -142,6 +143,8 @@ export interface ScanStatistics {
   of: "view" | "all";
   /** Points per bin. */
   density: { bins: number; mean: number; sd: number; empty: number };
+  /** Those bins. */
+  bins: Bin[];
   gap_deg: { p50: number; p95: number; p99: number; worst: number };
   ranges: { from_m: number; to_m: number; points: number }[];
   /** Standard deviations that the points state. */
@@ -237,13 +240,19 @@ async function answered(url: string, init: RequestInit): Promise<Response> {
   throw new RequestError(problem(parse(text), text, answer.status), answer.status);
 }
 
-/** URL to save a file from. Files that exist may be large and are not held here; others are made now. */
-export async function fileUrl(url: string, exists: boolean): Promise<string> {
-  if (!exists) {
-    // An answer that breaks off is not a refusal. What was made for it may count until the daemon knows of its end.
-    const is_lost = (error: unknown) => !(error instanceof RequestError) || [0, 429, 503].includes(error.status);
-    return URL.createObjectURL(await whole((headers) => answered(url, { headers }), is_lost));
-  }
+/** URL to save a file from that is made now; `received` gets the number of its bytes so far, and `signal` ends it. */
+export async function madeUrl(url: string, received: (bytes: number) => void, signal: AbortSignal): Promise<string> {
+  // An answer that breaks off is not a refusal. What was made for it may count until the daemon knows of its end.
+  const is_lost = (error: unknown) => !signal.aborted && (!(error instanceof RequestError) || [0, 429, 503].includes(error.status));
+  const wait = (ms: number) => new Promise<unknown>((done) => {
+    setTimeout(done, ms);
+    signal.addEventListener("abort", done);
+  });
+  return URL.createObjectURL(await whole((headers) => answered(url, { headers, signal }), is_lost, received, wait));
+}
+
+/** The URL of a file that exists, which may be large and is not held here; throws for a refusal. */
+export async function fileUrl(url: string): Promise<string> {
   // A refusal of HEAD has no text: GET has it.
   await answered(url, { method: "HEAD" }).catch(() => answered(url, {}).then((answer) => answer.body?.cancel()));
   return url;

@@ -149,9 +149,13 @@ async function list(): Promise<void> {
     await scans.load((complete) => {
       if (viewer === null || viewer.shown !== null) return;
       const newest = scans.all().find((scan) => scan.state === "whole" || scan.state === "partial");
-      const linked = viewer.linked_scan === null ? undefined : scans.get(viewer.linked_scan);
-      if (linked !== undefined) viewer.open(source(linked));
-      else if ((viewer.linked_scan === null || complete) && newest !== undefined && (newest.points ?? 0) <= SMALL_POINTS) viewer.open(source(newest));
+      const names = viewer.linked_scans;
+      const [linked, other] = [names.scan, names.other].map((name) => (name === null ? undefined : scans.get(name)));
+      const waits = [[names.scan, linked], [names.other, other]].some(([name, scan]) => name !== null && scan === undefined);
+      if (waits && !complete) return;
+      if (waits) note("warning", `${names.scan !== null && linked === undefined ? "The scan of the link is" : "The scan with which the link compares is"} not on this daemon.`, "It may have been deleted.");
+      if (linked !== undefined) viewer.open(source(linked), other === undefined ? null : source(other));
+      else if (newest !== undefined && (newest.points ?? 0) <= SMALL_POINTS) viewer.open(source(newest));
     });
     await last();
   } catch (error) {
@@ -194,7 +198,10 @@ async function formats(): Promise<void> {
 export function start(view: Viewer | null): void {
   viewer = view;
   // The browser takes the Escape key that ends the full screen: it stops the axis too.
-  if (viewer !== null) viewer.left_full_screen = control.stop_motion;
+  if (viewer !== null) {
+    viewer.left_full_screen = control.stop_motion;
+    viewer.turned = quality.turn;
+  }
   restore();
   control.wire(() => {
     const capture = sweep.capture_request();

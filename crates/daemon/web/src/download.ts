@@ -4,12 +4,13 @@
 const WAITS_MS = [500, 1_000, 2_000, 4_000, 8_000, 16_000];
 
 /**
- * The bytes of a file. `ask` sends a request with these headers and throws for a refusal; `is_lost` tells an error that may
+ * The bytes of a file; `received` gets their number so far. `ask` sends a request with these headers and throws for a refusal; `is_lost` tells an error that may
  * pass. Bytes of another version, which the daemon's validator shows, begin anew.
  */
 export async function whole(
   ask: (headers: Record<string, string>) => Promise<Response>,
   is_lost: (error: unknown) => boolean,
+  received: (bytes: number) => void,
   wait = (ms: number) => new Promise<unknown>((done) => setTimeout(done, ms)),
 ): Promise<Blob> {
   let pieces: Uint8Array<ArrayBuffer>[] = [];
@@ -28,6 +29,7 @@ export async function whole(
         for (let read = await reader.read(); !read.done; read = await reader.read()) {
           pieces.push(read.value);
           bytes += read.value.length;
+          received(bytes);
         }
       }
       return new Blob(pieces, { type: kind });

@@ -14,6 +14,17 @@ export function expected(field: Pick<HTMLInputElement, "validity" | "type" | "mi
   return `${kind}${range}${range !== "" && unit !== "" ? `${unit.startsWith("\u00b0") ? "" : " "}${unit}` : ""}`;
 }
 
+/** What is expected of the upper of two limits; null if it is above the lower one. */
+export function above(low: string, high: string): string | null {
+  return low === "" || high === "" || Number(high) > Number(low) ? null : `a number above ${low.replace("-", "\u2212")}`;
+}
+
+/** What is expected of a field; null if its value is valid. `data-above` names the field of the lower limit. */
+function wanted(field: HTMLInputElement, unit: string): string | null {
+  const low = document.getElementById(field.dataset["above"] ?? "");
+  return expected(field, unit) ?? (low instanceof HTMLInputElement ? above(low.value, field.value) : null);
+}
+
 /** Name of a field for the user. */
 function title(field: HTMLInputElement): string {
   return field.getAttribute("aria-label") ?? field.labels?.[0]?.firstChild?.textContent?.trim() ?? field.name;
@@ -24,7 +35,7 @@ function check(field: HTMLInputElement): boolean {
   const known = `${field.id}-wrong`;
   let wrong = document.getElementById(known);
   const unit = field.parentElement?.classList.contains("unit") === true ? (field.nextElementSibling?.textContent ?? "") : "";
-  const words = expected(field, unit);
+  const words = wanted(field, unit);
   if (wrong === null) {
     if (words === null) return true;
     wrong = h("p", { class: "wrong", id: known });
@@ -46,14 +57,15 @@ export function watch(form: HTMLElement): void {
   const look = (event: Event) => {
     const field = event.target;
     if (!(field instanceof HTMLInputElement) || field.id === "") return;
-    if (event.type === "change" || field.getAttribute("aria-invalid") === "true") check(field);
+    const upper = form.querySelector<HTMLInputElement>(`[data-above="${field.id}"]`);
+    for (const one of [field, upper]) if (one !== null && (event.type === "change" || one.getAttribute("aria-invalid") === "true")) check(one);
   };
   form.addEventListener("input", look);
   form.addEventListener("change", look);
 }
 
 /** Whether all fields are valid. */
-export const valid = (form: HTMLElement) => fields(form).every((field) => field.validity.valid);
+export const valid = (form: HTMLElement) => fields(form).every((field) => wanted(field, "") === null);
 
 /** The same; shows the errors of the others, and with `focus` the first of those. */
 export function report(form: HTMLElement, focus = false): boolean {

@@ -71,9 +71,10 @@ function update(now: ViewFile[]): void {
     else if (file.state === "ready") alarm(`${file.name}: ${file.error}`);
     if (file.state === "failed") alarm(`${file.name}: ${file.error ?? "failed"}`);
   });
-  const wanted = viewer?.linked_scan ?? null;
-  const first = files.findIndex((file, place) => file.state === "ready" && (wanted === null || wanted === key(place)));
-  if (current === null && first >= 0) open(first);
+  const { scan = null, other = null } = viewer?.linked_scans ?? {};
+  const first = files.findIndex((file, place) => file.state === "ready" && (scan === null || scan === key(place)));
+  const second = files.findIndex((_, place) => other === key(place));
+  if (current === null && first >= 0 && files[second]?.state !== "making") open(first, files[second]?.state === "ready" ? source(second) : null);
   if (current === null) waiting(only ?? files.find((file) => file.state === "making"));
 }
 

@@ -9,13 +9,13 @@ import * as clip from "./panels/clip.ts";
 import { announce } from "./panels/messages.ts";
 import * as picked from "./panels/picks.ts";
 import { Player } from "./panels/player.ts";
-import type { Picked } from "./picked.ts";
+import type { Picked, Position } from "./picked.ts";
 import * as picture from "./picture.ts";
 import { type Field, type Range, type Ranges, tiltAt } from "./sample.ts";
 import { Live, Loaded, draw } from "./view/cloud.ts";
 import { type ViewState, fromHash, toHash } from "./view/link.ts";
 import { scaleBar } from "./view/measure.ts";
-import { type MapName, MARKS, css, table } from "./view/maps.ts";
+import { type MapName, MARKS, bar, table } from "./view/maps.ts";
 import { Overlay } from "./view/overlay.ts";
 import { type Preset, RING_STEP_M, Stage } from "./view/stage.ts";
 import type { LoadRequest, LoadEvent } from "./worker.ts";
@@ -52,6 +52,8 @@ export class Viewer {
   shown: string | null = null;
   /** Called when the user leaves the full screen with the browser's own key. */
   left_full_screen: () => void = () => {};
+  /** Called with the direction of the camera from its target, radians, after each picture. */
+  turned: (azimuth: number, elevation: number) => void = () => {};
   private readonly stage: Stage;
   private readonly overlay = new Overlay(document.querySelector("#overlay") as SVGSVGElement);
   private readonly player: Player;
@@ -70,7 +72,7 @@ export class Viewer {
   private field_before: Field = "height";
   private map: MapName = "viridis";
   private ranges: Ranges | null = null;
-  private origin: [number, number, number] = [0, 0, 0];
+  private origin: Position = [0, 0, 0];
   private known = NO_COLUMNS;
   private picks: Picked[] = [];
   /** Whether the complete cloud is shown or being loaded. */
@@ -86,7 +88,10 @@ export class Viewer {
     this.linked = Object.keys(linked).length > 0 ? linked : null;
     this.stage = new Stage(canvas);
     this.stage.detail = (eye, budget) => draw([this.loaded, this.other_points].filter((cloud) => cloud !== null), eye, budget);
-    this.stage.drawn = () => this.overlay.draw(this.stage, this.picks);
+    this.stage.drawn = () => {
+      this.overlay.draw(this.stage, this.picks);
+      this.turned(this.stage.orbit.pose.azimuth, this.stage.orbit.pose.elevation);
+    };
     this.stage.orbit.tapped = (event) => {
       const { left, top } = canvas.getBoundingClientRect();
       this.pick(event.clientX - left, event.clientY - top, event.pointerType === "touch");
@@ -105,9 +110,9 @@ export class Viewer {
     this.paint();
   }
 
-  /** Id of the scan that the page's address names. */
-  get linked_scan(): string | null {
-    return this.linked?.scan ?? null;
+  /** Ids of the scan that the page's address names, and of the one with which it is compared. */
+  get linked_scans(): { scan: string | null; other: string | null } {
+    return { scan: this.linked?.scan ?? null, other: this.linked?.with ?? null };
   }
 
   /** Shows the live points of a new scan. */
@@ -159,6 +164,8 @@ export class Viewer {
     const follows = this.live !== null && this.shown === source.id && other === null;
     const again = this.shown === source.id;
     const kept = again ? this.picks : [];
+    const linked = this.linked?.scan === source.id ? this.linked : null;
+    const picked = again ? kept.map((pick) => this.own(pick.position)) : (linked?.picks ?? []);
     // A comparison that is loaded again keeps its colours.
     const field = other !== null && other === this.other ? this.field : "distance";
     if (follows) this.worker?.terminate();
@@ -176,10 +183,10 @@ export class Viewer {
       this.colour();
     }
     text(id("view-note"), follows ? "live points; the cloud is loading" : other !== null ? `loading ${other.title}` : "");
-    this.complete = source.completes && (complete || this.field === "sd");
+    this.complete = source.completes && (complete || linked?.complete === true || this.field === "sd");
     this.picks = kept;
     this.show_picks();
-    this.download(source, follows);
+    this.download(source, follows, picked);
     this.changed(source.id);
   }
 
@@ -232,7 +239,13 @@ export class Viewer {
     this.stage.draw();
   }
 
-  private download(source: CloudSource, follows: boolean): void {
+  /** A position in the coordinates of the cloud. */
+  private own(position: Position): Position {
+    return position.map((m, axis) => m + (this.origin[axis] ?? 0)) as Position;
+  }
+
+  /** Loads a cloud; `picked` are points whose values are read anew. */
+  private download(source: CloudSource, follows: boolean, picked: Position[]): void {
     const kept = this.picks;
     const worker = new Worker("worker.js", { type: "module" });
     const cloud = new Loaded(this.stage.points);
@@ -268,6 +281,8 @@ export class Viewer {
         this.origin = data.origin;
         if (data.simulated) show(id("view-simulated"), true);
         this.range(cloud.ranges);
+        // Those of a link, unless the user has picked others meanwhile.
+        if (kept.length === 0 && this.picks.length === 0) this.picks = data.picked.filter((pick) => pick !== null);
         this.picks = this.picks.map((pick) => data.picked[kept.indexOf(pick)] ?? pick);
         this.whole = data;
         this.show_picks();
@@ -287,7 +302,7 @@ export class Viewer {
     };
     worker.onerror = () => this.failed("the cloud cannot be read");
     const order: LoadRequest = {
-      url: new URL(source.url(this.complete), location.href).href, most: small.matches ? 3_000_000 : 24_000_000, picked: kept.map((pick) => pick.position),
+      url: new URL(source.url(this.complete), location.href).href, most: small.matches ? 3_000_000 : 24_000_000, picked,
     };
     if (other !== null) order.other = new URL(other.url(false), location.href).href;
     worker.postMessage(order);
@@ -472,12 +487,7 @@ export class Viewer {
     this.stage.setColours(colours);
     if (night) this.stage.setBackground([0.043, 0.063, 0.086], [0.13, 0.18, 0.23], [0.55, 0.64, 0.73], [0.49, 0.77, 1]);
     else this.stage.setBackground([0.933, 0.949, 0.965], [0.76, 0.8, 0.84], [0.3, 0.36, 0.42], [0.04, 0.35, 0.66]);
-    const bar = id<HTMLCanvasElement>("legend-bar");
-    const context = bar.getContext("2d");
-    for (let i = 0; context !== null && i < bar.width; i += 1) {
-      context.fillStyle = css(colours, i / (bar.width - 1));
-      context.fillRect(i, 0, 1, 1);
-    }
+    bar(id<HTMLCanvasElement>("legend-bar"), colours);
     this.colour();
   }
 
@@ -488,15 +498,16 @@ export class Viewer {
     this.colour();
   }
 
-  /** The view as it is now, without a comparison. */
+  /** The view as it is now. */
   private state(): ViewState {
     const { azimuth, elevation, distance_m } = this.stage.orbit.pose;
     const [x, y, z] = this.stage.orbit.target.toArray();
     const until_s = this.player.until_s;
-    const colours = this.field === "distance" ? {} : { field: this.field, limits: this.limits };
+    const on = (name: string) => id<HTMLInputElement>(name).checked;
     return {
-      ...(this.shown === null ? {} : { scan: this.shown }), camera: [azimuth, elevation, distance_m, x, y, z], parallel: this.stage.orbit.parallel, ...colours,
-      map: this.map, ...clip.state(), ...(until_s === null ? {} : { until_s }),
+      ...(this.shown === null ? {} : { scan: this.shown }), ...(this.other === null ? {} : { with: this.other.id, both: on("both-clouds") }),
+      camera: [azimuth, elevation, distance_m, x, y, z], parallel: on("parallel"), complete: this.complete, picks: this.picks.map((pick) => this.own(pick.position)),
+      size: Number(id<HTMLInputElement>("size").value), shading: on("shading"), cutaway: on("cutaway"), field: this.field, limits: this.limits, map: this.map, ...clip.state(), ...(until_s === null ? {} : { until_s }),
     };
   }
 
@@ -506,9 +517,16 @@ export class Viewer {
     if (state === null || (state.scan !== undefined && state.scan !== this.shown)) return;
     this.linked = null;
     const input = (name: string) => id<HTMLInputElement>(name);
-    if (state.parallel === true) {
-      input("parallel").checked = true;
-      this.stage.orbit.setParallel(true);
+    // As the user does.
+    const changed = (name: string) => input(name).dispatchEvent(new Event(input(name).type === "checkbox" ? "change" : "input"));
+    for (const [name, on] of [["parallel", state.parallel], ["shading", state.shading], ["cutaway", state.cutaway], ["both-clouds", this.other === null ? undefined : state.both]] as const) {
+      if (on === undefined) continue;
+      input(name).checked = on;
+      changed(name);
+    }
+    if (state.size !== undefined) {
+      input("size").value = String(state.size);
+      changed("size");
     }
     if (state.camera !== undefined) {
       const [azimuth, elevation, distance_m, ...target] = state.camera;
@@ -521,7 +539,7 @@ export class Viewer {
     });
     clip.set(this.stage, state);
     if (state.until_s !== undefined) this.player.set(state.until_s);
-    if (state.field !== undefined) {
+    if (state.field !== undefined && (state.field !== "distance" || this.other !== null)) {
       id<HTMLSelectElement>("field").value = state.field;
       this.choose_field(state.field);
     }
@@ -565,6 +583,10 @@ export class Viewer {
     id("picture").addEventListener("click", () => void this.save_picture());
     id("link").addEventListener("click", () => void this.copy_link());
     id("large").addEventListener("click", () => this.enlarge(!document.body.classList.contains("large")));
+    // A link that is pasted into the address of this page.
+    addEventListener("hashchange", () => {
+      if (Object.keys(fromHash(location.hash)).length > 0) location.reload();
+    });
     document.addEventListener("fullscreenchange", () => {
       if (document.fullscreenElement !== null || !document.body.classList.contains("large")) return;
       this.enlarge(false);

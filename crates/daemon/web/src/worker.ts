@@ -17,7 +17,7 @@ export interface LoadRequest {
   most: number;
   /** Address of a cloud from which the distances of the points are measured. */
   other?: string;
-  /** Positions of picked points, whose values are read anew. */
+  /** Positions of picked points in the coordinates of the cloud, whose values are read anew. */
   picked: Position[];
 }
 
@@ -65,7 +65,7 @@ async function load(order: LoadRequest): Promise<void> {
       for (const distance of columns.distances) if (distance >= MOST_M) beyond += 1;
     }
     order.picked.forEach((position, i) => {
-      found[i] = nearer(columns, position, found[i] ?? null);
+      found[i] = nearer(columns, position.map((m, axis) => m - (origin[axis] ?? 0)) as Position, found[i] ?? null);
     });
     sample.add(columns);
     const ranges = sample.ranges();

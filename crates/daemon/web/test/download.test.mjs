@@ -32,11 +32,14 @@ async function server(cuts, tag, run) {
   }
 }
 
-const bytes = async (ask, is_lost = () => true) => Buffer.from(await (await whole(ask, is_lost, async () => {})).arrayBuffer());
+const bytes = async (ask, is_lost = () => true, received = () => {}) => Buffer.from(await (await whole(ask, is_lost, received, async () => {})).arrayBuffer());
 
 test("an interrupted download goes on where it ended", async () => {
-  const [got, asked] = await server([100_000, 50_000], () => '"1"', bytes);
+  const sizes = [];
+  const [got, asked] = await server([100_000, 50_000], () => '"1"', (ask) => bytes(ask, () => true, (size) => sizes.push(size)));
   assert.ok(got.equals(FILE));
+  assert.equal(sizes.at(-1), FILE.length);
+  assert.deepEqual(sizes, sizes.toSorted((a, b) => a - b));
   assert.deepEqual(asked, ["whole", "bytes=100000-", "bytes=150000-"]);
 });
 

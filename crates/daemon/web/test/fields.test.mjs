@@ -3,7 +3,7 @@ import test from "node:test";
 
 import { load } from "./bundle.mjs";
 
-const { expected } = await load("fields.ts");
+const { above, expected } = await load("fields.ts");
 
 const field = (more) => ({ validity: { valid: false }, type: "number", min: "", max: "", step: "any", title: "", ...more });
 
@@ -18,4 +18,10 @@ test("errors of fields say what is expected, with limits and unit", () => {
     [{ type: "text", validity: { valid: false, patternMismatch: true }, title: "letters" }, "", "letters"],
     [{ type: "password" }, "", "a text"],
   ]) assert.equal(expected(field(more), unit), words);
+});
+
+test("an upper limit is above the lower one", () => {
+  for (const [low, high] of [["", ""], ["1", ""], ["", "1"], ["-2", "-1.5"], ["9", "10"]]) assert.equal(above(low, high), null);
+  assert.equal(above("-1.5", "-2"), "a number above −1.5");
+  assert.equal(above("3", "3"), "a number above 3");
 });

@@ -2,12 +2,14 @@
 
 import { type Residuals, type Scan, type ScanStatistics, type Status, api } from "../api.ts";
 import { attribute, h, id, show, text } from "../dom.ts";
-import { compact, count, digits } from "../format.ts";
+import { compact, count, digits, fixed } from "../format.ts";
 import { title } from "../found.ts";
 import { refused } from "./control.ts";
 import { type Fact, facts, residuals } from "./facts.ts";
 import { announce } from "./messages.ts";
 import { hasCloud } from "./scan_parts.ts";
+import * as sphere from "../view/density_sphere.ts";
+import { bar, table } from "../view/maps.ts";
 
 const button = id<HTMLButtonElement>("measure");
 const distance = id<HTMLSelectElement>("budget-at");
@@ -17,10 +19,22 @@ let scan: Scan | null = null;
 /** Id of the scan that is being measured. */
 let measuring: string | null = null;
 let capturing = false;
+const dark = matchMedia("(prefers-color-scheme: dark)");
+/** Direction from which the view looks, radians. */
+let camera = { azimuth: 0, elevation: 0 };
 
 export function wire(): void {
   button.addEventListener("click", () => void measure());
   distance.addEventListener("change", draw);
+  dark.addEventListener("change", draw);
+}
+
+/** Turns the sphere with the view; angles of the camera in radians. */
+export function turn(azimuth: number, elevation: number): void {
+  if (azimuth === camera.azimuth && elevation === camera.elevation) return;
+  camera = { azimuth, elevation };
+  const found = scan === null ? undefined : known.get(scan.id);
+  if (found !== undefined) draw_sphere(found);
 }
 
 /** Shows a scan with its report; null for none, or one that is not finished. */
@@ -85,6 +99,8 @@ function draw_measured(found: ScanStatistics): void {
   ];
   rows.push(...(sd == null ? [["Stated sd", "none"] as Fact] : [["Stated sd, half of points", `${digits(sd.p50, 2)} mm`] as Fact, ["Stated sd, 99 %", `${digits(sd.p99, 2)} mm`] as Fact]));
   facts(id("measured-facts"), rows);
+  draw_sphere(found);
+  describe_sphere(found);
   draw_ranges(found);
   draw_residuals("delays", found.residuals, "delay_us", "most_delay_us", "median", " \u00b5s", 1);
   draw_residuals("deviations", found.residuals, "angle_rms_deg", "most_angle_deg", "RMS", "\u00b0", 1e-4);
@@ -102,6 +118,20 @@ function draw_measured(found: ScanStatistics): void {
     ["Range", mm(Math.hypot(budget.range, budget.range_step))], ["Azimuth", mm(budget.azimuth)], ["Tilt", mm(budget.tilt)], ["Clock", mm(budget.clock)], ["Delay", mm(budget.delay)],
     ["Mount", budget.mount === null ? "not included" : mm(budget.mount), budget.mount === null ? "warn" : "off"], ["95 % of points within", mm(budget.total)],
   ]);
+}
+
+function draw_sphere({ bins }: ScanStatistics): void {
+  sphere.draw(id<HTMLCanvasElement>("sphere"), bins, camera.azimuth, camera.elevation, table("viridis", dark.matches));
+}
+
+/** Its colours, and the bin with the fewest points. */
+function describe_sphere({ bins }: ScanStatistics): void {
+  bar(id<HTMLCanvasElement>("sphere-bar"), table("viridis", dark.matches));
+  ends("sphere", ["0", `${compact(sphere.limit(bins))} or more`]);
+  const fewest = bins.reduce<sphere.Bin | null>((a, b) => (a === null || b.points < a.points ? b : a), null);
+  const [x, y, z] = fewest?.direction ?? [0, 0, 0];
+  const degrees = (radians: number, [positive, negative]: [string, string]) => `${fixed(Math.abs((180 / Math.PI) * radians), 0)}\u00b0 ${radians < 0 ? negative : positive}`;
+  text(id("sphere-words"), fewest === null ? "" : `Fewest: ${fewest.points === 0 ? "none" : count(fewest.points)} at ${degrees(Math.atan2(x, y), ["right of forward", "left of forward"])}, ${degrees(Math.asin(z), ["up", "down"])}.`);
 }
 
 /** Bars of residuals over time, the greatest behind the usual ones, their heights by the logarithm; and both in words. `least` is the least value that counts. */

@@ -1,6 +1,6 @@
 // What is shown of a scan: its card, its row in the table, the fields that edit it, and its texts whole.
 
-import { type Scan, api, cloudUrl, fileUrl, logUrl, thumbnailUrl } from "../api.ts";
+import { type Scan, api, cloudUrl, fileUrl, logUrl, madeUrl, thumbnailUrl } from "../api.ts";
 import { h, id, show, text } from "../dom.ts";
 import { bytes, compact, duration, moment } from "../format.ts";
 import { title } from "../found.ts";
@@ -170,13 +170,26 @@ async function download(scan: Scan, name: string, choice: string, wrong: HTMLEle
   show(wrong, false);
   const file = `${scan.name || "velomotion"}-${scan.id}.${format === "log" ? "pcapng" : format}`;
   announce(`Downloading ${name}: ${file}`);
+  const save = (href: string) => h("a", { href, download: file }).click();
+  const cancel = new AbortController();
+  let shown: HTMLElement | null = null;
   try {
-    const [url, exists] = format === "log" ? [logUrl(scan.id), true] : [cloudUrl(scan.id, format, more), format === "ply" && !more];
-    const href = await fileUrl(url, exists);
-    h("a", { href, download: file }).click();
+    if (format === "log") return save(await fileUrl(logUrl(scan.id)));
+    if (format === "ply" && !more) return save(await fileUrl(cloudUrl(scan.id, format, more)));
+    const received = h("span", {}, "making the cloud");
+    // Its size is not known before it is made.
+    shown = h("li", {}, h("span", { class: "name", title: file }, file), h("progress", { "aria-label": `Download of ${name}` }), received,
+      h("button", { type: "button", "aria-label": `Cancel the download of ${name}`, click: () => cancel.abort() }, "Cancel"));
+    id("downloads").append(shown);
+    const href = await madeUrl(cloudUrl(scan.id, format, more), (size) => text(received, bytes(size)), cancel.signal);
+    save(href);
+    announce(`Downloaded ${name}: ${file}`);
     // The browser has begun to read it by then.
-    if (!exists) setTimeout(() => URL.revokeObjectURL(href), 60_000);
+    setTimeout(() => URL.revokeObjectURL(href), 60_000);
   } catch (error) {
-    refused(`Download as ${format}`, error, wrong);
+    if (cancel.signal.aborted) announce(`Download of ${name} cancelled`);
+    else refused(`Download as ${format}`, error, wrong);
+  } finally {
+    shown?.remove();
   }
 }

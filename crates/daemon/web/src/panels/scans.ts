@@ -230,7 +230,8 @@ function edited(scan: Scan, changed: Scan | null): void {
 function error_of(scan: Scan): HTMLElement {
   let wrong = errors.get(scan.id);
   if (wrong === undefined) {
-    wrong = h("p", { class: "wrong", hidden: true });
+    // A long one scrolls, by the keyboard too.
+    wrong = h("p", { class: "wrong", hidden: true, tabindex: 0 });
     errors.set(scan.id, wrong);
   }
   return wrong;

@@ -45,7 +45,16 @@ export function table(name: MapName, dark: boolean): Uint8Array {
   return out;
 }
 
-/** A colour of the table, for the legend. */
+/** Draws the colours of a legend from left to right. */
+export function bar(canvas: HTMLCanvasElement, colours: Uint8Array): void {
+  const context = canvas.getContext("2d");
+  for (let i = 0; context !== null && i < canvas.width; i += 1) {
+    context.fillStyle = css(colours, i / (canvas.width - 1));
+    context.fillRect(i, 0, 1, 1);
+  }
+}
+
+/** A colour of the table. */
 export function css(colours: Uint8Array, share: number): string {
   const at = 4 * Math.round(Math.min(1, Math.max(0, share)) * (STEPS - 1));
   return `rgb(${colours[at]},${colours[at + 1]},${colours[at + 2]})`;
