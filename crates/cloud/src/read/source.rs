@@ -246,13 +246,14 @@ impl<'a> SourceFile<'a> {
     ) -> Result<usize, ReadError> {
         cloud.begin(&row.columns, 0);
         let mut count = 0;
+        let needed = row.words();
         let mut found: Vec<&str> = Vec::new();
         while count < most
             && let Some((line, next)) = self.line(offset)?
         {
             if !is_comment(line) {
                 found.clear();
-                found.extend(words(line).take(row.words()));
+                found.extend(words(line).take(needed));
                 let mut position = [0.0; 3];
                 for (axis, field) in position.iter_mut().zip(row.axes) {
                     let word = *found.get(field.word).unwrap_or(&"the end of the line");
