@@ -146,6 +146,20 @@ fn pye57_reads_our_e57_with_the_right_count_and_bounds() {
         let tilt = got["tilt_deg"][i].as_f64().unwrap();
         assert!((tilt - wanted).abs() < 4e-6, "{tilt} {wanted}");
     }
+    // Points are in the frame of the file. GPS time began at Unix second 315,964,800, and is 18
+    // leap seconds ahead since 2017.
+    assert_eq!(got["pose"], json!([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]));
+    let last = cloud.time().iter().max().unwrap().as_nanos();
+    for (i, unix_s) in [first.div_euclid(1_000_000_000) as f64, last as f64 * 1e-9]
+        .into_iter()
+        .enumerate()
+    {
+        let time = got["acquired_gps_s"][i].as_f64().unwrap();
+        assert!(
+            (time - (unix_s - 315_964_800.0 + 18.0)).abs() < 1e-6,
+            "{time} {unix_s}"
+        );
+    }
     let description = got["description"].as_str().unwrap();
     assert!(description.starts_with("SIMULATED"), "{description}");
     let fields = got["fields"].as_array().unwrap();

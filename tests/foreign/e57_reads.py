@@ -34,6 +34,8 @@ print(
             "rows": [int(scan["rowIndex"].min()), int(scan["rowIndex"].max())],
             "times_s": [float(scan["timeStamp"].min()), float(scan["timeStamp"].max())],
             "tilt_deg": [float(scan["velomotion:tilt"].min()), float(scan["velomotion:tilt"].max())],
+            "pose": [*header.translation.tolist(), *header.rotation.tolist()],
+            "acquired_gps_s": [header.acquisitionStart_dateTimeValue, header.acquisitionEnd_dateTimeValue],
             "description": header["description"].value(),
         }
     )

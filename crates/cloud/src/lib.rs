@@ -2,7 +2,7 @@
 //!
 //! [`Points`] is a structure of arrays with the requested columns ([`Fields`]). [`mount`] is Eq.
 //! 4-6 of the paper. A [`Sink`] takes batches of points; [`formats`] are sinks that write files,
-//! [`messages`] encodes a scan as ROS 2 messages, [`read`] reads the positions of a file.
+//! [`messages`] encodes a scan as ROS 2 messages, [`read`] reads the points of a file.
 //!
 //! ```
 //! use std::io::Cursor;

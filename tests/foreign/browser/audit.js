@@ -19,7 +19,7 @@ if (innerWidth < 900) {
   }
 }
 
-// Every control can be scrolled to where nothing else covers it, but for open dialogs, an alarm, and open tools on a narrow screen. STOP is under none of them.
+// Every control can be scrolled to where nothing else covers it, but for open dialogs, an alarm, and open tools on a narrow screen. STOP is under the sign-in alone, without which it has no effect.
 const scrollers = [...document.querySelectorAll("*")].filter((element) => element.scrollHeight > element.clientHeight || element.scrollWidth > element.clientWidth);
 const before = scrollers.map(({ scrollLeft, scrollTop }) => [scrollLeft, scrollTop]);
 for (const element of document.querySelectorAll("button, select, summary, input, textarea")) {
@@ -28,7 +28,7 @@ for (const element of document.querySelectorAll("button, select, summary, input,
   const { x, y, width, height } = element.getBoundingClientRect();
   const hit = document.elementFromPoint(x + width / 2, y + height / 2);
   if (hit !== null && (element.contains(hit) || (element.closest("label")?.contains(hit) ?? false))) continue;
-  if ((element.id !== "stop" && hit?.closest("dialog, .undo, .not-stopped")) || (innerWidth < 900 && hit?.closest(".tools[open]"))) continue;
+  if (hit?.closest("dialog:modal") || (element.id !== "stop" && hit?.closest("dialog, .undo, .not-stopped")) || (innerWidth < 900 && hit?.closest(".tools[open]"))) continue;
   complaints.push(`${called(element)} is under ${hit === null ? "nothing: out of the window" : called(hit)}`);
 }
 scrollers.forEach((element, i) => element.scrollTo({ left: before[i][0], top: before[i][1], behavior: "instant" }));

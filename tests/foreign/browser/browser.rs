@@ -90,6 +90,10 @@ impl Screen {
         }
     }
 
+    pub const fn is_dark(&self) -> bool {
+        self.dark
+    }
+
     /// The same screen with the light colour scheme.
     pub const fn light(self) -> Self {
         Self {

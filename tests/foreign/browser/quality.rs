@@ -143,14 +143,17 @@ fn two_scans_are_compared_and_shown_together() {
             page.run("document.querySelector('#link').click()").await;
             assert_eq!(page.run("return location.href").await, link);
             // One that is pasted into the same tab, of a scan that was deleted.
-            page.run("window.before = true; location.hash = '#scan=gone'")
+            page.run("location.hash = '#scan=gone'").await;
+            page.until_has("#scans-error", "The scan of the link is not on this daemon")
                 .await;
-            page.until_true("!window.before").await;
-            page.until_has("#messages", "The scan of the link is not on this daemon")
+            page.click("#scans .scan:nth-child(2) [data-role=open]")
+                .await;
+            page.until("#view-title", "one scan", |text| text == "before")
                 .await;
             page.run(&format!("location.href = {link}")).await;
             page.until_has("#view-title", "after compared with before")
                 .await;
+            page.until_gone("#scans-error").await;
             page.until_has("#view-note", "of before").await;
 
             page.run("document.querySelector('#swap').click()").await;

@@ -11,7 +11,7 @@ use crate::{Companion, Fields, Metadata, Points, Summary};
 /// Bytes of a point.
 pub(crate) const ROW_BYTES: usize = 16;
 /// Greatest intensity.
-const FULL: f32 = 255.0;
+pub(crate) const FULL: f32 = 255.0;
 
 /// Writes `.bin`.
 pub(super) type KittiWriter<W> = FileSink<KittiEncoder<W>>;

@@ -8,7 +8,7 @@
 //! in the text record, and by the synthetic flag of every point, which survives merging with other
 //! clouds. There is no creation date, as the same log must give the same bytes.
 
-mod extra_bytes;
+pub(crate) mod extra_bytes;
 
 use std::io::{Seek, Write};
 
@@ -26,7 +26,7 @@ const SCALE_M: f64 = 1e-4;
 const STEPS_PER_M: f64 = 1e4;
 /// The greatest coordinate of 32 bits in 0.1 mm.
 const LIMIT_M: f64 = (i32::MAX as f64) / STEPS_PER_M;
-const INTENSITY_STEP: u16 = u16::MAX / u8::MAX as u16;
+pub(crate) const INTENSITY_STEP: u16 = u16::MAX / u8::MAX as u16;
 
 /// Offsets in point format 6 (LAS 1.4 R15, section 2.6.7); all other fields are zero.
 mod at {

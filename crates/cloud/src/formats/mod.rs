@@ -19,7 +19,7 @@ mod fallible;
 mod file_sink;
 mod gps_time;
 pub(crate) mod kitti;
-mod las;
+pub(crate) mod las;
 mod layout;
 pub mod mcap;
 pub mod pcd;

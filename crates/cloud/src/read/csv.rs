@@ -1,13 +1,14 @@
-//! Text with a row per point. A header row may name the columns; x, y and z are found by name in
-//! any case, otherwise they are the first three. Lines with `#` or `//` are comments, which
-//! CloudCompare writes; a comma is a decimal comma, and an error, where a semicolon separates.
+//! Text with a row per point. A header row may name the columns, in any case; otherwise x, y and z
+//! are the first three. Lines with `#` or `//` are comments, which CloudCompare writes; a comma is
+//! a decimal comma, and an error, where a semicolon separates.
 
-use super::source::{Positions, ReadError, SourceFile, is_comment};
+use super::source::{
+    ReadError, SourceField, SourceFile, SourceNumber, SourceRow, is_comment, shown, words,
+};
+use super::stored_cloud::StoredCloud;
 use crate::formats::Format;
 
-const NAMES: [[&str; 2]; 3] = [["x_m", "x"], ["y_m", "y"], ["z_m", "z"]];
-
-pub(super) fn positions(format: Format, bytes: &[u8]) -> Result<Positions, ReadError> {
+pub(super) fn read(format: Format, bytes: &[u8], cloud: &mut StoredCloud) -> Result<(), ReadError> {
     let text = SourceFile { format, bytes };
     // UTF-8 with a byte order mark.
     let mut offset = if bytes.starts_with("\u{feff}".as_bytes()) {
@@ -20,32 +21,19 @@ pub(super) fn positions(format: Format, bytes: &[u8]) -> Result<Positions, ReadE
             offset = next;
             continue;
         }
-        let separates = match line.contains(';') {
-            true => |c: char| c == ';' || c.is_ascii_whitespace(),
-            false => |c: char| c == ',' || c.is_ascii_whitespace(),
+        let field = |(word, name)| {
+            let (byte, number) = (0, SourceNumber::F64);
+            (name, SourceField { word, byte, number })
         };
-        let is_header = line.split(separates).any(|field| {
-            let field = field.trim();
-            !field.is_empty() && field.parse::<f64>().is_err()
-        });
-        if !is_header {
-            return text.rows(offset, [0, 1, 2], separates, usize::MAX);
-        }
-        let place = |names: [&str; 2]| {
-            let mut fields = line.split(separates).filter(|field| !field.is_empty());
-            fields.position(|field| {
-                let field = field.trim().trim_matches('"');
-                names.iter().any(|name| name.eq_ignore_ascii_case(field))
-            })
+        let is_header = words(line).any(|word| !word.is_empty() && word.parse::<f64>().is_err());
+        let row = match is_header {
+            true => SourceRow::of(words(line).enumerate().map(field)),
+            false => SourceRow::of(["x", "y", "z"].into_iter().enumerate().map(field)),
         };
-        let [Some(x), Some(y), Some(z)] = NAMES.map(place) else {
-            return Err(text.wrong(
-                offset,
-                "columns x_m, y_m and z_m",
-                super::source::shown(line),
-            ));
-        };
-        return text.rows(next, [x, y, z], separates, usize::MAX);
+        let row = row.map_err(|_| text.wrong(offset, "columns x_m, y_m and z_m", shown(line)))?;
+        let start = if is_header { next } else { offset };
+        text.rows(start, &row, usize::MAX, cloud)?;
+        break;
     }
-    Ok(Positions::new())
+    Ok(())
 }

@@ -1,6 +1,7 @@
 //! MCAP with ROS 2 messages, by the `mcap` crate: the points of every
 //! `sensor_msgs/msg/PointCloud2`, each in the frame of its message; without transforms between
-//! frames.
+//! frames. Times count from the message's stamp, but for those of 64 bits, as Hesai's and
+//! RoboSense's drivers write them.
 
 use std::collections::HashSet;
 
@@ -8,7 +9,9 @@ use mcap::McapError;
 use mcap::records::{Record, op};
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
-use super::source::{Positions, ReadError, SourceNumber};
+use super::source::{ReadError, SourceField, SourceNumber, SourceRow};
+use super::stored_cloud::StoredCloud;
+use crate::Column;
 use crate::formats::Format;
 use crate::messages::Topic;
 
@@ -29,13 +32,17 @@ fn wrong(offset: usize, expected: &str, got: impl ToString) -> ReadError {
 const TIMES_LARGER: usize = 256;
 const ANY_CASE: usize = 64 << 20;
 
-pub(super) fn positions(bytes: &[u8]) -> Result<Positions, ReadError> {
+pub(super) fn read(bytes: &[u8], cloud: &mut StoredCloud) -> Result<(), ReadError> {
     let limit = bytes.len().saturating_mul(TIMES_LARGER).max(ANY_CASE);
     let options = LinearReaderOptions::default()
         .with_prevalidate_chunk_crcs(true)
         .with_record_length_limit(limit);
     let mut reader = LinearReader::new_with_options(options);
-    let mut clouds = CloudCollector::default();
+    let mut clouds = CloudCollector {
+        schemas: HashSet::new(),
+        channels: HashSet::new(),
+        cloud,
+    };
     let mut rest = bytes;
     while let Some(event) = reader.next_event() {
         let at = bytes.len() - rest.len();
@@ -53,20 +60,19 @@ pub(super) fn positions(bytes: &[u8]) -> Result<Positions, ReadError> {
             }
         }
     }
-    Ok(clouds.positions)
+    Ok(())
 }
 
 /// Points read so far.
-#[derive(Default)]
-struct CloudCollector {
+struct CloudCollector<'a> {
     /// Schemas of point clouds.
     schemas: HashSet<u16>,
     /// Channels of point clouds.
     channels: HashSet<u16>,
-    positions: Positions,
+    cloud: &'a mut StoredCloud,
 }
 
-impl CloudCollector {
+impl CloudCollector<'_> {
     fn record(
         &mut self,
         opcode: u8,
@@ -87,7 +93,7 @@ impl CloudCollector {
                 self.channels.insert(channel.id);
             }
             Record::Message { header, data } if self.channels.contains(&header.channel_id) => {
-                cloud(&data, &mut self.positions)?;
+                points(&data, self.cloud)?;
             }
             _ => {}
         }
@@ -128,8 +134,8 @@ impl<'a> CdrReader<'a> {
     }
 }
 
-/// Adds the points of a `sensor_msgs/msg/PointCloud2`, finite or not.
-fn cloud(message: &[u8], positions: &mut Positions) -> Result<(), ReadError> {
+/// Adds the points of a `sensor_msgs/msg/PointCloud2`.
+fn points(message: &[u8], cloud: &mut StoredCloud) -> Result<(), ReadError> {
     let mut cdr = CdrReader {
         bytes: message,
         at: 0,
@@ -139,42 +145,132 @@ fn cloud(message: &[u8], positions: &mut Positions) -> Result<(), ReadError> {
         other => return Err(wrong(0, "CDR, little-endian", format!("{other:02x?}"))),
     }
     // Stamp and frame; height and width.
-    cdr.u32()?;
-    cdr.u32()?;
+    let stamp_s = cdr.u32()? as f64 + cdr.u32()? as f64 * 1e-9;
     cdr.sequence()?;
     cdr.u32()?;
     cdr.u32()?;
-    let mut axes: [Option<(usize, SourceNumber)>; 3] = [None; 3];
+    let mut fields = Vec::new();
     for _ in 0..cdr.u32()? {
         let name = cdr.sequence()?;
-        let offset = cdr.u32()?;
+        let byte = cdr.u32()?;
         let number = match cdr.u8()? {
+            1 => Some(SourceNumber::I8),
+            2 => Some(SourceNumber::U8),
+            3 => Some(SourceNumber::I16),
+            4 => Some(SourceNumber::U16),
+            5 => Some(SourceNumber::I32),
+            6 => Some(SourceNumber::U32),
             7 => Some(SourceNumber::F32),
             8 => Some(SourceNumber::F64),
             _ => None,
         };
         cdr.u32()?;
-        let axis = [b"x\0", b"y\0", b"z\0"].iter().position(|it| name == *it);
-        if let Some(axis) = axis.and_then(|axis| axes.get_mut(axis)) {
-            *axis = number.map(|number| (offset, number));
-        }
+        let name = std::str::from_utf8(name)
+            .unwrap_or_default()
+            .trim_end_matches('\0');
+        let field = |number| SourceField {
+            word: 0,
+            byte,
+            number,
+        };
+        fields.extend(number.map(|number| (name, field(number))));
     }
-    let [Some(x), Some(y), Some(z)] = axes else {
-        return Err(wrong(
-            cdr.at,
-            "fields x, y and z of FLOAT32 or FLOAT64",
-            "others",
-        ));
-    };
+    let row = SourceRow::of(fields);
+    let row = row.map_err(|axis| wrong(cdr.at, "numbers x, y and z", format!("no {axis}")))?;
+    cloud.begin(&row.columns, 0);
     let big_endian = cdr.u8()? != 0;
     let point_bytes = cdr.u32()?;
     cdr.u32()?;
-    for row in cdr.sequence()?.chunks_exact(point_bytes.max(1)) {
-        let read =
-            |(offset, number): (usize, SourceNumber)| number.read(row.get(offset..)?, big_endian);
-        if let (Some(x), Some(y), Some(z)) = (read(x), read(y), read(z)) {
-            positions.push([x, y, z]);
-        }
+    let time = row.columns.get(Column::Time);
+    let start_s = match time.map(|field| field.number) {
+        Some(SourceNumber::F64) => 0.0,
+        _ => stamp_s,
+    };
+    for bytes in cdr.sequence()?.chunks_exact(point_bytes.max(1)) {
+        let read = |field: SourceField| field.number.read(bytes.get(field.byte..)?, big_endian);
+        let position = row.axes.map(|field| read(field).unwrap_or(f64::NAN));
+        cloud.push(position, |column| {
+            let value = row.columns.value(column, read)?;
+            Some(match column {
+                Column::Time => start_s + value,
+                _ => value,
+            })
+        });
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Fields;
+    use crate::messages::cdr::Cdr;
+
+    /// A message of one point at 1, 2, 3, stamped at a whole second.
+    fn message(second: i32, fields: &[(&str, u8, &[u8])]) -> Vec<u8> {
+        let mut data: Vec<u8> = [1.0_f32, 2.0, 3.0]
+            .iter()
+            .flat_map(|axis| axis.to_le_bytes())
+            .collect();
+        let mut cdr = Cdr::new();
+        cdr.i32(second);
+        cdr.u32(0);
+        cdr.string("lidar");
+        cdr.u32(1);
+        cdr.u32(1);
+        cdr.length(3 + fields.len());
+        let mut field = |name: &str, offset: usize, datatype: u8| {
+            cdr.string(name);
+            cdr.u32(offset as u32);
+            cdr.u8(datatype);
+            cdr.u32(1);
+        };
+        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+            field(name, 4 * axis, 7);
+        }
+        for (name, datatype, bytes) in fields {
+            field(name, data.len(), *datatype);
+            data.extend(*bytes);
+        }
+        cdr.u8(0);
+        cdr.u32(data.len() as u32);
+        cdr.u32(data.len() as u32);
+        cdr.length(data.len());
+        data.iter().for_each(|byte| cdr.u8(*byte));
+        cdr.u8(1);
+        cdr.bytes().to_vec()
+    }
+
+    fn read(messages: &[Vec<u8>]) -> Vec<(Column, Vec<f32>)> {
+        let mut cloud = StoredCloud::new(Fields::ALL);
+        for message in messages {
+            points(message, &mut cloud).unwrap();
+        }
+        assert_eq!(cloud.positions, vec![[1.0, 2.0, 3.0]; messages.len()]);
+        cloud.columns
+    }
+
+    /// Velodyne's and Ouster's drivers count from the stamp; Hesai's and RoboSense's do not.
+    #[test]
+    fn times_of_drivers_are_read() {
+        let velodyne = |second, time: f32| message(second, &[("time", 7, &time.to_le_bytes())]);
+        let ouster = |second, t: u32| message(second, &[("t", 6, &t.to_le_bytes())]);
+        let hesai = |at: f64| message(9, &[("timestamp", 8, &at.to_le_bytes())]);
+        for messages in [
+            [velodyne(100, 0.5), velodyne(102, 0.0)],
+            [ouster(100, 500_000_000), ouster(102, 0)],
+            [hesai(1_700_000_000.5), hesai(1_700_000_002.0)],
+        ] {
+            assert_eq!(read(&messages), [(Column::Time, vec![0.0, 1.5])]);
+        }
+    }
+
+    #[test]
+    fn messages_are_joined_by_the_columns_that_all_have() {
+        let both = message(1, &[("ring", 4, &[5, 0]), ("intensity", 2, &[200])]);
+        let one = message(2, &[("intensity", 7, &0.5_f32.to_le_bytes())]);
+        let expected = [(Column::Intensity, vec![200.0, 0.5])];
+        assert_eq!(read(&[both.clone(), one]), expected);
+        assert_eq!(read(&[both]).len(), 2);
+    }
 }

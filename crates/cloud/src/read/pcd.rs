@@ -1,6 +1,7 @@
 //! PCD 0.7 and before: text, binary, or binary compressed (LZF, columns one after the other).
 
-use super::source::{Positions, ReadError, SourceFile, SourceNumber, shown};
+use super::source::{ReadError, SourceField, SourceFile, SourceNumber, SourceRow, shown};
+use super::stored_cloud::StoredCloud;
 use crate::formats::Format;
 
 /// A column.
@@ -23,7 +24,7 @@ struct PcdHeader {
     points: Option<usize>,
 }
 
-pub(super) fn positions(bytes: &[u8]) -> Result<Positions, ReadError> {
+pub(super) fn read(bytes: &[u8], cloud: &mut StoredCloud) -> Result<(), ReadError> {
     let text = SourceFile {
         format: Format::Pcd,
         bytes,
@@ -39,9 +40,9 @@ pub(super) fn positions(bytes: &[u8]) -> Result<Positions, ReadError> {
         if key == "DATA" {
             let read = PcdReader::new(&text, &header, next)?;
             return match words.as_slice() {
-                ["ascii"] => read.text(),
-                ["binary"] => read.binary(),
-                ["binary_compressed"] => read.compressed(),
+                ["ascii"] => read.text(cloud),
+                ["binary"] => read.binary(cloud),
+                ["binary_compressed"] => read.compressed(cloud),
                 _ => {
                     let expected = "DATA ascii, binary or binary_compressed";
                     Err(text.wrong(offset, expected, shown(line)))
@@ -105,82 +106,61 @@ impl PcdHeader {
     }
 }
 
-/// Columns of x, y and z: index of the word in a row of text, byte offset in a row, and stride of
-/// the column in compressed data.
 struct PcdReader<'a> {
     text: SourceFile<'a>,
     start: usize,
     points: usize,
-    row: usize,
-    columns: [PcdColumn; 3],
-}
-
-#[derive(Clone, Copy)]
-struct PcdColumn {
-    word: usize,
-    byte: usize,
-    number: SourceNumber,
-    stride: usize,
+    row_bytes: usize,
+    row: SourceRow,
 }
 
 impl<'a> PcdReader<'a> {
     fn new(text: &SourceFile<'a>, header: &PcdHeader, start: usize) -> Result<Self, ReadError> {
         let whole = header.width.checked_mul(header.height);
         let points = header.points.or(whole).unwrap_or(0);
-        let mut columns = [None; 3];
-        let (mut word, mut row) = (0_usize, 0_usize);
+        let mut fields = Vec::new();
+        let (mut word, mut byte) = (0_usize, 0_usize);
         for (name, field) in header.fields() {
-            let axis = ["x", "y", "z"].iter().position(|axis| *axis == name);
-            if let (Some(slot), Some(number)) =
-                (axis.and_then(|a| columns.get_mut(a)), field.number)
-            {
-                *slot = Some(PcdColumn {
-                    word,
-                    byte: row,
-                    number,
-                    stride: field.size,
-                });
+            // Other counts are no number of a point.
+            if let (Some(number), 1) = (field.number, field.count) {
+                fields.push((name, SourceField { word, byte, number }));
             }
             word = word.saturating_add(field.count);
-            row = row.saturating_add(field.size.saturating_mul(field.count));
+            byte = byte.saturating_add(field.size.saturating_mul(field.count));
         }
-        let [Some(x), Some(y), Some(z)] = columns else {
-            return Err(text.wrong(0, "columns x, y and z", header.names.join(" ")));
-        };
+        let row = SourceRow::of(fields)
+            .map_err(|_| text.wrong(0, "columns x, y and z", header.names.join(" ")))?;
         Ok(Self {
             text: *text,
             start,
             points,
+            row_bytes: byte,
             row,
-            columns: [x, y, z],
         })
     }
 
-    fn text(&self) -> Result<Positions, ReadError> {
-        let places = self.columns.map(|column| column.word);
-        let space = |c: char| c.is_ascii_whitespace();
-        let positions = self.text.rows(self.start, places, space, self.points)?;
-        if positions.len() < self.points {
-            return Err(self.short(positions.len(), "points"));
+    fn text(&self, cloud: &mut StoredCloud) -> Result<(), ReadError> {
+        let count = self.text.rows(self.start, &self.row, self.points, cloud)?;
+        match count < self.points {
+            true => Err(self.short(count, "points")),
+            false => Ok(()),
         }
-        Ok(positions)
     }
 
     fn short(&self, got: usize, what: &str) -> ReadError {
-        let expected = format!("{} points of {} bytes", self.points, self.row);
+        let expected = format!("{} points of {} bytes", self.points, self.row_bytes);
         self.text
             .wrong(self.text.bytes.len(), expected, format!("{got} {what}"))
     }
 
-    fn binary(&self) -> Result<Positions, ReadError> {
-        let columns = self.columns.map(|column| (column.byte, column.number));
-        let size = (self.points, self.row);
-        let table = self.text.table(self.start, size, columns, false);
+    fn binary(&self, cloud: &mut StoredCloud) -> Result<(), ReadError> {
+        let size = (self.points, self.row_bytes);
+        let table = self.text.table(self.start, size, &self.row, false, cloud);
         table.map_err(|got| self.short(got, "bytes"))
     }
 
     /// Two sizes, then column by column.
-    fn compressed(&self) -> Result<Positions, ReadError> {
+    fn compressed(&self, cloud: &mut StoredCloud) -> Result<(), ReadError> {
         let bytes = self.text.bytes.get(self.start..).unwrap_or_default();
         let size = |at: usize| Some(u32::from_le_bytes(*bytes.get(at..)?.first_chunk()?) as usize);
         let short = || self.short(bytes.len(), "bytes");
@@ -191,7 +171,7 @@ impl<'a> PcdReader<'a> {
             .ok_or_else(short)?;
         if self
             .points
-            .checked_mul(self.row)
+            .checked_mul(self.row_bytes)
             .is_none_or(|size| size > whole)
         {
             return Err(self.short(whole, "bytes"));
@@ -200,15 +180,14 @@ impl<'a> PcdReader<'a> {
             self.text
                 .wrong(self.start + 8, "data packed by LZF", "other bytes")
         })?;
-        let read = |point: usize, column: PcdColumn| {
-            let at = column.byte * self.points + point * column.stride;
-            let bytes = unpacked.get(at..).unwrap_or_default();
-            column.number.read(bytes, false).unwrap_or(f64::NAN)
-        };
-        let points = 0..self.points;
-        Ok(points
-            .map(|point| self.columns.map(|column| read(point, column)))
-            .collect())
+        cloud.begin(&self.row.columns, self.points);
+        for point in 0..self.points {
+            cloud.row(&self.row, |field| {
+                let at = field.byte * self.points + point * field.number.bytes();
+                field.number.read(unpacked.get(at..)?, false)
+            });
+        }
+        Ok(())
     }
 }
 

@@ -1,6 +1,7 @@
 //! PLY: source, little-endian or big-endian, any properties of the vertices.
 
-use super::source::{Positions, ReadError, SourceFile, SourceNumber, shown};
+use super::source::{ReadError, SourceField, SourceFile, SourceNumber, SourceRow, shown};
+use super::stored_cloud::StoredCloud;
 use crate::formats::Format;
 
 /// The header.
@@ -31,7 +32,7 @@ enum PlyProperty {
     List(SourceNumber, SourceNumber),
 }
 
-pub(super) fn positions(bytes: &[u8]) -> Result<Positions, ReadError> {
+pub(super) fn read(bytes: &[u8], cloud: &mut StoredCloud) -> Result<(), ReadError> {
     let source = SourceFile {
         format: Format::Ply,
         bytes,
@@ -40,12 +41,7 @@ pub(super) fn positions(bytes: &[u8]) -> Result<Positions, ReadError> {
     let mut offset = header.start;
     for element in &header.elements {
         if element.name == "vertex" {
-            return match header.data {
-                PlyEncoding::Text => text_vertices(&source, element, offset),
-                PlyEncoding::Little | PlyEncoding::Big => {
-                    vertices(&source, element, offset, header.data == PlyEncoding::Big)
-                }
-            };
+            return vertices(&source, element, offset, header.data, cloud);
         }
         // Elements without bytes: a forged count of them would take forever.
         let is_nothing = element.properties.is_empty() && header.data != PlyEncoding::Text;
@@ -148,59 +144,43 @@ fn skip(bytes: &[u8], element: &PlyElement, mut offset: usize, big_endian: bool)
     (offset <= bytes.len()).then_some(offset)
 }
 
-/// Index of a property.
-fn property_index(
-    source: &SourceFile<'_>,
-    element: &PlyElement,
-    name: &str,
-) -> Result<usize, ReadError> {
-    let found = element.properties.iter().position(|(own, _)| own == name);
-    found.ok_or_else(|| source.wrong(0, format!("a property {name} of the vertices"), "none"))
-}
-
-fn text_vertices(
-    source: &SourceFile<'_>,
-    element: &PlyElement,
-    offset: usize,
-) -> Result<Positions, ReadError> {
-    let at = |name: &str| property_index(source, element, name);
-    let places = [at("x")?, at("y")?, at("z")?];
-    let positions = source.rows(offset, places, |c| c.is_ascii_whitespace(), element.count)?;
-    if positions.len() < element.count {
-        let expected = format!("{} vertices", element.count);
-        return Err(source.wrong(source.bytes.len(), expected, positions.len().to_string()));
-    }
-    Ok(positions)
-}
-
 fn vertices(
     source: &SourceFile<'_>,
     element: &PlyElement,
     start: usize,
-    big_endian: bool,
-) -> Result<Positions, ReadError> {
-    const AXES: [&str; 3] = ["x", "y", "z"];
-    for name in AXES {
-        property_index(source, element, name)?;
-    }
-    let mut columns = [None; 3];
-    let mut row = 0_usize;
-    for (own, property) in &element.properties {
-        let PlyProperty::One(number) = property else {
-            return Err(source.wrong(0, "vertices without lists", format!("a list {own}")));
-        };
-        for (column, name) in columns.iter_mut().zip(AXES) {
-            if own == name {
-                column.get_or_insert((row, *number));
+    data: PlyEncoding,
+    cloud: &mut StoredCloud,
+) -> Result<(), ReadError> {
+    let mut fields = Vec::new();
+    let mut byte = 0;
+    for (word, (name, property)) in element.properties.iter().enumerate() {
+        let number = match property {
+            PlyProperty::One(number) => *number,
+            // Words after a list have no fixed place.
+            PlyProperty::List(..) if data == PlyEncoding::Text => break,
+            PlyProperty::List(..) => {
+                return Err(source.wrong(0, "vertices without lists", format!("a list {name}")));
             }
-        }
-        row += number.bytes();
+        };
+        fields.push((name.as_str(), SourceField { word, byte, number }));
+        byte += number.bytes();
     }
-    // Every axis has been found above.
-    let columns = columns.map(|column| column.unwrap_or((0, SourceNumber::F32)));
-    let table = source.table(start, (element.count, row), columns, big_endian);
+    let row = SourceRow::of(fields)
+        .map_err(|axis| source.wrong(0, format!("a property {axis} of the vertices"), "none"))?;
+    let count = element.count;
+    if data == PlyEncoding::Text {
+        let got = source.rows(start, &row, count, cloud)?;
+        return match got < count {
+            true => {
+                let expected = format!("{count} vertices");
+                Err(source.wrong(source.bytes.len(), expected, got.to_string()))
+            }
+            false => Ok(()),
+        };
+    }
+    let table = source.table(start, (count, byte), &row, data == PlyEncoding::Big, cloud);
     table.map_err(|got| {
-        let expected = format!("{} vertices of {row} bytes", element.count);
+        let expected = format!("{count} vertices of {byte} bytes");
         source.wrong(start, expected, format!("{got} bytes"))
     })
 }

@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use super::stored_cloud::StoredCloud;
+use crate::Column;
 use crate::formats::Format;
 
 /// x, y and z in metres.
@@ -67,6 +69,105 @@ impl SourceNumber {
     }
 }
 
+/// A number of a row: a word of a text, or bytes.
+#[derive(Clone, Copy)]
+pub(super) struct SourceField {
+    pub(super) word: usize,
+    /// Offset in the row.
+    pub(super) byte: usize,
+    pub(super) number: SourceNumber,
+}
+
+/// The fields of columns.
+#[derive(Clone, Copy, Default)]
+pub(super) struct SourceColumns([Option<SourceField>; Column::ALL.len()]);
+
+impl SourceColumns {
+    /// Takes a field if its name, in any case, is that of a column without one.
+    pub(super) fn insert(&mut self, name: &str, field: SourceField) {
+        let name = name.to_ascii_lowercase();
+        // CloudCompare's prefix.
+        let column = match name.strip_prefix("scalar_").unwrap_or(&name) {
+            "intensity" | "i" | "reflectance" | "reflectivity" => Column::Intensity,
+            "ring" => Column::Ring,
+            "time" | "time_s" | "t" | "timestamp" | "gps_time" | "gpstime" => Column::Time,
+            "tilt" | "tilt_deg" => Column::Tilt,
+            "laser" => Column::Laser,
+            "sd" | "sd_m" => Column::Sd,
+            "echo" => Column::Echo,
+            _ => return,
+        };
+        if let Some(slot) = self.0.get_mut(column as usize) {
+            slot.get_or_insert(field);
+        }
+    }
+
+    pub(super) fn get(&self, column: Column) -> Option<SourceField> {
+        *self.0.get(column as usize)?
+    }
+
+    /// The value of a column in a row whose fields `read` reads. Whole numbers of a time are
+    /// nanoseconds, as Ouster's driver writes them.
+    pub(super) fn value(
+        &self,
+        column: Column,
+        read: impl Fn(SourceField) -> Option<f64>,
+    ) -> Option<f64> {
+        let field = self.get(column)?;
+        let is_float = matches!(field.number, SourceNumber::F32 | SourceNumber::F64);
+        let unit = match column {
+            Column::Time if !is_float => 1e-9,
+            _ => 1.0,
+        };
+        Some(read(field)? * unit)
+    }
+}
+
+/// The fields of x, y and z and of the columns.
+pub(super) struct SourceRow {
+    pub(super) axes: [SourceField; 3],
+    pub(super) columns: SourceColumns,
+}
+
+impl SourceRow {
+    /// Finds fields by their names in any case. An error is the name of an axis without one.
+    pub(super) fn of<'n>(
+        fields: impl IntoIterator<Item = (&'n str, SourceField)>,
+    ) -> Result<Self, &'static str> {
+        let (mut axes, mut columns) = ([None; 3], SourceColumns::default());
+        for (name, field) in fields {
+            let name = name.to_ascii_lowercase();
+            let axis = ["x", "y", "z"]
+                .iter()
+                .position(|axis| *axis == name.strip_suffix("_m").unwrap_or(&name));
+            match axis.and_then(|axis| axes.get_mut(axis)) {
+                Some(slot) => _ = slot.get_or_insert(field),
+                None => columns.insert(&name, field),
+            }
+        }
+        match axes {
+            [Some(x), Some(y), Some(z)] => Ok(Self {
+                axes: [x, y, z],
+                columns,
+            }),
+            [None, ..] => Err("x"),
+            [_, None, _] => Err("y"),
+            _ => Err("z"),
+        }
+    }
+
+    /// Number of words up to the last field.
+    fn words(&self) -> usize {
+        let columns = self.columns.0.iter().flatten();
+        let words = self
+            .axes
+            .iter()
+            .chain(columns)
+            .map(|field| field.word.saturating_add(1));
+        words.max().unwrap_or(0)
+    }
+}
+
 /// A file, with its format for errors.
 #[derive(Clone, Copy)]
 pub(super) struct SourceFile<'a> {
@@ -107,15 +208,16 @@ impl<'a> SourceFile<'a> {
         }
     }
 
-    /// Positions in a table of `count` binary rows at `start`, by offset and type of x, y and z. An
-    /// error is the number of bytes of a file that is too short.
+    /// Adds the points of a table of `count` binary rows at `start`. An error is the number of
+    /// bytes of a file that is too short.
     pub(super) fn table(
         &self,
         start: usize,
         (count, row_bytes): (usize, usize),
-        columns: [(usize, SourceNumber); 3],
+        row: &SourceRow,
         big_endian: bool,
-    ) -> Result<Positions, usize> {
+        cloud: &mut StoredCloud,
+    ) -> Result<(), usize> {
         let rows = self.bytes.get(start..).unwrap_or_default();
         if count
             .checked_mul(row_bytes)
@@ -123,44 +225,63 @@ impl<'a> SourceFile<'a> {
         {
             return Err(rows.len());
         }
-        let read = |row: &[u8], (offset, number): (usize, SourceNumber)| {
-            let bytes = row.get(offset..).unwrap_or_default();
-            number.read(bytes, big_endian).unwrap_or(f64::NAN)
-        };
         let rows = rows.chunks_exact(row_bytes.max(1)).take(count);
-        Ok(rows
-            .map(|row| columns.map(|column| read(row, column)))
-            .collect())
+        cloud.begin(&row.columns, rows.len());
+        for bytes in rows {
+            cloud.row(row, |field| {
+                field.number.read(bytes.get(field.byte..)?, big_endian)
+            });
+        }
+        Ok(())
     }
 
-    /// At most `most` points as text, one per line from `offset` on, with the columns of x, y and
-    /// z. Empty lines and comments are skipped.
+    /// Adds at most `most` points as text, one per line from `offset` on, and returns their number.
+    /// Empty lines and comments are skipped; a column whose word is no number is zero.
     pub(super) fn rows(
         &self,
         mut offset: usize,
-        columns: [usize; 3],
-        is_separator: impl Fn(char) -> bool + Copy,
+        row: &SourceRow,
         most: usize,
-    ) -> Result<Positions, ReadError> {
-        let mut positions = Positions::new();
-        while positions.len() < most
+        cloud: &mut StoredCloud,
+    ) -> Result<usize, ReadError> {
+        cloud.begin(&row.columns, 0);
+        let mut count = 0;
+        let needed = row.words();
+        let mut found: Vec<&str> = Vec::new();
+        while count < most
             && let Some((line, next)) = self.line(offset)?
         {
             if !is_comment(line) {
-                let fields = || line.split(is_separator).filter(|field| !field.is_empty());
+                found.clear();
+                found.extend(words(line).take(needed));
                 let mut position = [0.0; 3];
-                for (axis, place) in position.iter_mut().zip(columns) {
-                    let field = fields().nth(place).unwrap_or("the end of the line");
-                    *axis = field
+                for (axis, field) in position.iter_mut().zip(row.axes) {
+                    let word = *found.get(field.word).unwrap_or(&"the end of the line");
+                    *axis = word
                         .parse()
-                        .map_err(|_| self.wrong(offset, "a number", format!("{field:?}")))?;
+                        .map_err(|_| self.wrong(offset, "a number", format!("{word:?}")))?;
                 }
-                positions.push(position);
+                let read = |field: SourceField| found.get(field.word)?.parse().ok();
+                cloud.push(position, |column| row.columns.value(column, read));
+                count += 1;
             }
             offset = next;
         }
-        Ok(positions)
+        Ok(count)
     }
+}
+
+/// The words of a line between semicolons, else commas, else spaces.
+pub(super) fn words(line: &str) -> impl Iterator<Item = &str> {
+    let separator = [';', ','].into_iter().find(|c| line.contains(*c));
+    let is_separator = move |c: char| match separator {
+        Some(separator) => c == separator,
+        None => c.is_ascii_whitespace(),
+    };
+    // Columns may be empty between commas.
+    line.split(is_separator)
+        .map(|word| word.trim().trim_matches('"'))
+        .filter(move |word| separator.is_some() || !word.is_empty())
 }
 
 /// Whether a line of text holds no point.

@@ -1,11 +1,34 @@
+use std::io::Cursor;
+
 use super::*;
+use crate::tests::samples::{SharedOutput, cloud_from, metadata};
+use crate::{Column, Fields, Point, Sink};
+
+/// Every column that can be read.
+const COLUMNS: Fields = Fields::FILE.union(Fields::LASER.union(Fields::SD.union(Fields::ECHO)));
+
+/// A file with all its columns.
+fn whole(format: Format, bytes: Vec<u8>) -> Result<StoredCloud, ReadError> {
+    let read = super::cloud(format, bytes, COLUMNS)?;
+    for (column, values) in &read.columns {
+        assert_eq!(values.len(), read.positions.len(), "{format}: {column:?}");
+        assert!(values.iter().all(|value| value.is_finite()));
+    }
+    Ok(read)
+}
 
 /// The positions of a file, without its counts.
 fn places(format: Format, bytes: Vec<u8>) -> Result<Positions, ReadError> {
-    positions(format, bytes).map(|read| read.positions)
+    whole(format, bytes).map(|read| read.positions)
 }
-use crate::tests::samples::{SharedOutput, cloud_from, metadata};
-use crate::{Fields, Sink};
+
+/// Columns by name.
+fn named(read: &StoredCloud) -> Vec<(&'static str, &[f32])> {
+    let columns = read.columns.iter();
+    columns
+        .map(|(column, values)| (column.name(), values.as_slice()))
+        .collect()
+}
 
 /// Points of a day that every format can represent: ROS 2 ends in 2038.
 fn cloud(count: u32) -> crate::Points {
@@ -13,8 +36,12 @@ fn cloud(count: u32) -> crate::Points {
 }
 
 fn written(format: Format, points: &crate::Points) -> Vec<u8> {
+    written_with(format, points, Fields::FILE)
+}
+
+fn written_with(format: Format, points: &crate::Points, fields: Fields) -> Vec<u8> {
     let output = SharedOutput::default();
-    let mut writer = format.writer(output.clone(), Fields::FILE);
+    let mut writer = format.writer(output.clone(), fields);
     writer.begin(&metadata()).unwrap();
     writer.points(points).unwrap();
     writer.finish().unwrap();
@@ -27,7 +54,7 @@ fn files_round_trip() {
     let points = cloud(3_000);
     for format in Format::ALL {
         let bytes = written(format, &points);
-        let read = places(format, bytes).unwrap();
+        let read = places(format, bytes.clone()).unwrap();
         assert_eq!(read.len(), points.len());
         // f32 at 100 m; 0.1 mm steps; shortest decimals.
         let most = match format {
@@ -40,6 +67,79 @@ fn files_round_trip() {
             .map(|(((x, y), z), [a, b, c])| (x - a).abs().max((y - b).abs()).max((z - c).abs()));
         let off = off.fold(0.0, f64::max);
         assert!(off <= most, "{format}: {off}");
+        let bare = positions(format, bytes).unwrap();
+        assert_eq!(
+            (&bare.positions, bare.columns),
+            (&read, Vec::new()),
+            "{format}"
+        );
+    }
+}
+
+#[test]
+fn columns_round_trip() {
+    let points = cloud(3_000);
+    let first = points.time()[0];
+    for format in Format::ALL {
+        let mut bytes = Vec::new();
+        if format == Format::Xyz {
+            // The names are in its companion.
+            bytes.extend(
+                b"x_m y_m z_m intensity ring time_s tilt_deg laser device_time_s sd_m echo\n",
+            );
+        }
+        bytes.extend(written_with(format, &points, Fields::ALL));
+        let read = whole(format, bytes).unwrap();
+        let has = match format {
+            Format::Kitti => Fields::INTENSITY,
+            // The joint has the tilt.
+            Format::Mcap => COLUMNS - Fields::TILT,
+            _ => COLUMNS,
+        };
+        let columns: Vec<Column> = read.columns.iter().map(|(column, _)| *column).collect();
+        assert_eq!(columns, has.columns().collect::<Vec<_>>(), "{format}");
+        for (column, values) in &read.columns {
+            let of = |point: Point| match column {
+                Column::Intensity => point.intensity.into(),
+                Column::Ring => point.ring.into(),
+                Column::Time => point.time.saturating_since(first).as_secs_f64(),
+                Column::Tilt => point.tilt.0,
+                Column::Laser => point.laser.into(),
+                Column::Sd => point.sd_m,
+                Column::Echo => point.echo.into(),
+                Column::DeviceTime => unreachable!(),
+            };
+            let most = match column {
+                // Two times of f64 Unix seconds, or seconds of f32 after one.
+                Column::Time => 4e-7,
+                Column::Tilt => 2e-6,
+                Column::Sd => 1e-9,
+                Column::Intensity if format == Format::Kitti => 2e-5,
+                _ => 0.0,
+            };
+            for (value, point) in values.iter().zip(points.iter()) {
+                let off = (f64::from(*value) - of(point)).abs();
+                assert!(off <= most, "{format}: {column:?}: {value} of {point:?}");
+            }
+        }
+    }
+}
+
+/// LAS has zeros for columns that a cloud lacks.
+#[test]
+fn clouds_without_a_column_have_none() {
+    let mut points = crate::Points::new(Fields::RING);
+    cloud(30).iter().for_each(|point| points.push(point));
+    for format in [
+        Format::Ply,
+        Format::Pcd,
+        Format::E57,
+        Format::Csv,
+        Format::Laz,
+    ] {
+        let read = whole(format, written_with(format, &points, Fields::RING)).unwrap();
+        let names: Vec<&str> = named(&read).into_iter().map(|(name, _)| name).collect();
+        assert_eq!(names, ["ring"], "{format}");
     }
 }
 
@@ -47,7 +147,7 @@ fn files_round_trip() {
 fn every_prefix_of_a_file_is_an_error_or_its_first_points() {
     let points = cloud(5);
     for format in Format::ALL {
-        let bytes = written(format, &points);
+        let bytes = written_with(format, &points, Fields::ALL);
         let whole = places(format, bytes.clone()).unwrap();
         for end in 0..bytes.len() {
             match places(format, bytes[..end].to_vec()) {
@@ -64,7 +164,7 @@ fn every_prefix_of_a_file_is_an_error_or_its_first_points() {
 fn changed_bytes_never_panic() {
     let points = cloud(5);
     for format in Format::ALL {
-        let bytes = written(format, &points);
+        let bytes = written_with(format, &points, Fields::ALL);
         for at in 0..bytes.len() {
             for change in [0x01, 0x80, 0xFF] {
                 let mut changed = bytes.clone();
@@ -262,4 +362,195 @@ fn non_finite_rows_are_skipped_and_counted() {
         );
         assert_eq!(read.without_numbers, 2, "{format}");
     }
+}
+
+#[test]
+fn columns_of_other_programs_are_found_by_their_names() {
+    let ply = |header: &str, data: &[u8]| {
+        let head = format!("ply\nformat {header}\nend_header\n");
+        [head.as_bytes(), data].concat()
+    };
+    let text = "ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty float scalar_Intensity\nproperty double scalar_GpsTime";
+    // The row without numbers has neither values nor the first time.
+    let rows = b"nan nan nan 9 9 9\n1 2 3 0 0.5 1000.25\n4 5 6 0 nan 1000.75\n";
+    let read = whole(Format::Ply, ply(text, rows)).unwrap();
+    assert_eq!(read.positions, [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
+    assert_eq!(read.without_numbers, 1);
+    let expected: [(&str, &[f32]); 2] = [("intensity", &[0.5, 0.0]), ("time", &[0.0, 0.5])];
+    assert_eq!(named(&read), expected);
+
+    let binary = "binary_big_endian 1.0\nelement vertex 1\nproperty ushort ring\nproperty float x\nproperty float y\nproperty float z\nproperty int reflectivity";
+    let mut data = 7_u16.to_be_bytes().to_vec();
+    data.extend(
+        [1.0_f32, 2.0, 3.0]
+            .iter()
+            .flat_map(|axis| axis.to_be_bytes()),
+    );
+    data.extend(40_000_i32.to_be_bytes());
+    let read = whole(Format::Ply, ply(binary, &data)).unwrap();
+    let expected: [(&str, &[f32]); 2] = [("intensity", &[40_000.0]), ("ring", &[7.0])];
+    assert_eq!(named(&read), expected);
+
+    // A time of whole numbers is Ouster's; a vector is no number.
+    let pcd = "VERSION .7\nFIELDS x y z ring t intensity\nSIZE 4 4 4 1 4 4\nTYPE F F F U U F\nCOUNT 1 1 1 3 1 1\nWIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA ascii\n1 2 3 7 8 9 500000000 12.5\n4 5 6 7 8 9 2000000000 13.5\n";
+    let read = whole(Format::Pcd, pcd.into()).unwrap();
+    let expected: [(&str, &[f32]); 2] = [("intensity", &[12.5, 13.5]), ("time", &[0.0, 1.5])];
+    assert_eq!(named(&read), expected);
+
+    // An index without a name, an empty word, and a word that is no number.
+    let csv = ",X,Y,\"Z\",Intensity,Timestamp\n0,1,2,3,,100\n1,4,5,6,high,102\n2,7,8,9,5,101\n";
+    let read = whole(Format::Csv, csv.into()).unwrap();
+    assert_eq!(read.positions.last(), Some(&[7.0, 8.0, 9.0]));
+    let expected: [(&str, &[f32]); 2] =
+        [("intensity", &[0.0, 0.0, 5.0]), ("time", &[0.0, 2.0, 1.0])];
+    assert_eq!(named(&read), expected);
+}
+
+#[test]
+fn columns_of_compressed_pcd_are_found() {
+    let head = "FIELDS x y z intensity\nSIZE 4 4 4 1\nTYPE F F F U\nCOUNT 1 1 1 1\nWIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA binary_compressed\n";
+    let mut packed = Vec::new();
+    for axis in [[1.0_f32, 4.0], [2.0, 5.0], [3.0, 6.0]] {
+        packed.push(7);
+        packed.extend(axis.iter().flat_map(|axis| axis.to_le_bytes()));
+    }
+    packed.extend([1, 8, 9]);
+    let mut bytes = head.as_bytes().to_vec();
+    bytes.extend((packed.len() as u32).to_le_bytes());
+    bytes.extend(26_u32.to_le_bytes());
+    bytes.extend(packed);
+    let read = whole(Format::Pcd, bytes).unwrap();
+    assert_eq!(read.positions, [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
+    let expected: [(&str, &[f32]); 1] = [("intensity", &[8.0, 9.0])];
+    assert_eq!(named(&read), expected);
+}
+
+/// Points without bytes would not end.
+#[test]
+fn axes_of_no_bytes_are_refused() {
+    let pcd = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 0 0 0\nPOINTS 9999999999999999\nDATA binary_compressed\n\0\0\0\0\0\0\0\0";
+    assert!(whole(Format::Pcd, pcd.into()).is_err());
+}
+
+/// Point format 1 of LAS 1.2, as airborne scanners write it.
+#[test]
+fn las_of_other_programs_keeps_intensity_time_and_the_last_return() {
+    let written = |intensity: u16| {
+        let mut builder = ::las::Builder::from((1, 2));
+        builder.point_format = ::las::point::Format::new(1).unwrap();
+        let output = Cursor::new(Vec::new());
+        let mut writer = ::las::Writer::new(output, builder.into_header().unwrap()).unwrap();
+        for (return_number, number_of_returns, time) in [(1, 2, 10.0), (2, 2, 10.0), (1, 1, 11.5)] {
+            let point = ::las::Point {
+                x: time,
+                intensity,
+                return_number,
+                number_of_returns,
+                gps_time: Some(time),
+                ..::las::Point::default()
+            };
+            writer.write_point(point).unwrap();
+        }
+        writer.into_inner().unwrap().into_inner()
+    };
+    let read = whole(Format::Las, written(40_000)).unwrap();
+    let expected: [(&str, &[f32]); 3] = [
+        ("intensity", &[40_000.0; 3]),
+        ("time", &[0.0, 0.0, 1.5]),
+        ("echo", &[0.0, 2.0, 0.0]),
+    ];
+    assert_eq!(named(&read), expected);
+    // LAS writes zeros for what is not there.
+    let read = whole(Format::Las, written(0)).unwrap();
+    assert_eq!(named(&read), &expected[1..]);
+}
+
+/// Two scans of another program: times count from each scan's beginning, a column that the second
+/// lacks is none, and rows of a grid are no rings. The second has ranges and directions, and a
+/// pose.
+#[test]
+fn scans_of_e57_are_joined_by_what_they_share() {
+    use ::e57::{
+        DateTime, E57Writer, Quaternion, Record, RecordDataType as Kind, RecordName as Name,
+        RecordValue, Transform, Translation,
+    };
+    let kind = Kind::Double {
+        min: None,
+        max: None,
+    };
+    let record = |name| Record {
+        name,
+        data_type: kind.clone(),
+    };
+    let mut output = Cursor::new(Vec::new());
+    let mut file = E57Writer::new(&mut output, "file").unwrap();
+    let first = [
+        Name::CartesianX,
+        Name::CartesianY,
+        Name::CartesianZ,
+        Name::TimeStamp,
+        Name::Intensity,
+    ];
+    let second = [
+        Name::SphericalRange,
+        Name::SphericalAzimuth,
+        Name::SphericalElevation,
+        Name::TimeStamp,
+    ];
+    let rows: [(&[Name], f64, [f64; 5]); 2] = [
+        (&first, 1_000.0, [1.0, 2.0, 3.0, 0.25, 0.5]),
+        (
+            &second,
+            1_060.0,
+            [2.0, 0.0, std::f64::consts::FRAC_PI_6, 0.5, 0.0],
+        ),
+    ];
+    for (names, start_s, values) in rows {
+        let mut prototype: Vec<Record> = names.iter().cloned().map(record).collect();
+        prototype.push(Record {
+            name: Name::RowIndex,
+            data_type: Kind::Integer { min: 0, max: 3_000 },
+        });
+        prototype.push(Record {
+            name: Name::ColumnIndex,
+            data_type: Kind::Integer { min: 0, max: 3_000 },
+        });
+        let mut scan = file.add_pointcloud("scan", prototype).unwrap();
+        let mut values: Vec<RecordValue> = values.map(RecordValue::Double).into();
+        values.truncate(names.len());
+        values.extend([RecordValue::Integer(7), RecordValue::Integer(7)]);
+        scan.add_point(values).unwrap();
+        scan.set_acquisition_start(Some(DateTime {
+            gps_time: start_s,
+            atomic_reference: false,
+        }));
+        if start_s > 1_000.0 {
+            // A quarter turn about z.
+            let half = std::f64::consts::FRAC_1_SQRT_2;
+            let (w, x, y, z) = (half, 0.0, 0.0, half);
+            let rotation = Quaternion { w, x, y, z };
+            let (x, y, z) = (10.0, 20.0, 30.0);
+            let translation = Translation { x, y, z };
+            scan.set_transform(Some(Transform {
+                rotation,
+                translation,
+            }));
+        }
+        scan.finalize().unwrap();
+    }
+    file.finalize().unwrap();
+    drop(file);
+    let read = whole(Format::E57, output.into_inner()).unwrap();
+    let expected = [[1.0, 2.0, 3.0], [10.0, 20.0 + 3.0_f64.sqrt(), 31.0]];
+    assert_eq!(read.positions.len(), 2);
+    for (got, expected) in read
+        .positions
+        .as_flattened()
+        .iter()
+        .zip(expected.as_flattened())
+    {
+        assert!((got - expected).abs() < 1e-12, "{got} {expected}");
+    }
+    let expected: [(&str, &[f32]); 1] = [("time", &[0.0, 60.25])];
+    assert_eq!(named(&read), expected);
 }

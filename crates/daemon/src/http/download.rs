@@ -6,7 +6,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::{Seek, SeekFrom};
 use std::os::fd::AsRawFd;
 use std::path::{Path as FilePath, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, LazyLock};
 use std::time::SystemTime;
 
@@ -21,6 +21,7 @@ use serde::Deserialize;
 use tokio::sync::OwnedSemaphorePermit;
 use utoipa::IntoParams;
 
+use super::ClientGuard;
 use super::api::Api;
 use super::openapi::{NotNow, StoredFile, StoredPicture};
 use super::partial::{is_known, tag_of};
@@ -162,23 +163,6 @@ pub(super) fn being_made() -> Refusal {
     Failure::new(Kind::Incomplete, "the scan is being made")
         .help("wait until its state is whole, partial or failed")
         .into()
-}
-
-/// Interrupts the reading of a log when its client disconnects.
-#[derive(Default)]
-pub(super) struct ClientGuard(Arc<AtomicBool>);
-
-impl ClientGuard {
-    /// True once the client has disconnected.
-    pub fn interrupt(&self) -> Arc<AtomicBool> {
-        Arc::clone(&self.0)
-    }
-}
-
-impl Drop for ClientGuard {
-    fn drop(&mut self) {
-        self.0.store(true, Ordering::Relaxed);
-    }
 }
 
 /// Makes a cloud as `velomotion replay` does, into an unnamed file.

@@ -37,6 +37,9 @@ pub mod tls;
 pub(crate) mod unix_socket;
 pub mod view;
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use engine::failure::Kind;
@@ -65,6 +68,23 @@ pub async fn with_disk<T: Send + 'static>(
         let help = "run the daemon with -vv and report the messages";
         Refusal::defect("a defect of the program", help)
     })
+}
+
+/// Interrupts the reading of a log when its client disconnects.
+#[derive(Default)]
+pub struct ClientGuard(Arc<AtomicBool>);
+
+impl ClientGuard {
+    /// True once the client has disconnected.
+    pub fn interrupt(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.0)
+    }
+}
+
+impl Drop for ClientGuard {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
 }
 
 /// A response in JSON.

@@ -21,8 +21,8 @@ use protocol::vlp16::models;
 use serde::Serialize;
 use utoipa::ToSchema;
 
+use super::ClientGuard;
 use super::api::Api;
-use super::download::ClientGuard;
 use super::openapi::{Limit, NotFound, NotNow};
 use super::refusal::Refusal;
 use crate::scans::LOG;

@@ -15,12 +15,16 @@ use axum::middleware::from_fn_with_state;
 use axum::response::{IntoResponse, Response};
 use engine::config::daemon::equal;
 use engine::failure::{Failure, Kind};
+use engine::reconstruct::source::Source;
+use engine::reconstruct::statistics::statistics;
 use futures_util::stream::unfold;
 use io::files::ReopenableFile;
+use scanner::Accuracy;
 use serde::Serialize;
 use tokio::sync::{Semaphore, watch};
 use tokio::time::sleep;
 
+use super::ClientGuard;
 use super::assets;
 use super::connection_limits::{Connection, Trust};
 use super::partial::tag_of;
@@ -66,6 +70,8 @@ pub struct ViewedFile {
     pub scanner: bool,
     /// Whether it is a log or recording.
     pub log: bool,
+    /// What its replay reports.
+    pub report: Option<serde_json::Value>,
     /// Why there is no cloud, or what it lacks.
     pub error: Option<String>,
     /// What to do about it.
@@ -73,12 +79,16 @@ pub struct ViewedFile {
     /// The cloud as binary PLY.
     #[serde(skip)]
     pub cloud: Option<Arc<ReopenableFile>>,
+    /// The log or recording.
+    #[serde(skip)]
+    source: Option<Arc<Source>>,
 }
 
 impl ViewedFile {
     /// A file whose cloud is to be made.
     #[must_use]
-    pub const fn new(name: String, log: bool) -> Self {
+    pub const fn new(name: String, source: Option<Arc<Source>>) -> Self {
+        let log = source.is_some();
         Self {
             name,
             state: FileState::Making,
@@ -87,9 +97,11 @@ impl ViewedFile {
             simulated: false,
             scanner: log,
             log,
+            report: None,
             error: None,
             help: None,
             cloud: None,
+            source,
         }
     }
 }
@@ -100,6 +112,8 @@ pub struct ViewedFiles {
     files: watch::Sender<Vec<ViewedFile>>,
     pages: Mutex<Pages>,
     downloads: Arc<Semaphore>,
+    /// Statistics are measured one after the other.
+    measuring: Arc<Semaphore>,
     closing: watch::Receiver<bool>,
 }
 
@@ -191,6 +205,7 @@ impl ViewServer {
             files: watch::Sender::new(files),
             pages: Mutex::default(),
             downloads: Arc::new(Semaphore::new(DOWNLOADS)),
+            measuring: Arc::new(Semaphore::new(1)),
             closing: server.closing(),
         });
         let router = Router::new()
@@ -244,6 +259,11 @@ async fn answer(State(files): State<Arc<ViewedFiles>>, request: Request) -> Resp
         let cloud = cloud_of(&files, &index, &headers).await;
         return cloud.unwrap_or_else(IntoResponse::into_response);
     }
+    if let Some(index) = rest.strip_prefix("statistics/") {
+        let index = index.to_owned();
+        let measured = statistics_of(&files, &index).await;
+        return measured.unwrap_or_else(IntoResponse::into_response);
+    }
     match rest {
         "" => assets::page_of_files(),
         "events" => events(&files),
@@ -278,6 +298,34 @@ async fn cloud_of(
     let tag = tag_of(&opened.1);
     let name = (name.as_str(), "ply");
     Ok(send_file::send(opened, name, permit, (headers, &tag)))
+}
+
+/// Density, gaps, ranges, residuals and stated standard deviations of a log.
+async fn statistics_of(files: &Arc<ViewedFiles>, index: &str) -> Result<Response, Refusal> {
+    let no_log = || Refusal::no_file("log");
+    let index: usize = index.parse().map_err(|_| no_log())?;
+    let source = files
+        .files
+        .borrow()
+        .get(index)
+        .and_then(|file| file.source.clone());
+    let source = source.ok_or_else(no_log)?;
+    let permit = Arc::clone(&files.measuring)
+        .try_acquire_owned()
+        .map_err(|_| Refusal::too_many("measurements"))?;
+    let client = ClientGuard::default();
+    let interrupt = client.interrupt();
+    let mut closing = files.closing.clone();
+    let measured = super::with_disk(move || {
+        let _permit = permit;
+        statistics(&source, Accuracy::Best, &interrupt)
+    });
+    let measured = tokio::select! {
+        measured = measured => measured??,
+        // The guard ends the measurement.
+        _ = closing.wait_for(|closing| *closing) => return Err(no_log()),
+    };
+    Ok(super::json(StatusCode::OK, &measured))
 }
 
 /// The files now and after each change, as server-sent events (HTML, section 9.2).

@@ -30,9 +30,17 @@ let scans = [
 // Many more, for the list.
 for (let n = 4; n < Number(process.env.SCANS ?? 0); n += 1) scans.push(scan(-n, { id: `old-${n}`, name: `old-${n}`, notes: n % 5 === 0 ? `note ${n}` : null }));
 const deleted = new Map();
+/** Even directions, with points that grow upwards. */
+function ball(count) {
+  return Array.from({ length: count }, (_, i) => {
+    const [z, turn] = [1 - (2 * i + 1) / count, 2.399963 * i];
+    const r = Math.sqrt(1 - z * z);
+    return { direction: [r * Math.cos(turn), r * Math.sin(turn), z], points: Math.round(100 * (1 + z)) };
+  });
+}
 const budget = (at_m) => ({ at_m, error_mm: { range: 9, range_step: 0.6, azimuth: 0.04 * at_m, tilt: 0.05 * at_m, clock: 0.002 * at_m, delay: 0.2 * at_m, mount: null, column_sd: 9, total: 18 + 0.4 * at_m } });
 const statistics = {
-  points: 243_311, of: "view", density: { bins: 3_120, mean: 77.98, sd: 41.2, empty: 3 }, gap_deg: { p50: 0.21, p95: 0.61, p99: 0.93, worst: 2.4 },
+  points: 243_311, of: "view", density: { bins: 3_120, mean: 77.98, sd: 41.2, empty: 3 }, bins: ball(1_500), gap_deg: { p50: 0.21, p95: 0.61, p99: 0.93, worst: 2.4 },
   ranges: Array.from({ length: 30 }, (_, i) => ({ from_m: i / 2, to_m: (i + 1) / 2, points: i < 3 ? 0 : Math.round(20_000 * Math.exp(-(((i - 11) / 6) ** 2))) })),
   residuals: Array.from({ length: 28 }, (_, i) => ({ at_s: i / 10, delay_us: 18 + i % 3, most_delay_us: i === 11 ? 410 : 60, angle_rms_deg: 0.0007, most_angle_deg: 0.002 })),
   sd_mm: { p50: 9.1, p95: 10.4, p99: 12.8 }, budget: [2, 5, 10, 20, 50, 100].map(budget),

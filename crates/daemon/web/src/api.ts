@@ -151,7 +151,8 @@ export interface ScanStatistics {
   sd_mm?: { p50: number; p95: number; p99: number } | null;
   /** Residuals of clock and angle in equal parts of the recording. */
   residuals: Residuals[];
-  budget: { at_m: number; error_mm: ErrorBudget }[];
+  /** None without the request of a capture. */
+  budget?: { at_m: number; error_mm: ErrorBudget }[];
 }
 
 /** Residuals within a part of the recording, null without packets or positions. */
@@ -279,6 +280,8 @@ export const api = {
     return (await sendRequest<{ scans: Scan[] }>("GET", `scans?${query}`)).scans;
   },
   scan: (id: string) => sendRequest<Scan>("GET", `scans/${encodeURIComponent(id)}`),
+  /** Of a file of `velomotion view`. */
+  file_statistics: (id: string) => sendRequest<ScanStatistics>("GET", new URL(`statistics/${id}`, location.href).pathname),
   statistics: (id: string) => sendRequest<ScanStatistics>("GET", `scans/${encodeURIComponent(id)}/statistics`),
   /** Empty texts are removed. */
   edit: (id: string, texts: { name: string; notes: string }) => sendRequest<Scan>("PATCH", `scans/${encodeURIComponent(id)}`, texts),

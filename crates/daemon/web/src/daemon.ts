@@ -144,18 +144,30 @@ async function last(): Promise<void> {
   }
 }
 
+/** Opens the scans that the page's address names, or says that they are not in the complete list; false if there is none to wait for. */
+function open_linked(view: Viewer, complete: boolean): boolean {
+  const names = view.linked_scans;
+  if (names.scan === null) return false;
+  const [linked, other] = [names.scan, names.other].map((name) => (name === null ? undefined : scans.get(name)));
+  const lacks = linked === undefined ? "The scan of the link is" : names.other !== null && other === undefined ? "The scan with which the link compares is" : null;
+  if (lacks !== null && !complete) return true;
+  show(id("scans-error"), lacks !== null);
+  if (lacks !== null) {
+    text(id("scans-error"), `${lacks} not on this daemon: it may have been deleted.`);
+    note("warning", `${lacks} not on this daemon.`, "It may have been deleted.");
+    announce(`${lacks} not on this daemon`);
+  }
+  if (linked === undefined) view.forget_link();
+  else view.open(source(linked), other === undefined ? null : source(other));
+  return linked !== undefined;
+}
+
 async function list(): Promise<void> {
   try {
     await scans.load((complete) => {
-      if (viewer === null || viewer.shown !== null) return;
+      if (viewer === null || open_linked(viewer, complete) || viewer.shown !== null) return;
       const newest = scans.all().find((scan) => scan.state === "whole" || scan.state === "partial");
-      const names = viewer.linked_scans;
-      const [linked, other] = [names.scan, names.other].map((name) => (name === null ? undefined : scans.get(name)));
-      const waits = [[names.scan, linked], [names.other, other]].some(([name, scan]) => name !== null && scan === undefined);
-      if (waits && !complete) return;
-      if (waits) note("warning", `${names.scan !== null && linked === undefined ? "The scan of the link is" : "The scan with which the link compares is"} not on this daemon.`, "It may have been deleted.");
-      if (linked !== undefined) viewer.open(source(linked), other === undefined ? null : source(other));
-      else if (newest !== undefined && (newest.points ?? 0) <= SMALL_POINTS) viewer.open(source(newest));
+      if (newest !== undefined && (newest.points ?? 0) <= SMALL_POINTS) viewer.open(source(newest));
     });
     await last();
   } catch (error) {
@@ -201,6 +213,9 @@ export function start(view: Viewer | null): void {
   if (viewer !== null) {
     viewer.left_full_screen = control.stop_motion;
     viewer.turned = quality.turn;
+    viewer.relinked = () => {
+      if (viewer !== null) open_linked(viewer, true);
+    };
   }
   restore();
   control.wire(() => {
@@ -213,7 +228,7 @@ export function start(view: Viewer | null): void {
   recipe.wire(sweep.capture_request);
   axis.wire();
   sweep.wire();
-  quality.wire();
+  quality.wire(api.statistics);
   const open = (scan: Scan, other: Scan | null) => {
     viewer?.open(source(scan), other === null ? null : source(other));
     id("canvas").scrollIntoView({ block: "nearest" });

@@ -4,7 +4,9 @@
 const WAITS_MS = [500, 1_000, 2_000, 4_000, 8_000, 16_000];
 
 /**
- * The bytes of a file; `received` gets their number so far. `ask` sends a request with these headers and throws for a refusal; `is_lost` tells an error that may
+ * The bytes of a file; `received` gets their number so far.
+ *
+ * `ask` sends a request with these headers and throws for a refusal; `is_lost` tells an error that may
  * pass. Bytes of another version, which the daemon's validator shows, begin anew.
  */
 export async function whole(

@@ -1,8 +1,10 @@
 // The page of `velomotion view`: its files, and the progress of their clouds.
 
+import { type Report, api } from "./api.ts";
 import { h, id, show, text } from "./dom.ts";
 import { compact } from "./format.ts";
 import { alarm, announce } from "./panels/messages.ts";
+import * as quality from "./panels/quality.ts";
 import type { CloudSource, Viewer } from "./viewer.ts";
 
 /** A file, as the program describes it. */
@@ -18,6 +20,8 @@ interface ViewFile {
   scanner: boolean;
   /** Whether it is a log or recording, which plays. */
   log: boolean;
+  /** What the replay of a log reports. */
+  report?: Report | null;
   error?: string | null;
   help?: string | null;
 }
@@ -29,6 +33,11 @@ let viewer: Viewer | null = null;
 
 export function start(view: Viewer | null): void {
   viewer = view;
+  quality.wire(api.file_statistics);
+  if (view !== null) {
+    view.relinked = open_linked;
+    view.turned = quality.turn;
+  }
   text(id("scans-title"), "Files");
   show(id("no-scans"), false);
   show(id("scan-lists"), true);
@@ -44,6 +53,7 @@ export function start(view: Viewer | null): void {
 }
 
 export function setCurrent(shown: string | null): void {
+  if (shown !== current) measured(shown);
   current = shown;
   for (const entry of list.children) {
     const { id } = (entry as HTMLElement).dataset;
@@ -54,13 +64,26 @@ export function setCurrent(shown: string | null): void {
   }
 }
 
+/** Offers the statistics of a log whose angles are known: the losses and residuals, and more on request. */
+function measured(shown: string | null): void {
+  const file = files[Number(shown ?? "none")];
+  const { name = "", report = null, simulated = false } = file ?? {};
+  quality.setScan(shown === null || report === null || file?.scanner !== true ? null : { id: shown, name, state: file.error ? "partial" : "whole", started_s: 0, simulated, report });
+}
+
 /** Files are named by their places, since names may repeat. */
 const key = (place: number) => String(place);
 
 function update(now: ViewFile[]): void {
   const before = files;
   files = now;
-  list.replaceChildren(...files.map(card));
+  // A card that is as before keeps the focus.
+  const same = (file: ViewFile, place: number) => JSON.stringify(file) === JSON.stringify(before[place]);
+  files.forEach((file, place) => {
+    const known = list.children[place];
+    if (known === undefined) list.append(card(file, place));
+    else if (!same(file, place)) known.replaceWith(card(file, place));
+  });
   setCurrent(current);
   const only = files.length === 1 ? files[0] : undefined;
   document.body.dataset["files"] = String(files.length);
@@ -71,11 +94,22 @@ function update(now: ViewFile[]): void {
     else if (file.state === "ready") alarm(`${file.name}: ${file.error}`);
     if (file.state === "failed") alarm(`${file.name}: ${file.error ?? "failed"}`);
   });
-  const { scan = null, other = null } = viewer?.linked_scans ?? {};
-  const first = files.findIndex((file, place) => file.state === "ready" && (scan === null || scan === key(place)));
-  const second = files.findIndex((_, place) => other === key(place));
-  if (current === null && first >= 0 && files[second]?.state !== "making") open(first, files[second]?.state === "ready" ? source(second) : null);
+  if (current === null) open_linked();
   if (current === null) waiting(only ?? files.find((file) => file.state === "making"));
+}
+
+/** Opens the files that the page's address names, else the first one that is ready. */
+function open_linked(): void {
+  const { scan = null, other = null } = viewer?.linked_scans ?? {};
+  const [named, second] = [scan, other].map((name) => (name === null ? undefined : files[Number(name)]));
+  if (named?.state === "making" || second?.state === "making") return;
+  const lacks = (scan !== null && named?.state !== "ready") || (other !== null && second?.state !== "ready");
+  text(id("scans-error"), "A file of the link is not here: links name files by their order in the command.");
+  show(id("scans-error"), lacks);
+  if (lacks) viewer?.forget_link();
+  if (scan !== null && named?.state === "ready") return open(Number(scan), other !== null && second?.state === "ready" ? source(Number(other)) : null);
+  const first = files.findIndex((file) => file.state === "ready");
+  if (first >= 0) open(first);
 }
 
 /** What is done before the first cloud can be shown. */

@@ -54,6 +54,8 @@ export class Viewer {
   left_full_screen: () => void = () => {};
   /** Called with the direction of the camera from its target, radians, after each picture. */
   turned: (azimuth: number, elevation: number) => void = () => {};
+  /** Called when the user puts another link into the page's address. */
+  relinked: () => void = () => {};
   private readonly stage: Stage;
   private readonly overlay = new Overlay(document.querySelector("#overlay") as SVGSVGElement);
   private readonly player: Player;
@@ -163,9 +165,10 @@ export class Viewer {
   open(source: CloudSource, other: CloudSource | null = null, complete = false): void {
     const follows = this.live !== null && this.shown === source.id && other === null;
     const again = this.shown === source.id;
-    const kept = again ? this.picks : [];
-    const linked = this.linked?.scan === source.id ? this.linked : null;
-    const picked = again ? kept.map((pick) => this.own(pick.position)) : (linked?.picks ?? []);
+    const linked = this.take_link(source.id);
+    const kept = again && linked === null ? this.picks : [];
+    const picked = linked?.picks ?? kept.map((pick) => this.own(pick.position));
+    const origin = this.origin;
     // A comparison that is loaded again keeps its colours.
     const field = other !== null && other === this.other ? this.field : "distance";
     if (follows) this.worker?.terminate();
@@ -185,8 +188,9 @@ export class Viewer {
     text(id("view-note"), follows ? "live points; the cloud is loading" : other !== null ? `loading ${other.title}` : "");
     this.complete = source.completes && (complete || linked?.complete === true || this.field === "sd");
     this.picks = kept;
+    if (again) this.origin = origin;
     this.show_picks();
-    this.download(source, follows, picked);
+    this.download(source, follows, picked, linked);
     this.changed(source.id);
   }
 
@@ -245,7 +249,7 @@ export class Viewer {
   }
 
   /** Loads a cloud; `picked` are points whose values are read anew. */
-  private download(source: CloudSource, follows: boolean, picked: Position[]): void {
+  private download(source: CloudSource, follows: boolean, picked: Position[], linked: ViewState | null): void {
     const kept = this.picks;
     const worker = new Worker("worker.js", { type: "module" });
     const cloud = new Loaded(this.stage.points);
@@ -295,7 +299,7 @@ export class Viewer {
           announce(`${this.title}: ${id("view-note").textContent ?? ""}`);
         }
         this.player.setEnd(this.ranges?.end_s ?? 0);
-        this.follow_link();
+        if (linked !== null) this.follow(linked);
         this.stage.draw();
         if (source.plays && other === null && !still.matches && this.player.until_s === null) this.player.play();
       }
@@ -511,11 +515,21 @@ export class Viewer {
     };
   }
 
-  /** Takes the view from the page's address, once its scan is shown. */
-  private follow_link(): void {
+  /** The view of the page's address, if it is of this scan or of any. */
+  private take_link(scan: string): ViewState | null {
     const state = this.linked;
-    if (state === null || (state.scan !== undefined && state.scan !== this.shown)) return;
+    if (state === null || (state.scan ?? scan) !== scan) return null;
     this.linked = null;
+    return state;
+  }
+
+  /** Forgets the page's address, whose scan is not there. */
+  forget_link(): void {
+    this.linked = null;
+  }
+
+  /** Shows the view of a link. */
+  private follow(state: ViewState): void {
     const input = (name: string) => id<HTMLInputElement>(name);
     // As the user does.
     const changed = (name: string) => input(name).dispatchEvent(new Event(input(name).type === "checkbox" ? "change" : "input"));
@@ -534,12 +548,12 @@ export class Viewer {
       this.stage.orbit.touched = true;
     }
     if (state.map !== undefined) id<HTMLSelectElement>("map").value = this.map = state.map;
-    state.limits?.forEach((limit, i) => {
-      input(i === 0 ? "limit-low" : "limit-high").value = limit === null ? "" : String(limit);
-    });
     clip.set(this.stage, state);
     if (state.until_s !== undefined) this.player.set(state.until_s);
     if (state.field !== undefined && (state.field !== "distance" || this.other !== null)) {
+      state.limits?.forEach((limit, i) => {
+        input(i === 0 ? "limit-low" : "limit-high").value = limit === null ? "" : String(limit);
+      });
       id<HTMLSelectElement>("field").value = state.field;
       this.choose_field(state.field);
     }
@@ -568,7 +582,7 @@ export class Viewer {
       const box = id<HTMLInputElement>(name);
       box.addEventListener("change", () => set(box.checked));
     };
-    check("cutaway", (on) => this.stage.uniform("cutaway", on));
+    check("cutaway", (on) => this.stage.uniform("cutaway", on && this.opened?.scanner !== false));
     check("shading", (on) => this.stage.setShading(on));
     check("both-clouds", () => this.show_both());
     id("swap").addEventListener("click", () => {
@@ -585,7 +599,11 @@ export class Viewer {
     id("large").addEventListener("click", () => this.enlarge(!document.body.classList.contains("large")));
     // A link that is pasted into the address of this page.
     addEventListener("hashchange", () => {
-      if (Object.keys(fromHash(location.hash)).length > 0) location.reload();
+      const linked = fromHash(location.hash);
+      if (Object.keys(linked).length === 0) return;
+      this.linked = linked;
+      if (linked.scan !== undefined) this.relinked();
+      else if (this.shown !== null) this.follow(this.take_link(this.shown) ?? linked);
     });
     document.addEventListener("fullscreenchange", () => {
       if (document.fullscreenElement !== null || !document.body.classList.contains("large")) return;

@@ -10,8 +10,8 @@ use std::time::Duration;
 
 use cloud::formats::Format;
 use cloud::formats::ply::PlyWriter;
-use cloud::read::positions;
-use cloud::{Fields, Points, Sink, SinkError, TiltTrack};
+use cloud::read::StoredCloud;
+use cloud::{Column, Fields, Points, Sink, SinkError, TiltTrack};
 use daemon::http::view::{FileState, ViewServer, ViewedFile, ViewedFiles};
 use engine::capture::completeness;
 use engine::document::Document;
@@ -25,7 +25,7 @@ use scanner::{Accuracy, TiltSource};
 use units::{Host, Stamp};
 
 use super::CommandOutput;
-use super::analyze::input::{CloudMarks, InputArgument, help_on};
+use super::analyze::input::{CloudMarks, InputArgument, companion, help_on};
 use crate::cli::{self, Common};
 use crate::documents::ServedView;
 use crate::logging;
@@ -117,7 +117,7 @@ pub fn show(
 /// A file, classified by its name.
 enum ViewInput<'a> {
     Cloud(&'a Path, Format),
-    Log(Box<Source>),
+    Log(Arc<Source>),
     Failed(&'a Path, Failure),
 }
 
@@ -137,7 +137,7 @@ impl<'a> ViewInput<'a> {
             InputArgument::Cloud(_, format) => Self::Cloud(path, format),
             // A file may have the name of a pattern.
             InputArgument::Log(_) | InputArgument::Pattern(_) => {
-                Self::Log(Box::new(Source::open(path, None)?))
+                Self::Log(Arc::new(Source::open(path, None)?))
             }
         })
     }
@@ -152,8 +152,11 @@ impl<'a> ViewInput<'a> {
     fn listed(&self) -> ViewedFile {
         let path = self.path();
         let name = path.file_name().unwrap_or(path.as_os_str());
-        let is_log = matches!(self, Self::Log(_));
-        ViewedFile::new(name.to_string_lossy().into_owned(), is_log)
+        let source = match self {
+            Self::Log(source) => Some(Arc::clone(source)),
+            Self::Cloud(..) | Self::Failed(..) => None,
+        };
+        ViewedFile::new(name.to_string_lossy().into_owned(), source)
     }
 }
 
@@ -239,6 +242,7 @@ fn make_all(
                     }
                     file.simulated = made.simulated;
                     file.scanner = made.scanner;
+                    file.report = made.report;
                     file.cloud = Some(Arc::new(made.file));
                 });
             }
@@ -268,6 +272,8 @@ struct MadeCloud {
     scanner: bool,
     /// Failure that reports its missing data.
     missing: Option<Failure>,
+    /// What the replay of a log reports.
+    report: Option<serde_json::Value>,
 }
 
 fn no_scratch(error: std::io::Error) -> Failure {
@@ -310,6 +316,7 @@ fn log(source: &Source, share: &dyn Fn(f64), interrupt: &AtomicBool) -> Result<M
         simulated: scan.contents.simulated,
         scanner: tilted,
         missing: completeness::missing(&scan),
+        report: serde_json::to_value(&scan).ok(),
     })
 }
 
@@ -364,7 +371,7 @@ fn unreadable(path: &Path, error: &std::io::Error) -> Failure {
     Failure::new(Kind::BadInput, what).help("check the name and the read permission")
 }
 
-/// A stored cloud: its file where the page can read it, else its positions.
+/// A stored cloud: its file where the page can read it, else a PLY of its points.
 fn cloud(path: &Path, format: Format) -> Result<MadeCloud, Failure> {
     let wrong = |error: std::io::Error| unreadable(path, &error);
     // A FIFO without a writer would block.
@@ -385,14 +392,17 @@ fn cloud(path: &Path, format: Format) -> Result<MadeCloud, Failure> {
                 scanner,
                 file,
                 missing: None,
+                report: None,
             });
         }
     }
-    let mut bytes = Vec::new();
+    let mut bytes = header_beside(path, format);
     let mut whole = file.reopen().map_err(wrong)?;
     whole.read_to_end(&mut bytes).map_err(wrong)?;
     let CloudMarks { simulated, scanner } = CloudMarks::of(path, format, &bytes);
-    let read = positions(format, bytes).map_err(|error| {
+    // The page has no use for the lidar's own times.
+    let wanted = Fields::ALL - Fields::DEVICE_TIME;
+    let read = cloud::read::cloud(format, bytes, wanted).map_err(|error| {
         let what = format!("{}: {error}", path.display());
         Failure::new(Kind::BadInput, what).help(help_on(format))
     })?;
@@ -401,13 +411,14 @@ fn cloud(path: &Path, format: Format) -> Result<MadeCloud, Failure> {
         return Err(Failure::new(Kind::BadInput, what).help(help_on(format)));
     }
     let file = scratch()?;
-    write_ply(file.file(), &read.positions).map_err(no_scratch)?;
+    write_ply(file.file(), &read).map_err(no_scratch)?;
     Ok(MadeCloud {
         file,
         points: read.positions.len() as u64,
         simulated,
         scanner,
         missing: None,
+        report: None,
     })
 }
 
@@ -441,16 +452,45 @@ fn own_ply(head: &[u8], length: u64) -> Option<u64> {
     points.filter(is_whole).filter(|_| text.contains(FRAME))
 }
 
-/// Positions as a PLY of doubles: coordinates of a map need them.
-fn write_ply(file: &File, positions: &[[f64; 3]]) -> std::io::Result<()> {
+/// The names of an XYZ file's columns, which its companion has, as the header row of a text.
+fn header_beside(path: &Path, format: Format) -> Vec<u8> {
+    let text = match format {
+        Format::Xyz => companion(path, format),
+        _ => Vec::new(),
+    };
+    let text = String::from_utf8_lossy(&text);
+    let mut names = text
+        .lines()
+        .filter_map(|line| line.strip_prefix("columns: "));
+    let header = names.find(|names| names.starts_with("x_m y_m z_m"));
+    header.map_or_else(Vec::new, |names| format!("{names}\n").into_bytes())
+}
+
+/// A cloud as a PLY whose positions are doubles: coordinates of a map need them.
+fn write_ply(file: &File, cloud: &StoredCloud) -> std::io::Result<()> {
+    let is_byte = |column| matches!(column, Column::Ring | Column::Laser | Column::Echo);
     let mut out = BufWriter::new(file);
     write!(
         out,
-        "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\nend_header\n",
-        positions.len()
+        "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\n",
+        cloud.positions.len()
     )?;
-    for axis in positions.as_flattened() {
-        out.write_all(&axis.to_le_bytes())?;
+    for (column, _) in &cloud.columns {
+        let kind = if is_byte(*column) { "uchar" } else { "float" };
+        writeln!(out, "property {kind} {}", column.name())?;
+    }
+    writeln!(out, "end_header")?;
+    for (row, position) in cloud.positions.iter().enumerate() {
+        for axis in position {
+            out.write_all(&axis.to_le_bytes())?;
+        }
+        for (column, values) in &cloud.columns {
+            let value = values.get(row).copied().unwrap_or_default();
+            match is_byte(*column) {
+                true => out.write_all(&[value as u8])?,
+                false => out.write_all(&value.to_le_bytes())?,
+            }
+        }
     }
     out.flush()
 }
@@ -497,21 +537,105 @@ mod tests {
         assert_eq!(failure.kind, Kind::BadInput, "{failure}");
     }
 
+    /// The served header and the cloud that the page reads.
+    fn served(path: &Path, format: Format) -> (String, StoredCloud) {
+        let made = cloud(path, format).unwrap();
+        let mut bytes = Vec::new();
+        let mut file = made.file.reopen().unwrap();
+        file.read_to_end(&mut bytes).unwrap();
+        let end = b"end_header\n";
+        let end = bytes.windows(end.len()).position(|window| window == end);
+        let head = String::from_utf8_lossy(&bytes[..end.unwrap()]).into_owned();
+        let read = cloud::read::cloud(Format::Ply, bytes, Fields::ALL).unwrap();
+        assert_eq!(made.points, read.positions.len() as u64);
+        (head, read)
+    }
+
     #[test]
-    fn other_formats_become_a_ply_of_their_positions() {
+    fn other_formats_become_a_ply_that_keeps_coordinates_of_a_map() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("map.csv");
-        std::fs::write(&path, "x,y,z\n500000.125,4600000.5,-2\n1,2,3\n").unwrap();
+        let text = "x,y,z,intensity,ring,time\n500000.125,4600000.5,-2,40000,3,1700000000.25\n1,2,3,0.5,300,1700000001\n";
+        std::fs::write(&path, text).unwrap();
         let made = cloud(&path, Format::Csv).unwrap();
+        assert_eq!((made.simulated, made.scanner), (false, false));
+        let (head, read) = served(&path, Format::Csv);
+        let properties = "property double z\nproperty float intensity\nproperty uchar ring\nproperty float time\n";
+        assert!(head.ends_with(properties), "{head}");
         assert_eq!(
-            (made.points, made.simulated, made.scanner),
-            (2, false, false)
+            read.positions,
+            [[500_000.125, 4_600_000.5, -2.0], [1.0, 2.0, 3.0]]
         );
-        let mut bytes = Vec::new();
-        let file = made.file;
-        file.reopen().unwrap().read_to_end(&mut bytes).unwrap();
-        let read = positions(Format::Ply, bytes).unwrap().positions;
-        assert_eq!(read, [[500_000.125, 4_600_000.5, -2.0], [1.0, 2.0, 3.0]]);
+        let columns = [
+            (Column::Intensity, vec![40_000.0, 0.5]),
+            (Column::Ring, vec![3.0, 255.0]),
+            (Column::Time, vec![0.0, 0.75]),
+        ];
+        assert_eq!(read.columns, columns);
+    }
+
+    /// A cloud of every format that velomotion writes, beside its companion.
+    #[test]
+    fn the_page_gets_the_columns_of_every_format() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut points = Points::new(Fields::ALL);
+        for row in 0..3_u8 {
+            points.push(cloud::Point {
+                position_m: [1.0, 2.0, f64::from(row)],
+                intensity: 10 + row,
+                ring: 1 + row,
+                time: Stamp::from_nanos(1_700_000_000_000_000_000 + 500_000_000 * i64::from(row)),
+                tilt: units::Degrees(-1.5),
+                laser: 15 - row,
+                sd_m: 0.25,
+                echo: 1 + row,
+                ..cloud::Point::default()
+            });
+        }
+        let shown = [
+            (Column::Intensity, vec![10.0, 11.0, 12.0]),
+            (Column::Ring, vec![1.0, 2.0, 3.0]),
+            (Column::Time, vec![0.0, 0.5, 1.0]),
+            (Column::Tilt, vec![-1.5; 3]),
+            (Column::Laser, vec![15.0, 14.0, 13.0]),
+            (Column::Sd, vec![0.25; 3]),
+            (Column::Echo, vec![1.0, 2.0, 3.0]),
+        ];
+        let metadata = cloud::Metadata {
+            software: "velomotion 1.0".to_owned(),
+            ..cloud::Metadata::default()
+        };
+        for format in Format::ALL {
+            let name = format!("scan.{format}");
+            let path = folder.path().join(&name);
+            let mut options = File::options();
+            let file = options
+                .read(true)
+                .write(true)
+                .create_new(true)
+                .open(&path)
+                .unwrap();
+            let mut writer = format.writer(file, Fields::ALL);
+            writer.begin(&metadata).unwrap();
+            writer.points(&points).unwrap();
+            writer.finish().unwrap();
+            if let Some(beside) = writer.companion(&name) {
+                std::fs::write(folder.path().join(beside.name), beside.text).unwrap();
+            }
+            drop(writer);
+            let has = |column: &Column| match format {
+                Format::Kitti => *column == Column::Intensity,
+                Format::Mcap => *column != Column::Tilt,
+                _ => true,
+            };
+            let (_, read) = served(&path, format);
+            let expected = shown.iter().filter(|(column, _)| has(column));
+            assert!(
+                read.columns.iter().eq(expected),
+                "{format}: {:?}",
+                read.columns
+            );
+        }
     }
 
     #[test]

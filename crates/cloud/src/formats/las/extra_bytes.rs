@@ -6,8 +6,8 @@ use las::Vlr;
 use crate::rows::NumberType;
 use crate::{Column, Fields};
 
-const RECORD_BYTES: usize = 192;
-const NAME_AT: usize = 4;
+pub(crate) const RECORD_BYTES: usize = 192;
+pub(crate) const NAME_AT: usize = 4;
 const DESCRIPTION_AT: usize = 160;
 
 /// A column among the extra bytes.

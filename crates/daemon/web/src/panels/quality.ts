@@ -1,6 +1,6 @@
 // How far the scan in view can be trusted: losses and residuals, and on request density, gaps, ranges and errors.
 
-import { type Residuals, type Scan, type ScanStatistics, type Status, api } from "../api.ts";
+import type { Residuals, Scan, ScanStatistics, Status } from "../api.ts";
 import { attribute, h, id, show, text } from "../dom.ts";
 import { compact, count, digits, fixed } from "../format.ts";
 import { title } from "../found.ts";
@@ -22,19 +22,27 @@ let capturing = false;
 const dark = matchMedia("(prefers-color-scheme: dark)");
 /** Direction from which the view looks, radians. */
 let camera = { azimuth: 0, elevation: 0 };
+let sphere_seen = false;
+let request: (id: string) => Promise<ScanStatistics>;
 
-export function wire(): void {
+/** `ask` requests the statistics of a scan. */
+export function wire(ask: (id: string) => Promise<ScanStatistics>): void {
+  request = ask;
   button.addEventListener("click", () => void measure());
   distance.addEventListener("change", draw);
   dark.addEventListener("change", draw);
+  // It is drawn where it is seen: the view draws often.
+  new IntersectionObserver(([entry]) => {
+    sphere_seen = entry?.isIntersecting === true;
+    draw_sphere();
+  }).observe(id("sphere"));
 }
 
 /** Turns the sphere with the view; angles of the camera in radians. */
 export function turn(azimuth: number, elevation: number): void {
   if (azimuth === camera.azimuth && elevation === camera.elevation) return;
   camera = { azimuth, elevation };
-  const found = scan === null ? undefined : known.get(scan.id);
-  if (found !== undefined) draw_sphere(found);
+  draw_sphere();
 }
 
 /** Shows a scan with its report; null for none, or one that is not finished. */
@@ -63,7 +71,7 @@ async function measure(): Promise<void> {
   show(id("quality-error"), false);
   draw();
   try {
-    known.set(wanted.id, await api.statistics(wanted.id));
+    known.set(wanted.id, await request(wanted.id));
     announce(`Density, gaps and errors of ${title(wanted)} are measured`);
   } catch (error) {
     refused("Measure", error, id("quality-error"));
@@ -99,18 +107,19 @@ function draw_measured(found: ScanStatistics): void {
   ];
   rows.push(...(sd == null ? [["Stated sd", "none"] as Fact] : [["Stated sd, half of points", `${digits(sd.p50, 2)} mm`] as Fact, ["Stated sd, 99 %", `${digits(sd.p99, 2)} mm`] as Fact]));
   facts(id("measured-facts"), rows);
-  draw_sphere(found);
+  draw_sphere();
   describe_sphere(found);
   draw_ranges(found);
   draw_residuals("delays", found.residuals, "delay_us", "most_delay_us", "median", " \u00b5s", 1);
   draw_residuals("deviations", found.residuals, "angle_rms_deg", "most_angle_deg", "RMS", "\u00b0", 1e-4);
-  const at = found.budget.map(({ at_m }) => String(at_m));
+  const { budget: all = [] } = found;
+  const at = all.map(({ at_m }) => String(at_m));
   if ([...distance.options].map(({ value }) => value).join() !== at.join()) {
     const before = distance.value;
     distance.replaceChildren(...at.map((m) => h("option", { value: m }, `${m} m`)));
     distance.value = at.includes(before) ? before : (at.find((m) => Number(m) === 20) ?? at[0] ?? "");
   }
-  const budget = found.budget.find(({ at_m }) => String(at_m) === distance.value)?.error_mm;
+  const budget = all.find(({ at_m }) => String(at_m) === distance.value)?.error_mm;
   show(id("budget"), budget !== undefined);
   if (budget === undefined) return;
   const mm = (value: number) => `${digits(value, 2)} mm`;
@@ -120,7 +129,9 @@ function draw_measured(found: ScanStatistics): void {
   ]);
 }
 
-function draw_sphere({ bins }: ScanStatistics): void {
+function draw_sphere(): void {
+  const bins = scan === null ? undefined : known.get(scan.id)?.bins;
+  if (bins === undefined || !sphere_seen) return;
   sphere.draw(id<HTMLCanvasElement>("sphere"), bins, camera.azimuth, camera.elevation, table("viridis", dark.matches));
 }
 

@@ -190,6 +190,8 @@ async function download(scan: Scan, name: string, choice: string, wrong: HTMLEle
     if (cancel.signal.aborted) announce(`Download of ${name} cancelled`);
     else refused(`Download as ${format}`, error, wrong);
   } finally {
+    const focused = shown?.contains(document.activeElement) === true;
     shown?.remove();
+    if (focused) document.querySelector<HTMLElement>(`[data-id="${CSS.escape(scan.id)}"] [data-role=download]`)?.focus();
   }
 }

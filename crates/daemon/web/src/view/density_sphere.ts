@@ -7,12 +7,12 @@ export interface Bin {
   points: number;
 }
 
-/** Radius of a bin's disc in radians: its neighbours overlap, so that no ground is seen between them. */
-const BIN_RAD = 0.05;
+/** Radii of a bin's discs, radians: large ones leave no ground between them, small ones on top of all have each its own colour. */
+const DISCS_RAD = [0.05, 0.026];
 
 /**
  * The bins on the far half of a sphere around the scanner, seen from a camera in this direction (radians, as the orbit has
- * it), nearest to the edge first: x to the right and y up from -1 to 1, radii of the flattened disc, and its turn.
+ * it), nearest to the edge first: x to the right and y up from -1 to 1, and how flat its disc is seen.
  */
 export function seen(bins: Bin[], azimuth: number, elevation: number): { x: number; y: number; flat: number; points: number }[] {
   const [sa, ca, se, ce] = [Math.sin(azimuth), Math.cos(azimuth), Math.sin(elevation), Math.cos(elevation)];
@@ -36,10 +36,11 @@ export function draw(canvas: HTMLCanvasElement, bins: Bin[], azimuth: number, el
   const radius = 0.47 * Math.min(width, height);
   const most = limit(bins);
   context.clearRect(0, 0, width, height);
-  for (const { x, y, flat, points } of seen(bins, azimuth, elevation)) {
+  const drawn = seen(bins, azimuth, elevation);
+  for (const disc_rad of DISCS_RAD) for (const { x, y, flat, points } of drawn) {
     context.fillStyle = points === 0 ? `rgb(${MARKS[1].map((part) => 255 * part).join(" ")})` : css(colours, points / most);
     context.beginPath();
-    context.ellipse(width / 2 + radius * x, height / 2 - radius * y, radius * BIN_RAD * Math.max(0.15, flat), radius * BIN_RAD, Math.atan2(-y, x), 0, 2 * Math.PI);
+    context.ellipse(width / 2 + radius * x, height / 2 - radius * y, radius * disc_rad * Math.max(0.15, flat), radius * disc_rad, Math.atan2(-y, x), 0, 2 * Math.PI);
     context.fill();
   }
 }

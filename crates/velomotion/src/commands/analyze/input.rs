@@ -180,12 +180,7 @@ pub struct CloudMarks {
 impl CloudMarks {
     /// The marks in some bytes of a file, and in its companion if it has one.
     pub fn of(path: &Path, format: Format, bytes: &[u8]) -> Self {
-        let mut companion = Vec::new();
-        if format.needs_companion() {
-            let mut name = path.as_os_str().to_owned();
-            name.push(".txt");
-            companion = std::fs::read(name).unwrap_or_default();
-        }
+        let companion = companion(path, format);
         let has = |mark: &[u8]| {
             let contains = |text: &[u8]| text.windows(mark.len()).any(|window| window == mark);
             contains(bytes) || contains(&companion)
@@ -195,6 +190,16 @@ impl CloudMarks {
             scanner: has(b"z up in metres from the tilt axis"),
         }
     }
+}
+
+/// The text beside a cloud whose format has no place for its metadata.
+pub fn companion(path: &Path, format: Format) -> Vec<u8> {
+    if !format.needs_companion() {
+        return Vec::new();
+    }
+    let mut name = path.as_os_str().to_owned();
+    name.push(".txt");
+    std::fs::read(name).unwrap_or_default()
 }
 
 /// Advice on a cloud that cannot be read.
