@@ -34,6 +34,9 @@ let viewer: Viewer | null = null;
 export function start(view: Viewer | null): void {
   viewer = view;
   quality.wire(api.file_statistics);
+  // It scrolls, and has little that takes the focus.
+  const panels = document.querySelector<HTMLElement>(".panels");
+  if (panels !== null) panels.tabIndex = 0;
   if (view !== null) {
     view.relinked = open_linked;
     view.turned = quality.turn;
