@@ -16,6 +16,7 @@ pub mod live_preview;
 mod motion_reporter;
 mod open_devices;
 mod options;
+pub mod record_feed;
 pub mod scan_record;
 mod service_state;
 pub mod status;
@@ -43,7 +44,8 @@ use axis_report::{AxisReport, StopAnswer, StoppedCommand};
 use device_thread::ThreadRequest;
 use events::Events;
 use lidar_stats::LidarStats;
-use live_preview::{LivePreview, PreviewInput};
+use live_preview::LivePreview;
+use record_feed::{RecordFeed, RecordQueue};
 use service_state::ServiceState;
 use status::{AxisTask, DeviceHealth};
 
@@ -78,7 +80,8 @@ pub struct DeviceService {
     environment: Environment,
     events: Arc<Events>,
     state: watch::Sender<ServiceState>,
-    preview: PreviewInput,
+    preview: RecordFeed,
+    packets: RecordFeed,
     receiver: Mutex<Option<Arc<LidarReceiver>>>,
     lidar_stats: Arc<Mutex<LidarStats>>,
     requests: mpsc::Sender<ThreadRequest>,
@@ -118,7 +121,8 @@ impl DeviceService {
             environment: options.environment,
             events: Arc::new(Events::new(resident)),
             state: watch::Sender::new(ServiceState::default()),
-            preview: PreviewInput::default(),
+            preview: RecordFeed::default(),
+            packets: RecordFeed::default(),
             receiver: Mutex::default(),
             lidar_stats: Arc::default(),
             requests,
@@ -444,14 +448,23 @@ impl DeviceService {
 
     // The lidar.
 
-    /// Takes records of the lidar into its statistics and the preview.
+    /// Takes records of the lidar into its statistics, the preview and the queue of
+    /// [`DeviceService::feed_packets`].
     #[must_use]
     pub fn packet_tap(&self) -> PacketTap {
-        let (stats, preview) = (Arc::clone(&self.lidar_stats), self.preview.clone());
+        let stats = Arc::clone(&self.lidar_stats);
+        let (preview, packets) = (self.preview.clone(), self.packets.clone());
         Box::new(move |record| {
             locked(&stats).observe(record);
             preview.record(record);
+            packets.record(record);
         })
+    }
+
+    /// Passes all records of the lidar on to `queue` from now on, also between captures, or to
+    /// none.
+    pub fn feed_packets(&self, queue: Option<RecordQueue>) {
+        self.packets.set(queue);
     }
 
     /// Starts the preview of a scan. `None` where there is no thread for it.

@@ -10,8 +10,8 @@ use engine::failure::Failure;
 use engine::service::events::MessageLevel;
 use tokio::runtime::{Builder, Runtime};
 
-use crate::link::RouterLink;
-use crate::{Context, Counts, ScanService, calls, clouds, events};
+use crate::link::{self, RouterLink};
+use crate::{Context, Counts, ScanService, calls, clouds, events, packets};
 
 /// Between two attempts to reach a router.
 const RETRY_INTERVAL: Duration = Duration::from_secs(1);
@@ -120,15 +120,17 @@ fn run(context: &Context, [calls_runtime, events_runtime, scans_runtime]: &[Runt
         reported = false;
         report_connection(context, &link);
         std::thread::scope(|scope| {
+            let link = &link;
             let (finished, queue) = clouds::queue();
             scope.spawn(move || clouds::queue_finished(context, scans_runtime, &finished));
-            scope.spawn(|| clouds::run(context, &link, queue));
+            scope.spawn(move || clouds::run(context, link, queue));
             scope.spawn(move || calls::run(context, &waiting, calls_runtime));
-            if let Err(error) = events::run(context, &link, events_runtime) {
-                // Clouds and calls go on without events.
-                let text = format!("ROS 2: {error}");
-                events.message(MessageLevel::Warning, text, None);
-            }
+            // The other threads go on without one of these.
+            let warn = |error: link::Error| {
+                events.message(MessageLevel::Warning, format!("ROS 2: {error}"), None);
+            };
+            scope.spawn(move || packets::run(context, link).unwrap_or_else(warn));
+            events::run(context, link, events_runtime).unwrap_or_else(warn);
         });
         link.close();
     }

@@ -1,6 +1,5 @@
 //! Events as messages: live clouds, the joint and its transform, diagnostics.
 
-use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 use cloud::messages::cdr::Cdr;
@@ -51,7 +50,8 @@ pub(crate) fn run(context: &Context, link: &RouterLink, runtime: &Runtime) -> Re
     publisher.send_mount()?;
     let events = context.devices().events();
     let mut subscription = events.subscribe();
-    link.follow(&Arc::new(PointsRequest::new(events, false)))?;
+    let request = PointsRequest::new(events, false);
+    link.follow(Topic::LivePoints, move |watched| request.set(watched))?;
     while !context.stop.is_set() {
         let next = async { tokio::time::timeout(STOP_POLL, subscription.next()).await };
         let event = match runtime.block_on(next) {
@@ -81,11 +81,13 @@ pub(crate) fn run(context: &Context, link: &RouterLink, runtime: &Runtime) -> Re
 }
 
 impl Publisher<'_> {
-    /// Sends the mount of the lidar on the axis.
+    /// Sends the mount of the lidar on the axis, and the frame of its packets.
     fn send_mount(&mut self) -> Result<(), Error> {
         let mount = self.context.devices().config().mount.pose().mount();
         let stamp = Time::of(io::clock::now())?;
-        tf_message(&mut self.cdr, stamp, &self.frames.fixed(Some(mount)));
+        let mut fixed = self.frames.fixed(Some(mount));
+        fixed.push(self.frames.of_packets());
+        tf_message(&mut self.cdr, stamp, &fixed);
         self.link.send(Topic::StaticTransforms, self.cdr.bytes())?;
         Ok(())
     }

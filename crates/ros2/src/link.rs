@@ -2,7 +2,7 @@
 //!
 //! Messages wait for the network (`CongestionControl::Block`, at most zenoh's 5 s, after which the
 //! connection is opened again) on threads that do nothing else. Clouds of sweeps have the lowest
-//! priority, then live clouds, then all small messages.
+//! priority, then live clouds and raw packets, then all small messages.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::Ordering;
@@ -16,7 +16,6 @@ use zenoh::query::Query;
 use zenoh::{Session, Wait};
 
 use engine::config::ros2::Ros2;
-use engine::service::events::PointsRequest;
 
 use crate::calls::{self, Service};
 use crate::latched::LatchedMessages;
@@ -37,7 +36,9 @@ pub type Request = (i64, Gid);
 /// QoS of a topic, as ROS 2's own drivers, broadcasters and updaters have it.
 const fn quality(topic: Topic) -> QualityOfService {
     let (reliable, latched, depth) = match topic {
-        Topic::Points | Topic::JointStates | Topic::Diagnostics => (true, false, 10),
+        Topic::Points | Topic::LidarPackets | Topic::JointStates | Topic::Diagnostics => {
+            (true, false, 10)
+        }
         Topic::LivePoints => (false, false, 5),
         Topic::Transforms => (true, false, 100),
         Topic::StaticTransforms => (true, true, 1),
@@ -52,7 +53,7 @@ const fn quality(topic: Topic) -> QualityOfService {
 const fn priority(topic: Topic) -> Priority {
     match topic {
         Topic::Points => Priority::DataLow,
-        Topic::LivePoints => Priority::Data,
+        Topic::LivePoints | Topic::LidarPackets => Priority::Data,
         _ => Priority::DataHigh,
     }
 }
@@ -158,14 +159,14 @@ impl RouterLink {
         })
     }
 
-    /// Switches `request` on while the live cloud has subscribers.
-    pub fn follow(&self, request: &Arc<PointsRequest>) -> Result<(), Error> {
-        let Some(channel) = self.channels.get(&Topic::LivePoints) else {
+    /// Calls `change` with whether a topic has subscribers, now and whenever that changes.
+    pub fn follow(
+        &self,
+        topic: Topic,
+        change: impl Fn(bool) + Send + Sync + 'static,
+    ) -> Result<(), Error> {
+        let Some(channel) = self.channels.get(&topic) else {
             return Ok(());
-        };
-        let change = {
-            let request = Arc::clone(request);
-            move |watched| request.set(watched)
         };
         let first = channel.publisher.matching_status().wait()?;
         change(first.matching());

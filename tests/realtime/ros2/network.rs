@@ -47,10 +47,11 @@ fn a_router_that_starts_late_or_restarts_gets_everything() {
     assert_eq!(of(0), (Some("base_link"), Some("tilt_base")));
     assert_eq!(of(1), (Some("tilt_platform"), Some("lidar")));
     assert_eq!(transforms[1]["translation"], json!([0.0, 0.0, 0.06]));
+    assert_eq!(of(2), (Some("lidar"), Some("lidar_ros")));
     let tokens = wait("all tokens", || {
         let tokens = router.tokens();
-        // A node, six publishers, one service.
-        (tokens.len() == 8).then_some(tokens)
+        // A node, seven publishers, one service.
+        (tokens.len() == 9).then_some(tokens)
     });
 
     drop(router);
@@ -59,7 +60,7 @@ fn a_router_that_starts_late_or_restarts_gets_everything() {
     connected(&rig, true);
     let mut again = wait("all tokens again", || {
         let tokens = router.tokens();
-        (tokens.len() == 8).then_some(tokens)
+        (tokens.len() == 9).then_some(tokens)
     });
     let mut tokens = tokens;
     tokens.sort();

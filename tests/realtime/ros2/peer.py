@@ -2,7 +2,8 @@
 
 usage: peer.py router|client tcp/HOST:PORT FOLDER
 
-Reads commands, a JSON object a line, and writes what happens, likewise. Clouds of whole sweeps are written to FOLDER as they came.
+Reads commands, a JSON object a line, and writes what happens, likewise. Clouds of whole sweeps and raw packets are written to
+FOLDER as they came.
 """
 
 import json
@@ -14,13 +15,17 @@ from pathlib import Path
 import numpy as np
 import zenoh
 import zenoh.ext
-from rosbags.typesys import Stores, get_typestore
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from zenoh_ros2_sdk import discovery
 from zenoh_ros2_sdk.attachment import Attachment
 from zenoh_ros2_sdk.qos import QosProfile
 
 mode, endpoint, folder = sys.argv[1], sys.argv[2], Path(sys.argv[3])
 store = get_typestore(Stores.ROS2_JAZZY)
+# As in the repository ros-drivers/velodyne, branch ros2.
+PACKET, SCAN = "velodyne_msgs/msg/VelodynePacket", "velodyne_msgs/msg/VelodyneScan"
+store.register(get_types_from_msg("builtin_interfaces/Time stamp\nuint8[1206] data\n", PACKET))
+store.register(get_types_from_msg("std_msgs/Header header\nVelodynePacket[] packets\n", SCAN))
 mouth = threading.Lock()
 KINDS = {2: "u1", 4: "<u2", 7: "<f4", 8: "<f8"}
 
@@ -76,6 +81,20 @@ def cloud(message):
     }
 
 
+def scan(message):
+    """The azimuths of a driver's message rise from its first packet to its last."""
+    azimuths = [int.from_bytes(bytes(packet.data[2:4]), "little") for packet in message.packets]
+    return {
+        "stamp_ns": nanoseconds(message.header.stamp),
+        "frame": message.header.frame_id,
+        "last_ns": nanoseconds(message.packets[-1].stamp),
+        "packets": len(azimuths),
+        "first_cdeg": azimuths[0],
+        "last_cdeg": azimuths[-1],
+        "rises": azimuths == sorted(azimuths),
+    }
+
+
 def transform(message):
     at = message.transform
     return {
@@ -90,6 +109,8 @@ def transform(message):
 def content(name, message):
     if name == "sensor_msgs/msg/PointCloud2":
         return cloud(message)
+    if name == SCAN:
+        return scan(message)
     if name == "sensor_msgs/msg/JointState":
         return {
             "stamp_ns": nanoseconds(message.header.stamp),
@@ -130,6 +151,8 @@ def listener(who):
             topic = "/" + "/".join(topic)
             if topic.endswith("/velomotion/points"):
                 (folder / f"{who}-{attachment['number']}.cdr").write_bytes(payload)
+            if name == SCAN:
+                (folder / f"{who}-packets-{attachment['number']}.cdr").write_bytes(payload)
             say(
                 received=topic,
                 who=who,

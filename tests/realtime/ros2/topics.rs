@@ -5,6 +5,8 @@ use std::net::TcpStream;
 use std::time::Duration;
 
 use cloud::messages::Topic;
+use io::recording::Recording;
+use protocol::record::Wire;
 use serde_json::{Value, json};
 use tungstenite::{Message, WebSocket};
 use xxhash_rust::xxh3::xxh3_128;
@@ -14,9 +16,10 @@ use crate::rig::{Rig, wait};
 
 /// Topics and the names of their keys. Diagnostics are last: a subscriber that has them has all
 /// others.
-const TOPICS: [(Topic, &str); 5] = [
+const TOPICS: [(Topic, &str); 6] = [
     (Topic::Points, "0/left/velomotion/points"),
     (Topic::LivePoints, "0/left/velomotion/live_points"),
+    (Topic::LidarPackets, "0/left/velomotion/velodyne_packets"),
     (Topic::JointStates, "0/left/joint_states"),
     (Topic::Transforms, "0/tf"),
     (Topic::Diagnostics, "0/diagnostics"),
@@ -49,6 +52,10 @@ fn points_of(mut socket: WebSocket<TcpStream>) -> u64 {
             _ => {}
         }
     }
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 fn numbers(received: &[Value]) -> Vec<i64> {
@@ -127,7 +134,9 @@ fn every_client_receives_the_whole_sweep_and_the_capture_loses_nothing() {
         check_motion(peer, who);
         check_attachments(peer, who);
     }
-    check_bytes(&rig, scan["id"].as_str().unwrap(), &near);
+    let id = scan["id"].as_str().unwrap();
+    check_bytes(&rig, id, &near);
+    check_packets(&rig, id, &[(&near, "near"), (&far, "far")]);
     check_graph(&mut near);
     check_diagnostics(&rig, &near);
     assert_eq!(figure(&rig, "ros2_missed"), 0);
@@ -222,11 +231,7 @@ fn check_attachments(peer: &Peer, who: &str) {
             .iter()
             .find(|token| token.contains("/MP/") && token.contains(&mangled))
             .unwrap_or_else(|| panic!("no token of {name} in {tokens:?}"));
-        let gid: String = xxh3_128(token.as_bytes())
-            .to_le_bytes()
-            .iter()
-            .map(|byte| format!("{byte:02x}"))
-            .collect();
+        let gid = hex(&xxh3_128(token.as_bytes()).to_le_bytes());
         let now = io::clock::now().as_nanos();
         for one in &received {
             assert_eq!(one["gid"], gid, "{name}");
@@ -264,6 +269,68 @@ fn check_bytes(rig: &Rig, id: &str, peer: &Peer) {
     assert!(!recorded.is_empty());
 }
 
+/// Checks that every packet of the scan's log was sent with its time, in the order of arrival and
+/// one revolution per message.
+fn check_packets(rig: &Rig, id: &str, peers: &[(&Peer, &str)]) {
+    let mut recording = Recording::open(&rig.log(id)).unwrap();
+    let mut logged = Vec::new();
+    while let Some(record) = recording.next_record().unwrap() {
+        if let Wire::Lidar { payload, .. } = record.wire
+            && payload.len() == 1206
+        {
+            logged.push((record.host.as_nanos(), payload.to_vec()));
+        }
+    }
+    for (peer, who) in peers {
+        // The revolution in which the scan ended is sent when the next one begins.
+        let last = logged.last().unwrap().0;
+        let messages = wait("the last packets", || {
+            let messages = peer.received(who, "/left/velomotion/velodyne_packets");
+            (*stamps(&messages).last()? >= last).then_some(messages)
+        });
+        let mut sent = Vec::new();
+        for (place, message) in messages.iter().enumerate() {
+            let printed = &message["printed"];
+            let has_begin = place > 0;
+            assert_eq!(printed["frame"], "left/lidar_ros");
+            assert_eq!(printed["stamp_ns"], printed["last_ns"]);
+            assert_eq!(printed["rises"], true, "{printed}");
+            // 600 rpm: 76 packets per revolution, each of 4.8 deg.
+            if has_begin {
+                let packets = printed["packets"].as_u64().unwrap();
+                assert!((70..=80).contains(&packets), "{printed}");
+                assert!(printed["first_cdeg"].as_u64() < Some(500), "{printed}");
+                assert!(printed["last_cdeg"].as_u64() > Some(35_000), "{printed}");
+            }
+            let number = message["number"].as_i64().unwrap();
+            let file = peer
+                .folder
+                .path()
+                .join(format!("{who}-packets-{number}.cdr"));
+            sent.extend(packets(&std::fs::read(file).unwrap()));
+        }
+        let begin = sent.iter().position(|packet| *packet == logged[0]).unwrap();
+        assert!(logged.len() > 500, "{}", logged.len());
+        assert!(sent[begin..][..logged.len()] == logged, "packets differ");
+    }
+}
+
+/// Times and contents of the packets of a `VelodyneScan` in the frame `left/lidar_ros`.
+fn packets(message: &[u8]) -> Vec<(i64, Vec<u8>)> {
+    let u32_at = |at: usize| u32::from_le_bytes(message[at..at + 4].try_into().unwrap());
+    // Encapsulation and stamp; the frame's length, its name with the zero, padding.
+    assert_eq!(message[16..31], *b"left/lidar_ros\0");
+    let packets = u32_at(32) as usize;
+    // Seconds, nanoseconds, data, and padding but behind the last one.
+    assert_eq!(message.len(), 36 + 1216 * packets - 2);
+    let packet = |number: usize| {
+        let at = 36 + 1216 * number;
+        let time = i64::from(u32_at(at)) * 1_000_000_000 + i64::from(u32_at(at + 4));
+        (time, message[at + 8..][..1206].to_vec())
+    };
+    (0..packets).map(packet).collect()
+}
+
 /// Checks the tokens with another implementation of the format.
 fn check_graph(peer: &mut Peer) {
     let printed = peer.request(&json!({ "do": "graph", "domain": 0 }));
@@ -283,6 +350,8 @@ fn check_graph(peer: &mut Peer) {
         json!({
             "/left/velomotion/points": wanted(cloud, reliable),
             "/left/velomotion/live_points": wanted(cloud, ("BEST_EFFORT", "VOLATILE", 5)),
+            "/left/velomotion/velodyne_packets":
+                wanted("velodyne_msgs/msg/VelodyneScan", reliable),
             "/left/joint_states": wanted("sensor_msgs/msg/JointState", reliable),
             "/tf": wanted(transform, ("RELIABLE", "VOLATILE", 100)),
             "/tf_static": wanted(transform, ("RELIABLE", "TRANSIENT_LOCAL", 1)),

@@ -35,11 +35,6 @@ impl Cdr {
         &self.bytes
     }
 
-    /// Bytes so far, encapsulation header included.
-    pub(super) const fn len(&self) -> usize {
-        self.bytes.len()
-    }
-
     /// A `uint8`, `byte` or `bool`.
     pub fn u8(&mut self, value: u8) {
         self.bytes.push(value);
@@ -87,6 +82,12 @@ impl Cdr {
         let start = self.bytes.len();
         self.bytes.resize(start + count, 0);
         self.bytes.get_mut(start..).unwrap_or_default()
+    }
+
+    /// Reserves a number to be filled in later, and returns its offset.
+    pub(super) fn placeholder(&mut self) -> usize {
+        self.u32(0);
+        self.bytes.len() - 4
     }
 
     /// Replaces the number written at `offset`.

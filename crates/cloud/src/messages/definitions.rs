@@ -1,6 +1,6 @@
 //! The messages' definitions as recordings carry them (`ros2msg`): a message, then everything that
 //! it is made of, each behind a line of 80 equals signs. As in ROS 2's `common_interfaces`,
-//! `rcl_interfaces` and `geometry2`, without their comments.
+//! `rcl_interfaces`, `geometry2` and `velodyne`, without their comments.
 
 macro_rules! part {
     ($name:literal, $text:literal) => {
@@ -32,6 +32,15 @@ pub(super) const POINT_CLOUD2: &str = concat!(
         "sensor_msgs/PointField",
         "uint8 INT8=1\nuint8 UINT8=2\nuint8 INT16=3\nuint8 UINT16=4\nuint8 INT32=5\nuint8 UINT32=6\nuint8 FLOAT32=7\nuint8 FLOAT64=8\n\
          string name\nuint32 offset\nuint8 datatype\nuint32 count\n"
+    ),
+    header!()
+);
+
+pub(super) const VELODYNE_SCAN: &str = concat!(
+    "std_msgs/Header header\nVelodynePacket[] packets\n",
+    part!(
+        "velodyne_msgs/VelodynePacket",
+        "builtin_interfaces/Time stamp\nuint8[1206] data\n"
     ),
     header!()
 );

@@ -1,5 +1,5 @@
-//! Scans as ROS 2 messages: clouds, the tilt joint, transforms, diagnostics. Encoding only; a
-//! recording ([`formats::mcap`](crate::formats::mcap)) and a network carry the same bytes.
+//! Scans as ROS 2 messages: clouds, raw packets, the tilt joint, transforms, diagnostics. Encoding
+//! only; a recording ([`formats::mcap`](crate::formats::mcap)) and a network carry the same bytes.
 //!
 //! Clouds of a tilting platform are in [`frames::BASE`], the frame of every other format (x right,
 //! y forward, z up, on the tilt axis). [`frames::ROOT`] has the same origin and ROS's axes (REP
@@ -13,6 +13,7 @@ mod joint_state;
 mod point_cloud2;
 mod transforms;
 mod trigger;
+mod velodyne_scan;
 
 use units::{Host, Stamp};
 
@@ -25,6 +26,7 @@ pub use joint_state::joint_state;
 pub use point_cloud2::{CloudMessage, CloudMessageError, fields_of};
 pub use transforms::{Frames, Rotation, Transform, tf_message};
 pub use trigger::{TRIGGER, trigger_response};
+pub use velodyne_scan::{PACKET_BYTES, VelodyneScan};
 
 /// The names of coordinate frames.
 pub mod frames {
@@ -36,6 +38,8 @@ pub mod frames {
     pub const PLATFORM: &str = "tilt_platform";
     /// The lidar: x right, y forward, z up. Frame of clouds of a fixed platform.
     pub const LIDAR: &str = "lidar";
+    /// The lidar with ROS's axes: x forward, y left, z up. Frame of raw packets.
+    pub const LIDAR_ROS: &str = "lidar_ros";
 }
 
 /// The joint between [`frames::BASE`] and [`frames::PLATFORM`].
@@ -48,6 +52,8 @@ pub enum Topic {
     Points,
     /// Clouds while they are measured, some thousand points each.
     LivePoints,
+    /// Raw packets of the lidar, one message per revolution.
+    LidarPackets,
     /// The tilt joint, sample by sample.
     JointStates,
     /// The platform against its base.
@@ -72,9 +78,10 @@ pub struct MessageType {
 
 impl Topic {
     /// Every topic.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Points,
         Self::LivePoints,
+        Self::LidarPackets,
         Self::JointStates,
         Self::Transforms,
         Self::StaticTransforms,
@@ -87,6 +94,7 @@ impl Topic {
         match self {
             Self::Points => "/velomotion/points",
             Self::LivePoints => "/velomotion/live_points",
+            Self::LidarPackets => "/velomotion/velodyne_packets",
             Self::JointStates => "/joint_states",
             Self::Transforms => "/tf",
             Self::StaticTransforms => "/tf_static",
@@ -102,6 +110,11 @@ impl Topic {
                 "sensor_msgs/msg/PointCloud2",
                 definitions::POINT_CLOUD2,
                 "RIHS01_9198cabf7da3796ae6fe19c4cb3bdd3525492988c70522628af5daa124bae2b5",
+            ),
+            Self::LidarPackets => (
+                "velodyne_msgs/msg/VelodyneScan",
+                definitions::VELODYNE_SCAN,
+                "RIHS01_4e4edd7152e8bd604311d8b2e68e4c1b0771c8ce72700de79f6d1418aa242b3c",
             ),
             Self::JointStates => (
                 "sensor_msgs/msg/JointState",
@@ -216,7 +229,8 @@ mod tests {
                 if line.starts_with("MSG: ") || line.starts_with("====") || line.contains('=') {
                     continue;
                 }
-                let kind = line.split(' ').next().unwrap().trim_end_matches("[]");
+                let kind = line.split(' ').next().unwrap();
+                let kind = kind.split('[').next().unwrap();
                 let plain = [
                     "bool", "byte", "uint8", "int32", "uint32", "float64", "string",
                 ];

@@ -173,7 +173,7 @@ impl CloudMessage {
         cdr.clear();
         header(cdr, stamp, frame);
         cdr.u32(1);
-        self.places.width = place(cdr);
+        self.places.width = cdr.placeholder();
         let columns = self.columns.columns();
         cdr.length(3 + columns.count());
         let mut offset = 0;
@@ -192,16 +192,10 @@ impl CloudMessage {
         }
         cdr.u8(0); // is_bigendian
         cdr.u32(offset);
-        self.places.row_bytes = place(cdr);
-        self.places.length = place(cdr);
+        self.places.row_bytes = cdr.placeholder();
+        self.places.length = cdr.placeholder();
         Ok(())
     }
-}
-
-/// Reserves a number to be filled in later, and returns its offset.
-fn place(cdr: &mut Cdr) -> usize {
-    cdr.u32(0);
-    cdr.len() - 4
 }
 
 /// Writes rows of a batch; `time` counts from `first`.

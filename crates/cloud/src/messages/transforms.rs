@@ -1,5 +1,7 @@
 //! `tf2_msgs/TFMessage`: poses of frames.
 
+use std::f64::consts::FRAC_1_SQRT_2;
+
 use units::Degrees;
 
 use super::cdr::Cdr;
@@ -32,9 +34,16 @@ impl Rotation {
     /// From x right, y forward to ROS's x forward, y left: 90 deg about z.
     #[must_use]
     pub const fn to_ros() -> Self {
-        const HALF: f64 = std::f64::consts::FRAC_1_SQRT_2;
         Self {
-            quaternion: [0.0, 0.0, -HALF, HALF],
+            quaternion: [0.0, 0.0, -FRAC_1_SQRT_2, FRAC_1_SQRT_2],
+        }
+    }
+
+    /// From ROS's x forward, y left to x right, y forward.
+    #[must_use]
+    pub const fn from_ros() -> Self {
+        Self {
+            quaternion: [0.0, 0.0, FRAC_1_SQRT_2, FRAC_1_SQRT_2],
         }
     }
 }
@@ -59,6 +68,7 @@ pub struct Frames {
     base: String,
     platform: String,
     lidar: String,
+    lidar_ros: String,
 }
 
 impl Default for Frames {
@@ -77,6 +87,7 @@ impl Frames {
             base: name(frames::BASE),
             platform: name(frames::PLATFORM),
             lidar: name(frames::LIDAR),
+            lidar_ros: name(frames::LIDAR_ROS),
         }
     }
 
@@ -107,6 +118,17 @@ impl Frames {
             },
         });
         [axes].into_iter().chain(lidar).collect()
+    }
+
+    /// Static transform of the frame of raw packets.
+    #[must_use]
+    pub fn of_packets(&self) -> Transform<'_> {
+        Transform {
+            parent: &self.lidar,
+            child: &self.lidar_ros,
+            translation_m: [0.0; 3],
+            rotation: Rotation::from_ros(),
+        }
     }
 
     /// Pose of the tilted platform.
@@ -177,6 +199,18 @@ mod tests {
         assert!(close(
             turned(Rotation::to_ros(), [-1.0, 0.0, 0.0]),
             [0.0, 1.0, 0.0]
+        ));
+        // What velodyne_pointcloud places forward is forward of the lidar.
+        let packets = Frames::default();
+        let packets = packets.of_packets();
+        assert_eq!((packets.parent, packets.child), ("lidar", "lidar_ros"));
+        assert!(close(
+            turned(packets.rotation, [1.0, 0.0, 0.0]),
+            [0.0, 1.0, 0.0]
+        ));
+        assert!(close(
+            turned(packets.rotation, [0.0, 1.0, 0.0]),
+            [-1.0, 0.0, 0.0]
         ));
     }
 

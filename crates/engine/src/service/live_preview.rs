@@ -5,20 +5,19 @@
 //! layout.
 
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
-use std::sync::{Arc, Mutex, OnceLock};
+use std::sync::mpsc::Receiver;
+use std::sync::{Arc, OnceLock};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use bytes::Bytes;
 use cloud::{Fields, Points, Sink, SinkError};
 use io::log::OwnedRecord;
-use protocol::record::Record;
 use protocol::vlp16::models::VLP_16;
 use scanner::{Live, ScanConfig};
 
 use super::events::{Event, Events};
-use super::locked;
+use super::record_feed::{RecordFeed, RecordQueue};
 
 /// Points of a frame.
 pub const FRAME_POINTS: usize = 16_384;
@@ -89,45 +88,9 @@ impl PreviewFrame {
     }
 }
 
-/// Queue for the records of both devices while a preview runs. Clones share it.
-#[derive(Clone, Default)]
-pub(super) struct PreviewInput {
-    queue: Arc<Mutex<Option<PreviewQueue>>>,
-}
-
-#[derive(Clone)]
-struct PreviewQueue {
-    sender: SyncSender<Message>,
-    left_out: Arc<AtomicU64>,
-}
-
-enum Message {
-    Record(OwnedRecord),
-    End,
-}
-
-impl PreviewInput {
-    /// Hands a record over without waiting, if a preview runs.
-    pub(super) fn record(&self, record: &Record<'_>) {
-        let queue = locked(&self.queue);
-        let Some(queue) = &*queue else { return };
-        match queue.sender.try_send(Message::Record(record.into())) {
-            Ok(()) | Err(TrySendError::Disconnected(_)) => {}
-            Err(TrySendError::Full(_)) => {
-                queue.left_out.fetch_add(1, Ordering::Relaxed);
-            }
-        }
-    }
-
-    fn set(&self, queue: Option<PreviewQueue>) {
-        *locked(&self.queue) = queue;
-    }
-}
-
 /// A preview of one scan. Dropping it ends the preview.
 pub struct LivePreview {
-    input: PreviewInput,
-    sender: SyncSender<Message>,
+    feed: RecordFeed,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -137,24 +100,19 @@ impl LivePreview {
     pub(super) fn start(
         id: &str,
         config: &ScanConfig,
-        input: &PreviewInput,
+        feed: &RecordFeed,
         events: &Arc<Events>,
     ) -> Option<Self> {
-        let (sender, inbox) = sync_channel(WAITING_RECORDS);
-        let left_out = Arc::new(AtomicU64::new(0));
-        let frames = FrameSink::new(id, events, &left_out);
+        let (queue, records) = RecordQueue::new(WAITING_RECORDS);
+        let frames = FrameSink::new(id, events, queue.left_out());
         let config = config.clone();
         let thread = std::thread::Builder::new()
             .name("live points".to_owned())
-            .spawn(move || run(&config, frames, &inbox))
+            .spawn(move || run(&config, frames, &records))
             .ok()?;
-        input.set(Some(PreviewQueue {
-            sender: sender.clone(),
-            left_out,
-        }));
+        feed.set(Some(queue));
         Some(Self {
-            input: input.clone(),
-            sender,
+            feed: feed.clone(),
             thread: Some(thread),
         })
     }
@@ -162,9 +120,8 @@ impl LivePreview {
 
 impl Drop for LivePreview {
     fn drop(&mut self) {
-        self.input.set(None);
-        // A full queue is emptied by the thread, which does nothing else.
-        let _ = self.sender.send(Message::End);
+        // The thread ends after the records that wait.
+        self.feed.set(None);
         if let Some(thread) = self.thread.take() {
             // A panic there loses the preview, not the scan.
             let _ = thread.join();
@@ -185,11 +142,11 @@ fn live_options(config: &ScanConfig) -> lidar::Options {
     }
 }
 
-fn run(config: &ScanConfig, mut frames: FrameSink, inbox: &Receiver<Message>) {
+fn run(config: &ScanConfig, mut frames: FrameSink, records: &Receiver<OwnedRecord>) {
     let Ok(mut live) = Live::new(config, live_options(config), &mut frames) else {
         return;
     };
-    while let Ok(Message::Record(record)) = inbox.recv() {
+    while let Ok(record) = records.recv() {
         if live.observe(&record.as_record()).is_err() {
             break;
         }
