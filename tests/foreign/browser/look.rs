@@ -198,9 +198,8 @@ fn picked_points_get_the_columns_that_the_stored_cloud_lacks() {
 #[ignore = "needs chromium and chromedriver"]
 fn nothing_overlaps_in_windows_of_any_width() {
     let (driver, _folder, daemon, url) = browser_and_simulator();
+    // Every part is audited at 360, 390 and 1440 pixels by itself.
     let sizes = [
-        (360, 640),
-        (390, 844),
         (600, 900),
         (768, 1024),
         (899, 700),
@@ -208,7 +207,6 @@ fn nothing_overlaps_in_windows_of_any_width() {
         (1024, 768),
         (1199, 800),
         (1200, 800),
-        (1440, 900),
         (1920, 1080),
         (2560, 1440),
     ];
