@@ -1,10 +1,10 @@
-//! The ROS 2 bridge: clouds, raw packets, the tilt joint, transforms, diagnostics, and services that
-//! begin and stop a capture, in the format of `rmw_zenoh` and without an installation of ROS
+//! The ROS 2 bridge: clouds, raw packets, the tilt joint, transforms, diagnostics, and services
+//! that begin and stop a capture, in the format of `rmw_zenoh` and without an installation of ROS
 //! (docs/src/ros2.md).
 //!
 //! Five threads: one follows events, one queues finished scans, one sends their clouds, one sends
-//! packets, one answers calls. Nothing waits for them: what the network does not take is left out and counted. ROS 2's
-//! parameters, actions, time from `/clock`, and DDS are left out.
+//! packets, one answers calls. Nothing waits for them: what the network does not take is left out
+//! and counted. ROS 2's parameters, actions, time from `/clock`, and DDS are left out.
 //!
 //! ```
 //! # #[cfg(feature = "zenoh")]

@@ -272,7 +272,7 @@ fn check_bytes(rig: &Rig, id: &str, peer: &Peer) {
 /// Checks that every packet of the scan's log was sent with its time, in the order of arrival and
 /// one revolution per message.
 fn check_packets(rig: &Rig, id: &str, peers: &[(&Peer, &str)]) {
-    let mut recording = Recording::open(&rig.log(id)).unwrap();
+    let mut recording = Recording::open(rig.log(id)).unwrap();
     let mut logged = Vec::new();
     while let Some(record) = recording.next_record().unwrap() {
         if let Wire::Lidar { payload, .. } = record.wire
