@@ -69,6 +69,15 @@ pub const SCREENS: [Screen; 6] = [
     NARROW.light(),
 ];
 
+/// A laptop and two phones, with both colour schemes among them; every screen with both schemes if
+/// `VELOMOTION_ALL_SCREENS` is set, which takes twice as long.
+pub fn screens() -> Vec<Screen> {
+    match std::env::var_os("VELOMOTION_ALL_SCREENS") {
+        Some(_) => SCREENS.to_vec(),
+        None => vec![DESKTOP, PHONE.light(), NARROW],
+    }
+}
+
 impl Screen {
     /// A window of this size.
     pub const fn of(width: u32, height: u32) -> Self {

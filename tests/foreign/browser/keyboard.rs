@@ -1,6 +1,6 @@
 //! The page by the keyboard alone, from the first Tab on.
 
-use super::browser::{Page, SCREENS};
+use super::browser::{Page, screens};
 use super::view::CATCH_DOWNLOAD;
 use super::{ENTER, ESCAPE, browser_and_simulator, ready};
 
@@ -55,7 +55,7 @@ async fn type_at(page: &Page, css: &str, text: &str) {
 fn everything_is_done_by_the_keyboard_alone() {
     let (driver, _folder, daemon, url) = browser_and_simulator();
     let enter = ENTER.chars().next().unwrap();
-    for (screen, number) in SCREENS.into_iter().zip(1..) {
+    for (screen, number) in screens().into_iter().zip(1..) {
         driver.test(screen, async |page| {
             ready(&page, &url).await;
             // The first stop leads to the buttons that matter.

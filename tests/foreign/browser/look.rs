@@ -3,7 +3,7 @@
 
 use serde_json::{Value, json};
 
-use super::browser::{DESKTOP, Page, SCREENS, Screen};
+use super::browser::{DESKTOP, Page, SCREENS, Screen, screens};
 use super::view::pick;
 use super::{browser_and_simulator, points, ready, start, until_in_sight};
 
@@ -51,7 +51,7 @@ fn assert_near(found: f64, expected: f64, what: &str) {
 fn the_camera_follows_mouse_fingers_wheel_and_keys() {
     let (driver, _folder, daemon, url) = browser_and_simulator();
     let half_turn = std::f64::consts::PI;
-    for screen in SCREENS {
+    for screen in screens() {
         driver.test(screen, async |page| {
             with_a_scan(&page, &url).await;
             let (centre, height) = middle(&page).await;
@@ -161,7 +161,7 @@ fn the_camera_follows_mouse_fingers_wheel_and_keys() {
 #[ignore = "needs chromium and chromedriver"]
 fn picked_points_get_the_columns_that_the_stored_cloud_lacks() {
     let (driver, _folder, daemon, url) = browser_and_simulator();
-    for screen in SCREENS {
+    for screen in screens() {
         driver.test(screen, async |page| {
             with_a_scan(&page, &url).await;
             let first = pick(&page, 1).await;
@@ -233,7 +233,7 @@ fn nothing_overlaps_in_windows_of_any_width() {
 #[ignore = "needs chromium and chromedriver"]
 fn wrong_fields_say_beside_them_what_is_expected() {
     let (driver, _folder, daemon, url) = browser_and_simulator();
-    for screen in SCREENS {
+    for screen in screens() {
         driver.test(screen, async |page| {
             ready(&page, &url).await;
             page.until_has("#plan", "per sweep").await;

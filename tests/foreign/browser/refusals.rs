@@ -4,7 +4,7 @@ use engine::config::Config;
 use tokio::task::spawn_blocking;
 use velomotion_tests::bench::Bench;
 
-use super::browser::{DESKTOP, Driver, NARROW, PHONE, Page, SCREENS};
+use super::browser::{DESKTOP, Driver, NARROW, PHONE, Page, screens};
 use super::{
     TO_THE_TOP, TOO_MANY, browser_and_simulator, daemon, points, ready, reserving, simulator,
     start, until_in_sight, url,
@@ -24,7 +24,7 @@ const SILENT: &str = "
 #[ignore = "needs chromium and chromedriver"]
 fn an_unconfirmed_stop_is_repeated_under_an_alarm_of_full_width() {
     let (driver, _folder, daemon, url) = browser_and_simulator();
-    for screen in SCREENS {
+    for screen in screens() {
         driver.test(screen, async |page| {
             ready(&page, &url).await;
             page.run(SILENT).await;
@@ -132,7 +132,7 @@ fn a_refused_download_is_reported_at_its_scan() {
         0,
     );
     let url = url(&full);
-    for screen in SCREENS {
+    for screen in screens() {
         driver.test(screen, async |page| {
             ready(&page, &url).await;
             page.until_has(".scan", "short").await;
@@ -257,7 +257,7 @@ async fn clear_is_refused(page: &Page) {
 fn a_lost_connection_is_reported_and_restored() {
     let driver = Driver::start();
     let folder = tempfile::tempdir().unwrap();
-    for screen in SCREENS {
+    for screen in screens() {
         let first = simulator(folder.path());
         let (url, port) = (url(&first), first.address().port());
         driver.test(screen, async |page| {

@@ -10,7 +10,7 @@ use std::thread::JoinHandle;
 use velomotion::cli::Common;
 use velomotion::commands::view::show;
 
-use super::browser::{DESKTOP, Driver, PHONE, Page, SCREENS};
+use super::browser::{DESKTOP, Driver, PHONE, Page, screens};
 use super::{browser_and_simulator, points, ready, simulator, start, until_in_sight, url};
 
 /// Makes a scan with a daemon and returns the folder of its log and cloud.
@@ -127,7 +127,7 @@ fn files_are_shown_played_and_end_with_their_tab() {
     )
     .unwrap();
     let files = vec![scan.join("log.pcapng"), scan.join("cloud.ply"), other];
-    for screen in SCREENS {
+    for screen in screens() {
         let (url, viewing) = view(files.clone());
         driver.test(screen, async |page| {
             page.goto(&url).await;
@@ -309,7 +309,7 @@ fn points_are_measured_cut_coloured_and_linked() {
     let driver = Driver::start();
     let folder = tempfile::tempdir().unwrap();
     let scan = scanned(&driver, folder.path());
-    for screen in SCREENS {
+    for screen in screens() {
         let (url, viewing) = view(vec![scan.join("log.pcapng")]);
         driver.test(screen, async |page| {
             page.goto(&url).await;
@@ -420,7 +420,7 @@ fn points_are_measured_cut_coloured_and_linked() {
 #[ignore = "needs chromium and chromedriver"]
 fn the_stop_stays_in_full_screen_and_leaving_that_stops_the_axis() {
     let (driver, _folder, daemon, url) = browser_and_simulator();
-    for screen in SCREENS {
+    for screen in screens() {
         driver.test(screen, async |page| {
             ready(&page, &url).await;
             start(&page, "slow", "1", "-45").await;

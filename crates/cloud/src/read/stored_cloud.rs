@@ -57,11 +57,11 @@ impl StoredCloud {
         }
         self.positions.push(position);
         for (column, values) in &mut self.columns {
-            let mut value = value(*column).unwrap_or(0.0);
+            let mut value = value(*column).filter(|value| value.is_finite());
             if *column == Column::Time {
-                value -= *self.start_s.get_or_insert(value);
+                value = value.map(|time_s| time_s - *self.start_s.get_or_insert(time_s));
             }
-            let value = value as f32;
+            let value = value.unwrap_or(0.0) as f32;
             values.push(if value.is_finite() { value } else { 0.0 });
         }
     }

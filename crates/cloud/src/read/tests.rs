@@ -364,6 +364,14 @@ fn non_finite_rows_are_skipped_and_counted() {
     }
 }
 
+/// Times count from the first one that is there: a f32 has steps of 128 s at 1.7e9 s.
+#[test]
+fn times_count_from_the_first_that_is_known() {
+    let text = "x,y,z,time\n1,2,3,\n4,5,6,1700000000.25\n7,8,9,1700000001\n0,0,1,nan\n";
+    let read = super::cloud(Format::Csv, text.into(), Fields::TIME).unwrap();
+    assert_eq!(read.columns, [(Column::Time, vec![0.0, 0.0, 0.75, 0.0])]);
+}
+
 #[test]
 fn columns_of_other_programs_are_found_by_their_names() {
     let ply = |header: &str, data: &[u8]| {

@@ -310,12 +310,21 @@ async fn statistics_of(files: &Arc<ViewedFiles>, index: &str) -> Result<Response
         .get(index)
         .and_then(|file| file.source.clone());
     let source = source.ok_or_else(no_log)?;
-    let permit = Arc::clone(&files.measuring)
-        .try_acquire_owned()
-        .map_err(|_| Refusal::too_many("measurements"))?;
+    let ended = || {
+        Refusal::new(
+            StatusCode::SERVICE_UNAVAILABLE,
+            Kind::Interrupted,
+            "velomotion view has ended",
+            "start it again",
+        )
+    };
+    let mut closing = files.closing.clone();
+    let permit = tokio::select! {
+        permit = Arc::clone(&files.measuring).acquire_owned() => permit.map_err(|_| ended())?,
+        _ = closing.wait_for(|closing| *closing) => return Err(ended()),
+    };
     let client = ClientGuard::default();
     let interrupt = client.interrupt();
-    let mut closing = files.closing.clone();
     let measured = super::with_disk(move || {
         let _permit = permit;
         statistics(&source, Accuracy::Best, &interrupt)
@@ -323,7 +332,7 @@ async fn statistics_of(files: &Arc<ViewedFiles>, index: &str) -> Result<Response
     let measured = tokio::select! {
         measured = measured => measured??,
         // The guard ends the measurement.
-        _ = closing.wait_for(|closing| *closing) => return Err(no_log()),
+        _ = closing.wait_for(|closing| *closing) => return Err(ended()),
     };
     Ok(super::json(StatusCode::OK, &measured))
 }

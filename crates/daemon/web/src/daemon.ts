@@ -23,6 +23,8 @@ const SMALL_POINTS = 3_000_000;
 
 let viewer: Viewer | null = null;
 let connected = false;
+/** Whether the list of scans is complete. */
+let listed = false;
 
 /** The cloud of a scan. */
 function source(scan: Scan): CloudSource {
@@ -165,6 +167,7 @@ function open_linked(view: Viewer, complete: boolean): boolean {
 async function list(): Promise<void> {
   try {
     await scans.load((complete) => {
+      listed = complete;
       if (viewer === null || open_linked(viewer, complete) || viewer.shown !== null) return;
       const newest = scans.all().find((scan) => scan.state === "whole" || scan.state === "partial");
       if (newest !== undefined && (newest.points ?? 0) <= SMALL_POINTS) viewer.open(source(newest));
@@ -214,7 +217,7 @@ export function start(view: Viewer | null): void {
     viewer.left_full_screen = control.stop_motion;
     viewer.turned = quality.turn;
     viewer.relinked = () => {
-      if (viewer !== null) open_linked(viewer, true);
+      if (viewer !== null) open_linked(viewer, listed);
     };
   }
   restore();

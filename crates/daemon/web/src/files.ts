@@ -97,7 +97,7 @@ function update(now: ViewFile[]): void {
     else if (file.state === "ready") alarm(`${file.name}: ${file.error}`);
     if (file.state === "failed") alarm(`${file.name}: ${file.error ?? "failed"}`);
   });
-  if (current === null) open_linked();
+  if (current === null || viewer?.linked_scans.scan != null) open_linked();
   if (current === null) waiting(only ?? files.find((file) => file.state === "making"));
 }
 
@@ -106,11 +106,17 @@ function open_linked(): void {
   const { scan = null, other = null } = viewer?.linked_scans ?? {};
   const [named, second] = [scan, other].map((name) => (name === null ? undefined : files[Number(name)]));
   if (named?.state === "making" || second?.state === "making") return;
-  const lacks = (scan !== null && named?.state !== "ready") || (other !== null && second?.state !== "ready");
-  text(id("scans-error"), "A file of the link is not here: links name files by their order in the command.");
-  show(id("scans-error"), lacks);
-  if (lacks) viewer?.forget_link();
-  if (scan !== null && named?.state === "ready") return open(Number(scan), other !== null && second?.state === "ready" ? source(Number(other)) : null);
+  const compared = second?.state === "ready" ? source(Number(other)) : null;
+  if (scan !== null) {
+    const found = named?.state === "ready";
+    const lacks = !found || (other !== null && compared === null);
+    if (lacks) text(id("scans-error"), "A file of the link is not here: links name files by their order in the command.");
+    show(id("scans-error"), lacks);
+    if (found) return open(Number(scan), compared);
+    viewer?.forget_link();
+    // What is in view stays.
+    if (current !== null) return;
+  }
   const first = files.findIndex((file) => file.state === "ready");
   if (first >= 0) open(first);
 }

@@ -13,7 +13,7 @@ import type { Picked, Position } from "./picked.ts";
 import * as picture from "./picture.ts";
 import { type Field, type Range, type Ranges, tiltAt } from "./sample.ts";
 import { Live, Loaded, draw } from "./view/cloud.ts";
-import { type ViewState, fromHash, toHash } from "./view/link.ts";
+import { SIZE_PX, type ViewState, fromHash, toHash } from "./view/link.ts";
 import { scaleBar } from "./view/measure.ts";
 import { type MapName, MARKS, bar, table } from "./view/maps.ts";
 import { Overlay } from "./view/overlay.ts";
@@ -83,6 +83,8 @@ export class Viewer {
   private legend_ms = 0;
   /** The view of the page's address, until its scan is shown. */
   private linked: ViewState | null;
+  /** The view of a link whose cloud is being loaded. */
+  private following: ViewState | null = null;
 
   constructor(private readonly changed: (shown: string | null) => void) {
     const canvas = id<HTMLCanvasElement>("canvas");
@@ -165,7 +167,9 @@ export class Viewer {
   open(source: CloudSource, other: CloudSource | null = null, complete = false): void {
     const follows = this.live !== null && this.shown === source.id && other === null;
     const again = this.shown === source.id;
-    const linked = this.take_link(source.id);
+    // A link whose cloud is loaded again is still followed.
+    const linked = this.take_link(source.id) ?? (again ? this.following : null);
+    this.following = linked;
     const kept = again && linked === null ? this.picks : [];
     const picked = linked?.picks ?? kept.map((pick) => this.own(pick.position));
     const origin = this.origin;
@@ -299,6 +303,7 @@ export class Viewer {
           announce(`${this.title}: ${id("view-note").textContent ?? ""}`);
         }
         this.player.setEnd(this.ranges?.end_s ?? 0);
+        this.following = null;
         if (linked !== null) this.follow(linked);
         this.stage.draw();
         if (source.plays && other === null && !still.matches && this.player.until_s === null) this.player.play();
@@ -533,15 +538,14 @@ export class Viewer {
     const input = (name: string) => id<HTMLInputElement>(name);
     // As the user does.
     const changed = (name: string) => input(name).dispatchEvent(new Event(input(name).type === "checkbox" ? "change" : "input"));
-    for (const [name, on] of [["parallel", state.parallel], ["shading", state.shading], ["cutaway", state.cutaway], ["both-clouds", this.other === null ? undefined : state.both]] as const) {
-      if (on === undefined) continue;
+    // What a link leaves out is as at the start.
+    const boxes = { parallel: state.parallel ?? false, shading: state.shading ?? true, cutaway: state.cutaway ?? true, "both-clouds": state.both ?? false };
+    for (const [name, on] of Object.entries(boxes)) {
       input(name).checked = on;
       changed(name);
     }
-    if (state.size !== undefined) {
-      input("size").value = String(state.size);
-      changed("size");
-    }
+    input("size").value = String(state.size ?? SIZE_PX);
+    changed("size");
     if (state.camera !== undefined) {
       const [azimuth, elevation, distance_m, ...target] = state.camera;
       this.stage.orbit.look(azimuth, elevation, distance_m, this.stage.orbit.target.clone().fromArray(target));
@@ -549,9 +553,9 @@ export class Viewer {
     }
     if (state.map !== undefined) id<HTMLSelectElement>("map").value = this.map = state.map;
     clip.set(this.stage, state);
-    if (state.until_s !== undefined) this.player.set(state.until_s);
+    this.player.set(state.until_s ?? Number.POSITIVE_INFINITY);
     if (state.field !== undefined && (state.field !== "distance" || this.other !== null)) {
-      state.limits?.forEach((limit, i) => {
+      (state.limits ?? [null, null]).forEach((limit, i) => {
         input(i === 0 ? "limit-low" : "limit-high").value = limit === null ? "" : String(limit);
       });
       id<HTMLSelectElement>("field").value = state.field;
@@ -603,7 +607,7 @@ export class Viewer {
       if (Object.keys(linked).length === 0) return;
       this.linked = linked;
       if (linked.scan !== undefined) this.relinked();
-      else if (this.shown !== null) this.follow(this.take_link(this.shown) ?? linked);
+      else if (this.opened !== null) this.open(this.opened, this.other);
     });
     document.addEventListener("fullscreenchange", () => {
       if (document.fullscreenElement !== null || !document.body.classList.contains("large")) return;

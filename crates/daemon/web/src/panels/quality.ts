@@ -32,8 +32,8 @@ export function wire(ask: (id: string) => Promise<ScanStatistics>): void {
   distance.addEventListener("change", draw);
   dark.addEventListener("change", draw);
   // It is drawn where it is seen: the view draws often.
-  new IntersectionObserver(([entry]) => {
-    sphere_seen = entry?.isIntersecting === true;
+  new IntersectionObserver((entries) => {
+    sphere_seen = entries.at(-1)?.isIntersecting === true;
     draw_sphere();
   }).observe(id("sphere"));
 }
@@ -74,7 +74,7 @@ async function measure(): Promise<void> {
     known.set(wanted.id, await request(wanted.id));
     announce(`Density, gaps and errors of ${title(wanted)} are measured`);
   } catch (error) {
-    refused("Measure", error, id("quality-error"));
+    if (scan?.id === wanted.id) refused("Measure", error, id("quality-error"));
   } finally {
     measuring = null;
     draw();
@@ -89,7 +89,7 @@ function draw(): void {
   show(button, found === undefined);
   button.disabled = capturing || measuring !== null;
   text(id("measure-why"), capturing ? "Not while a scan runs: it needs this machine." : "");
-  show(id("measuring"), measuring !== null);
+  show(id("measuring"), measuring === scan.id);
   show(id("measured"), found !== undefined);
   if (found !== undefined) draw_measured(found);
 }
