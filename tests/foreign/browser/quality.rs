@@ -146,11 +146,9 @@ fn two_scans_are_compared_and_shown_together() {
             page.run("location.hash = '#scan=gone'").await;
             page.until_has("#scans-error", "The scan of the link is not on this daemon")
                 .await;
-            page.run(
-                "document.querySelector('#scans .scan:nth-child(2) [data-role=open]').click()",
-            )
-            .await;
-            page.until("#view-title", "one scan", |text| text == "before")
+            page.run("document.querySelector('#scans .scan [data-role=open]').click()")
+                .await;
+            page.until("#view-title", "one scan", |text| text == "after")
                 .await;
             page.run(&format!("location.href = {link}")).await;
             page.until_has("#view-title", "after compared with before")

@@ -140,14 +140,6 @@ fn files_are_shown_played_and_end_with_their_tab() {
             page.until_has("#scans", "map.csv").await;
             page.picture("view").await;
             page.audit("files").await;
-            page.until_has("#quality-facts", "Packet delay").await;
-            page.click("#measure").await;
-            page.until_has("#measured-facts", "Largest gap").await;
-            page.until_has("#sphere-words", "Fewest: ").await;
-            assert_eq!(page.text("#budget").await, "", "its request is not known");
-            page.audit("a measured file").await;
-            page.picture("view-measured").await;
-            page.run("scrollTo(0, 0)").await;
             // By keys: to the start, and on from there. The time changes before the picture does.
             let whole = page.pixels_of("#canvas").await;
             page.run("document.querySelector('#time').focus()").await;
@@ -169,11 +161,6 @@ fn files_are_shown_played_and_end_with_their_tab() {
             page.until_loaded().await;
             assert_eq!(page.text("#player").await, "", "these points have no times");
             assert_eq!(page.text("#quality").await, "", "this is no scan");
-            page.choose("#field", "intensity").await;
-            page.until("#legend-high", "the greatest intensity", |text| {
-                text == "30"
-            })
-            .await;
             for wrong in ["/", "/0123456789abcdef0123456789abcdef/"] {
                 let status = format!("return fetch('{wrong}').then((answer) => answer.status)");
                 assert_eq!(page.run(&status).await, 404, "without the token");
