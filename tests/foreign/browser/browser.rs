@@ -298,8 +298,11 @@ impl Page {
             .await;
     }
 
-    /// The pixels in the picture of an element.
+    /// The pixels in the picture of an element, which is scrolled into sight: a part of it would be
+    /// compared with another part.
     pub async fn pixels_of(&self, css: &str) -> Vec<[u8; 3]> {
+        let scroll = "document.querySelector(arguments[0]).scrollIntoView({ block: 'center', behavior: 'instant' })";
+        self.client.execute(scroll, vec![json!(css)]).await.unwrap();
         let element = self.client.find(Locator::Css(css)).await.unwrap();
         let picture = element.screenshot().await.unwrap();
         let mut reader = png::Decoder::new(Cursor::new(picture)).read_info().unwrap();
@@ -494,6 +497,9 @@ impl Page {
     pub async fn choose(&self, css: &str, value: &str) {
         let element = self.client.find(Locator::Css(css)).await.unwrap();
         element.select_by_value(value).await.unwrap();
+        // WebDriver fires the input event before it changes the value; a user's comes after it.
+        let input = "document.querySelector(arguments[0]).dispatchEvent(new Event('input', { bubbles: true }))";
+        self.client.execute(input, vec![json!(css)]).await.unwrap();
     }
 
     /// Downloads the first scan in a format.

@@ -276,8 +276,18 @@ fn the_axis_is_moved_by_hand_within_its_limits_and_stopped() {
         driver.test(screen, async |page| {
             ready(&page, &url).await;
             // The limits are drawn.
-            page.until_true("document.querySelector('#gauge-arc').getTotalLength() > 50 && document.querySelectorAll('#gauge-marks text').length >= 2")
+            page.until_true("document.querySelectorAll('#gauge-marks text').length === 2")
                 .await;
+            let axis = &page.api("status").await["axis"];
+            let [min_deg, max_deg] = ["min_deg", "max_deg"].map(|key| axis[key].as_f64().unwrap());
+            let drawn = page
+                .run("return document.querySelector('#gauge-arc').getTotalLength()")
+                .await;
+            let expected = 58.0 * (max_deg - min_deg).to_radians();
+            assert!(
+                (drawn.as_f64().unwrap() - expected).abs() < 0.5,
+                "{drawn}, expected {expected}"
+            );
             page.click("#home").await;
             page.until_has("#doing", "Homing").await;
             page.until_has("#doing", "Ready").await;

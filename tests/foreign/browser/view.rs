@@ -140,6 +140,18 @@ fn files_are_shown_played_and_end_with_their_tab() {
             page.until_has("#scans", "map.csv").await;
             page.picture("view").await;
             page.audit("files").await;
+            // What the scan is worth, without a daemon.
+            page.until_has("#quality-facts", "Packet delay").await;
+            page.click("#measure").await;
+            page.until_has("#measured-facts", "Largest gap").await;
+            page.until_has("#sphere-words", "Fewest: ").await;
+            assert_eq!(
+                page.text("#budget").await,
+                "",
+                "the log has no error budget"
+            );
+            page.audit("a measured file").await;
+            page.picture("view-measured").await;
             // By keys: to the start, and on from there. The time changes before the picture does.
             let whole = page.pixels_of("#canvas").await;
             page.run("document.querySelector('#time').focus()").await;
@@ -161,6 +173,9 @@ fn files_are_shown_played_and_end_with_their_tab() {
             page.until_loaded().await;
             assert_eq!(page.text("#player").await, "", "these points have no times");
             assert_eq!(page.text("#quality").await, "", "this is no scan");
+            // Its own column is a colour.
+            page.choose("#field", "intensity").await;
+            page.until_has("#legend-high", "30").await;
             for wrong in ["/", "/0123456789abcdef0123456789abcdef/"] {
                 let status = format!("return fetch('{wrong}').then((answer) => answer.status)");
                 assert_eq!(page.run(&status).await, 404, "without the token");
@@ -388,7 +403,8 @@ fn points_are_measured_cut_coloured_and_linked() {
             page.until_true("document.querySelector('#z-low').value === '1' && document.querySelector('#limit-high').value === '6'").await;
             page.until_true("document.querySelector('#parallel').checked && document.querySelector('#section').value === 'y'").await;
             page.until_true("!document.querySelector('#shading').checked && document.querySelector('#size').value === '3'").await;
-            page.until_has("#picked", "Point A").await;
+            page.until_has("#picked", "Pick another point").await;
+            page.until_true("document.querySelectorAll('#overlay .pick').length === 1").await;
             page.click("#tools > summary").await;
             page.click("#link").await;
             assert_eq!(page.run("return location.href").await, link, "the view is the linked one");
