@@ -10,9 +10,12 @@ use fantoccini::actions::{
     Actions, InputSource, KeyAction, KeyActions, MOUSE_BUTTON_LEFT, MouseActions, PointerAction,
     TouchActions, WheelAction, WheelActions,
 };
+use fantoccini::wd::WebDriverCompatibleCommand;
 use fantoccini::{Client, ClientBuilder, Locator};
+use http::Method;
 use hyper_util::client::legacy::connect::HttpConnector;
 use serde_json::{Value, json};
+use url::Url;
 
 /// Every awaited condition comes sooner, or never.
 const TIME_LIMIT: Duration = Duration::from_secs(90);
@@ -109,6 +112,23 @@ impl Screen {
             dark: false,
             ..self
         }
+    }
+}
+
+/// The command of `chromedriver` that takes the network from a browser.
+#[derive(Debug)]
+struct Offline(bool);
+
+impl WebDriverCompatibleCommand for Offline {
+    fn endpoint(&self, driver: &Url, session: Option<&str>) -> Result<Url, url::ParseError> {
+        let session = session.unwrap();
+        driver.join(&format!("session/{session}/chromium/network_conditions"))
+    }
+
+    fn method_and_body(&self, _: &Url) -> (Method, Option<String>) {
+        let conditions = json!({ "offline": self.0, "latency": 0, "throughput": 0 });
+        let body = json!({ "network_conditions": conditions });
+        (Method::POST, Some(body.to_string()))
     }
 }
 
@@ -421,6 +441,22 @@ impl Page {
     async fn hold(&self, action: KeyAction) {
         let keyboard = KeyActions::new("keyboard".to_owned()).then(action);
         self.client.perform_actions(keyboard).await.unwrap();
+    }
+
+    /// Touches the middle of an element with a finger on a phone, and clicks it elsewhere.
+    pub async fn touch(&self, css: &str) {
+        let script = format!(
+            "const {{ x, y, width, height }} = document.querySelector({css:?}).getBoundingClientRect();
+            return [x + width / 2, y + height / 2]"
+        );
+        let middle = self.run(&script).await;
+        let [x, y] = [0, 1].map(|i| middle[i].as_f64().unwrap().round());
+        self.tap(x, y).await;
+    }
+
+    /// Takes the network from the browser, or gives it back.
+    pub async fn set_offline(&self, offline: bool) {
+        self.client.issue_cmd(Offline(offline)).await.unwrap();
     }
 
     /// Two fingers left and right of a place move apart, from one distance to another.

@@ -1,7 +1,7 @@
 //! The page by the keyboard alone, from the first Tab on.
 
 use super::browser::{Page, screens};
-use super::view::CATCH_DOWNLOAD;
+use super::view::{CATCH_DOWNLOAD, DELETE};
 use super::{ENTER, ESCAPE, browser_and_simulator, ready};
 
 /// WebDriver's codes of keys.
@@ -75,7 +75,17 @@ fn everything_is_done_by_the_keyboard_alone() {
             page.until_has("#doing", "Moving").await;
             page.keys(ESCAPE).await;
             page.until_has("#doing", "Ready").await;
-            assert_eq!(page.api("tilt").await["velocity_rpm"], 0);
+            let tilt = page.api("tilt").await;
+            assert_eq!(tilt["velocity_rpm"], 0);
+            press_at(&page, "#jog [data-jog='-1']", enter).await;
+            page.until_has("#doing", "Moving").await;
+            page.until_has("#doing", "Ready").await;
+            let jogged = page.api("tilt").await["angle_deg"].as_f64().unwrap();
+            let expected = tilt["angle_deg"].as_f64().unwrap() - 1.0;
+            assert!(
+                (jogged - expected).abs() < 0.1,
+                "{jogged}, expected {expected}"
+            );
             press_at(&page, "#by-hand summary", SPACE).await;
 
             let name = format!("round-{number}");
@@ -95,6 +105,7 @@ fn everything_is_done_by_the_keyboard_alone() {
             press_at(&page, "#top", enter).await;
             press_at(&page, "#parallel", SPACE).await;
             press_at(&page, "#map", DOWN).await;
+            type_at(&page, "#limit-low", "0.5").await;
             press_at(&page, "#size", RIGHT).await;
             press_at(&page, ".clip > summary", enter).await;
             press_at(&page, "#section", DOWN).await;
@@ -103,9 +114,18 @@ fn everything_is_done_by_the_keyboard_alone() {
             press_at(&page, "#link", enter).await;
             let link = page.run("return location.hash").await;
             let link = link.as_str().unwrap();
-            for part in ["parallel=1", "map=cividis", "size=2", "section=z,0.05,"] {
+            for part in [
+                "parallel=1",
+                "map=cividis",
+                "limits=0.5,",
+                "size=2",
+                "section=z,0.05,",
+            ] {
                 assert!(link.contains(part), "{part} in {link}");
             }
+            page.run(CATCH_DOWNLOAD).await;
+            press_at(&page, "#picture", enter).await;
+            page.until_true("window.saved?.endsWith('.png')").await;
             press_at(&page, "#unclip", enter).await;
             press_at(&page, "#tools > summary", enter).await;
             press_at(&page, "#field", DOWN).await;
@@ -124,7 +144,15 @@ fn everything_is_done_by_the_keyboard_alone() {
             page.press(enter).await;
             page.until(".scan h3", "the new name", |text| text == renamed)
                 .await;
-            page.run(CATCH_DOWNLOAD).await;
+            type_at(&page, "#search", "no such name").await;
+            page.until_true("document.querySelector('.scan') === null")
+                .await;
+            page.keys(SELECT_ALL).await;
+            page.keys(&renamed).await;
+            page.until(".scan h3", "the one found", |text| text == renamed)
+                .await;
+            page.keys(SELECT_ALL).await;
+            page.keys(DELETE).await;
             press_at(&page, ".scan [data-role=download]", enter).await;
             page.until_true("document.activeElement.value === 'ply'")
                 .await;
@@ -150,6 +178,14 @@ fn everything_is_done_by_the_keyboard_alone() {
                 page.until_has("#view-title", &format!("{renamed} compared with"))
                     .await;
                 page.until_has("#view-note", " within ").await;
+                press_at(&page, "#tools > summary", enter).await;
+                press_at(&page, "#swap", enter).await;
+                page.until("#view-title", "swapped", |text| {
+                    text.ends_with(&format!(" compared with {renamed}"))
+                })
+                .await;
+                page.until_has("#view-note", " within ").await;
+                press_at(&page, "#tools > summary", enter).await;
             }
             press_at(&page, "#large", enter).await;
             page.until_true("document.fullscreenElement !== null").await;

@@ -26,7 +26,7 @@ use browser::{DESKTOP, Driver, NARROW, PHONE, Page, screens};
 /// A daemon with its own folder; port 0 takes a free one.
 fn daemon(config: Config, device: Option<&str>, folder: &Path, port: u16) -> Daemon {
     // Most tests do not depend on free disk space.
-    reserving(0, config, device, folder, port)
+    reserving(0, config, device, folder, ([127, 0, 0, 1], port))
 }
 
 /// A daemon that keeps this much of the disk free.
@@ -35,7 +35,7 @@ fn reserving(
     config: Config,
     device: Option<&str>,
     folder: &Path,
-    port: u16,
+    listen: ([u8; 4], u16),
 ) -> Daemon {
     let settings = DaemonConfig {
         scans: Some(folder.join("scans")),
@@ -48,7 +48,7 @@ fn reserving(
             ..config
         },
         device: device.map(str::to_owned),
-        listen: Some(SocketAddr::from(([127, 0, 0, 1], port))),
+        listen: Some(SocketAddr::from(listen)),
         runtime: Some(folder.to_owned()),
         ..Options::default()
     })
@@ -240,7 +240,7 @@ fn a_sweep_is_displayed_and_stopped_by_key_and_by_touch() {
                     page.until_has("#download-title", "Download").await;
                     page.keys(ESCAPE).await;
                 }
-                _ => page.click("#stop").await,
+                _ => page.touch("#stop").await,
             }
             page.until_has("#doing", "Stopped").await;
             if name == "by-key" {
@@ -314,7 +314,7 @@ fn the_axis_is_moved_by_hand_within_its_limits_and_stopped() {
             page.fill("#goto", "-45").await;
             page.click("#go").await;
             page.until_has("#doing", "Moving").await;
-            page.click("#stop").await;
+            page.touch("#stop").await;
             page.until_has("#doing", "Ready").await;
             let tilt = page.api("tilt").await;
             assert_eq!(tilt["velocity_rpm"], 0, "{tilt}");

@@ -129,7 +129,7 @@ fn a_refused_download_is_reported_at_its_scan() {
         Config::default(),
         Some("sim"),
         folder.path(),
-        0,
+        ([127, 0, 0, 1], 0),
     );
     let url = url(&full);
     for screen in screens() {
@@ -250,6 +250,31 @@ async fn clear_is_refused(page: &Page) {
         .await;
     until_in_sight(page, "#clear-error").await;
     page.run("window.answer()").await;
+}
+
+#[test]
+#[ignore = "needs chromium and chromedriver"]
+fn a_lost_network_is_told_from_a_daemon_that_ended() {
+    let driver = Driver::start();
+    let folder = tempfile::tempdir().unwrap();
+    for screen in screens() {
+        // The page takes every address but localhost's usual ones for another machine.
+        let another = ([127, 0, 0, 2], 0);
+        let first = reserving(0, Config::default(), Some("sim"), folder.path(), another);
+        let url = url(&first);
+        driver.test(screen, async |page| {
+            ready(&page, &url).await;
+            page.set_offline(true).await;
+            spawn_blocking(move || first.stop(|| true).unwrap())
+                .await
+                .unwrap();
+            page.until_has("#lost", "This device has no network.").await;
+            page.audit("no network").await;
+            page.set_offline(false).await;
+            page.until_has("#lost", "the daemon has probably ended")
+                .await;
+        });
+    }
 }
 
 #[test]

@@ -347,13 +347,15 @@ fn points_are_measured_cut_coloured_and_linked() {
                 page.picture("measured-beside-tools").await;
                 page.click("#tools > summary").await;
             }
-            page.run("document.querySelector('#canvas').focus()").await;
-            page.keys(DELETE).await;
-            page.until_gone("#picked").await;
-
+            // From the front the two are as far apart, by the scale bar, as in x and z.
             page.click("#tools summary").await;
             page.click("#front").await;
             page.click("#parallel").await;
+            page.until_true(&format!("Math.abs(({SCALED})() - {0}) < 0.02 * {0} + 0.05", (x2 - x1).hypot(z2 - z1)))
+                .await;
+            page.run("document.querySelector('#canvas').focus()").await;
+            page.keys(DELETE).await;
+            page.until_gone("#picked").await;
             page.click(".clip summary").await;
             page.fill("#z-low", "1").await;
             page.until_has("#clipped", "parts hidden").await;
@@ -404,7 +406,7 @@ fn points_are_measured_cut_coloured_and_linked() {
             page.until_true("document.querySelector('#parallel').checked && document.querySelector('#section').value === 'y'").await;
             page.until_true("!document.querySelector('#shading').checked && document.querySelector('#size').value === '3'").await;
             page.until_has("#picked", "Pick another point").await;
-            page.until_true("document.querySelectorAll('#overlay .pick').length === 1").await;
+            page.until_true("[...document.querySelectorAll('#overlay .pick')].filter((mark) => mark.style.display === '').length === 1").await;
             page.click("#tools > summary").await;
             page.click("#link").await;
             assert_eq!(page.run("return location.href").await, link, "the view is the linked one");
@@ -418,6 +420,15 @@ fn points_are_measured_cut_coloured_and_linked() {
         viewing.join().unwrap().unwrap();
     }
 }
+
+/// The distance of both picked points in the window, metres by the scale bar.
+const SCALED: &str = "() => {
+    const [a, b] = [...document.querySelectorAll('#overlay .pick')].map(({ cx, cy }) => [cx.baseVal.value, cy.baseVal.value]);
+    const [, left, right] = /^M([0-9.]+) .*H([0-9.]+)/.exec(document.querySelector('#overlay .scale').getAttribute('d'));
+    const [value, unit] = document.querySelector('#overlay .scale-words').textContent.split(' ');
+    const metres = Number(value) * { m: 1, cm: 0.01, mm: 0.001 }[unit];
+    return metres / (right - left) * Math.hypot(a[0] - b[0], a[1] - b[1]);
+}";
 
 #[test]
 #[ignore = "needs chromium and chromedriver"]
@@ -468,4 +479,4 @@ pub const CATCH_DOWNLOAD: &str = "
 
 /// WebDriver's codes of keys.
 const HOME: char = '\u{e011}';
-const DELETE: &str = "\u{e017}";
+pub const DELETE: &str = "\u{e017}";

@@ -260,6 +260,8 @@ mod tests {
             [velodyne(100, 0.5), velodyne(102, 0.0)],
             [ouster(100, 500_000_000), ouster(102, 0)],
             [hesai(1_700_000_000.5), hesai(1_700_000_002.0)],
+            // Livox's, in nanoseconds of the sensor.
+            [hesai(200_000_000_512.0), hesai(201_500_000_512.0)],
         ] {
             assert_eq!(read(&messages), [(Column::Time, vec![0.0, 1.5])]);
         }
