@@ -39,13 +39,14 @@ async fn middle(page: &Page) -> ([f64; 2], f64) {
     ([x, y], height)
 }
 
-/// The drawn axes x, y and z, pixels to the right and down.
-async fn drawn_axes(page: &Page) -> [[f64; 2]; 3] {
-    let script =
-        "return [...document.querySelectorAll('#overlay line.axis')].map(({ x1, y1, x2, y2 }) =>
-        [x2.baseVal.value - x1.baseVal.value, y2.baseVal.value - y1.baseVal.value])";
-    let axes = page.run(script).await;
-    [0, 1, 2].map(|axis| [0, 1].map(|i| axes[axis][i].as_f64().unwrap()))
+/// Waits until the drawn axes x, y and z, `[right, down]` in pixels, are as they should be: the
+/// page draws them after it has moved the camera.
+async fn until_drawn(page: &Page, axes: &str) {
+    page.until_true(&format!(
+        "(([x, y, z]) => {axes})([...document.querySelectorAll('#overlay line.axis')].map(({{ x1, y1, x2, y2 }}) =>
+            [x2.baseVal.value - x1.baseVal.value, y2.baseVal.value - y1.baseVal.value]))"
+    ))
+    .await;
 }
 
 fn assert_near(found: f64, expected: f64, what: &str) {
@@ -117,11 +118,9 @@ fn the_camera_follows_mouse_fingers_wheel_and_keys() {
             };
             let top = looks("#top").await;
             assert!(top[1] > 1.5, "from above: {top:?}");
-            let [x, y, z] = drawn_axes(&page).await.map(|[right, down]| right.hypot(down));
-            assert!(x > 25.0 && y > 25.0 && z < 1.0, "from above: {x} {y} {z} px");
+            until_drawn(&page, "Math.hypot(...x) > 25 && Math.hypot(...y) > 25 && Math.hypot(...z) < 1").await;
             let [front, side] = [looks("#front").await, looks("#side").await];
-            let [.., z] = drawn_axes(&page).await;
-            assert!(z[0].abs() < 1.0 && z[1] < -25.0, "z points up: {z:?} px");
+            until_drawn(&page, "Math.abs(z[0]) < 1 && z[1] < -25").await;
             assert_near(
                 (front[0] - side[0]).abs(),
                 half_turn / 2.0,
