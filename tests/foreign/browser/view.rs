@@ -287,14 +287,16 @@ const HOLD_DOWNLOAD: &str = "
 fn a_file_that_is_no_cloud_is_reported() {
     let driver = Driver::start();
     let folder = tempfile::tempdir().unwrap();
-    let [path, good] = ["broken.ply", "good.csv"].map(|name| folder.path().join(name));
-    std::fs::write(&good, "1,2,3\n4,5,6\n").unwrap();
+    let [path, good, beside] =
+        ["broken.ply", "good.xyz", "good.xyz.txt"].map(|name| folder.path().join(name));
+    std::fs::write(&good, "1 2 3\n4 5 6\n").unwrap();
+    std::fs::write(&beside, "columns: x_m y_m z_m\n").unwrap();
     std::fs::write(
         &path,
         "ply\nformat ascii 1.0\nelement vertex 3\nend_header\n",
     )
     .unwrap();
-    let (url, viewing) = view(vec![path, good]);
+    let (url, viewing) = view(vec![path, good, beside]);
     driver.test(PHONE, async |page| {
         page.goto(&url).await;
         page.until_has("#scans", "a property x of the vertices")
@@ -303,6 +305,7 @@ fn a_file_that_is_no_cloud_is_reported() {
     });
     let failure = viewing.join().unwrap().unwrap_err();
     assert_eq!(failure.kind, engine::Kind::BadInput, "{failure}");
+    assert_eq!(failure.message, "1 of 2 files are not shown");
 }
 
 #[test]

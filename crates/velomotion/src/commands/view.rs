@@ -16,7 +16,7 @@ use engine::failure::{Failure, Kind};
 use engine::reconstruct::source::Source;
 
 use super::CommandOutput;
-use super::analyze::input::InputArgument;
+use super::analyze::input::{InputArgument, companion_path};
 use crate::cli::{self, Common};
 use crate::documents::ServedView;
 use crate::logging;
@@ -62,7 +62,13 @@ pub fn show(
     interrupt: &AtomicBool,
     served: impl FnOnce(&str),
 ) -> Result<(), Failure> {
-    let inputs: Vec<ViewInput<'_>> = paths.iter().map(|path| ViewInput::open(path)).collect();
+    let mut inputs: Vec<ViewInput<'_>> = paths.iter().map(|path| ViewInput::open(path)).collect();
+    // `velomotion view *` names the texts beside clouds, too.
+    let beside: Vec<PathBuf> = inputs
+        .iter()
+        .filter_map(ViewInput::companion_path)
+        .collect();
+    inputs.retain(|input| !beside.iter().any(|text| text == input.path()));
     // With nothing to show there is no page.
     let is_failed = |input: &ViewInput<'_>| matches!(input, ViewInput::Failed(..));
     if let Some(ViewInput::Failed(_, failure)) = inputs.first()
@@ -95,10 +101,10 @@ pub fn show(
     let Some(first) = failures.first() else {
         return Ok(());
     };
-    if let [_] = paths {
+    if inputs.len() == 1 {
         return Err(first.clone());
     }
-    let what = format!("{} of {} files are not shown", failures.len(), paths.len());
+    let what = format!("{} of {} files are not shown", failures.len(), inputs.len());
     Err(Failure::new(first.kind, what).help("the messages above say why"))
 }
 
@@ -134,6 +140,13 @@ impl<'a> ViewInput<'a> {
         match self {
             Self::Cloud(path, _) | Self::Failed(path, _) => path,
             Self::Log(source) => source.path(),
+        }
+    }
+
+    fn companion_path(&self) -> Option<PathBuf> {
+        match self {
+            Self::Cloud(path, format) => companion_path(path, *format),
+            Self::Log(_) | Self::Failed(..) => None,
         }
     }
 

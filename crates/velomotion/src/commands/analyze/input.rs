@@ -4,7 +4,7 @@
 //! Directions start at the origin of the base, on the tilt axis; without tilt at the sensor; for
 //! clouds at their origin or `--origin`.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use analysis::tilted_sensor::{TiltedSensor, vertical_resolution_deg};
@@ -192,14 +192,17 @@ impl CloudMarks {
     }
 }
 
-/// The text beside a cloud whose format has no place for its metadata.
-pub fn companion(path: &Path, format: Format) -> Vec<u8> {
-    if !format.needs_companion() {
-        return Vec::new();
-    }
+/// Path of the text beside a cloud whose format has no place for its metadata.
+pub fn companion_path(path: &Path, format: Format) -> Option<PathBuf> {
     let mut name = path.as_os_str().to_owned();
     name.push(".txt");
-    std::fs::read(name).unwrap_or_default()
+    format.needs_companion().then(|| name.into())
+}
+
+/// The text beside a cloud; empty if there is none.
+pub fn companion(path: &Path, format: Format) -> Vec<u8> {
+    let beside = companion_path(path, format).and_then(|path| std::fs::read(path).ok());
+    beside.unwrap_or_default()
 }
 
 /// Advice on a cloud that cannot be read.
