@@ -3,6 +3,7 @@
 
 use cloud::Summary;
 use serde_json::{Value, json};
+use units::{Host, Stamp};
 use velomotion_tests::capture::{Captured, Setting};
 
 use super::run_script;
@@ -167,6 +168,57 @@ fn pye57_reads_our_e57_with_the_right_count_and_bounds() {
         fields.iter().any(|field| field == "velomotion:tilt"),
         "{fields:?}"
     );
+}
+
+/// The scans of a file are the sweeps of the log, and together its cloud.
+#[test]
+#[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
+fn pye57_reads_each_sweep_of_our_e57_as_a_scan() {
+    let mut setting = Setting::default();
+    setting.sweep_request.sweeps = 3;
+    setting.sweep_request.both_ways = true;
+    let scan = Captured::new(setting);
+    let files = ["cloud.e57", "cloud.csv"].map(|name| scan.cloud_file(name));
+    let got = run_script("e57_scans.py", &[&files[0], &files[1]]);
+    let sweeps = scan.sweep_spans();
+    assert_eq!(sweeps.len(), 3);
+    let names = [1, 2, 3].map(|number| format!("SIMULATED sweep {number}"));
+    assert_eq!(got["names"], json!(names));
+    let mut guids: Vec<&str> = got["guids"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .flat_map(Value::as_str)
+        .collect();
+    guids.sort_unstable();
+    guids.dedup();
+    assert_eq!(guids.len(), 3, "{got}");
+    let cloud = scan.cloud();
+    for (index, (begin, end)) in sweeps.into_iter().enumerate() {
+        assert_eq!(
+            got["poses"][index],
+            json!([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
+        );
+        let within = cloud
+            .time()
+            .iter()
+            .filter(|time| (begin..=end).contains(*time));
+        assert_eq!(got["points"][index], within.clone().count());
+        let seconds = |stamp: &Stamp<Host>| stamp.as_nanos() as f64 * 1e-9;
+        let span = [within.clone().min(), within.max()].map(|time| seconds(time.unwrap()));
+        for (got, wanted) in [
+            (&got["spans_s"][index][0], span[0]),
+            (&got["spans_s"][index][1], span[1]),
+            (&got["ends_s"][index], span[1]),
+        ] {
+            let got = got.as_f64().unwrap();
+            assert!((got - wanted).abs() < 1e-6, "{got} {wanted}");
+        }
+    }
+    assert_eq!(got["rows"].as_u64(), Some(cloud.summary().points));
+    let largest = |name: &str| got[name].as_f64().unwrap();
+    assert!(largest("max_difference_m") < 4e-6, "{got}");
+    assert!(largest("max_time_difference_s") < 1e-6, "{got}");
 }
 
 #[test]

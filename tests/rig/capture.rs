@@ -34,7 +34,7 @@ use protocol::epos2::DeviceError;
 use protocol::epos2::message::WriteObject;
 use protocol::epos2::rs232;
 use protocol::record::{DriveLink, Record, Wire};
-use scanner::{RangeAccuracy, TiltSource};
+use scanner::{Alignment, RangeAccuracy, TiltSource};
 use sim::cast::{Object, Sphere};
 
 use sim::{Attachment, Rig, Scene};
@@ -329,6 +329,22 @@ impl Captured {
     /// End of the last sweep that the drive received and finished.
     #[must_use]
     pub fn last_sweep_end(&self) -> Option<Stamp<Host>> {
+        self.sweep_spans().last().map(|span| span.1)
+    }
+
+    /// Begin and end of each sweep that the drive received and finished; none of a log without a
+    /// cloud.
+    #[must_use]
+    pub fn sweep_spans(&self) -> Vec<(Stamp<Host>, Stamp<Host>)> {
+        let sweeps = self.try_alignment().map(|alignment| alignment.sweeps);
+        let sweeps = sweeps.unwrap_or_default();
+        sweeps
+            .iter()
+            .map(|sweep| (sweep.start, sweep.end))
+            .collect()
+    }
+
+    fn try_alignment(&self) -> Option<Alignment> {
         let source = Source::open(&self.log(), None).ok()?;
         let mut survey =
             scanner::Survey::new(&source.config().ok()?, lidar::Options::default()).ok()?;
@@ -338,14 +354,10 @@ impl Captured {
                 Ok(())
             })
             .ok()?;
-        let alignment = survey
-            .solve(
-                &source.config().ok()?,
-                &TiltSource::Log,
-                scanner::Accuracy::Best,
-            )
-            .ok()?;
-        alignment.sweeps.last().map(|sweep| sweep.end)
+        let config = source.config().ok()?;
+        survey
+            .solve(&config, &TiltSource::Log, scanner::Accuracy::Best)
+            .ok()
     }
 
     /// Begin and end of the first sweep.

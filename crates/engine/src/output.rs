@@ -52,6 +52,13 @@ impl Target {
             Failure::new(Kind::Usage, format!("{}: {error}", path.display()))
                 .help("use one of those extensions, or - for PLY on stdout")
         })?;
+        let name = path.as_os_str().to_string_lossy().to_ascii_lowercase();
+        if name.ends_with(".copc.laz") {
+            // Programs take a plain LAZ of that name for a broken COPC.
+            let what = format!("{}: COPC cannot be written", path.display());
+            return Err(Failure::new(Kind::Usage, what)
+                .help("name it .laz; its points can be converted to COPC"));
+        }
         let refused = format.refused_columns();
         if let Some(column) = fields
             .columns()
@@ -408,7 +415,17 @@ pub fn sink_failure(path: &Path, error: &SinkError) -> Failure {
 
 #[cfg(test)]
 mod tests {
-    use super::Backup;
+    use super::{Backup, Fields, Kind, Target};
+
+    #[test]
+    fn a_laz_is_not_named_as_if_it_were_copc() {
+        let folder = tempfile::tempdir().unwrap();
+        let open = |name| Target::open(&folder.path().join(name), Fields::FILE, false);
+        let refused = open("hall.COPC.laz").err().unwrap();
+        assert_eq!(refused.kind, Kind::Usage);
+        assert!(refused.message.ends_with("COPC cannot be written"));
+        assert!(open("copc.laz").is_ok());
+    }
 
     #[test]
     fn neither_an_older_nor_a_newer_file_is_lost() {

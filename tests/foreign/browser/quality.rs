@@ -48,8 +48,8 @@ fn the_scan_in_view_is_measured_on_request() {
                 .await;
             assert!(words.contains(" m"), "{words}");
             for (plot, usual, unit) in [
-                ("delays", "median ", " \u{b5}s"),
-                ("deviations", "RMS ", "\u{b0}"),
+                ("delays", "usually ", " \u{b5}s"),
+                ("deviations", "usually ", "\u{b0}"),
             ] {
                 let words = page.text(&format!("#{plot}-words")).await;
                 assert!(words.starts_with(usual), "{words}");

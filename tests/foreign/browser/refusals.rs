@@ -46,7 +46,7 @@ fn an_unconfirmed_stop_is_repeated_under_an_alarm_of_full_width() {
 #[ignore = "needs chromium and chromedriver"]
 fn refusals_are_visible_at_their_control() {
     let (driver, _folder, daemon, url) = browser_and_simulator();
-    for screen in [DESKTOP, PHONE] {
+    for screen in screens() {
         driver.test(screen, async |page| {
             ready(&page, &url).await;
             page.run(TOO_MANY).await;

@@ -7,14 +7,11 @@ use engine::config::Config;
 use engine::failure::{Failure, Kind};
 use serde_json::{Value, json};
 
-use super::browser::{DESKTOP, Driver, NARROW, PHONE, Page, Screen};
+use super::browser::{DESKTOP, Driver, PHONE, Page, screens};
 use super::{
     ENTER, ESCAPE, TOO_MANY, browser_and_simulator, daemon, ready, simulator, start,
     until_in_sight, url,
 };
-
-/// Screens of these tests, dark and light.
-const SCREENS: [Screen; 4] = [DESKTOP, DESKTOP.light(), PHONE.light(), NARROW];
 
 /// Writes the folder of a finished scan; `more` replaces keys of its record.
 fn store(folder: &Path, number: u64, more: &Value) {
@@ -61,7 +58,7 @@ fn a_thousand_scans_are_loaded_in_parts_and_stay_quick() {
     }
     let daemon = daemon(Config::default(), Some("sim"), folder.path(), 0);
     let url = url(&daemon);
-    for screen in SCREENS {
+    for screen in screens() {
         driver.test(screen, async |page| {
             open(&page, &url, "1,000 scans").await;
             // The last part is empty.
@@ -149,7 +146,7 @@ fn a_scan_gets_a_name_and_notes_where_it_is_shown() {
     }
     let daemon = simulator(folder.path());
     let url = url(&daemon);
-    for (screen, round) in SCREENS.into_iter().zip(1..) {
+    for (screen, round) in screens().into_iter().zip(1..) {
         driver.test(screen, async |page| {
             open(&page, &url, "3 scans").await;
             let name = format!("Hall {round}, north end");
@@ -211,7 +208,7 @@ fn a_scan_gets_a_name_and_notes_where_it_is_shown() {
 #[ignore = "needs chromium and chromedriver"]
 fn deleted_scans_are_back_after_undo_and_gone_without_it() {
     let driver = Driver::start();
-    for screen in SCREENS {
+    for screen in screens() {
         let folder = tempfile::tempdir().unwrap();
         for number in 1..=4 {
             store(folder.path(), number, &json!({}));
@@ -316,7 +313,7 @@ fn the_reason_of_a_partial_scan_is_readable_whole() {
     );
     let daemon = simulator(folder.path());
     let url = url(&daemon);
-    for screen in SCREENS {
+    for screen in screens() {
         driver.test(screen, async |page| {
             open(&page, &url, "1 scan").await;
             let summary = page.api("scans/made-0001").await["summary"].clone();

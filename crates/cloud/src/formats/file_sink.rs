@@ -5,7 +5,7 @@ use std::error::Error;
 use std::io;
 
 use super::stage::Stage;
-use crate::{Companion, Fields, Metadata, Points, Sink, SinkError, Summary};
+use crate::{Companion, Fields, Metadata, Points, Sink, SinkError, Summary, TiltTrack};
 
 /// Encodes a file. [`FileSink`] calls it in the order begin, points (any number), finish.
 pub trait FormatEncoder {
@@ -30,6 +30,16 @@ pub trait FormatEncoder {
     /// # Errors
     /// [`EncodeError`] if the output or the library fails.
     fn begin(&mut self, metadata: &Metadata) -> Result<(), EncodeError>;
+
+    /// Like [`Sink::wants_tilt`].
+    fn wants_tilt(&self) -> bool {
+        false
+    }
+
+    /// Takes the track of the tilt, before the first batch.
+    fn tilt(&mut self, track: &TiltTrack) {
+        let _ = track;
+    }
 
     /// Writes a batch that has the columns.
     ///
@@ -139,6 +149,16 @@ impl<E: FormatEncoder> Sink for FileSink<E> {
         let begun = self.encoder.begin(metadata);
         begun.map_err(|fault| self.error(fault))?;
         self.stage = Stage::Open;
+        Ok(())
+    }
+
+    fn wants_tilt(&self) -> bool {
+        self.encoder.wants_tilt()
+    }
+
+    fn tilt(&mut self, track: &TiltTrack) -> Result<(), SinkError> {
+        self.stage.points(self.encoder.format())?;
+        self.encoder.tilt(track);
         Ok(())
     }
 

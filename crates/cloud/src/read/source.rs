@@ -6,9 +6,6 @@ use super::stored_cloud::StoredCloud;
 use crate::Column;
 use crate::formats::Format;
 
-/// A time of the year 5138; times in nanoseconds since a sensor's start pass it after 100 s.
-const LATEST_S: f64 = 1e11;
-
 /// x, y and z in metres.
 pub type Positions = Vec<[f64; 3]>;
 
@@ -110,21 +107,19 @@ impl SourceColumns {
     }
 
     /// The value of a column in a row whose fields `read` reads. Whole numbers of a time are
-    /// nanoseconds, as Ouster's driver writes them, and so are doubles that are no time in seconds,
-    /// as Livox's driver writes them.
+    /// nanoseconds, as Ouster's driver writes them.
     pub(super) fn value(
         &self,
         column: Column,
         read: impl Fn(SourceField) -> Option<f64>,
     ) -> Option<f64> {
         let field = self.get(column)?;
-        let value = read(field)?;
         let is_float = matches!(field.number, SourceNumber::F32 | SourceNumber::F64);
         let unit = match column {
-            Column::Time if !is_float || value > LATEST_S => 1e-9,
+            Column::Time if !is_float => 1e-9,
             _ => 1.0,
         };
-        Some(value * unit)
+        Some(read(field)? * unit)
     }
 }
 

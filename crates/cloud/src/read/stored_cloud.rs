@@ -3,6 +3,10 @@
 use super::source::{Positions, SourceColumns, SourceField, SourceRow};
 use crate::{Column, Fields};
 
+/// A time of the year 5138. One after it is in nanoseconds, as Livox's driver writes them: those
+/// since the sensor's start pass it after 100 s.
+const LATEST_S: f64 = 1e11;
+
 /// The points of a file. A point takes 24 bytes, and 4 per column.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
@@ -16,8 +20,8 @@ pub struct StoredCloud {
     /// Rows left out for a coordinate that is not finite, such as shots without a return in
     /// organised clouds.
     pub without_numbers: u64,
-    /// The time of the first point in its file, seconds.
-    start_s: Option<f64>,
+    /// The time of the first point in its file, and its unit in seconds.
+    start: Option<(f64, f64)>,
 }
 
 impl StoredCloud {
@@ -59,7 +63,12 @@ impl StoredCloud {
         for (column, values) in &mut self.columns {
             let mut value = value(*column).filter(|value| value.is_finite());
             if *column == Column::Time {
-                value = value.map(|time_s| time_s - *self.start_s.get_or_insert(time_s));
+                value = value.map(|time| {
+                    // The first time has the unit of all.
+                    let unit_s = if time > LATEST_S { 1e-9 } else { 1.0 };
+                    let (start, unit_s) = *self.start.get_or_insert((time, unit_s));
+                    (time - start) * unit_s
+                });
             }
             let value = value.unwrap_or(0.0) as f32;
             values.push(if value.is_finite() { value } else { 0.0 });

@@ -25,6 +25,8 @@ let viewer: Viewer | null = null;
 let connected = false;
 /** Whether the list of scans is complete. */
 let listed = false;
+/** Id of the scan whose end was reported last. */
+let reported: string | null = null;
 
 /** The cloud of a scan. */
 function source(scan: Scan): CloudSource {
@@ -103,6 +105,7 @@ const events = new Events(listener);
 /** Reports the end of a scan, and opens its cloud if the scan is in view. */
 async function finished(scan: Scan): Promise<void> {
   if (scan.state === "recording" || scan.state === "making") return;
+  reported = scan.id;
   const name = title(scan);
   recipe.finished(scan);
   if (scan.state === "whole") announce(`Scan ${name} is complete: ${count(scan.points ?? 0)} points`);
@@ -164,10 +167,17 @@ function open_linked(view: Viewer, complete: boolean): boolean {
   return linked !== undefined;
 }
 
+/** A scan in view that ended while the page was not connected: no event said so. */
+function ended_unseen(): void {
+  const scan = viewer?.is_live ? scans.get(viewer.shown ?? "") : undefined;
+  if (scan !== undefined && scan.id !== reported) void finished(scan);
+}
+
 async function list(): Promise<void> {
   try {
     await scans.load((complete) => {
       listed = complete;
+      if (complete) ended_unseen();
       if (viewer === null || open_linked(viewer, complete) || viewer.shown !== null) return;
       const newest = scans.all().find((scan) => scan.state === "whole" || scan.state === "partial");
       if (newest !== undefined && (newest.points ?? 0) <= SMALL_POINTS) viewer.open(source(newest));

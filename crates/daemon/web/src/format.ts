@@ -38,7 +38,9 @@ export function sentence(text: string): string {
 }
 
 export function duration(seconds: number): string {
-  if (seconds < 60) return `${seconds < 10 ? seconds.toFixed(2) : seconds.toFixed(0)} s`;
-  if (seconds < 3_600) return `${Math.floor(seconds / 60)} min ${Math.round(seconds % 60)} s`;
-  return `${Math.floor(seconds / 3_600)} h ${Math.round((seconds % 3_600) / 60)} min`;
+  if (seconds < 59.5) return `${seconds < 10 ? seconds.toFixed(2) : seconds.toFixed(0)} s`;
+  const whole_s = Math.round(seconds);
+  if (whole_s < 3_600) return `${Math.floor(whole_s / 60)} min ${whole_s % 60} s`;
+  const minutes = Math.round(seconds / 60);
+  return `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
 }

@@ -13,9 +13,24 @@ export interface Notes {
   picks: ([number, number] | null)[];
 }
 
+/** A text in lines that fit, broken between words. */
+export function wrapped(text: string, fits: (line: string) => boolean): string[] {
+  const lines: string[] = [];
+  for (const word of text.split(" ")) {
+    const longer = lines.length === 0 ? word : `${lines.at(-1)} ${word}`;
+    if (lines.length > 0 && fits(longer)) lines[lines.length - 1] = longer;
+    else lines.push(word);
+  }
+  return lines;
+}
+
 /** Draws scale and picked points over the points, title and legend below them, and saves that as PNG. */
-export async function save(points: HTMLCanvasElement, name: string, { lines, legend, scale: bar, picks }: Notes): Promise<void> {
+export async function save(points: HTMLCanvasElement, name: string, { lines: texts, legend, scale: bar, picks }: Notes): Promise<void> {
   const scale = points.width / Math.max(1, points.clientWidth);
+  const font = `14px ${getComputedStyle(document.body).fontFamily}`;
+  const measured = h("canvas").getContext("2d");
+  if (measured !== null) measured.font = font;
+  const lines = texts.flatMap((line) => wrapped(line, (part) => (measured?.measureText(part).width ?? 0) <= points.clientWidth - 20));
   const canvas = h("canvas", { width: points.width, height: points.height + Math.round(scale * (LINE_PX * lines.length + 44)) });
   const context = canvas.getContext("2d");
   if (context === null) throw new Error("this browser cannot draw the picture");
@@ -25,7 +40,7 @@ export async function save(points: HTMLCanvasElement, name: string, { lines, leg
   context.drawImage(points, 0, 0);
   context.scale(scale, scale);
   context.fillStyle = style.color;
-  context.font = `14px ${style.fontFamily}`;
+  context.font = font;
   const [width, height] = [points.width / scale, points.height / scale];
   context.fillRect(width - 16 - bar.px, height - 16, bar.px, 2);
   context.textAlign = "right";

@@ -48,7 +48,8 @@ export class Sample {
       intensity: points.intensities.length > 0, ring: points.rings.length > 0, time: points.times.length > 0, sd: points.sds.length > 0, tilt: points.tilts.length > 0,
       distance: points.distances.length > 0,
     };
-    if (count > 0) this.end_s = Math.max(this.end_s, (points.times[count - 1] ?? 0) + time_offset_s);
+    // Clouds of other programs need not be in the order of their times.
+    for (const time_s of points.times) this.end_s = Math.max(this.end_s, time_s + time_offset_s);
     let i = this.skip;
     for (; i < count; i += this.stride) {
       const [x, y, z] = [p[3 * i] ?? 0, p[3 * i + 1] ?? 0, p[3 * i + 2] ?? 0];

@@ -17,7 +17,7 @@ import { SIZE_PX, type ViewState, fromHash, toHash } from "./view/link.ts";
 import { scaleBar } from "./view/measure.ts";
 import { type MapName, MARKS, bar, table } from "./view/maps.ts";
 import { Overlay } from "./view/overlay.ts";
-import { type Preset, RING_STEP_M, Stage } from "./view/stage.ts";
+import { ALL_S, type Preset, RING_STEP_M, Stage } from "./view/stage.ts";
 import type { LoadRequest, LoadEvent } from "./worker.ts";
 
 const FIELDS: Field[] = ["height", "range", "intensity", "ring", "time", "sd", "distance"];
@@ -119,6 +119,11 @@ export class Viewer {
     return { scan: this.linked?.scan ?? null, other: this.linked?.with ?? null };
   }
 
+  /** Whether the points in view are those of a running scan, as far as the page knows. */
+  get is_live(): boolean {
+    return this.live !== null && this.opened === null;
+  }
+
   /** Shows the live points of a new scan. */
   begin(scan: string, title: string, simulated: boolean): void {
     // If the user opened another scan meanwhile, it stays in view.
@@ -156,8 +161,9 @@ export class Viewer {
     this.stage.draw();
   }
 
+  /** Shows the platform's tilt now, unless a scan plays: it has its own. */
   setTilt(tilt_deg: number): void {
-    this.stage.setTilt(tilt_deg);
+    if (this.player.until_s === null) this.stage.setTilt(tilt_deg);
   }
 
   /**
@@ -184,7 +190,7 @@ export class Viewer {
     this.stage.setScanner(source.scanner);
     this.stage.uniform("cutaway", source.scanner && id<HTMLInputElement>("cutaway").checked);
     this.head(this.title, source.simulated || other?.simulated === true);
-    show(id("view-partial"), source.partial);
+    show(id("view-partial"), source.partial || other?.partial === true);
     if (other !== null) {
       text(id("view-points"), "");
       this.colour();
@@ -291,7 +297,8 @@ export class Viewer {
         this.range(cloud.ranges);
         // Those of a link, unless the user has picked others meanwhile.
         if (kept.length === 0 && this.picks.length === 0) this.picks = data.picked.filter((pick) => pick !== null);
-        this.picks = this.picks.map((pick) => data.picked[kept.indexOf(pick)] ?? pick);
+        // One that is not found in the new cloud would keep values of the old one.
+        this.picks = this.picks.flatMap((pick) => (kept.includes(pick) ? (data.picked[kept.indexOf(pick)] ?? []) : pick));
         this.whole = data;
         this.show_picks();
         this.describe_whole(data);
@@ -409,7 +416,7 @@ export class Viewer {
 
   /** Shows the points up to a time, and the platform's tilt then. */
   private until(until_s: number | null): void {
-    this.stage.uniform("until_s", until_s ?? 1e6);
+    this.stage.uniform("until_s", until_s ?? ALL_S);
     if (until_s === null || this.ranges === null) return;
     const tilt_deg = tiltAt(this.ranges.track, until_s);
     if (tilt_deg !== null) this.stage.setTilt(tilt_deg);
@@ -471,7 +478,7 @@ export class Viewer {
     const words = (value: number) => {
       if (range === null) return "";
       switch (this.field) {
-        case "height": case "range": return `${fixed(value + shift, 1)} m`;
+        case "height": case "range": return `${fixed(value + shift, of.high - of.low < 0.1 ? 3 : of.high - of.low < 2 ? 2 : 1)} m`;
         case "intensity": return digits(value);
         case "ring": return Number.isInteger(value) ? fixed(value, 0) : "";
         case "time": return `${digits(value)} s`;
@@ -630,12 +637,15 @@ export class Viewer {
     const words = (name: string) => id(name).textContent ?? "";
     const simulated = id("view-simulated").hidden ? "" : "SIMULATED \u00b7 ";
     const title = words("view-title");
-    const lines = [`${simulated}${title} \u00b7 ${words("view-points")} ${words("view-note")} ${words("view-clipped")}`, `coloured by ${id<HTMLSelectElement>("field").selectedOptions[0]?.text ?? ""}`];
+    const partial = id("view-partial").hidden ? "" : "PARTIAL \u00b7 ";
+    const until = this.player.until_s === null ? "" : `only the points up to ${words("time-now")}`;
+    const limits = ["legend-below", "legend-above"].filter((name) => !id(name).hidden).map(words);
+    const lines = [`${simulated}${partial}${title}`, [words("view-points"), words("view-note"), until, words("view-clipped")].filter(Boolean).join(" \u00b7 "), [`coloured by ${id<HTMLSelectElement>("field").selectedOptions[0]?.text ?? ""}`, ...limits].join(" \u00b7 ")];
     if (this.picks.length === 2) lines.push(`A to B: ${document.querySelector("#picked .distance")?.textContent ?? ""}`);
     try {
       const points = this.stage.picture();
       await picture.save(points, title, {
-        lines, legend: { low: words("legend-low"), high: words("legend-high") }, scale: scaleBar(this.stage.metres_per_px, 96),
+        lines, legend: { low: words("legend-low"), high: words("legend-high") }, scale: scaleBar(this.stage.metres_per_px, 96, this.stage.orbit.parallel),
         picks: this.picks.map((pick) => this.stage.project(pick.position)),
       });
       this.told("Picture saved");

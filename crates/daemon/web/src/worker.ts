@@ -48,7 +48,10 @@ const here = self as unknown as {
 
 here.onmessage = (event) => {
   void load(event.data).catch((error: unknown) => {
-    here.postMessage({ kind: "failed", error: error instanceof Error ? error.message : String(error) });
+    // What a browser says of a network that fails differs from one to the next.
+    const lost = error instanceof TypeError || (error instanceof DOMException && error.name === "NetworkError");
+    const reason = error instanceof Error ? error.message : String(error);
+    here.postMessage({ kind: "failed", error: lost ? "the connection was lost while the cloud was loaded: open it again" : reason });
   });
 };
 

@@ -15,8 +15,9 @@ test("the uncertainty of a distance adds those of its ends in quadrature", () =>
 
 test("scale bars have round lengths and fit", () => {
   for (const [metres_per_px, words] of [[0.1, "5 m"], [0.0123, "1 m"], [0.0055, "50 cm"], [0.0001, "5 mm"], [3, "200 m"]]) {
-    const bar = scaleBar(metres_per_px, 96);
+    const bar = scaleBar(metres_per_px, 96, true);
     assert.equal(bar.words, words);
+    assert.equal(scaleBar(metres_per_px, 96, false).words, `\u2248 ${words}`, "in perspective");
     assert.ok(bar.px <= 96 && bar.px > 96 / 2.6, `${bar.px} px`);
     assert.ok(Math.abs(bar.px * metres_per_px - bar.m) < 1e-9);
   }

@@ -23,6 +23,12 @@ test("a cloud around its origin is seen from there, another one from its middle"
   assert.ok(reach_m < 15, String(reach_m));
 });
 
+test("a cloud ends at its latest time, in whatever order its points are", () => {
+  const sample = new Sample();
+  sample.add({ ...grid(0, 0, 0), times: Float32Array.from({ length: 400 }, (_, i) => 400 - i) });
+  assert.equal(sample.ranges().end_s, 400);
+});
+
 test("columns that a cloud lacks have no range", () => {
   const sample = new Sample();
   sample.add(grid(0, 0, 0));

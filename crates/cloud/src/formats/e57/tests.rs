@@ -112,6 +112,56 @@ fn the_file_describes_itself() {
     assert_eq!((pose.rotation.w, pose.translation.z), (1.0, 0.0));
 }
 
+/// Sweeps become scans for any batches; one without points, here the second, is left out.
+#[test]
+fn each_sweep_is_a_scan() {
+    let cloud = cloud_from(2000, NOW_NS);
+    let at = |ms: i64| Stamp::from_nanos(NOW_NS + ms * 1_000_000);
+    let sweeps = vec![
+        (at(0), cloud.time()[499]),
+        (at(2), cloud.time()[499]),
+        (at(3), at(9)),
+    ];
+    let mut first_content = None;
+    for batch in [1, 7, 500, 2000] {
+        let file = SharedOutput::default();
+        let mut writer = E57Writer::new(file.clone(), Fields::FILE);
+        writer.begin(&metadata()).unwrap();
+        assert!(writer.wants_tilt());
+        let track = TiltTrack {
+            sweeps: sweeps.clone(),
+            ..TiltTrack::default()
+        };
+        writer.tilt(&track).unwrap();
+        for row in (0..2000).step_by(batch) {
+            let rows = row..(row + batch).min(2000);
+            writer.points(&part(&cloud, rows)).unwrap();
+        }
+        assert_eq!(writer.finish().unwrap(), cloud.summary());
+        let content = file.content();
+        assert_eq!(*first_content.get_or_insert(content.clone()), content);
+        let mut file = E57Reader::new(Cursor::new(content)).unwrap();
+        let scans = file.pointclouds();
+        let names: Vec<_> = scans.iter().flat_map(|scan| scan.name.clone()).collect();
+        assert_eq!(names, ["SIMULATED sweep 1", "SIMULATED sweep 3"]);
+        let guids = [&scans[0].guid, &scans[1].guid].map(|guid| guid.clone().unwrap());
+        assert!(guids[0] != guids[1] && !guids.contains(&file.guid().to_owned()));
+        let mut read = Vec::new();
+        for (scan, rows) in scans.iter().zip([0..500, 500..2000]) {
+            let part = part(&cloud, rows);
+            let end = scan.acquisition_end.as_ref().unwrap().gps_time;
+            let last = gps_time::gps_s(*part.time().last().unwrap());
+            assert!((end - last).abs() < 1e-6 && scan.transform.is_some());
+            assert_eq!(scan.records, part.len() as u64);
+            assert!(scan.description.clone().unwrap().starts_with("SIMULATED"));
+            let x = |row: e57::Result<Vec<RecordValue>>| row.unwrap()[0].clone();
+            read.extend(file.pointcloud_raw(scan).unwrap().map(x));
+        }
+        let x = cloud.x_m().iter().map(|x| RecordValue::Single(*x as f32));
+        assert!(x.eq(read));
+    }
+}
+
 #[test]
 fn clouds_without_points_or_columns_are_valid_files() {
     for (fields, batches) in [

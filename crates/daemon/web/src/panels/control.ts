@@ -44,15 +44,18 @@ export function wire(start_capture: () => void, axis_ready: (ready: boolean) => 
     start_capture();
   });
   document.addEventListener("keydown", (event) => {
-    if (event.key !== "Escape" || status === null || status.activity.doing === "idle") return;
+    if (event.key !== "Escape" || rests()) return;
     event.preventDefault();
     stop_motion();
   }, { capture: true });
 }
 
+/** Whether the axis is known to rest. A command that is under way, or a state from before the connection was lost, leaves that open. */
+const rests = () => status === null || (connected && !asking && status.activity.doing === "idle");
+
 /** Stops a motion, if there may be one. */
 export function stop_motion(): void {
-  if (status !== null && status.activity.doing !== "idle") void halt();
+  if (!rests()) void halt();
 }
 
 /** Sends a command and reports its error, at its control too. */

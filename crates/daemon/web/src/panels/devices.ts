@@ -124,7 +124,7 @@ function marks(min_deg: number, max_deg: number): void {
     mark.setAttribute("x", x ?? "0");
     mark.setAttribute("y", y ?? "0");
     mark.setAttribute("text-anchor", "middle");
-    mark.textContent = `${fixed(deg, 0)}\u00b0`;
+    mark.textContent = `${fixed(deg, Number.isInteger(deg) ? 0 : 1)}\u00b0`;
     return mark;
   }));
 }

@@ -37,7 +37,7 @@ export function residuals({ report }: Scan): Fact[] {
   add("Angle error at most", sync?.angle_bound_deg, "\u00b0");
   if (sync?.angle_method) rows.push(["Angle method", sync.angle_method]);
   const lost = (report?.lost_packets ?? 0) + (report?.lost_records ?? 0);
-  rows.push(["Lost", lost === 0 ? "nothing" : `${count(lost)} packets`, lost === 0 ? "off" : "warn"]);
+  if (report != null) rows.push(["Lost", lost === 0 ? "nothing" : `${count(lost)} packets`, lost === 0 ? "off" : "warn"]);
   add("Error against truth, RMS", report?.truth?.rms_m, "mm", 1e3);
   return rows;
 }

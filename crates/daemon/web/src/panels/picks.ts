@@ -34,12 +34,13 @@ export function draw(picks: Picked[], known: Known, origin: [number, number, num
     const along = found.along_m.map((m) => fixed(m, 3)).join(", ");
     parts.push(
       h("p", { class: "distance" }, h("b", {}, `${found.m.toFixed(3)} m`), found.sd_m === null ? "" : ` \u00b1 ${mm(found.sd_m)}`),
-      apart(a, b) > found.m / 2 ? h("p", { class: "hint", "data-tone": "warn" }, `Point B is ${length(apart(a, b))} ${Math.hypot(...b.position) > Math.hypot(...a.position) ? "farther" : "nearer"} than A: look whether both are on what you measure.`) : "",
+      // Ranges are from the scanner, which is not in the coordinates of a map.
+      origin.every((m) => m === 0) && apart(a, b) > found.m / 2 ? h("p", { class: "hint", "data-tone": "warn" }, `Point B is ${length(apart(a, b))} ${Math.hypot(...b.position) > Math.hypot(...a.position) ? "farther" : "nearer"} than A: look whether both are on what you measure.`) : "",
       h("p", { class: "hint" }, `${Math.hypot(found.along_m[0], found.along_m[1]).toFixed(3)} m in plan; x, y, z: ${along} m \u00b7 ${found.sd_m === null ? load === null ? "the cloud has no uncertainty" : "for its standard error, load uncertainty" : "\u00b1 is one standard deviation at most, from the errors of both points; not from where you point"}`),
     );
   }
   if (b === undefined) parts.push(h("p", { class: "hint" }, "Pick another point for the distance."));
-  const values = h("details", { open: unfolded ?? !narrow.matches }, h("summary", {}, "Values"), table(picks, known, origin)) as HTMLDetailsElement;
+  const values = h("details", { open: unfolded ?? !narrow.matches }, h("summary", {}, "Values"), table(picks, known, origin, load !== null)) as HTMLDetailsElement;
   values.addEventListener("toggle", () => { unfolded = values.open; });
   parts.push(values);
   if (load !== null && !known.lasers) {
@@ -53,20 +54,21 @@ export function draw(picks: Picked[], known: Known, origin: [number, number, num
 /** Difference of the distances of two points from the scanner, metres: large if one beam missed what the other met. */
 const apart = (a: Picked, b: Picked): number => Math.abs(Math.hypot(...a.position) - Math.hypot(...b.position));
 
-function table(picks: Picked[], known: Known, origin: [number, number, number]): HTMLElement {
+function table(picks: Picked[], known: Known, origin: [number, number, number], loads: boolean): HTMLElement {
+  const absent = ({ complete }: Pick<Picked, "complete">) => (complete || !loads ? "not known" : "loading");
   const axis = (i: 0 | 1 | 2) => (pick: Picked) => `${fixed(pick.position[i] + origin[i], 3)} m`;
   const rows: [string, boolean, (pick: Picked) => string][] = [
     ["x", true, axis(0)],
     ["y", true, axis(1)],
     ["z", true, axis(2)],
     ["Range", origin.every((m) => m === 0), ({ position }) => `${Math.hypot(...position).toFixed(3)} m`],
-    ["sd", known.sds, ({ sd_m, complete }) => (sd_m > 0 ? mm(sd_m) : complete ? "not known" : "loading")],
+    ["sd", known.sds, (pick) => (pick.sd_m > 0 ? mm(pick.sd_m) : absent(pick))],
     ["Time", known.times, ({ time_s }) => `${time_s.toFixed(4)} s`],
     ["Tilt", known.tilts, ({ tilt_deg }) => `${fixed(tilt_deg, 3)}\u00b0`],
     ["Ring", known.rings, ({ ring }) => count(ring)],
     ["Laser", known.lasers, ({ laser, complete }) => (complete ? count(laser) : "loading")],
     ["Intensity", known.intensities, ({ intensity }) => digits(intensity)],
-    ["Return", known.echoes, ({ echo, complete }) => ECHOES[echo] ?? (complete ? "not known" : "loading")],
+    ["Return", known.echoes, ({ echo, complete }) => ECHOES[echo] ?? absent({ complete })],
     ["Distance", known.distances, ({ distance_m }) => (distance_m < MOST_M ? length(distance_m) : `over ${length(MOST_M)}`)],
   ];
   const head = h("tr", {}, h("td"), ...picks.map((_, i) => h("th", { scope: "col" }, `Point ${"AB"[i] ?? ""}`)));

@@ -74,7 +74,7 @@ async function measure(): Promise<void> {
     known.set(wanted.id, await request(wanted.id));
     announce(`Density, gaps and errors of ${title(wanted)} are measured`);
   } catch (error) {
-    if (scan?.id === wanted.id) refused("Measure", error, id("quality-error"));
+    refused(`Measure ${title(wanted)}`, error, id("quality-error"));
   } finally {
     measuring = null;
     draw();
@@ -110,8 +110,8 @@ function draw_measured(found: ScanStatistics): void {
   draw_sphere();
   describe_sphere(found);
   draw_ranges(found);
-  draw_residuals("delays", found.residuals, "delay_us", "most_delay_us", "median", " \u00b5s", 1);
-  draw_residuals("deviations", found.residuals, "angle_rms_deg", "most_angle_deg", "RMS", "\u00b0", 1e-4);
+  draw_residuals("delays", found.residuals, "delay_us", "most_delay_us", " \u00b5s", 1);
+  draw_residuals("deviations", found.residuals, "angle_rms_deg", "most_angle_deg", "\u00b0", 1e-4);
   const { budget: all = [] } = found;
   const at = all.map(({ at_m }) => String(at_m));
   if ([...distance.options].map(({ value }) => value).join() !== at.join()) {
@@ -146,7 +146,7 @@ function describe_sphere({ bins }: ScanStatistics): void {
 }
 
 /** Bars of residuals over time, the greatest behind the usual ones, their heights by the logarithm; and both in words. `least` is the least value that counts. */
-function draw_residuals(name: "delays" | "deviations", all: Residuals[], usual: "delay_us" | "angle_rms_deg", most: "most_delay_us" | "most_angle_deg", word: string, unit: string, least: number): void {
+function draw_residuals(name: "delays" | "deviations", all: Residuals[], usual: "delay_us" | "angle_rms_deg", most: "most_delay_us" | "most_angle_deg", unit: string, least: number): void {
   const greatest = all.reduce<Residuals | null>((a, b) => ((b[most] ?? -Infinity) > (a?.[most] ?? -Infinity) ? b : a), null);
   const sorted = all.flatMap((one) => one[usual] ?? []).sort((a, b) => a - b);
   const middle = sorted[Math.floor(sorted.length / 2)];
@@ -156,7 +156,7 @@ function draw_residuals(name: "delays" | "deviations", all: Residuals[], usual: 
   const bars = (key: typeof usual | typeof most) => all.map((one, i) => `M${(i * width).toFixed(2)} 40v${(-scale * high(one[key] ?? 0)).toFixed(2)}h${width.toFixed(2)}V40z`).join("");
   [most, usual].forEach((key, i) => attribute(id(name).children[i] as Element, "d", bars(key)));
   ends(name, all.length === 0 || greatest === null ? [] : [`${(all[0]?.at_s ?? 0).toFixed(1)} s`, `to ${digits(greatest[most] ?? 0, 2)}${unit}`, `${(all.at(-1)?.at_s ?? 0).toFixed(1)} s`]);
-  text(id(`${name}-words`), middle === undefined || greatest === null ? "none" : `${word} ${digits(middle, 2)}${unit}, at most ${digits(greatest[most] ?? 0, 2)}${unit} near ${greatest.at_s.toFixed(2)} s`);
+  text(id(`${name}-words`), middle === undefined || greatest === null ? "none" : `usually ${digits(middle, 2)}${unit}, at most ${digits(greatest[most] ?? 0, 2)}${unit} near ${greatest.at_s.toFixed(2)} s`);
 }
 
 /** Writes below a plot where its axis begins, what its height is, and where it ends. */

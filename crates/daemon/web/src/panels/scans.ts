@@ -201,8 +201,10 @@ function pair(): Scan[] {
 /** Selects a scan, or with the shift key all from the last one to it. */
 function choose(scan: Scan, on: boolean, range: boolean): void {
   const place = (name: string | null) => shown.findIndex((one) => one.id === name);
-  const [from, to] = [place(range ? last_chosen : scan.id), place(scan.id)].sort((a, b) => a - b);
-  for (const one of shown.slice(Math.max(0, from ?? 0), (to ?? 0) + 1)) {
+  const last = place(last_chosen);
+  // The last one chosen may be deleted or no longer found.
+  const [from, to] = [range && last >= 0 ? last : place(scan.id), place(scan.id)].sort((a, b) => a - b);
+  for (const one of shown.slice(from, (to ?? 0) + 1)) {
     if (on && !parts.isBusy(one)) chosen.add(one.id);
     else chosen.delete(one.id);
   }

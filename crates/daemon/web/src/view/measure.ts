@@ -20,11 +20,11 @@ export function distance(a: Picked, b: Picked): Distance {
   return { m: Math.hypot(...along_m), sd_m: known ? Math.hypot(a.sd_m, b.sd_m) : null, along_m };
 }
 
-/** A scale bar: the longest of 1, 2 and 5 times a power of ten metres that is at most `most_px` long. */
-export function scaleBar(metres_per_px: number, most_px: number): { m: number; px: number; words: string } {
+/** A scale bar: the longest of 1, 2 and 5 times a power of ten metres that is at most `most_px` long. In perspective it holds at the target's distance. */
+export function scaleBar(metres_per_px: number, most_px: number, parallel: boolean): { m: number; px: number; words: string } {
   const most_m = metres_per_px * most_px;
   const power = 10 ** Math.floor(Math.log10(most_m));
   const m = power * ([5, 2, 1].find((step) => step * power <= most_m) ?? 1);
   const words = m >= 1 ? `${Number(m.toPrecision(3))} m` : m >= 0.01 ? `${Number((100 * m).toPrecision(3))} cm` : `${Number((1_000 * m).toPrecision(3))} mm`;
-  return { m, px: m / metres_per_px, words };
+  return { m, px: m / metres_per_px, words: parallel ? words : `\u2248 ${words}` };
 }

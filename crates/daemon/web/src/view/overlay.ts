@@ -51,7 +51,7 @@ export class Overlay {
       place(axis.line, { x1: x, y1: y, x2: x + AXIS_PX * right, y2: y + AXIS_PX * down });
       place(axis.name, { x: x + (AXIS_PX + 9) * right, y: y + (AXIS_PX + 9) * down + 4 });
     });
-    const scale = scaleBar(stage.metres_per_px, BAR_PX);
+    const scale = scaleBar(stage.metres_per_px, BAR_PX, stage.orbit.parallel);
     const [end, foot] = [width - MARGIN_PX, height - MARGIN_PX];
     attribute(this.bar.path, "d", `M${(end - scale.px).toFixed(1)} ${foot - 6}v6H${end}v-6`);
     place(this.bar.words, { x: end - scale.px / 2, y: foot - 7 });

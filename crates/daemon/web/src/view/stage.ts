@@ -29,6 +29,8 @@ const MOST_REST_MS = 2_000;
 /** Pictures after a rest that wait for the whole one. */
 const WAITING = 3;
 /** Points of a picture of a moving view: the first ones, and the limits. */
+/** A time after every point; the graphics card has 32 bits. */
+export const ALL_S = 3e38;
 const FIRST_BUDGET = 1e6;
 const LEAST_BUDGET = 1e5;
 const MOST_BUDGET = 2e7;
@@ -86,7 +88,7 @@ export class Stage {
         eye: { value: new Vector3() }, size: { value: 2 }, height_px: { value: 1 }, field: { value: 0 }, parallel_m: { value: 0 },
         limits: { value: new Vector2(0, 1) }, below: { value: new Vector4() }, above: { value: new Vector4() },
         box_low: { value: new Vector3(-1e6, -1e6, -1e6) }, box_high: { value: new Vector3(1e6, 1e6, 1e6) }, section: { value: new Vector4() },
-        section_half_m: { value: 1e6 }, until_s: { value: 1e6 }, cutaway: { value: true }, ceiling_m: { value: 1e6 }, colours: { value: this.colours },
+        section_half_m: { value: 1e6 }, until_s: { value: ALL_S }, cutaway: { value: true }, ceiling_m: { value: 1e6 }, colours: { value: this.colours },
       },
     });
     // The same values, so that both clouds are cut alike.
