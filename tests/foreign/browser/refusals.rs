@@ -6,8 +6,8 @@ use velomotion_tests::bench::Bench;
 
 use super::browser::{DESKTOP, Driver, NARROW, PHONE, Page, screens};
 use super::{
-    TO_THE_TOP, TOO_MANY, browser_and_simulator, daemon, points, ready, reserving, simulator,
-    start, until_in_sight, url,
+    ESCAPE, TO_THE_TOP, TOO_MANY, browser_and_simulator, daemon, points, ready, reserving,
+    simulator, start, until_in_sight, url,
 };
 
 /// Requests to the daemon get no answer until `window.answer` is called.
@@ -273,6 +273,9 @@ fn a_lost_network_is_told_from_a_daemon_that_ended() {
             page.set_offline(false).await;
             page.until_has("#lost", "the daemon has probably ended")
                 .await;
+            // What was known of the axis is old: Escape stops as the button does.
+            page.keys(ESCAPE).await;
+            page.until_has("#not-stopped", "NOT STOPPED").await;
         });
     }
 }
