@@ -21,7 +21,7 @@ use zenoh::qos::Priority;
 
 use crate::bridge::{self, STOP_POLL, StopFlag};
 use crate::goal_request::{GoalRequest, GoalResult, feedback_message};
-use crate::goals::{GoalEnd, GoalRunner, Goals, Outgoing};
+use crate::goals::{GoalEnd, GoalMessage, GoalRunner, Goals};
 use crate::link::{Call, Channel, Declarer, Error, RouterLink};
 use crate::rmw::QualityOfService;
 use crate::{Context, ScanService};
@@ -75,7 +75,7 @@ impl Action {
 }
 
 /// The goals of a bridge, and its queue of messages.
-pub(crate) fn start(context: &Context) -> (Arc<Goals<Call>>, UnboundedReceiver<Outgoing<Call>>) {
+pub(crate) fn start(context: &Context) -> (Arc<Goals<Call>>, UnboundedReceiver<GoalMessage<Call>>) {
     let runner = DaemonRunner {
         scans: Arc::clone(&context.scans),
         stop: context.stop.clone(),
@@ -132,11 +132,11 @@ pub(crate) fn run(
     context: &Context,
     link: &RouterLink,
     goals: &Goals<Call>,
-    outgoing: &mut UnboundedReceiver<Outgoing<Call>>,
+    outgoing: &mut UnboundedReceiver<GoalMessage<Call>>,
     runtime: &Runtime,
 ) {
     enum Next {
-        Send(Outgoing<Call>),
+        Send(GoalMessage<Call>),
         Event(Result<Arc<Event>, RecvError>),
         Nothing,
     }
@@ -151,12 +151,12 @@ pub(crate) fn run(
             }
         });
         let sent = match next {
-            Next::Send(Outgoing::Answer(call, response)) => {
+            Next::Send(GoalMessage::Answer(call, response)) => {
                 call.answer(response.bytes());
                 context.counts.calls.fetch_add(1, Ordering::Relaxed);
                 Ok(false)
             }
-            Next::Send(Outgoing::States(action, states)) => match link.channels_of(action) {
+            Next::Send(GoalMessage::States(action, states)) => match link.channels_of(action) {
                 Some((_, channel)) => link.publish(channel, states.bytes()),
                 None => Ok(false),
             },

@@ -45,7 +45,7 @@ pub(crate) trait GoalRunner: Send + Sync + 'static {
 }
 
 /// A message to be sent.
-pub(crate) enum Outgoing<C> {
+pub(crate) enum GoalMessage<C> {
     /// An answer to a call.
     Answer(C, Cdr),
     /// States of all goals of an action.
@@ -70,11 +70,14 @@ struct Goal<C> {
 pub(crate) struct Goals<C> {
     runner: Box<dyn GoalRunner>,
     goals: Mutex<VecDeque<Goal<C>>>,
-    outbox: UnboundedSender<Outgoing<C>>,
+    outbox: UnboundedSender<GoalMessage<C>>,
 }
 
 impl<C: Send + 'static> Goals<C> {
-    pub(crate) fn new(runner: Box<dyn GoalRunner>, outbox: UnboundedSender<Outgoing<C>>) -> Self {
+    pub(crate) fn new(
+        runner: Box<dyn GoalRunner>,
+        outbox: UnboundedSender<GoalMessage<C>>,
+    ) -> Self {
         Self {
             runner,
             goals: Mutex::default(),
@@ -88,14 +91,14 @@ impl<C: Send + 'static> Goals<C> {
 
     fn answer(&self, call: C, response: Cdr) {
         // The bridge has ended otherwise.
-        let _ = self.outbox.send(Outgoing::Answer(call, response));
+        let _ = self.outbox.send(GoalMessage::Answer(call, response));
     }
 
     fn send_states(&self, action: Action, goals: &VecDeque<Goal<C>>) {
         let of_action = goals.iter().filter(|goal| goal.action == action);
         let states: Vec<_> = of_action.map(|goal| (goal.info, goal.status)).collect();
         let states = goal_status_array(&states);
-        let _ = self.outbox.send(Outgoing::States(action, states));
+        let _ = self.outbox.send(GoalMessage::States(action, states));
     }
 
     /// Accepts a goal and begins it, or rejects it and reports why.
@@ -310,7 +313,7 @@ mod tests {
     struct Client {
         axis: Arc<Axis>,
         goals: Arc<Goals<&'static str>>,
-        outgoing: UnboundedReceiver<Outgoing<&'static str>>,
+        outgoing: UnboundedReceiver<GoalMessage<&'static str>>,
     }
 
     impl Client {
@@ -328,7 +331,7 @@ mod tests {
         /// The next answer.
         fn answer(&mut self) -> (&'static str, Vec<u8>) {
             loop {
-                if let Outgoing::Answer(call, cdr) = self.outgoing.blocking_recv().unwrap() {
+                if let GoalMessage::Answer(call, cdr) = self.outgoing.blocking_recv().unwrap() {
                     return (call, cdr.bytes()[4..].to_vec());
                 }
             }
