@@ -57,9 +57,23 @@ impl ros2::ScanService for BridgeScans {
     fn start_capture(
         &self,
         request: &engine::capture_request::CaptureRequest,
+        stop: &engine::service::StopSignal,
     ) -> Result<String, Failure> {
-        crate::http::captures::start(&self.0, request)
+        crate::http::captures::start(&self.0, request, stop)
             .map_err(crate::http::refusal::Refusal::into_failure)
+    }
+
+    fn start_move(
+        &self,
+        request: engine::capture::jog::JogRequest,
+        stop: &engine::service::StopSignal,
+    ) -> Result<ros2::MoveEnd, Failure> {
+        let refused = |error| crate::http::refusal::Refusal::from(error).into_failure();
+        self.0.service.jog(request, Some(stop)).map_err(refused)
+    }
+
+    fn scan(&self, id: &str) -> Option<engine::service::scan_record::ScanView> {
+        self.0.scans.view(id)
     }
 
     fn log(&self, scan: &str) -> std::path::PathBuf {

@@ -30,7 +30,7 @@ use tokio::sync::{oneshot, watch};
 use units::Span;
 
 pub use device_thread::DeviceThread;
-pub use lease::{AxisLease, LeaseError};
+pub use lease::{AxisLease, LeaseError, StopSignal};
 pub use options::{Environment, Lifetime, ServiceOptions};
 
 use crate::capture::jog::{self, JogRequest};
@@ -212,14 +212,36 @@ impl DeviceService {
     /// # Errors
     /// [`LeaseError`] where the axis is busy, the drive is not connected, or the service is ending.
     pub fn lease(self: &Arc<Self>, task: AxisTask) -> Result<AxisLease, LeaseError> {
-        if matches!(self.lifetime, Lifetime::Resident) {
-            self.require_drive()?;
+        match &self.lifetime {
+            Lifetime::Resident => self.lease_until(task, &StopSignal::default()),
+            Lifetime::Command { interrupt, .. } => {
+                AxisLease::take(self, task, StopSignal::with_flag(interrupt))
+            }
         }
-        let interrupt = match &self.lifetime {
-            Lifetime::Resident => None,
-            Lifetime::Command { interrupt, .. } => Some(Arc::clone(interrupt)),
-        };
-        AxisLease::take(self, task, interrupt)
+    }
+
+    /// Takes the axis of a daemon for a task that `stop` stops, if it is idle.
+    ///
+    /// # Errors
+    /// As [`DeviceService::lease`], and [`Kind::Interrupted`] where the stop was requested before.
+    pub fn lease_until(
+        self: &Arc<Self>,
+        task: AxisTask,
+        stop: &StopSignal,
+    ) -> Result<AxisLease, LeaseError> {
+        if stop.is_requested() {
+            let failure = Failure::new(Kind::Interrupted, "cancelled before it began");
+            return Err(failure.help("nothing has moved").into());
+        }
+        self.require_drive()?;
+        AxisLease::take(self, task, stop.clone())
+    }
+
+    /// Whether the motion under way is the one that `stop` stops.
+    #[must_use]
+    pub fn is_moved_until(&self, stop: &StopSignal) -> bool {
+        let state = self.state.borrow();
+        state.stop.as_ref().is_some_and(|lease| stop.is_of(lease))
     }
 
     /// # Errors
@@ -258,13 +280,14 @@ impl DeviceService {
         Ok(result)
     }
 
-    /// Begins a jog. It goes on if the receiver is dropped.
+    /// Begins a jog, in a daemon one that `stop` stops. It goes on if the receiver is dropped.
     ///
     /// # Errors
     /// [`LeaseError`]; [`Kind::Usage`] for a move that the axis cannot make.
     pub fn jog(
         self: &Arc<Self>,
         request: JogRequest,
+        stop: Option<&StopSignal>,
     ) -> Result<oneshot::Receiver<Result<AxisReport, Failure>>, LeaseError> {
         let commands = jog::commands(request, &self.config, &self.device)?;
         let task = match request {
@@ -272,7 +295,10 @@ impl DeviceService {
             JogRequest::Goto(_) => AxisTask::Moving,
             JogRequest::Status | JogRequest::Stop | JogRequest::ClearFaults => AxisTask::Stopping,
         };
-        let lease = self.lease(task)?;
+        let lease = match stop {
+            Some(stop) => self.lease_until(task, stop)?,
+            None => self.lease(task)?,
+        };
         if matches!(request, JogRequest::Status) {
             self.update_activity(|activity| activity.reads_only = true);
         }
@@ -295,7 +321,7 @@ impl DeviceService {
         if !matches!(request, JogRequest::Status) {
             self.wait_for_reads().await;
         }
-        match self.jog(request)?.await {
+        match self.jog(request, None)?.await {
             Ok(report) => Ok(report?),
             Err(_) => Err(LeaseError::Failure(
                 Failure::new(Kind::Interrupted, "the daemon is ending")
@@ -357,10 +383,16 @@ impl DeviceService {
     /// there was a capture, and the scan's id.
     pub async fn stop_capture(&self) -> (bool, Option<String>) {
         let mut state = self.state.subscribe();
-        if state.borrow().activity.doing != AxisTask::Capturing {
+        // The signal of the capture, which stops no motion that begins from here on.
+        let capture = {
+            let state = state.borrow();
+            let is_capture = state.activity.doing == AxisTask::Capturing;
+            state.stop.clone().filter(|_| is_capture)
+        };
+        let Some(stop) = capture else {
             return (false, None);
-        }
-        let stopped = self.stop(None);
+        };
+        stop.request(None);
         // A capture that began a moment ago has no id yet.
         let mut scan: Option<String> = None;
         loop {
@@ -378,7 +410,7 @@ impl DeviceService {
                 break;
             }
         }
-        (stopped, scan)
+        (true, scan)
     }
 
     /// Waits until the axis is idle. All motion has time limits of its own.

@@ -11,7 +11,7 @@ use engine::service::events::MessageLevel;
 use tokio::runtime::{Builder, Runtime};
 
 use crate::link::{self, RouterLink};
-use crate::{Context, Counts, ScanService, calls, clouds, events, packets};
+use crate::{Context, Counts, ScanService, actions, calls, clouds, events, packets};
 
 /// Between two attempts to reach a router.
 const RETRY_INTERVAL: Duration = Duration::from_secs(1);
@@ -50,7 +50,7 @@ pub struct Bridge {
 }
 
 /// A runtime for waits of one thread.
-fn runtime() -> std::io::Result<Runtime> {
+pub(crate) fn runtime() -> std::io::Result<Runtime> {
     Builder::new_current_thread().enable_time().build()
 }
 
@@ -77,6 +77,7 @@ impl Bridge {
             runtime().map_err(no_thread)?,
             runtime().map_err(no_thread)?,
             runtime().map_err(no_thread)?,
+            runtime().map_err(no_thread)?,
         ];
         let stop = StopFlag::default();
         let context = Context {
@@ -97,13 +98,15 @@ impl Bridge {
     }
 }
 
-fn run(context: &Context, [calls_runtime, events_runtime, scans_runtime]: &[Runtime; 3]) {
+fn run(context: &Context, runtimes: &[Runtime; 4]) {
+    let [calls_runtime, events_runtime, scans_runtime, goals_runtime] = runtimes;
     let router = &context.settings.router;
     let events = context.devices().events();
+    let (goals, mut outgoing) = actions::start(context);
     let mut reported = false;
     while !context.stop.is_set() {
         let (inbox, waiting) = calls::queue();
-        let link = match RouterLink::open(context, &inbox) {
+        let link = match RouterLink::open(context, &inbox, &goals) {
             Ok(link) => link,
             Err(error) => {
                 if !reported {
@@ -125,6 +128,8 @@ fn run(context: &Context, [calls_runtime, events_runtime, scans_runtime]: &[Runt
             scope.spawn(move || clouds::queue_finished(context, scans_runtime, &finished));
             scope.spawn(move || clouds::run(context, link, queue));
             scope.spawn(move || calls::run(context, &waiting, calls_runtime));
+            let (goals, outgoing) = (&goals, &mut outgoing);
+            scope.spawn(move || actions::run(context, link, goals, outgoing, goals_runtime));
             // The other threads go on without one of these.
             let warn = |error: link::Error| {
                 events.message(MessageLevel::Warning, format!("ROS 2: {error}"), None);

@@ -10,27 +10,17 @@ use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use cloud::messages::cdr::Cdr;
 use cloud::messages::{TRIGGER, trigger_response};
 use tokio::runtime::Runtime;
-use zenoh::liveliness::LivelinessToken;
-use zenoh::query::Query;
-use zenoh::{Session, Wait};
 
 use engine::config::ros2::Ros2;
 use engine::failure::Failure;
+use engine::service::StopSignal;
 
 use crate::Context;
 use crate::bridge::STOP_POLL;
-use crate::link::{self, Error, Request};
-use crate::rmw::{self, Entity, QualityOfService};
+use crate::link::{Call, Declarer, Error};
 
 /// Calls that wait for their answers.
 const WAITING: usize = 8;
-
-/// QoS of services (`rmw_qos_profile_services_default`).
-const QUALITY: QualityOfService = QualityOfService {
-    reliable: true,
-    latched: false,
-    depth: 10,
-};
 
 /// A service.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,60 +48,37 @@ impl Service {
     }
 }
 
-/// A call that waits for its answer.
-pub struct Call {
+/// A call of a service.
+pub struct TriggerCall {
     service: Service,
-    query: Query,
-    request: Request,
+    call: Call,
 }
 
 /// The sending end of the queue of calls.
-pub type Inbox = SyncSender<Call>;
+pub type Inbox = SyncSender<TriggerCall>;
 
 /// A queue of calls.
-pub fn queue() -> (Inbox, Receiver<Call>) {
+pub fn queue() -> (Inbox, Receiver<TriggerCall>) {
     sync_channel(WAITING)
 }
 
 /// Offers a service.
-pub fn declare(
-    session: &Session,
-    settings: &Ros2,
-    (id, zid): (u32, &str),
-    service: Service,
-    inbox: &Inbox,
-) -> Result<LivelinessToken, Error> {
-    let name = settings.resolve(service.name());
+pub fn declare(declarer: &mut Declarer<'_>, service: Service, inbox: &Inbox) -> Result<(), Error> {
+    let name = declarer.settings().resolve(service.name());
     let inbox = inbox.clone();
-    session
-        .declare_queryable(rmw::key(settings, &name, &TRIGGER))
-        .complete(true)
-        .callback(move |query| {
-            // Runs on a thread of zenoh, which must not wait.
-            let Some(request) = link::request(&query) else {
-                return;
-            };
-            let call = Call {
-                service,
-                query,
-                request,
-            };
-            match inbox.try_send(call) {
-                Ok(()) => {}
-                Err(TrySendError::Full(call) | TrySendError::Disconnected(call)) => {
-                    answer(&call, false, "too many calls at once; try again");
-                }
+    declarer.service(&name, &TRIGGER, move |call| {
+        let call = TriggerCall { service, call };
+        match inbox.try_send(call) {
+            Ok(()) => {}
+            Err(TrySendError::Full(call) | TrySendError::Disconnected(call)) => {
+                answer(&call, false, "too many calls at once; try again");
             }
-        })
-        .background()
-        .wait()?;
-    let service_id = (id, Entity::Service);
-    let token = rmw::token(settings, zid, service_id, (&name, &TRIGGER), QUALITY);
-    session.liveliness().declare_token(token).wait()
+        }
+    })
 }
 
 /// Answers calls until the bridge ends.
-pub(crate) fn run(context: &Context, calls: &Receiver<Call>, runtime: &Runtime) {
+pub(crate) fn run(context: &Context, calls: &Receiver<TriggerCall>, runtime: &Runtime) {
     while !context.stop.is_set() {
         let Ok(call) = calls.recv_timeout(STOP_POLL) else {
             continue;
@@ -129,12 +96,17 @@ fn start_capture(context: &Context) -> (bool, String) {
     let Some(request) = &context.settings.capture else {
         return (false, "no capture is configured".to_owned());
     };
-    match context.scans.start_capture(request) {
+    match context.scans.start_capture(request, &StopSignal::default()) {
         Ok(id) => (true, id),
-        Err(Failure { message, help, .. }) => match help {
-            Some(help) => (false, format!("{message} ({help})")),
-            None => (false, message),
-        },
+        Err(failure) => (false, text_of(failure)),
+    }
+}
+
+/// A failure in one line.
+pub(crate) fn text_of(Failure { message, help, .. }: Failure) -> String {
+    match help {
+        Some(help) => format!("{message} ({help})"),
+        None => message,
     }
 }
 
@@ -145,10 +117,8 @@ async fn stop_capture(context: &Context) -> String {
     }
 }
 
-fn answer(call: &Call, done: bool, message: &str) {
+fn answer(call: &TriggerCall, done: bool, message: &str) {
     let mut cdr = Cdr::new();
     trigger_response(&mut cdr, done, message);
-    if let Err(error) = link::answer(&call.query, call.request, cdr.bytes()) {
-        tracing::debug!("ROS 2: {error}");
-    }
+    call.call.answer(cdr.bytes());
 }

@@ -1,10 +1,11 @@
-//! The ROS 2 bridge: clouds, raw packets, the tilt joint, transforms, diagnostics, and services
-//! that begin and stop a capture, in the format of `rmw_zenoh` and without an installation of ROS
-//! (docs/src/ros2.md).
+//! The ROS 2 bridge: clouds, raw packets, the tilt joint, transforms, diagnostics, and services and
+//! actions that capture and move the axis, in the format of `rmw_zenoh` and without an installation
+//! of ROS (docs/src/ros2.md).
 //!
-//! Five threads: one follows events, one queues finished scans, one sends their clouds, one sends
-//! packets, one answers calls. Nothing waits for them: what the network does not take is left out
-//! and counted. ROS 2's parameters, actions, time from `/clock`, and DDS are left out.
+//! Six threads: one follows events, one queues finished scans, one sends their clouds, one sends
+//! packets, one answers calls of services, one those of actions; and one for each goal under way.
+//! Nothing waits for them: what the network does not take is left out and counted. ROS 2's
+//! parameters, time from `/clock`, and DDS are left out.
 //!
 //! ```
 //! # #[cfg(feature = "zenoh")]
@@ -14,11 +15,14 @@
 //! ```
 #![cfg(feature = "zenoh")]
 
+mod actions;
 mod bridge;
 mod calls;
 mod clouds;
 mod counts;
 mod events;
+mod goal_request;
+mod goals;
 mod latched;
 mod link;
 mod packets;
@@ -27,24 +31,42 @@ mod rmw;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use engine::capture::jog::JogRequest;
 use engine::capture_request::CaptureRequest;
 use engine::config::ros2::Ros2 as Ros2Config;
 use engine::failure::Failure;
-use engine::service::DeviceService;
+use engine::service::axis_report::AxisReport;
+use engine::service::scan_record::ScanView;
+use engine::service::{DeviceService, StopSignal};
+use tokio::sync::oneshot;
 
 pub use bridge::Bridge;
 pub use counts::Counts;
+
+/// The end of a move of the axis.
+pub type MoveEnd = oneshot::Receiver<Result<AxisReport, Failure>>;
 
 /// The store of scans: a daemon.
 pub trait ScanService: Send + Sync {
     /// The devices.
     fn devices(&self) -> &Arc<DeviceService>;
 
-    /// Begins a capture and returns the scan's id.
+    /// Begins a capture that `stop` stops, and returns the scan's id.
     ///
     /// # Errors
     /// Why it cannot be begun.
-    fn start_capture(&self, request: &CaptureRequest) -> Result<String, Failure>;
+    fn start_capture(&self, request: &CaptureRequest, stop: &StopSignal)
+    -> Result<String, Failure>;
+
+    /// Begins a move of the axis outside a capture, which `stop` stops. It goes on if the receiver
+    /// is dropped.
+    ///
+    /// # Errors
+    /// Why it cannot be begun.
+    fn start_move(&self, request: JogRequest, stop: &StopSignal) -> Result<MoveEnd, Failure>;
+
+    /// A scan.
+    fn scan(&self, id: &str) -> Option<ScanView>;
 
     /// The log of a scan.
     fn log(&self, scan: &str) -> PathBuf;

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use cloud::messages::Topic;
+use cloud::messages::{MessageType, Topic};
 use zenoh::liveliness::LivelinessToken;
 use zenoh::pubsub::Publisher;
 use zenoh::qos::{CongestionControl, Priority};
@@ -17,7 +17,9 @@ use zenoh::{Session, Wait};
 
 use engine::config::ros2::Ros2;
 
+use crate::actions::{self, Action};
 use crate::calls::{self, Service};
+use crate::goals::Goals;
 use crate::latched::LatchedMessages;
 use crate::rmw::{self, Entity, Gid, QualityOfService};
 use crate::{Context, Counts};
@@ -30,8 +32,12 @@ const RETRY_MS: (u32, u32) = (250, 2_000);
 /// An error of zenoh.
 pub type Error = zenoh::Error;
 
-/// Number and sender of a request.
-pub type Request = (i64, Gid);
+/// QoS of services (`rmw_qos_profile_services_default`).
+const SERVICES: QualityOfService = QualityOfService {
+    reliable: true,
+    latched: false,
+    depth: 10,
+};
 
 /// QoS of a topic, as ROS 2's own drivers, broadcasters and updaters have it.
 const fn quality(topic: Topic) -> QualityOfService {
@@ -71,12 +77,14 @@ pub struct RouterLink {
     counts: Arc<Counts>,
     session: Session,
     channels: BTreeMap<Topic, Channel>,
+    /// Feedback and status of each action.
+    actions: Vec<(Action, Channel, Channel)>,
     /// Declare the node, publishers and services until dropped.
     _offers: Vec<LivelinessToken>,
 }
 
 /// A publisher.
-struct Channel {
+pub struct Channel {
     publisher: Publisher<'static>,
     gid: Gid,
     /// Number of its last message.
@@ -84,9 +92,22 @@ struct Channel {
     latched: Option<LatchedMessages>,
 }
 
+/// Declares a node, and its publishers and services with their numbers from 1.
+pub struct Declarer<'a> {
+    session: &'a Session,
+    settings: &'a Ros2,
+    zid: String,
+    id: u32,
+    offers: Vec<LivelinessToken>,
+}
+
 impl RouterLink {
-    /// Connects and declares everything; calls of services go to `calls`.
-    pub fn open(context: &Context, inbox: &calls::Inbox) -> Result<Self, Error> {
+    /// Connects and declares everything; calls go to `calls`, those of actions to `goals`.
+    pub fn open(
+        context: &Context,
+        calls: &calls::Inbox,
+        goals: &Arc<Goals<Call>>,
+    ) -> Result<Self, Error> {
         let settings = &context.settings;
         let config = serde_json::json!({
             "mode": "client",
@@ -105,33 +126,27 @@ impl RouterLink {
         });
         let config = zenoh::Config::from_json5(&config.to_string())?;
         let session = zenoh::open(config).wait()?;
-        let zid = session.zid().to_string();
-        let token = session
-            .liveliness()
-            .declare_token(rmw::node_token(settings, &zid));
-        let mut offers = vec![token.wait()?];
+        let mut declarer = Declarer::new(&session, settings)?;
         let mut channels = BTreeMap::new();
-        let mut id = 0;
         for topic in Topic::ALL {
-            id += 1;
-            let (channel, token) = Channel::declare(&session, settings, (id, &zid), topic)?;
-            channels.insert(topic, channel);
-            offers.push(token);
+            let (name, kind) = (name(settings, topic), topic.message_type());
+            let quality = (quality(topic), priority(topic));
+            channels.insert(topic, declarer.publisher(&name, &kind, quality)?);
         }
         for service in Service::offered(settings) {
-            id += 1;
-            offers.push(calls::declare(
-                &session,
-                settings,
-                (id, &zid),
-                service,
-                inbox,
-            )?);
+            calls::declare(&mut declarer, service, calls)?;
         }
+        let mut actions = Vec::new();
+        for action in Action::offered(settings) {
+            let (feedback, status) = actions::declare(&mut declarer, *action, goals)?;
+            actions.push((*action, feedback, status));
+        }
+        let offers = declarer.offers;
         Ok(Self {
             counts: Arc::clone(&context.counts),
             session,
             channels,
+            actions,
             _offers: offers,
         })
     }
@@ -148,15 +163,7 @@ impl RouterLink {
 
     /// Whether a topic has subscribers.
     pub fn is_watched(&self, topic: Topic) -> bool {
-        let channel = self.channels.get(&topic);
-        channel.is_some_and(|channel| {
-            channel.latched.is_some()
-                || channel
-                    .publisher
-                    .matching_status()
-                    .wait()
-                    .is_ok_and(|status| status.matching())
-        })
+        self.channels.get(&topic).is_some_and(Channel::is_watched)
     }
 
     /// Calls `change` with whether a topic has subscribers, now and whenever that changes.
@@ -177,20 +184,34 @@ impl RouterLink {
 
     /// Sends a message to a topic with subscribers. Returns whether it was sent.
     pub fn send(&self, topic: Topic, bytes: &[u8]) -> Result<bool, Error> {
-        if !self.is_watched(topic) {
-            return Ok(false);
-        }
         let Some(channel) = self.channels.get(&topic) else {
             return Ok(false);
         };
-        channel.send(&self.session, bytes)?;
-        let counts = &self.counts;
-        counts.messages.fetch_add(1, Ordering::Relaxed);
+        if !self.publish(channel, bytes)? {
+            return Ok(false);
+        }
         match topic {
-            Topic::Points => counts.clouds.fetch_add(1, Ordering::Relaxed),
-            Topic::LivePoints => counts.frames.fetch_add(1, Ordering::Relaxed),
+            Topic::Points => self.counts.clouds.fetch_add(1, Ordering::Relaxed),
+            Topic::LivePoints => self.counts.frames.fetch_add(1, Ordering::Relaxed),
             _ => 0,
         };
+        Ok(true)
+    }
+
+    /// Feedback and status of an action.
+    pub fn channels_of(&self, action: Action) -> Option<(&Channel, &Channel)> {
+        let mut actions = self.actions.iter();
+        let found = actions.find(|(known, ..)| *known == action);
+        found.map(|(_, feedback, status)| (feedback, status))
+    }
+
+    /// Sends a message to a publisher with subscribers. Returns whether it was sent.
+    pub fn publish(&self, channel: &Channel, bytes: &[u8]) -> Result<bool, Error> {
+        if !channel.is_watched() {
+            return Ok(false);
+        }
+        channel.send(&self.session, bytes)?;
+        self.counts.messages.fetch_add(1, Ordering::Relaxed);
         Ok(true)
     }
 
@@ -203,36 +224,96 @@ impl RouterLink {
     }
 }
 
-impl Channel {
-    fn declare(
-        session: &Session,
-        settings: &Ros2,
-        (id, zid): (u32, &str),
-        topic: Topic,
-    ) -> Result<(Self, LivelinessToken), Error> {
-        let kind = topic.message_type();
-        let (name, quality) = (name(settings, topic), quality(topic));
-        let key = rmw::key(settings, &name, &kind);
+impl<'a> Declarer<'a> {
+    fn new(session: &'a Session, settings: &'a Ros2) -> Result<Self, Error> {
+        let zid = session.zid().to_string();
+        let token = session
+            .liveliness()
+            .declare_token(rmw::node_token(settings, &zid));
+        Ok(Self {
+            session,
+            settings,
+            zid,
+            id: 0,
+            offers: vec![token.wait()?],
+        })
+    }
+
+    /// The configuration.
+    pub const fn settings(&self) -> &'a Ros2 {
+        self.settings
+    }
+
+    /// Announces an entity and returns its gid.
+    fn announce(
+        &mut self,
+        entity: Entity,
+        named: (&str, &MessageType),
+        quality: QualityOfService,
+    ) -> Result<Gid, Error> {
+        self.id += 1;
+        let token = rmw::token(self.settings, &self.zid, (self.id, entity), named, quality);
+        let gid = rmw::gid(&token);
+        let token = self.session.liveliness().declare_token(token).wait()?;
+        self.offers.push(token);
+        Ok(gid)
+    }
+
+    /// Declares a publisher of the topic with this full name.
+    pub fn publisher(
+        &mut self,
+        name: &str,
+        kind: &MessageType,
+        (quality, priority): (QualityOfService, Priority),
+    ) -> Result<Channel, Error> {
+        let key = rmw::key(self.settings, name, kind);
         let latched = match quality.latched {
-            true => Some(LatchedMessages::declare(session, zid, &key)?),
+            true => Some(LatchedMessages::declare(self.session, &self.zid, &key)?),
             false => None,
         };
-        let publisher = session
+        let publisher = self
+            .session
             .declare_publisher(key)
             .congestion_control(CongestionControl::Block)
-            .priority(priority(topic))
+            .priority(priority)
             .wait()?;
-        let publisher_id = (id, Entity::Publisher);
-        let token = rmw::token(settings, zid, publisher_id, (&name, &kind), quality);
-        let gid = rmw::gid(&token);
-        let token = session.liveliness().declare_token(token).wait()?;
-        let channel = Self {
+        let gid = self.announce(Entity::Publisher, (name, kind), quality)?;
+        Ok(Channel {
             publisher,
             gid,
             number: Mutex::new(0),
             latched,
-        };
-        Ok((channel, token))
+        })
+    }
+
+    /// Declares a service with this full name. `take` gets its calls on a thread of zenoh, which
+    /// must not wait.
+    pub fn service(
+        &mut self,
+        name: &str,
+        kind: &MessageType,
+        take: impl Fn(Call) + Send + Sync + 'static,
+    ) -> Result<(), Error> {
+        self.session
+            .declare_queryable(rmw::key(self.settings, name, kind))
+            .complete(true)
+            .callback(move |query| {
+                if let Some(call) = Call::new(query) {
+                    take(call);
+                }
+            })
+            .background()
+            .wait()?;
+        self.announce(Entity::Service, (name, kind), SERVICES)?;
+        Ok(())
+    }
+}
+
+impl Channel {
+    /// Whether it has subscribers, now or later.
+    pub fn is_watched(&self) -> bool {
+        let matching = || self.publisher.matching_status().wait();
+        self.latched.is_some() || matching().is_ok_and(|status| status.matching())
     }
 
     fn send(&self, session: &Session, bytes: &[u8]) -> Result<(), Error> {
@@ -250,22 +331,39 @@ impl Channel {
     }
 }
 
-/// Number and sender of a query. Queries without an attachment of `rmw_zenoh` are refused.
-pub fn request(query: &Query) -> Option<Request> {
-    let attachment = query.attachment().map(|attachment| attachment.to_bytes());
-    let request = attachment.and_then(|bytes| rmw::request_of(&bytes));
-    if request.is_none() {
+/// A call of a service that waits for its answer.
+pub struct Call {
+    query: Query,
+    request: (i64, Gid),
+}
+
+impl Call {
+    /// A query with an attachment of `rmw_zenoh`; others are refused.
+    fn new(query: Query) -> Option<Self> {
+        let attachment = query.attachment().map(|attachment| attachment.to_bytes());
+        if let Some(request) = attachment.and_then(|bytes| rmw::request_of(&bytes)) {
+            return Some(Self { query, request });
+        }
         let expected = "expected an attachment of rmw_zenoh: number, time, gid, 33 bytes";
         if let Err(error) = query.reply_err(expected).wait() {
             tracing::debug!("ROS 2: {error}");
         }
+        None
     }
-    request
-}
 
-/// Answers a request with its own number and gid.
-pub fn answer(query: &Query, (number, gid): Request, bytes: &[u8]) -> Result<(), Error> {
-    let attachment = rmw::attachment(number, io::clock::now().as_nanos(), &gid);
-    let reply = query.reply(query.key_expr().clone(), bytes);
-    reply.attachment(attachment).wait()
+    /// The request, encapsulation header included.
+    pub fn payload(&self) -> Vec<u8> {
+        let payload = self.query.payload();
+        payload.map_or_else(Vec::new, |payload| payload.to_bytes().into_owned())
+    }
+
+    /// Answers the call with its own number and gid.
+    pub fn answer(&self, bytes: &[u8]) {
+        let (number, gid) = self.request;
+        let attachment = rmw::attachment(number, io::clock::now().as_nanos(), &gid);
+        let reply = self.query.reply(self.query.key_expr().clone(), bytes);
+        if let Err(error) = reply.attachment(attachment).wait() {
+            tracing::debug!("ROS 2: {error}");
+        }
+    }
 }

@@ -2,6 +2,7 @@
 //! decode with `rosbags` and read the graph with `zenoh-ros2-sdk`. No ROS installation is needed.
 #![allow(clippy::unwrap_used, clippy::panic)] // helpers outside #[test] functions
 
+mod actions;
 mod calls;
 mod network;
 mod peer;

@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 import zenoh
 import zenoh.ext
+from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from zenoh_ros2_sdk import discovery
 from zenoh_ros2_sdk.attachment import Attachment
@@ -26,6 +27,24 @@ store = get_typestore(Stores.ROS2_JAZZY)
 PACKET, SCAN = "velodyne_msgs/msg/VelodynePacket", "velodyne_msgs/msg/VelodyneScan"
 store.register(get_types_from_msg("builtin_interfaces/Time stamp\nuint8[1206] data\n", PACKET))
 store.register(get_types_from_msg("std_msgs/Header header\nVelodynePacket[] packets\n", SCAN))
+# Of the package velomotion_msgs; the types of an action's services and feedback as rosidl makes them.
+MESSAGES = Path(__file__).parents[3] / "packaging/ros/velomotion_msgs/action"
+for name in ["Capture", "MoveTilt"]:
+    goal, result, feedback = (MESSAGES / f"{name}.action").read_text().split("---\n")
+    goal_id = "unique_identifier_msgs/UUID goal_id\n"
+    for part, text in {
+        "Goal": goal,
+        "Result": result,
+        "Feedback": feedback,
+        "SendGoal_Request": f"{goal_id}{name}_Goal goal\n",
+        "SendGoal_Response": "bool accepted\nbuiltin_interfaces/Time stamp\n",
+        "GetResult_Request": goal_id,
+        "GetResult_Response": f"int8 status\n{name}_Result result\n",
+        "FeedbackMessage": f"{goal_id}{name}_Feedback feedback\n",
+        "CancelGoal_Request": "action_msgs/GoalInfo goal_info\n",
+        "CancelGoal_Response": "int8 return_code\naction_msgs/GoalInfo[] goals_canceling\n",
+    }.items():
+        store.register(get_types_from_msg(text, f"velomotion_msgs/msg/{name}_{part}"))
 mouth = threading.Lock()
 KINDS = {2: "u1", 4: "<u2", 7: "<f4", 8: "<f8"}
 
@@ -95,6 +114,40 @@ def scan(message):
     }
 
 
+def plain(message):
+    """A message of any type as JSON; arrays of bytes in hexadecimal, NaN as null."""
+    if hasattr(message, "__msgtype__"):
+        fields = [field for field, _ in store.fielddefs[message.__msgtype__][1]]
+        return {field: plain(getattr(message, field)) for field in fields}
+    if isinstance(message, np.ndarray):
+        return message.tobytes().hex() if message.dtype == np.uint8 else message.tolist()
+    if isinstance(message, list):
+        return [plain(each) for each in message]
+    if isinstance(message, float) and np.isnan(message):
+        return None
+    return message
+
+
+def made(kind, values):
+    """A message of a type from JSON, as ros2's command line makes them; absent fields are zero or empty."""
+    fields = {}
+    for field, (node, about) in store.fielddefs[kind][1]:
+        value = values.get(field)
+        if node == Nodetype.NAME:
+            fields[field] = made(about, value or {})
+        elif node == Nodetype.BASE:
+            fields[field] = value or {"string": ""}.get(about[0], 0)
+        else:
+            element = about[0][1][0]
+            if element == "string":
+                fields[field] = value or []
+            elif node == Nodetype.ARRAY:
+                fields[field] = np.frombuffer(bytes.fromhex(value or "00" * about[1]), element)
+            else:
+                fields[field] = np.array(value or [], element)
+    return store.types[kind](**fields)
+
+
 def transform(message):
     at = message.transform
     return {
@@ -107,6 +160,8 @@ def transform(message):
 
 
 def content(name, message):
+    if name == "action_msgs/msg/GoalStatusArray" or name.startswith("velomotion_msgs/"):
+        return plain(message)
     if name == "sensor_msgs/msg/PointCloud2":
         return cloud(message)
     if name == SCAN:
@@ -142,8 +197,11 @@ def listener(who):
             key = str(sample.key_expr)
             domain, *topic, dds, digest = key.split("/")
             name = ros_name(dds)
+            # The types of actions have other names in rosbags, and thus another hash.
+            own = name.startswith("velomotion_msgs/")
+            name = name.replace("/action/", "/msg/")
             # What a node with these types subscribes to; another hash is another topic.
-            assert digest == store.hash_rihs01(name), f"{key}: {store.hash_rihs01(name)}"
+            assert own or digest == store.hash_rihs01(name), f"{key}: {store.hash_rihs01(name)}"
             attachment = attachment_of(sample)
             payload = sample.payload.to_bytes()
             message = store.deserialize_cdr(payload, name)
@@ -201,6 +259,26 @@ def call(session, key, with_attachment):
     say(called=key)
 
 
+def ask(session, key, kind, request):
+    """Calls a service of an action; its answer is printed when it comes."""
+    payload = store.serialize_cdr(made(f"{kind}_Request", request), f"{kind}_Request")
+    attachment = np.array([7, time.time_ns()], "<i8").tobytes() + bytes([16]) + bytes(range(16))
+
+    def answered(reply):
+        response = store.deserialize_cdr(reply.ok.payload.to_bytes(), f"{kind}_Response")
+        say(answer=key, response=plain(response))
+
+    session.get(
+        key,
+        answered,
+        payload=bytes(payload),
+        attachment=attachment,
+        target=zenoh.QueryTarget.ALL_COMPLETE,
+        consolidation=zenoh.ConsolidationMode.NONE,
+        timeout=600.0,
+    )
+
+
 def graph(domain):
     """What zenoh_ros2_sdk, another implementation of rmw_zenoh's format, reads in the tokens."""
     host, port = endpoint.removeprefix("tcp/").split(":")
@@ -256,6 +334,8 @@ with zenoh.open(config) as session:
             )
         elif command["do"] == "call":
             call(session, command["key"], command["attachment"])
+        elif command["do"] == "ask":
+            ask(session, command["key"], command["kind"], command["request"])
         elif command["do"] == "graph":
             graph(command["domain"])
         say(done=command["do"])

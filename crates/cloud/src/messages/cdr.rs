@@ -2,8 +2,8 @@
 //! little-endian.
 //!
 //! Four bytes of encapsulation header, then the members of a message in their order, each number at
-//! a multiple of its own size, counted from the end of that header. Big-endian messages, parameter
-//! lists and reading are not supported.
+//! a multiple of its own size, counted from the end of that header. Big-endian messages and
+//! parameter lists are not supported.
 
 /// A message being written.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -48,6 +48,16 @@ impl Cdr {
     /// A `uint32`; also the length before a sequence.
     pub fn u32(&mut self, value: u32) {
         self.number(value.to_le_bytes());
+    }
+
+    /// A `uint64`.
+    pub fn u64(&mut self, value: u64) {
+        self.number(value.to_le_bytes());
+    }
+
+    /// An array of bytes.
+    pub fn array(&mut self, bytes: &[u8]) {
+        self.bytes.extend_from_slice(bytes);
     }
 
     /// A `float64`.
@@ -105,6 +115,167 @@ impl Cdr {
     }
 }
 
+/// A message, or a part of one, that cannot be read.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("CDR message, byte {offset}: expected {expected}, got {got}")]
+#[non_exhaustive]
+pub struct CdrError {
+    /// Offset in the message.
+    pub offset: usize,
+    /// What was expected.
+    pub expected: String,
+    /// What was found.
+    pub got: String,
+}
+
+impl CdrError {
+    pub(crate) fn new(offset: usize, expected: &str, got: impl ToString) -> Self {
+        Self {
+            offset,
+            expected: expected.to_owned(),
+            got: got.to_string(),
+        }
+    }
+}
+
+/// Reads a message from its beginning.
+#[derive(Clone, Debug)]
+pub struct CdrReader<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+impl<'a> CdrReader<'a> {
+    /// Begins behind the encapsulation header.
+    ///
+    /// # Errors
+    /// [`CdrError`] where the message is not plain CDR, little-endian.
+    pub fn new(bytes: &'a [u8]) -> Result<Self, CdrError> {
+        let mut reader = Self { bytes, at: 0 };
+        match reader.take(ENCAPSULATION.len())? {
+            [0, 1, ..] => Ok(reader),
+            other => {
+                let got = format!("{other:02x?}");
+                Err(CdrError::new(0, "CDR, little-endian", got))
+            }
+        }
+    }
+
+    /// Offset of the next byte in the message.
+    #[must_use]
+    pub const fn offset(&self) -> usize {
+        self.at
+    }
+
+    /// The next bytes.
+    ///
+    /// # Errors
+    /// [`CdrError`], as for all reads, where the message ends before.
+    pub fn take(&mut self, count: usize) -> Result<&'a [u8], CdrError> {
+        let left = self.bytes.get(self.at..).unwrap_or_default();
+        let taken = left.get(..count);
+        let taken =
+            taken.ok_or_else(|| CdrError::new(self.at, &format!("{count} bytes"), left.len()))?;
+        self.at += count;
+        Ok(taken)
+    }
+
+    /// An array of bytes.
+    ///
+    /// # Errors
+    /// [`CdrError`].
+    pub fn array<const N: usize>(&mut self) -> Result<[u8; N], CdrError> {
+        Ok(self.take(N)?.first_chunk().copied().unwrap_or([0; N]))
+    }
+
+    /// A `uint8`, `byte` or `bool`.
+    ///
+    /// # Errors
+    /// [`CdrError`].
+    pub fn u8(&mut self) -> Result<u8, CdrError> {
+        Ok(u8::from_le_bytes(self.array()?))
+    }
+
+    /// An `int32`.
+    ///
+    /// # Errors
+    /// [`CdrError`].
+    pub fn i32(&mut self) -> Result<i32, CdrError> {
+        Ok(i32::from_le_bytes(self.number()?))
+    }
+
+    /// A `uint32`.
+    ///
+    /// # Errors
+    /// [`CdrError`].
+    pub fn u32(&mut self) -> Result<u32, CdrError> {
+        Ok(u32::from_le_bytes(self.number()?))
+    }
+
+    /// A `float64`.
+    ///
+    /// # Errors
+    /// [`CdrError`].
+    pub fn f64(&mut self) -> Result<f64, CdrError> {
+        Ok(f64::from_le_bytes(self.number()?))
+    }
+
+    /// A `float64` that is finite.
+    ///
+    /// # Errors
+    /// [`CdrError`], also for NaN and infinities.
+    pub fn finite(&mut self) -> Result<f64, CdrError> {
+        let value = self.f64()?;
+        match value.is_finite() {
+            true => Ok(value),
+            false => Err(CdrError::new(self.at - 8, "a finite number", value)),
+        }
+    }
+
+    /// A sequence of bytes, or a string with its zero.
+    ///
+    /// # Errors
+    /// [`CdrError`].
+    pub fn sequence(&mut self) -> Result<&'a [u8], CdrError> {
+        let length = self.u32()? as usize;
+        self.take(length)
+    }
+
+    /// A `string`.
+    ///
+    /// # Errors
+    /// [`CdrError`], also where it is not UTF-8.
+    pub fn string(&mut self) -> Result<String, CdrError> {
+        let at = self.at;
+        let text = self.sequence()?;
+        let text = text.strip_suffix(&[0]).unwrap_or(text);
+        let text = str::from_utf8(text).map_err(|error| CdrError::new(at, "UTF-8", error))?;
+        Ok(text.to_owned())
+    }
+
+    /// A sequence of at most one element.
+    ///
+    /// # Errors
+    /// [`CdrError`], also for a longer one.
+    pub fn optional<T>(
+        &mut self,
+        element: impl FnOnce(&mut Self) -> Result<T, CdrError>,
+    ) -> Result<Option<T>, CdrError> {
+        let at = self.at;
+        match self.u32()? {
+            0 => Ok(None),
+            1 => element(self).map(Some),
+            more => Err(CdrError::new(at, "at most one element", more)),
+        }
+    }
+
+    fn number<const N: usize>(&mut self) -> Result<[u8; N], CdrError> {
+        let behind = self.at - ENCAPSULATION.len();
+        self.take(behind.next_multiple_of(N) - behind)?;
+        self.array()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -141,6 +312,56 @@ mod tests {
                 ][..]
             )
         );
+    }
+
+    #[test]
+    fn the_reader_returns_what_was_written() {
+        let mut cdr = Cdr::new();
+        cdr.u8(7);
+        cdr.f64(-1.5);
+        cdr.string("déjà");
+        cdr.i32(-9);
+        cdr.length(1);
+        cdr.f64(2.5);
+        cdr.length(0);
+        let mut reader = CdrReader::new(cdr.bytes()).unwrap();
+        assert_eq!(reader.u8(), Ok(7));
+        assert_eq!(reader.f64(), Ok(-1.5));
+        assert_eq!(reader.string(), Ok("déjà".to_owned()));
+        assert_eq!(reader.i32(), Ok(-9));
+        assert_eq!(reader.optional(CdrReader::f64), Ok(Some(2.5)));
+        assert_eq!(reader.optional(CdrReader::f64), Ok(None));
+        assert_eq!(reader.offset(), cdr.bytes().len());
+    }
+
+    #[test]
+    fn damaged_messages_are_errors_with_their_offset() {
+        let of = |bytes: &[u8]| CdrReader::new(bytes).map(|reader| reader.offset());
+        assert_eq!(of(&[0, 1, 0]), Err(CdrError::new(0, "4 bytes", 3)));
+        assert_eq!(
+            of(&[0, 0, 0, 0]).unwrap_err().expected,
+            "CDR, little-endian"
+        );
+        fn reader(bytes: &[u8]) -> CdrReader<'_> {
+            CdrReader::new(bytes).unwrap()
+        }
+        let long = [0, 1, 0, 0, 255, 255, 255, 255, 1];
+        let error = reader(&long).sequence().unwrap_err();
+        assert_eq!(error, CdrError::new(8, "4294967295 bytes", 1));
+        for value in [f64::NAN, f64::INFINITY] {
+            let mut cdr = Cdr::new();
+            cdr.f64(value);
+            let error = reader(cdr.bytes()).finite().unwrap_err();
+            assert_eq!(
+                (error.offset, error.expected.as_str()),
+                (4, "a finite number")
+            );
+        }
+        let two = [0, 1, 0, 0, 2, 0, 0, 0];
+        let error = reader(&two).optional(CdrReader::u8).unwrap_err();
+        assert_eq!(error, CdrError::new(4, "at most one element", 2));
+        let binary = [0, 1, 0, 0, 1, 0, 0, 0, 255];
+        assert_eq!(reader(&binary).string().unwrap_err().expected, "UTF-8");
     }
 
     #[test]

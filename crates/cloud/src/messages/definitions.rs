@@ -45,6 +45,20 @@ pub(super) const VELODYNE_SCAN: &str = concat!(
     header!()
 );
 
+pub(super) const GOAL_STATUS_ARRAY: &str = concat!(
+    "GoalStatus[] status_list\n",
+    part!(
+        "action_msgs/GoalStatus",
+        "GoalInfo goal_info\nint8 status\n"
+    ),
+    part!(
+        "action_msgs/GoalInfo",
+        "unique_identifier_msgs/UUID goal_id\nbuiltin_interfaces/Time stamp\n"
+    ),
+    part!("unique_identifier_msgs/UUID", "uint8[16] uuid\n"),
+    part!("builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n")
+);
+
 pub(super) const JOINT_STATE: &str = concat!(
     "std_msgs/Header header\nstring[] name\nfloat64[] position\nfloat64[] velocity\nfloat64[] effort\n",
     header!()

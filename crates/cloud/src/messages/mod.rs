@@ -1,10 +1,12 @@
-//! Scans as ROS 2 messages: clouds, raw packets, the tilt joint, transforms, diagnostics. Encoding
-//! only; a recording ([`formats::mcap`](crate::formats::mcap)) and a network carry the same bytes.
+//! Scans as ROS 2 messages: clouds, raw packets, the tilt joint, transforms, diagnostics, and the
+//! calls and messages of services and actions. A recording
+//! ([`formats::mcap`](crate::formats::mcap)) and a network carry the same bytes.
 //!
 //! Clouds of a tilting platform are in [`frames::BASE`], the frame of every other format (x right,
 //! y forward, z up, on the tilt axis). [`frames::ROOT`] has the same origin and ROS's axes (REP
 //! 103: x forward, y left).
 
+pub mod actions;
 pub mod cdr;
 mod clouds;
 mod definitions;

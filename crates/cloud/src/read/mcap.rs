@@ -14,9 +14,7 @@ use super::stored_cloud::StoredCloud;
 use crate::Column;
 use crate::formats::Format;
 use crate::messages::Topic;
-
-/// Bytes before a CDR message; alignment counts from their end.
-const ENCAPSULATION: usize = 4;
+use crate::messages::cdr::{CdrError, CdrReader};
 
 fn wrong(offset: usize, expected: &str, got: impl ToString) -> ReadError {
     ReadError {
@@ -93,7 +91,9 @@ impl CloudCollector<'_> {
                 self.channels.insert(channel.id);
             }
             Record::Message { header, data } if self.channels.contains(&header.channel_id) => {
-                points(&data, self.cloud)?;
+                // The offset is within the message.
+                points(&data, self.cloud)
+                    .map_err(|error| wrong(error.offset, &error.expected, error.got))?;
             }
             _ => {}
         }
@@ -101,58 +101,18 @@ impl CloudCollector<'_> {
     }
 }
 
-/// Reads a message from its beginning. Offsets of errors are within the message.
-struct CdrReader<'a> {
-    bytes: &'a [u8],
-    at: usize,
-}
-
-impl<'a> CdrReader<'a> {
-    fn take(&mut self, count: usize) -> Result<&'a [u8], ReadError> {
-        let left = self.bytes.get(self.at..).unwrap_or_default();
-        let taken = left.get(..count);
-        let taken = taken.ok_or_else(|| wrong(self.at, &format!("{count} bytes"), left.len()))?;
-        self.at += count;
-        Ok(taken)
-    }
-
-    fn u8(&mut self) -> Result<u8, ReadError> {
-        Ok(self.take(1)?.first().copied().unwrap_or(0))
-    }
-
-    fn u32(&mut self) -> Result<usize, ReadError> {
-        let padding = (self.at - ENCAPSULATION).next_multiple_of(4) + ENCAPSULATION - self.at;
-        self.take(padding)?;
-        let bytes = self.take(4)?.first_chunk().copied().unwrap_or_default();
-        Ok(u32::from_le_bytes(bytes) as usize)
-    }
-
-    /// A sequence of bytes, or a string with its zero.
-    fn sequence(&mut self) -> Result<&'a [u8], ReadError> {
-        let length = self.u32()?;
-        self.take(length)
-    }
-}
-
 /// Adds the points of a `sensor_msgs/msg/PointCloud2`.
-fn points(message: &[u8], cloud: &mut StoredCloud) -> Result<(), ReadError> {
-    let mut cdr = CdrReader {
-        bytes: message,
-        at: 0,
-    };
-    match cdr.take(ENCAPSULATION)? {
-        [0, 1, ..] => {}
-        other => return Err(wrong(0, "CDR, little-endian", format!("{other:02x?}"))),
-    }
+fn points(message: &[u8], cloud: &mut StoredCloud) -> Result<(), CdrError> {
+    let mut cdr = CdrReader::new(message)?;
     // Stamp and frame; height and width.
-    let stamp_s = cdr.u32()? as f64 + cdr.u32()? as f64 * 1e-9;
+    let stamp_s = f64::from(cdr.u32()?) + f64::from(cdr.u32()?) * 1e-9;
     cdr.sequence()?;
     cdr.u32()?;
     cdr.u32()?;
     let mut fields = Vec::new();
     for _ in 0..cdr.u32()? {
         let name = cdr.sequence()?;
-        let byte = cdr.u32()?;
+        let byte = cdr.u32()? as usize;
         let number = match cdr.u8()? {
             1 => Some(SourceNumber::I8),
             2 => Some(SourceNumber::U8),
@@ -175,11 +135,11 @@ fn points(message: &[u8], cloud: &mut StoredCloud) -> Result<(), ReadError> {
         };
         fields.extend(number.map(|number| (name, field(number))));
     }
-    let row = SourceRow::of(fields);
-    let row = row.map_err(|axis| wrong(cdr.at, "numbers x, y and z", format!("no {axis}")))?;
+    let row = SourceRow::of(fields)
+        .map_err(|axis| CdrError::new(cdr.offset(), "numbers x, y and z", format!("no {axis}")))?;
     cloud.begin(&row.columns, 0);
     let big_endian = cdr.u8()? != 0;
-    let point_bytes = cdr.u32()?;
+    let point_bytes = cdr.u32()? as usize;
     cdr.u32()?;
     let time = row.columns.get(Column::Time);
     let start_s = match time.map(|field| field.number) {

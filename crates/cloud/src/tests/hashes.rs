@@ -7,6 +7,7 @@ use std::fmt::Write;
 
 use sha2::{Digest, Sha256};
 
+use crate::messages::actions::{CANCEL_GOAL, CAPTURE, GOAL_STATUS_ARRAY, MOVE_TILT};
 use crate::messages::{MessageType, TRIGGER, Topic};
 
 /// Type, name.
@@ -24,9 +25,11 @@ fn kind(package: &str, text: &str) -> (u32, u32, String) {
     };
     let plain = match element {
         "uint8" | "char" => 3,
+        "int8" => 2,
         "int32" => 6,
         "uint32" => 7,
         "int64" => 8,
+        "uint64" => 9,
         "float64" => 11,
         "bool" => 15,
         "byte" => 16,
@@ -120,50 +123,135 @@ fn rihs01(name: &str, all: &BTreeMap<String, Vec<Field>>) -> String {
     hash
 }
 
-#[test]
-fn message_hashes_match_their_definitions() {
-    for topic in Topic::ALL {
-        let kind = topic.message_type();
-        assert_eq!(rihs01(kind.name, &types(&kind)), kind.hash, "{}", kind.name);
-    }
+/// Types that services and actions are made of.
+const COMMON: [(&str, &str); 5] = [
+    (
+        "service_msgs/msg/ServiceEventInfo",
+        "uint8 event_type\nbuiltin_interfaces/Time stamp\nchar[16] client_gid\nint64 sequence_number\n",
+    ),
+    ("builtin_interfaces/msg/Time", "int32 sec\nuint32 nanosec\n"),
+    ("unique_identifier_msgs/msg/UUID", "uint8[16] uuid\n"),
+    (
+        "action_msgs/msg/GoalInfo",
+        "unique_identifier_msgs/UUID goal_id\nbuiltin_interfaces/Time stamp\n",
+    ),
+    (
+        "action_msgs/msg/GoalStatus",
+        "GoalInfo goal_info\nint8 status\n",
+    ),
+];
+
+/// The hash of a type made of these and [`COMMON`].
+fn hash_of(name: &str, texts: &[(String, String)]) -> String {
+    let common = COMMON.map(|(name, text)| (name.to_owned(), text.to_owned()));
+    let texts = common.iter().chain(texts);
+    let all = texts.map(|(name, text)| (name.clone(), fields(text)));
+    rihs01(name, &all.collect())
 }
 
-/// A service is hashed as a type of request, response and event; the event is the same for every
-/// service.
-#[test]
-fn the_service_hash_matches_its_definition() {
-    let (request, response) = TRIGGER.definition.split_once("---\n").unwrap();
-    let name = TRIGGER.name;
+/// A service is a type of request, response and event; the event is the same for every service.
+fn service(name: &str, request: &str, response: &str) -> Vec<(String, String)> {
     let of = |part: &str| format!("{name}_{part}");
-    let (request_name, response_name) = (of("Request"), of("Response"));
-    let texts = [
+    let [request_name, response_name, event] = ["Request", "Response", "Event"].map(of);
+    vec![
         (
             name.to_owned(),
             format!(
-                "{request_name} request_message\n{response_name} response_message\n{} event_message\n",
-                of("Event")
+                "{request_name} request_message\n{response_name} response_message\n{event} event_message\n"
             ),
         ),
-        (request_name.clone(), request.to_owned()),
-        (response_name.clone(), response.to_owned()),
         (
-            of("Event"),
+            event,
             format!(
                 "service_msgs/ServiceEventInfo info\n{request_name}[<=1] request\n{response_name}[<=1] response\n"
             ),
         ),
-        (
-            "service_msgs/msg/ServiceEventInfo".to_owned(),
-            "uint8 event_type\nbuiltin_interfaces/Time stamp\nchar[16] client_gid\nint64 sequence_number\n".to_owned(),
-        ),
-        (
-            "builtin_interfaces/msg/Time".to_owned(),
-            "int32 sec\nuint32 nanosec\n".to_owned(),
-        ),
+        (request_name, request.to_owned()),
+        (response_name, response.to_owned()),
+    ]
+}
+
+/// Hashes of an action's services and of its feedback, from the text of its definition
+/// (`add_action` in `rosidl_generator_type_description`).
+fn action(name: &str, text: &str) -> [String; 3] {
+    let [goal, result, feedback] = text.split("---\n").collect::<Vec<_>>()[..] else {
+        panic!("{name}: {text}");
+    };
+    let of = |part: &str| format!("{name}_{part}");
+    let id = "unique_identifier_msgs/UUID goal_id\n";
+    let [send_goal, get_result, message] = ["SendGoal", "GetResult", "FeedbackMessage"].map(of);
+    let mut texts = [("Goal", goal), ("Result", result), ("Feedback", feedback)]
+        .map(|(part, text)| (of(part), text.to_owned()))
+        .to_vec();
+    texts.push((message.clone(), format!("{id}{name}_Feedback feedback\n")));
+    texts.extend(service(
+        &send_goal,
+        &format!("{id}{name}_Goal goal\n"),
+        "bool accepted\nbuiltin_interfaces/Time stamp\n",
+    ));
+    texts.extend(service(
+        &get_result,
+        id,
+        &format!("int8 status\n{name}_Result result\n"),
+    ));
+    [send_goal, get_result, message].map(|name| hash_of(&name, &texts))
+}
+
+#[test]
+fn message_hashes_match_their_definitions() {
+    let topics = Topic::ALL.map(Topic::message_type);
+    for kind in topics.iter().chain([&GOAL_STATUS_ARRAY]) {
+        assert_eq!(rihs01(kind.name, &types(kind)), kind.hash, "{}", kind.name);
+    }
+}
+
+#[test]
+fn service_hashes_match_their_definitions() {
+    for kind in [TRIGGER, CANCEL_GOAL] {
+        let (request, response) = kind.definition.split_once("---\n").unwrap();
+        let hash = hash_of(kind.name, &service(kind.name, request, response));
+        assert_eq!(hash, kind.hash, "{}", kind.name);
+    }
+}
+
+/// Hashes that ROS 2's generator wrote (`fibonacci__description.c` of the package `rob599_msgs` in
+/// the repository pfeiffmi/ROB599_activities).
+#[test]
+fn action_hashes_match_those_of_the_generator() {
+    let text = "int64 number\n---\nint64[] sequence\n---\nint64 progress\n";
+    let hashes = action("rob599_msgs/action/Fibonacci", text);
+    let generated = [
+        "3d7412ff91ff9c5abfbf9f7f5dc2171a3f32cf6da2414b2c2c82f034d176fa01",
+        "8ebe968757e1b88d729ad53e9aca6d14e4b2f113272786f55541cfb26acc91fc",
+        "a941cc541674f910f08c54c0d6a8a5a63be0ee7697a74928f342b2583dcfa88a",
     ];
-    let all = texts
-        .into_iter()
-        .map(|(name, text)| (name, fields(&text)))
-        .collect();
-    assert_eq!(rihs01(name, &all), TRIGGER.hash);
+    assert_eq!(hashes, generated.map(|hash| format!("RIHS01_{hash}")));
+}
+
+/// Clients are built from the package, so that its files must have the hashes of the daemon.
+#[test]
+fn action_hashes_match_the_files_of_the_package() {
+    for (name, text, kind) in [
+        (
+            "Capture",
+            include_str!("../../../../packaging/ros/velomotion_msgs/action/Capture.action"),
+            CAPTURE,
+        ),
+        (
+            "MoveTilt",
+            include_str!("../../../../packaging/ros/velomotion_msgs/action/MoveTilt.action"),
+            MOVE_TILT,
+        ),
+    ] {
+        let lines = text.lines().map(|line| line.split('#').next().unwrap());
+        let lines: Vec<&str> = lines
+            .map(str::trim)
+            .filter(|line| !line.is_empty())
+            .collect();
+        let text = lines.join("\n") + "\n";
+        let of = [kind.send_goal, kind.get_result, kind.feedback];
+        let hashes = action(&format!("velomotion_msgs/action/{name}"), &text);
+        assert_eq!(hashes, of.map(|kind| kind.hash.to_owned()), "{name}");
+        assert_eq!(of.map(|kind| kind.definition), [text.as_str(); 3]);
+    }
 }

@@ -11,7 +11,7 @@ use engine::capture_request::CaptureRequest;
 use engine::failure::{Failure, Kind};
 use engine::service::scan_record::{ScanView, check_name};
 use engine::service::status::AxisTask;
-use engine::service::{AxisLease, DeviceService, LeaseError};
+use engine::service::{AxisLease, DeviceService, LeaseError, StopSignal};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use utoipa::ToSchema;
@@ -64,7 +64,8 @@ pub async fn begin(
     let state = Arc::clone(&api.state);
     state.service.wait_for_lidar().await;
     state.service.wait_for_reads().await;
-    let id = super::with_disk(move || start(&state, &request)).await??;
+    let stop = StopSignal::default();
+    let id = super::with_disk(move || start(&state, &request, &stop)).await??;
     let (state, begun) = (Arc::clone(&api.state), id.clone());
     let scan = super::with_disk(move || state.scans.view(&begun)).await?;
     let scan = scan.ok_or_else(|| Refusal::no_scan(&id))?;
@@ -75,11 +76,15 @@ pub async fn begin(
     Ok(response)
 }
 
-/// Begins a capture and returns the scan's id.
+/// Begins a capture that `stop` stops, and returns the scan's id.
 ///
 /// # Errors
 /// [`Refusal`] where it is not possible, or not now.
-pub fn start(state: &Arc<DaemonState>, request: &CaptureRequest) -> Result<String, Refusal> {
+pub fn start(
+    state: &Arc<DaemonState>,
+    request: &CaptureRequest,
+    stop: &StopSignal,
+) -> Result<String, Refusal> {
     let service = &state.service;
     // A busy axis is reported rather than the disk space that its scan may need.
     let task = service.activity().doing;
@@ -92,7 +97,7 @@ pub fn start(state: &Arc<DaemonState>, request: &CaptureRequest) -> Result<Strin
     let bytes = plans::bytes(state, &plan);
     let need = format!("this scan may need {} MB", bytes / 1_000_000);
     plans::check_room(state, bytes, &need)?;
-    let lease = service.lease(AxisTask::Capturing)?;
+    let lease = service.lease_until(AxisTask::Capturing, stop)?;
     let record = state.scans.begin(request, service.simulated())?;
     let id = record.id.clone();
     lease.set_scan(&id);

@@ -9,7 +9,6 @@ use utoipa::ToSchema;
 use crate::capture::run_moves;
 use crate::config::{Config, Device};
 use crate::devices::drive_session::{Session, SessionError};
-use crate::devices::guardian::GuardianError;
 use crate::devices::profile as devices;
 use crate::failure::{Failure, Kind};
 
@@ -21,16 +20,19 @@ pub struct GotoRequest {
     /// Target, degrees.
     pub to_deg: f64,
     /// Speed, degrees per second.
-    #[serde(default = "default_speed")]
+    #[serde(default = "GotoRequest::default_speed")]
     pub speed_deg_s: f64,
     /// Acceleration, degrees per second squared; the device's own by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub accel_deg_s2: Option<f64>,
 }
 
-/// The default of `tilt goto --speed`.
-const fn default_speed() -> f64 {
-    10.0
+impl GotoRequest {
+    /// The default of `tilt goto --speed`, degrees per second.
+    #[must_use]
+    pub const fn default_speed() -> f64 {
+        10.0
+    }
 }
 
 /// A request to read the drive or move the axis outside a capture.
@@ -120,14 +122,8 @@ pub fn run<P: Port>(
 /// The failure of a motion, with what to do about it.
 #[must_use]
 pub fn failure(error: &SessionError) -> Failure {
-    let kind = match error {
-        SessionError::Interrupted | SessionError::Guardian(GuardianError::Acted { .. }) => {
-            Kind::Interrupted
-        }
-        _ => Kind::DeviceFault,
-    };
     let help = error.help().unwrap_or_else(|| {
         "the axis is at rest, its power stage off and its brake set if it has one; with [axis] without_brake = \"hold\" it is held powered".to_owned()
     });
-    Failure::new(kind, error.to_string()).help(help)
+    Failure::new(error.kind(), error.to_string()).help(help)
 }

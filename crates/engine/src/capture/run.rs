@@ -19,7 +19,7 @@ use crate::capture::completeness::{self, SilenceWatch};
 use crate::capture::plan::CapturePlan;
 use crate::capture::run_moves::{self, MoveProgress};
 use crate::devices::drive_session::{Session, SessionError};
-use crate::devices::guardian::{Guardian, GuardianError};
+use crate::devices::guardian::Guardian;
 use crate::devices::lidar_receiver::LidarReceiver;
 use crate::devices::lidar_sockets::listen_config;
 use crate::failure::{Failure, Kind};
@@ -418,21 +418,10 @@ fn loss(counts: &CaptureCounts) -> Option<Failure> {
 }
 
 fn motion_failure(error: &SessionError, log: Option<Failure>) -> Failure {
-    let kind = match error {
-        SessionError::Interrupted | SessionError::Guardian(GuardianError::Acted { .. }) => {
-            Kind::Interrupted
-        }
-        SessionError::NotStopped(_)
-        | SessionError::Drive(_)
-        | SessionError::Port(_)
-        | SessionError::Guardian(GuardianError::Replaced { .. } | GuardianError::Lost) => {
-            Kind::DeviceFault
-        }
-    };
     let also = log.map_or(String::new(), |failure| {
         format!("; and {}", failure.message)
     });
-    let failure = Failure::new(kind, format!("{error}{also}"));
+    let failure = Failure::new(error.kind(), format!("{error}{also}"));
     match error.help() {
         Some(help) => failure.help(help),
         None => failure,

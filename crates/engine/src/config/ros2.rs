@@ -29,6 +29,9 @@ pub struct Ros2 {
     /// Prefix of the frame names.
     #[serde(deserialize_with = "frame_prefix")]
     pub frame_prefix: String,
+    /// Whether actions are offered: their clients choose angles and speeds within the limits of
+    /// the axis.
+    pub actions: bool,
     /// Capture that the service `start_capture` starts; without it the service is absent.
     pub capture: Option<CaptureRequest>,
 }
@@ -41,6 +44,7 @@ impl Default for Ros2 {
             domain: 0,
             namespace: "/".to_owned(),
             frame_prefix: String::new(),
+            actions: false,
             capture: None,
         }
     }
@@ -123,7 +127,7 @@ mod tests {
         assert_eq!(usual.router, "tcp/localhost:7447");
         assert_eq!((usual.domain, usual.namespace.as_str()), (0, "/"));
         assert_eq!(usual.resolve("/tf"), "/tf");
-        assert!(usual.capture.is_none());
+        assert!(usual.capture.is_none() && !usual.actions);
     }
 
     #[test]

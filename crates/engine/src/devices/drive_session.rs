@@ -15,6 +15,7 @@ use units::{Host, Span, Stamp};
 
 use super::guardian::{Guardian, GuardianError};
 use super::sleep_inhibitor::SleepInhibitor;
+use crate::failure::Kind;
 
 /// Reason for the early end of a procedure.
 #[derive(Debug, Error)]
@@ -47,6 +48,16 @@ impl SessionError {
             Self::NotStopped(_) | Self::Port(_) => true,
             Self::Drive(error) => matches!(error, DriveError::NotStopped { .. }),
             Self::Guardian(error) => error.may_move(),
+        }
+    }
+
+    /// Kind of its failure: [`Kind::Interrupted`] only where the axis is known to be at rest.
+    #[must_use]
+    pub const fn kind(&self) -> Kind {
+        match self {
+            Self::Interrupted => Kind::Interrupted,
+            Self::Guardian(GuardianError::Acted { .. }) if !self.may_move() => Kind::Interrupted,
+            _ => Kind::DeviceFault,
         }
     }
 

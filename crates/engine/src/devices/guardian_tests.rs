@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use ::io::port::{PortError, Pty};
-use drive::{CommandProgress, DriveCommand, DriveEvent, MoveCommand};
+use drive::{CommandProgress, DriveCommand, DriveError, DriveEvent, MoveCommand};
 use protocol::epos2::cia402::DeviceState;
 use protocol::epos2::message::ReadObject;
 use protocol::epos2::{objects, usb};
@@ -13,8 +13,10 @@ use sim::Attachment;
 use units::{Degrees, Host, Rpm, RpmPerS, Stamp};
 
 use super::*;
+use crate::capture::jog;
 use crate::devices::simulated;
 use crate::devices::simulated_drive::{SimulatedPort, run_observed};
+use crate::failure::Kind;
 
 /// Ends the thread of a simulated drive, also after a panic: a scope waits for its threads.
 struct StopOnDrop<'a>(&'a AtomicBool);
@@ -291,4 +293,34 @@ fn a_process_stops_the_axis_whose_guardian_ends_without_a_report() {
     assert!(!error.may_move(), "{error}");
     assert!(error.to_string().contains("has not reported"), "{error}");
     assert!(!powered, "{error}");
+}
+
+#[test]
+fn a_motion_is_interrupted_only_where_the_axis_is_known_to_be_at_rest() {
+    let report = |failure: Option<&str>| GuardianReport {
+        parent_died: false,
+        failure: failure.map(str::to_owned),
+    };
+    for (report, kind) in [
+        (Some(report(None)), Kind::Interrupted),
+        (Some(report(Some("the line is noisy"))), Kind::DeviceFault),
+        (None, Kind::DeviceFault),
+    ] {
+        let gap = Duration::from_secs(1);
+        let error = SessionError::Guardian(GuardianError::Acted { gap, report });
+        assert_eq!(error.kind(), kind, "{error}");
+        assert_eq!(jog::failure(&error).kind, kind);
+    }
+    let fault = || DriveError::HostNotMonitored;
+    let moving = DriveError::NotStopped {
+        cause: Box::new(fault()),
+        stop: Box::new(fault()),
+    };
+    for error in [
+        SessionError::NotStopped(fault()),
+        SessionError::Drive(moving),
+    ] {
+        assert_eq!(error.kind(), Kind::DeviceFault);
+    }
+    assert_eq!(SessionError::Interrupted.kind(), Kind::Interrupted);
 }

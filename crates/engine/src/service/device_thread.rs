@@ -17,7 +17,7 @@ use units::Span;
 use super::axis_report::AxisReport;
 use super::drive_connection::{AxisKnowledge, DriveConnection};
 use super::execute::{lost_port, panic_failure};
-use super::lease::AxisLease;
+use super::lease::{AxisLease, StopSignal};
 use super::status::AxisTask;
 use super::{CaptureResult, DeviceService, Lifetime};
 use crate::capture::jog;
@@ -282,7 +282,8 @@ impl Worker {
         // Requests go first: the lease fails while one is under way.
         if connection.axis != AxisKnowledge::AtRest
             && connect.left().is_zero()
-            && let Ok(lease) = AxisLease::take(&self.service, AxisTask::Connecting, None)
+            && let Ok(lease) =
+                AxisLease::take(&self.service, AxisTask::Connecting, StopSignal::default())
         {
             let connect_only = [DriveCommand::Connect];
             let connected =
@@ -352,7 +353,8 @@ impl Worker {
                 let (result, lost) = match done {
                     Ok(Ok(report)) => (Ok(AxisReport { warnings, ..report }), None),
                     Ok(Err(error)) => {
-                        let failure = stop.reason().unwrap_or_else(|| jog::failure(&error));
+                        let reason = stop.reason().filter(|_| !error.may_move());
+                        let failure = reason.unwrap_or_else(|| jog::failure(&error));
                         (Err(failure.warned(warnings)), lost_port(&error))
                     }
                     Err(_) => {

@@ -7,20 +7,40 @@ use super::DeviceService;
 use super::status::{Activity, AxisTask};
 use crate::failure::{Failure, Kind};
 
-/// A request to stop the motion of one lease.
+/// Stops the motion of one lease, and of no other. A motion does not begin with a signal that has
+/// been requested before.
 #[derive(Clone, Debug, Default)]
-pub(super) struct StopSignal {
+pub struct StopSignal {
     requested: Arc<AtomicBool>,
     reason: Arc<OnceLock<Failure>>,
 }
 
 impl StopSignal {
     /// Requests the stop. The first reason counts; a user's stop has none.
-    pub(super) fn request(&self, reason: Option<Failure>) {
+    pub fn request(&self, reason: Option<Failure>) {
         if let Some(reason) = reason {
             let _ = self.reason.set(reason);
         }
         self.requested.store(true, Ordering::Release);
+    }
+
+    /// Whether the stop has been requested.
+    #[must_use]
+    pub fn is_requested(&self) -> bool {
+        self.requested.load(Ordering::Acquire)
+    }
+
+    /// The same signal with the flag of a command.
+    pub(super) fn with_flag(requested: &Arc<AtomicBool>) -> Self {
+        Self {
+            requested: Arc::clone(requested),
+            reason: Arc::default(),
+        }
+    }
+
+    /// Whether both stop the same lease.
+    pub(super) fn is_of(&self, lease: &Self) -> bool {
+        Arc::ptr_eq(&self.requested, &lease.requested)
     }
 
     /// The flag that a drive session polls.
@@ -64,17 +84,13 @@ impl From<Failure> for LeaseError {
 }
 
 impl AxisLease {
-    /// Takes the axis, if it is idle. A stop raises `interrupt`, if there is one.
+    /// Takes the axis, if it is idle. `stop` must be of no other lease: what stopped the last one
+    /// does not stop this one.
     pub(super) fn take(
         service: &Arc<DeviceService>,
         task: AxisTask,
-        interrupt: Option<Arc<AtomicBool>>,
+        stop: StopSignal,
     ) -> Result<Self, LeaseError> {
-        // A stop signal of its own: what stopped the last lease does not stop this one.
-        let stop = StopSignal {
-            requested: interrupt.unwrap_or_default(),
-            reason: Arc::default(),
-        };
         let mut refused = None;
         service.state.send_if_modified(|state| {
             if service.is_ending() {
@@ -122,5 +138,64 @@ impl Drop for AxisLease {
             state.stop = None;
         });
         self.service.send_status();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::{Duration, Instant};
+
+    use super::*;
+    use crate::config::Config;
+    use crate::devices::profile;
+    use crate::service::{Environment, Lifetime, ServiceOptions};
+
+    /// A signal is one lease's: the question whose motion it is and the stop are one decision.
+    #[test]
+    fn a_signal_stops_its_own_lease_and_no_other() {
+        let config: Config = toml::from_str("device = 'sim'").unwrap();
+        let (name, device) = profile::choose(&config, None).unwrap();
+        let (service, thread) = DeviceService::start(ServiceOptions {
+            config,
+            name,
+            device,
+            lifetime: Lifetime::Resident,
+            environment: Environment::default(),
+        })
+        .unwrap();
+        let [first, second, third] = [(); 3].map(|()| StopSignal::default());
+        let begin = Instant::now();
+        let lease = loop {
+            match service.lease_until(AxisTask::Moving, &first) {
+                Ok(lease) => break lease,
+                Err(error) => {
+                    assert!(begin.elapsed() < Duration::from_secs(60), "{error:?}");
+                    std::thread::sleep(Duration::from_millis(10));
+                }
+            }
+        };
+        assert!(service.is_moved_until(&first) && !service.is_moved_until(&second));
+        second.request(None);
+        assert!(!lease.stop().is_requested());
+        first.request(None);
+        assert!(lease.stop().is_requested());
+        drop(lease);
+        assert!(!service.is_moved_until(&first));
+
+        // What is stopped before does not begin.
+        match service.lease_until(AxisTask::Moving, &second).err() {
+            Some(LeaseError::Failure(failure)) => assert_eq!(failure.kind, Kind::Interrupted),
+            other => panic!("{other:?}"),
+        }
+        assert_eq!(service.activity().doing, AxisTask::Idle);
+
+        // The signals of ended leases do not stop the next one; a stop of the axis does.
+        let lease = service.lease_until(AxisTask::Moving, &third).unwrap();
+        first.request(None);
+        assert!(!lease.stop().is_requested());
+        assert!(service.stop(None) && third.is_requested());
+        drop(lease);
+        service.shut_down(Failure::new(Kind::Interrupted, "the test ends"));
+        assert!(thread.join());
     }
 }

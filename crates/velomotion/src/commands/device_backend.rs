@@ -432,7 +432,7 @@ impl CaptureBackend for DaemonCapture {
 
 /// Runs a jog by the devices of this process.
 pub(super) fn jog_locally(local: &LocalService, jog: JogRequest) -> Result<StopAnswer, Failure> {
-    let answer = local.service.jog(jog).map_err(lease_failure)?;
+    let answer = local.service.jog(jog, None).map_err(lease_failure)?;
     let report = answer
         .blocking_recv()
         .unwrap_or_else(|_| Err(thread_gone()))?;
