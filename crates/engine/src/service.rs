@@ -87,6 +87,7 @@ pub struct DeviceService {
     requests: mpsc::Sender<ThreadRequest>,
     ending: AtomicBool,
     connects: AtomicU64,
+    stops: AtomicU64,
     started: Instant,
     started_s: f64,
     /// Last heartbeat of the device thread, milliseconds after the start.
@@ -128,6 +129,7 @@ impl DeviceService {
             requests,
             ending: AtomicBool::new(false),
             connects: AtomicU64::new(0),
+            stops: AtomicU64::new(0),
             started: Instant::now(),
             started_s: now_s(),
             heartbeat_ms: AtomicU64::new(0),
@@ -170,6 +172,12 @@ impl DeviceService {
     #[must_use]
     pub fn connects(&self) -> u64 {
         self.connects.load(Ordering::Relaxed)
+    }
+
+    /// Stops that clients have requested. A motion that waits to begin gives up if there is another.
+    #[must_use]
+    pub fn stops(&self) -> u64 {
+        self.stops.load(Ordering::Acquire)
     }
 
     /// Time since the last heartbeat of the device thread.
@@ -344,6 +352,7 @@ impl DeviceService {
     /// # Errors
     /// [`LeaseError`] where the axis could not be stopped.
     pub async fn stop_axis(self: &Arc<Self>) -> Result<StopAnswer, LeaseError> {
+        self.stops.fetch_add(1, Ordering::AcqRel);
         if let Lifetime::Command { .. } = self.lifetime {
             self.stop(None);
             self.wait_idle().await;
@@ -382,6 +391,7 @@ impl DeviceService {
     /// Stops a capture and waits until the axis is at rest; other motion goes on. Returns whether
     /// there was a capture, and the scan's id.
     pub async fn stop_capture(&self) -> (bool, Option<String>) {
+        self.stops.fetch_add(1, Ordering::AcqRel);
         let mut state = self.state.subscribe();
         // The signal of the capture, which stops no motion that begins from here on.
         let capture = {
@@ -398,12 +408,11 @@ impl DeviceService {
         loop {
             {
                 let state = state.borrow_and_update();
-                let now = &state.activity;
-                let another = now.scan.is_some() && scan.is_some() && now.scan != scan;
-                if now.doing == AxisTask::Idle || another {
+                let is_under_way = state.stop.as_ref().is_some_and(|lease| stop.is_of(lease));
+                if !is_under_way {
                     break;
                 }
-                scan = scan.or_else(|| now.scan.clone());
+                scan = scan.or_else(|| state.activity.scan.clone());
             }
             // The sender lives as long as `self`.
             if state.changed().await.is_err() {

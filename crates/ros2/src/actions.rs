@@ -220,6 +220,7 @@ impl GoalRunner for DaemonRunner {
             Err(error) => return (None, Some(engine::no_resource("runtime", "a goal", &error))),
         };
         let devices = self.scans.devices();
+        let stops = devices.stops();
         runtime.block_on(async {
             let ready = async {
                 if matches!(request, GoalRequest::Capture(_)) {
@@ -237,6 +238,12 @@ impl GoalRunner for DaemonRunner {
                 () = cancelled => {}
             }
         });
+        // A client that stopped the axis meanwhile does not expect it to move.
+        if devices.stops() != stops && !stop.is_requested() {
+            let what = "the axis was stopped before the goal began";
+            let failure = Failure::new(Kind::Interrupted, what).help("nothing has moved");
+            return (None, Some(failure));
+        }
         match request {
             GoalRequest::Capture(request) => self.run_capture(&request, stop, begun),
             GoalRequest::Move(request) => match self.scans.start_move(request, stop) {

@@ -9,7 +9,7 @@ use engine::failure::{Failure, Kind};
 use crate::actions::Action;
 
 /// Longest request, bytes.
-const LONGEST: usize = 1024;
+pub(crate) const LONGEST: usize = 1024;
 
 /// What a goal asks for.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,8 +40,7 @@ fn usage(error: &CdrError) -> Failure {
 /// Reads a request that is not too long.
 fn reader(payload: &[u8]) -> Result<CdrReader<'_>, Failure> {
     if payload.len() > LONGEST {
-        let got = payload.len();
-        let text = format!("expected a request of at most {LONGEST} bytes, got {got}");
+        let text = format!("expected a request of at most {LONGEST} bytes, got more");
         return Err(Failure::new(Kind::Usage, text));
     }
     CdrReader::new(payload).map_err(|error| usage(&error))

@@ -5,6 +5,7 @@
 //! priority, then live clouds and raw packets, then all small messages.
 
 use std::collections::BTreeMap;
+use std::io::Read;
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -19,6 +20,7 @@ use engine::config::ros2::Ros2;
 
 use crate::actions::{self, Action};
 use crate::calls::{self, Service};
+use crate::goal_request::LONGEST;
 use crate::goals::Goals;
 use crate::latched::LatchedMessages;
 use crate::rmw::{self, Entity, Gid, QualityOfService};
@@ -351,10 +353,16 @@ impl Call {
         None
     }
 
-    /// The request, encapsulation header included.
+    /// The request, encapsulation header included; its first bytes if it is longer than any that
+    /// is served.
     pub fn payload(&self) -> Vec<u8> {
-        let payload = self.query.payload();
-        payload.map_or_else(Vec::new, |payload| payload.to_bytes().into_owned())
+        let mut bytes = Vec::new();
+        if let Some(payload) = self.query.payload() {
+            let most = LONGEST as u64 + 1;
+            // Bytes in memory are always read.
+            let _ = payload.reader().take(most).read_to_end(&mut bytes);
+        }
+        bytes
     }
 
     /// Answers the call with its own number and gid.

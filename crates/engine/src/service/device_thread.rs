@@ -353,8 +353,10 @@ impl Worker {
                 let (result, lost) = match done {
                     Ok(Ok(report)) => (Ok(AxisReport { warnings, ..report }), None),
                     Ok(Err(error)) => {
-                        let reason = stop.reason().filter(|_| !error.may_move());
-                        let failure = reason.unwrap_or_else(|| jog::failure(&error));
+                        let failure = jog::failure(&error);
+                        // A fault that ends a motion is not why another one stopped it.
+                        let is_stopped = failure.kind == Kind::Interrupted;
+                        let failure = stop.reason().filter(|_| is_stopped).unwrap_or(failure);
                         (Err(failure.warned(warnings)), lost_port(&error))
                     }
                     Err(_) => {
