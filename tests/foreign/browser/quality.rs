@@ -25,7 +25,7 @@ fn the_scan_in_view_is_measured_on_request() {
             page.until_has("#quality-facts", "Packet delay").await;
             page.run(TOO_MANY).await;
             page.click("#measure").await;
-            page.until_has("#quality-error", "Measure: too many").await;
+            page.until_has("#quality-error", "Measure hall: too many").await;
             until_in_sight(&page, "#quality-error").await;
             page.run("window.answer()").await;
             page.click("#measure").await;
