@@ -90,6 +90,9 @@ async fn start(page: &Page, name: &str, speed: &str, to: &str) {
     page.fill("#name", name).await;
     page.run("document.querySelector('#sweep details').open = false")
         .await;
+    // The last motion may not have ended.
+    page.until_true("!document.querySelector('#start').disabled")
+        .await;
     page.click("#start").await;
 }
 

@@ -172,9 +172,11 @@ function draw(): void {
   const obstacle_now = obstacle();
   // Homing needs no lidar, and clears a fault of the drive.
   const homes = obstacle_now === null || (connected && status !== null && status.drive.state !== "absent");
-  start.disabled = asking || moving || obstacle_now !== null;
-  home.disabled = asking || moving || !homes;
-  ready(connected && status?.drive.state === "connected" && !asking && !moving);
+  // The axis is idle for a moment before the stop sets its brake: what is begun then is refused.
+  const busy = asking || moving || stopping !== null;
+  start.disabled = busy || obstacle_now !== null;
+  home.disabled = busy || !homes;
+  ready(connected && status?.drive.state === "connected" && !busy);
   text(why, moving ? "" : (obstacle_now ?? ""));
   show(why, why.textContent !== "");
   attribute(stop, "data-moving", String(moving));
