@@ -174,7 +174,8 @@ impl DeviceService {
         self.connects.load(Ordering::Relaxed)
     }
 
-    /// Stops that clients have requested. A motion that waits to begin gives up if there is another.
+    /// Stops that clients have requested. A motion that waits to begin gives up if there is
+    /// another.
     #[must_use]
     pub fn stops(&self) -> u64 {
         self.stops.load(Ordering::Acquire)
