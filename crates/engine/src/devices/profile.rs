@@ -32,9 +32,7 @@ pub fn choose(config: &Config, requested: Option<&str>) -> Result<(String, Devic
                 Kind::Usage,
                 format!("no device is called {name}: expected one of {}", known.join(", ")),
             )
-            .help(format!(
-                "add a [device.{name}] to the configuration, or use --device sim for simulated devices"
-            )))
+            .help("add it to the configuration as [device.NAME], whose keys name its ports, or use --device sim for simulated devices"))
         }
     }
 }
