@@ -174,11 +174,12 @@ impl DeviceService {
         self.connects.load(Ordering::Relaxed)
     }
 
-    /// Stops that clients have requested. A motion that waits to begin gives up if there is
-    /// another.
+    /// The signal of a motion that a client asks for now, or for which it asked when it knew of so
+    /// many stops ([`status::ServiceStatus`]): its request may arrive late. A later stop of any
+    /// client prevents the motion if it has not begun.
     #[must_use]
-    pub fn stops(&self) -> u64 {
-        self.stops.load(Ordering::Acquire)
+    pub fn stop_signal(&self, known_stops: Option<u64>) -> StopSignal {
+        StopSignal::after(known_stops.unwrap_or_else(|| self.stops.load(Ordering::Acquire)))
     }
 
     /// Time since the last heartbeat of the device thread.
@@ -232,7 +233,7 @@ impl DeviceService {
     /// Takes the axis of a daemon for a task that `stop` stops, if it is idle.
     ///
     /// # Errors
-    /// As [`DeviceService::lease`], and [`Kind::Interrupted`] where the stop was requested before.
+    /// As [`DeviceService::lease`], and [`Kind::Interrupted`] where a stop was requested before.
     pub fn lease_until(
         self: &Arc<Self>,
         task: AxisTask,
@@ -320,17 +321,21 @@ impl DeviceService {
         Ok(report)
     }
 
-    /// Runs a jog to its end.
+    /// Runs a jog, which `stop` stops if it moves, to its end.
     ///
     /// # Errors
     /// As [`DeviceService::jog`], and where the motion failed.
-    pub async fn run_jog(self: &Arc<Self>, request: JogRequest) -> Result<AxisReport, LeaseError> {
+    pub async fn run_jog(
+        self: &Arc<Self>,
+        request: JogRequest,
+        stop: Option<&StopSignal>,
+    ) -> Result<AxisReport, LeaseError> {
         let commands = jog::commands(request, &self.config, &self.device);
         commands?;
         if !matches!(request, JogRequest::Status) {
             self.wait_for_reads().await;
         }
-        match self.jog(request, None)?.await {
+        match self.jog(request, stop)?.await {
             Ok(report) => Ok(report?),
             Err(_) => Err(LeaseError::Failure(
                 Failure::new(Kind::Interrupted, "the daemon is ending")
@@ -381,7 +386,7 @@ impl DeviceService {
             attempts += 1;
             self.stop(None);
             self.wait_idle().await;
-            match self.run_jog(JogRequest::Stop).await {
+            match self.run_jog(JogRequest::Stop, None).await {
                 // Another client was quicker: its motion is stopped, too.
                 Err(LeaseError::Busy(_)) if attempts < STOP_ATTEMPTS => {}
                 done => return done.map(|report| StopAnswer::Report(Box::new(report))),

@@ -3,11 +3,12 @@
 //! They are offered only if they are switched on: every client of the router can send goals. A goal
 //! moves the axis by the same calls as a client of HTTP, and goes on if its client goes away.
 
-use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use std::time::Duration;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use cloud::messages::actions::{ActionType, CANCEL_GOAL, CAPTURE, GOAL_STATUS_ARRAY, MOVE_TILT};
+use cloud::messages::cdr::Cdr;
 use engine::capture::jog;
 use engine::capture_request::CaptureRequest;
 use engine::config::ros2::Ros2;
@@ -16,18 +17,19 @@ use engine::service::StopSignal;
 use engine::service::events::{Event, MessageLevel, RecvError};
 use engine::service::scan_record::{ScanState, check_name};
 use tokio::runtime::Runtime;
-use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
 use zenoh::qos::Priority;
 
 use crate::bridge::{self, STOP_POLL, StopFlag};
 use crate::goal_request::{GoalRequest, GoalResult, feedback_message};
-use crate::goals::{GoalEnd, GoalMessage, GoalRunner, Goals};
+use crate::goals::{Answers, GoalEnd, GoalRunner, Goals};
 use crate::link::{Call, Channel, Declarer, Error, RouterLink};
 use crate::rmw::QualityOfService;
 use crate::{Context, ScanService};
 
 /// Between two looks of a goal whether it is cancelled, or its scan is made.
 const GOAL_POLL: Duration = Duration::from_millis(20);
+/// Between two reports of rejected goals: a client may send goals without end.
+const REPORT_INTERVAL: Duration = Duration::from_secs(1);
 /// QoS of feedback (`rmw_qos_profile_default`).
 const FEEDBACK: QualityOfService = QualityOfService {
     reliable: true,
@@ -74,14 +76,15 @@ impl Action {
     }
 }
 
-/// The goals of a bridge, and its queue of messages.
-pub(crate) fn start(context: &Context) -> (Arc<Goals<Call>>, UnboundedReceiver<GoalMessage<Call>>) {
+/// The goals of a bridge, and its queue of answers.
+pub(crate) fn start(context: &Context) -> (Arc<Goals<Call>>, Answers<Call>) {
     let runner = DaemonRunner {
         scans: Arc::clone(&context.scans),
         stop: context.stop.clone(),
+        reports: Mutex::default(),
     };
-    let (outbox, outgoing) = unbounded_channel();
-    (Arc::new(Goals::new(Box::new(runner), outbox)), outgoing)
+    let (goals, outgoing) = Goals::new(Box::new(runner));
+    (Arc::new(goals), outgoing)
 }
 
 /// Offers an action. Returns the publishers of its feedback and of its states.
@@ -132,11 +135,12 @@ pub(crate) fn run(
     context: &Context,
     link: &RouterLink,
     goals: &Goals<Call>,
-    outgoing: &mut UnboundedReceiver<GoalMessage<Call>>,
+    outgoing: &mut Answers<Call>,
     runtime: &Runtime,
 ) {
     enum Next {
-        Send(GoalMessage<Call>),
+        Answer(Call, Cdr),
+        States,
         Event(Result<Arc<Event>, RecvError>),
         Nothing,
     }
@@ -145,29 +149,27 @@ pub(crate) fn run(
         // zenoh refuses to send within the runtime.
         let next = runtime.block_on(async {
             tokio::select! {
-                Some(message) = outgoing.recv() => Next::Send(message),
+                Some((call, response)) = outgoing.recv() => Next::Answer(call, response),
+                () = goals.changed() => Next::States,
                 event = subscription.next() => Next::Event(event),
                 () = tokio::time::sleep(STOP_POLL) => Next::Nothing,
             }
         });
         let sent = match next {
-            Next::Send(GoalMessage::Answer(call, response)) => {
+            Next::Answer(call, response) => {
                 call.answer(response.bytes());
                 context.counts.calls.fetch_add(1, Ordering::Relaxed);
-                Ok(false)
+                Ok(())
             }
-            Next::Send(GoalMessage::States(action, states)) => match link.channels_of(action) {
-                Some((_, channel)) => link.publish(channel, states.bytes()),
-                None => Ok(false),
-            },
+            Next::States => send_states(link, goals),
             Next::Event(Ok(event)) => match *event {
                 Event::Motion {
                     angle_deg, left_s, ..
                 } => send_feedback(context, link, goals, (angle_deg, left_s)),
-                _ => Ok(false),
+                _ => Ok(()),
             },
             // Feedback may have been lost.
-            Next::Event(Err(_)) | Next::Nothing => Ok(false),
+            Next::Event(Err(_)) | Next::Nothing => Ok(()),
         };
         if let Err(error) = sent {
             tracing::debug!("ROS 2: {error}");
@@ -175,28 +177,61 @@ pub(crate) fn run(
     }
 }
 
+fn send_states(link: &RouterLink, goals: &Goals<Call>) -> Result<(), Error> {
+    for (action, _, channel) in link.actions() {
+        link.publish(channel, goals.states(*action).bytes())?;
+    }
+    Ok(())
+}
+
 fn send_feedback(
     context: &Context,
     link: &RouterLink,
     goals: &Goals<Call>,
     progress: (f64, Option<f64>),
-) -> Result<bool, Error> {
+) -> Result<(), Error> {
     let Some((action, goal)) = goals.moving() else {
-        return Ok(false);
+        return Ok(());
     };
-    let Some((channel, _)) = link.channels_of(action) else {
-        return Ok(false);
+    let mut actions = link.actions().iter();
+    let Some((_, channel, _)) = actions.find(|(known, ..)| *known == action) else {
+        return Ok(());
     };
     let activity = context.devices().activity();
     let steps = (activity.step, activity.steps);
     let message = feedback_message(action, &goal, steps, progress);
-    link.publish(channel, message.bytes())
+    link.publish(channel, message.bytes())?;
+    Ok(())
 }
 
 /// Runs goals as the daemon's HTTP API runs its requests.
 struct DaemonRunner {
     scans: Arc<dyn ScanService>,
     stop: StopFlag,
+    reports: Mutex<ReportLimit>,
+}
+
+/// Limits reports to one per [`REPORT_INTERVAL`].
+#[derive(Default)]
+struct ReportLimit {
+    last: Option<Instant>,
+    omitted: u64,
+}
+
+impl ReportLimit {
+    /// The text to report at `now`, if it is time for one.
+    fn limit(&mut self, text: String, now: Instant) -> Option<String> {
+        let too_early = |last| now.saturating_duration_since(last) < REPORT_INTERVAL;
+        if self.last.is_some_and(too_early) {
+            self.omitted += 1;
+            return None;
+        }
+        self.last = Some(now);
+        match std::mem::take(&mut self.omitted) {
+            0 => Some(text),
+            omitted => Some(format!("{text}; {omitted} more before it")),
+        }
+    }
 }
 
 impl GoalRunner for DaemonRunner {
@@ -220,7 +255,6 @@ impl GoalRunner for DaemonRunner {
             Err(error) => return (None, Some(engine::no_resource("runtime", "a goal", &error))),
         };
         let devices = self.scans.devices();
-        let stops = devices.stops();
         runtime.block_on(async {
             let ready = async {
                 if matches!(request, GoalRequest::Capture(_)) {
@@ -238,12 +272,6 @@ impl GoalRunner for DaemonRunner {
                 () = cancelled => {}
             }
         });
-        // A client that stopped the axis meanwhile does not expect it to move.
-        if devices.stops() != stops && !stop.is_requested() {
-            let what = "the axis was stopped before the goal began";
-            let failure = Failure::new(Kind::Interrupted, what).help("nothing has moved");
-            return (None, Some(failure));
-        }
         match request {
             GoalRequest::Capture(request) => self.run_capture(&request, stop, begun),
             GoalRequest::Move(request) => match self.scans.start_move(request, stop) {
@@ -263,13 +291,20 @@ impl GoalRunner for DaemonRunner {
         }
     }
 
+    fn stop_signal(&self) -> StopSignal {
+        self.scans.devices().stop_signal(None)
+    }
+
     fn is_moved_until(&self, stop: &StopSignal) -> bool {
         self.scans.devices().is_moved_until(stop)
     }
 
     fn report(&self, text: String) {
         let events = self.scans.devices().events();
-        events.message(MessageLevel::Warning, text, None);
+        let mut reports = self.reports.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(text) = reports.limit(text, Instant::now()) {
+            events.message(MessageLevel::Warning, text, None);
+        }
     }
 }
 
@@ -336,5 +371,17 @@ mod tests {
         assert!(of("").is_empty());
         assert!(of("[capture]\nspeed_deg_s = 20.0").is_empty());
         assert_eq!(of("actions = true"), [Action::Capture, Action::MoveTilt]);
+    }
+
+    #[test]
+    fn a_client_that_sends_goals_without_end_is_reported_once_a_second() {
+        let (mut reports, start) = (ReportLimit::default(), Instant::now());
+        let reported: Vec<_> = (0..2_500)
+            .filter_map(|ms| reports.limit("no".to_owned(), start + Duration::from_millis(ms)))
+            .collect();
+        assert_eq!(
+            reported,
+            ["no", "no; 999 more before it", "no; 999 more before it"]
+        );
     }
 }

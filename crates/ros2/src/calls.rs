@@ -13,7 +13,6 @@ use tokio::runtime::Runtime;
 
 use engine::config::ros2::Ros2;
 use engine::failure::Failure;
-use engine::service::StopSignal;
 
 use crate::Context;
 use crate::bridge::STOP_POLL;
@@ -96,7 +95,8 @@ fn start_capture(context: &Context) -> (bool, String) {
     let Some(request) = &context.settings.capture else {
         return (false, "no capture is configured".to_owned());
     };
-    match context.scans.start_capture(request, &StopSignal::default()) {
+    let stop = context.devices().stop_signal(None);
+    match context.scans.start_capture(request, &stop) {
         Ok(id) => (true, id),
         Err(failure) => (false, text_of(failure)),
     }

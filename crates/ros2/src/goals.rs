@@ -5,6 +5,7 @@
 //! for nothing. Answers leave through a queue of the bridge.
 
 use std::collections::VecDeque;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use cloud::messages::Time;
@@ -14,7 +15,8 @@ use cloud::messages::actions::{
 use cloud::messages::cdr::Cdr;
 use engine::failure::{Failure, Kind};
 use engine::service::StopSignal;
-use tokio::sync::mpsc::UnboundedSender;
+use tokio::sync::Notify;
+use tokio::sync::mpsc::{Receiver, Sender, channel};
 
 use crate::actions::Action;
 use crate::calls::text_of;
@@ -24,6 +26,9 @@ use crate::goal_request::{GoalRequest, GoalResult, read, read_goal, result_respo
 const GOALS: usize = 16;
 /// Calls that wait for the end of one goal.
 const WAITING: usize = 8;
+/// Answers that wait for the network. Further ones are dropped, and their clients ask again: what
+/// the calls asked for is done.
+const ANSWERS: usize = 2 * GOALS * WAITING;
 
 /// The end of a goal: what it reached, and why that is not all it asked for.
 pub(crate) type GoalEnd = (Option<GoalResult>, Option<Failure>);
@@ -37,6 +42,9 @@ pub(crate) trait GoalRunner: Send + Sync + 'static {
     /// on; a goal that is stopped earlier does not begin.
     fn run(&self, request: GoalRequest, stop: &StopSignal, begun: &dyn Fn()) -> GoalEnd;
 
+    /// The signal of a goal that is received now.
+    fn stop_signal(&self) -> StopSignal;
+
     /// Whether the axis moves for the goal that `stop` stops.
     fn is_moved_until(&self, stop: &StopSignal) -> bool;
 
@@ -44,13 +52,8 @@ pub(crate) trait GoalRunner: Send + Sync + 'static {
     fn report(&self, text: String);
 }
 
-/// A message to be sent.
-pub(crate) enum GoalMessage<C> {
-    /// An answer to a call.
-    Answer(C, Cdr),
-    /// States of all goals of an action.
-    States(Action, Cdr),
-}
+/// Answers to be sent, each with its call.
+pub(crate) type Answers<C> = Receiver<(C, Cdr)>;
 
 /// A goal that was accepted.
 struct Goal<C> {
@@ -70,19 +73,20 @@ struct Goal<C> {
 pub(crate) struct Goals<C> {
     runner: Box<dyn GoalRunner>,
     goals: Mutex<VecDeque<Goal<C>>>,
-    outbox: UnboundedSender<GoalMessage<C>>,
+    answers: Sender<(C, Cdr)>,
+    changed: Notify,
 }
 
 impl<C: Send + 'static> Goals<C> {
-    pub(crate) fn new(
-        runner: Box<dyn GoalRunner>,
-        outbox: UnboundedSender<GoalMessage<C>>,
-    ) -> Self {
-        Self {
+    pub(crate) fn new(runner: Box<dyn GoalRunner>) -> (Self, Answers<C>) {
+        let (answers, outgoing) = channel(ANSWERS);
+        let goals = Self {
             runner,
             goals: Mutex::default(),
-            outbox,
-        }
+            answers,
+            changed: Notify::new(),
+        };
+        (goals, outgoing)
     }
 
     fn locked(&self) -> MutexGuard<'_, VecDeque<Goal<C>>> {
@@ -90,15 +94,22 @@ impl<C: Send + 'static> Goals<C> {
     }
 
     fn answer(&self, call: C, response: Cdr) {
-        // The bridge has ended otherwise.
-        let _ = self.outbox.send(GoalMessage::Answer(call, response));
+        if self.answers.try_send((call, response)).is_err() {
+            tracing::debug!("ROS 2: an answer about a goal was dropped");
+        }
     }
 
-    fn send_states(&self, action: Action, goals: &VecDeque<Goal<C>>) {
+    /// Waits until the states of goals have changed since the last wait.
+    pub(crate) async fn changed(&self) {
+        self.changed.notified().await;
+    }
+
+    /// States of all goals of an action.
+    pub(crate) fn states(&self, action: Action) -> Cdr {
+        let goals = self.locked();
         let of_action = goals.iter().filter(|goal| goal.action == action);
         let states: Vec<_> = of_action.map(|goal| (goal.info, goal.status)).collect();
-        let states = goal_status_array(&states);
-        let _ = self.outbox.send(GoalMessage::States(action, states));
+        goal_status_array(&states)
     }
 
     /// Accepts a goal and begins it, or rejects it and reports why.
@@ -120,7 +131,8 @@ impl<C: Send + 'static> Goals<C> {
         };
         // Before its thread, which waits for the lock, can end it.
         self.answer(call, goal_response(true, accepted));
-        self.send_states(action, &goals);
+        drop(goals);
+        self.changed.notify_one();
     }
 
     /// Starts the thread of a goal. Returns the goals, which that thread waits for.
@@ -131,6 +143,9 @@ impl<C: Send + 'static> Goals<C> {
         request: GoalRequest,
     ) -> Result<MutexGuard<'_, VecDeque<Goal<C>>>, Failure> {
         let refused = |text| Err(Failure::new(Kind::Limit, text));
+        if info.id == [0; 16] {
+            return refused("an id of zeros is that of no goal");
+        }
         let mut goals = self.locked();
         if goals.iter().any(|goal| goal.info.id == info.id) {
             return refused("its id is that of another goal");
@@ -141,11 +156,17 @@ impl<C: Send + 'static> Goals<C> {
             };
             goals.remove(oldest);
         }
-        let stop = StopSignal::default();
+        let stop = self.runner.stop_signal();
         let (own, own_stop) = (Arc::clone(self), stop.clone());
         engine::spawn("goal", "a goal of ROS 2", move || {
             let begun = || own.change(info.id, |goal| goal.has_begun = true);
-            let end = own.runner.run(request, &own_stop, &begun);
+            let run = AssertUnwindSafe(|| own.runner.run(request, &own_stop, &begun));
+            let end = catch_unwind(run).unwrap_or_else(|_| {
+                // Nobody could cancel it any more.
+                own_stop.request(None);
+                let what = "the thread of the goal panicked; its motion is stopped";
+                (None, Some(Failure::new(Kind::Incomplete, what)))
+            });
             own.end(info.id, end);
         })?;
         goals.push_back(Goal {
@@ -187,8 +208,7 @@ impl<C: Send + 'static> Goals<C> {
         for call in std::mem::take(&mut goal.waiting) {
             self.answer(call, goal.result.clone());
         }
-        let action = goal.action;
-        self.send_states(action, &goals);
+        self.changed.notify_one();
     }
 
     /// Stops goals, each by its own signal: no other motion stops.
@@ -219,8 +239,10 @@ impl<C: Send + 'static> Goals<C> {
         if !cancelled.is_empty() {
             code = CancelCode::Accepted;
         }
+        if !cancelled.is_empty() {
+            self.changed.notify_one();
+        }
         self.answer(call, cancel_response(code, &cancelled));
-        self.send_states(action, &goals);
     }
 
     /// Answers now if the goal has ended or is unknown, or if too many calls wait; else at its end.
@@ -254,8 +276,6 @@ mod tests {
     use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
     use std::time::Duration;
 
-    use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
-
     use super::*;
 
     const POLL: Duration = Duration::from_millis(1);
@@ -265,6 +285,7 @@ mod tests {
     struct Axis {
         is_ready: AtomicBool,
         begun: AtomicUsize,
+        panics: AtomicBool,
         /// The motion under way.
         stop: Mutex<Option<StopSignal>>,
         /// End of the motion; without one it goes on.
@@ -292,11 +313,16 @@ mod tests {
             begun();
             self.begun.fetch_add(1, Ordering::SeqCst);
             loop {
+                assert!(!self.panics.load(Ordering::SeqCst), "as a fault would");
                 if let Some(end) = self.end.lock().unwrap().clone() {
                     return end;
                 }
                 std::thread::sleep(POLL);
             }
+        }
+
+        fn stop_signal(&self) -> StopSignal {
+            StopSignal::default()
         }
 
         fn is_moved_until(&self, stop: &StopSignal) -> bool {
@@ -313,28 +339,24 @@ mod tests {
     struct Client {
         axis: Arc<Axis>,
         goals: Arc<Goals<&'static str>>,
-        outgoing: UnboundedReceiver<GoalMessage<&'static str>>,
+        outgoing: Answers<&'static str>,
     }
 
     impl Client {
         fn new() -> Self {
             let axis = Arc::new(Axis::default());
-            let (outbox, outgoing) = unbounded_channel();
-            let goals = Arc::new(Goals::new(Box::new(Arc::clone(&axis)), outbox));
+            let (goals, outgoing) = Goals::new(Box::new(Arc::clone(&axis)));
             Self {
                 axis,
-                goals,
+                goals: Arc::new(goals),
                 outgoing,
             }
         }
 
         /// The next answer.
         fn answer(&mut self) -> (&'static str, Vec<u8>) {
-            loop {
-                if let GoalMessage::Answer(call, cdr) = self.outgoing.blocking_recv().unwrap() {
-                    return (call, cdr.bytes()[4..].to_vec());
-                }
-            }
+            let (call, cdr) = self.outgoing.blocking_recv().unwrap();
+            (call, cdr.bytes()[4..].to_vec())
         }
 
         /// Sends a goal to home. Returns whether it was accepted.
@@ -467,8 +489,44 @@ mod tests {
     }
 
     #[test]
+    fn a_goal_whose_thread_panics_is_aborted_and_its_motion_stopped() {
+        let mut client = Client::new();
+        assert!(client.send(1));
+        client.begin();
+        client.ask(1, "waits");
+        client.axis.panics.store(true, Ordering::SeqCst);
+        let (call, response) = client.answer();
+        assert_eq!((call, response[0]), ("waits", GoalStatus::Aborted as u8));
+        let stop = client.axis.stop.lock().unwrap().clone();
+        assert!(stop.unwrap().is_requested());
+    }
+
+    /// A client that calls without end, and a network that takes nothing.
+    #[test]
+    fn answers_that_do_not_leave_are_bounded_and_the_last_states_are_sent() {
+        let mut client = Client::new();
+        assert!(client.send(1));
+        client.begin();
+        let waits = || tokio::runtime::Builder::new_current_thread().build();
+        waits().unwrap().block_on(client.goals.changed());
+        for _ in 0..ANSWERS + 10 {
+            client.ask(9, "unknown");
+        }
+        client.end(None);
+        // Goals change their states whatever waits to be sent.
+        waits().unwrap().block_on(client.goals.changed());
+        let states = client.goals.states(Action::MoveTilt);
+        assert_eq!(states.bytes().last(), Some(&(GoalStatus::Succeeded as u8)));
+        for _ in 0..ANSWERS {
+            assert_eq!(client.answer().0, "unknown");
+        }
+        assert_eq!(client.status(1), GoalStatus::Succeeded as u8);
+    }
+
+    #[test]
     fn rejected_goals_are_reported_with_the_reason() {
         let mut client = Client::new();
+        assert!(!client.send(0));
         for goal in 0..GOALS {
             assert!(client.send(1 + goal as u8));
         }
@@ -489,6 +547,7 @@ mod tests {
         }
         let reports = client.axis.reports.lock().unwrap().join("\n");
         for reason in [
+            "of no goal",
             "another goal",
             "too many goals",
             "too fast",

@@ -200,11 +200,9 @@ impl RouterLink {
         Ok(true)
     }
 
-    /// Feedback and status of an action.
-    pub fn channels_of(&self, action: Action) -> Option<(&Channel, &Channel)> {
-        let mut actions = self.actions.iter();
-        let found = actions.find(|(known, ..)| *known == action);
-        found.map(|(_, feedback, status)| (feedback, status))
+    /// Feedback and status of each action.
+    pub fn actions(&self) -> &[(Action, Channel, Channel)] {
+        &self.actions
     }
 
     /// Sends a message to a publisher with subscribers. Returns whether it was sent.

@@ -238,6 +238,14 @@ fn a_sweep_is_displayed_and_stopped_by_key_and_by_touch() {
             }
             match name {
                 "by-key" => {
+                    // Another scan, then the running one again.
+                    page.click(".scan:nth-child(2) [data-role=open]").await;
+                    page.until("#view-title", "another", |text| !text.contains("Live"))
+                        .await;
+                    page.click(".scan [data-role=open]").await;
+                    page.until_has("#view-title", "Live: by-key").await;
+                    page.until("#view-points", "points again", |text| points(text) > 0)
+                        .await;
                     // An open list of downloads does not take the key.
                     page.click("[data-role=download]").await;
                     page.until_has("#download-title", "Download").await;

@@ -252,6 +252,47 @@ async fn clear_is_refused(page: &Page) {
     page.run("window.answer()").await;
 }
 
+/// A request to move that waits in the network until `window.arrive` is called.
+const LATE: &str = "
+    const sent = window.fetch;
+    window.fetch = (url, init) => !String(url).endsWith('tilt/goto') ? sent(url, init) : new Promise((done, fail) => {
+      window.arrive = () => { window.fetch = sent; sent(url, init).then(done, fail); };
+    });";
+
+/// The stop takes a connection of its own: it may overtake the motion that it is to stop.
+#[test]
+#[ignore = "needs chromium and chromedriver"]
+fn a_move_that_arrives_after_its_stop_moves_nothing() {
+    let (driver, _folder, daemon, url) = browser_and_simulator();
+    driver.test(DESKTOP, async |page| {
+        ready(&page, &url).await;
+        page.click("#home").await;
+        page.until_has("#drive-facts", "Angle known\nyes").await;
+        page.until_has("#doing", "Ready").await;
+        page.run(LATE).await;
+        page.click("#by-hand summary").await;
+        page.fill("#goto", "-20").await;
+        page.click("#go").await;
+        page.until_true("window.arrive !== undefined").await;
+        let before = page.api("tilt").await["angle_deg"].as_f64().unwrap();
+        // Nothing moves yet, and Escape stops what may.
+        page.keys(ESCAPE).await;
+        page.until_has("#doing", "Stopped").await;
+        page.run("window.arrive()").await;
+        page.until_has("#axis-error", "stopped before this motion began")
+            .await;
+        let tilt = page.api("tilt").await;
+        assert_eq!(tilt["velocity_rpm"], 0, "{tilt}");
+        let after = tilt["angle_deg"].as_f64().unwrap();
+        assert!((after - before).abs() < 0.05, "{before}, {tilt}");
+        // What is asked for after the stop moves.
+        page.click("#go").await;
+        page.until_has("#angle", "20.0").await;
+        page.until_has("#doing", "Ready").await;
+    });
+    daemon.stop(|| true).unwrap();
+}
+
 #[test]
 #[ignore = "needs chromium and chromedriver"]
 fn a_lost_network_is_told_from_a_daemon_that_ended() {
@@ -290,6 +331,9 @@ fn a_lost_connection_is_reported_and_restored() {
         let (url, port) = (url(&first), first.address().port());
         driver.test(screen, async |page| {
             ready(&page, &url).await;
+            start(&page, "hall", "56.25", "-45").await;
+            page.until_has(".scan .badge[data-state]", "complete").await;
+            page.until_has("#view-title", "hall").await;
             // The stop waits for the daemon's threads.
             spawn_blocking(move || first.stop(|| true).unwrap())
                 .await
@@ -301,6 +345,8 @@ fn a_lost_connection_is_reported_and_restored() {
                 .await;
             page.picture("lost").await;
             page.audit("no connection").await;
+            // The scan in view is deleted meanwhile, which no event reports.
+            std::fs::remove_dir_all(folder.path().join("scans")).unwrap();
             // The daemon is back. On dark screens it now asks for a token.
             let place = folder.path().to_owned();
             let with_token = screen.is_dark();
@@ -323,6 +369,9 @@ fn a_lost_connection_is_reported_and_restored() {
             page.until_has("#chip-link", "Connected").await;
             page.until_gone("#lost").await;
             page.until_has("#chip-drive", "Drive ready").await;
+            page.until_has("#view-title", "Point cloud").await;
+            page.until_has("#messages", "was deleted while the page was not")
+                .await;
             spawn_blocking(move || second.stop(|| true).unwrap())
                 .await
                 .unwrap();

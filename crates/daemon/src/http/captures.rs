@@ -14,13 +14,27 @@ use engine::service::status::AxisTask;
 use engine::service::{AxisLease, DeviceService, LeaseError, StopSignal};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use utoipa::ToSchema;
+use utoipa::{IntoParams, ToSchema};
 
 use super::api::Api;
 use super::openapi::{NotNow, Usage};
 use super::refusal::Refusal;
 use crate::plan as plans;
 use crate::state::{Counters, DaemonState};
+
+/// Header with the number of stops that the client knew when its user asked for a motion.
+const STOPS: &str = "velomotion-stops";
+
+/// A header of requests that move the axis.
+#[derive(IntoParams)]
+#[into_params(parameter_in = Header)]
+#[expect(dead_code, reason = "described only: the header is optional")]
+pub struct KnownStops {
+    /// `stops` of the last status that the client has seen. The request is refused if the axis was
+    /// stopped since then: one that arrives late moves nothing.
+    #[param(rename = "Velomotion-Stops")]
+    stops: Option<u64>,
+}
 
 /// Reads the JSON body of a request.
 ///
@@ -47,10 +61,22 @@ pub fn body<T: DeserializeOwned>(headers: &HeaderMap, body: &Bytes) -> Result<T,
     serde_json::from_slice(body).map_err(|error| Refusal::usage(format!("the body: {error}")))
 }
 
+/// The signal of a motion that a client asks for.
+///
+/// # Errors
+/// [`Refusal`] where the header [`STOPS`] is no number.
+pub fn stop_signal(service: &DeviceService, headers: &HeaderMap) -> Result<StopSignal, Refusal> {
+    let known = headers.get(STOPS).map(|value| {
+        let number = value.to_str().ok().and_then(|text| text.parse().ok());
+        number.ok_or_else(|| Refusal::usage(format!("{STOPS}: expected the stops of a status")))
+    });
+    Ok(service.stop_signal(known.transpose()?))
+}
+
 /// Start a capture.
 ///
 /// Takes the options of `velomotion capture`.
-#[utoipa::path(post, path = "/api/v1/captures", tag = "captures", request_body = CaptureRequest, responses(
+#[utoipa::path(post, path = "/api/v1/captures", tag = "captures", params(KnownStops), request_body = CaptureRequest, responses(
     (status = 201, description = "The started scan", body = ScanView, headers(("Location" = String))),
     (status = 409, response = NotNow),
     (status = 415, response = Usage),
@@ -62,9 +88,9 @@ pub async fn begin(
 ) -> Result<Response, Refusal> {
     let request: CaptureRequest = body(&headers, &bytes)?;
     let state = Arc::clone(&api.state);
+    let stop = stop_signal(&state.service, &headers)?;
     state.service.wait_for_lidar().await;
     state.service.wait_for_reads().await;
-    let stop = StopSignal::default();
     let id = super::with_disk(move || start(&state, &request, &stop)).await??;
     let (state, begun) = (Arc::clone(&api.state), id.clone());
     let scan = super::with_disk(move || state.scans.view(&begun)).await?;

@@ -11,7 +11,7 @@ use engine::service::DeviceService;
 use engine::service::axis_report::{AxisReport, StopAnswer};
 use serde::Serialize;
 
-use super::captures::body;
+use super::captures::{KnownStops, body, stop_signal};
 use super::openapi::{NotNow, Usage};
 use super::refusal::Refusal;
 
@@ -21,8 +21,18 @@ fn ok(answer: &impl Serialize) -> Response {
     super::json(StatusCode::OK, answer)
 }
 
-async fn jog(service: &Arc<DeviceService>, request: JogRequest) -> Result<Response, Refusal> {
-    Ok(ok(&service.run_jog(request).await?))
+/// Runs a request that moves nothing.
+async fn run(service: &Arc<DeviceService>, request: JogRequest) -> Result<Response, Refusal> {
+    Ok(ok(&service.run_jog(request, None).await?))
+}
+
+async fn jog(
+    service: &Arc<DeviceService>,
+    request: JogRequest,
+    headers: &HeaderMap,
+) -> Result<Response, Refusal> {
+    let stop = stop_signal(service, headers)?;
+    Ok(ok(&service.run_jog(request, Some(&stop)).await?))
 }
 
 /// State of the axis.
@@ -35,20 +45,20 @@ async fn jog(service: &Arc<DeviceService>, request: JogRequest) -> Result<Respon
 pub async fn status(State(service): Service) -> Result<Response, Refusal> {
     match service.wait_for_report().await {
         Some(report) => Ok(ok(&report)),
-        None => jog(&service, JogRequest::Status).await,
+        None => run(&service, JogRequest::Status).await,
     }
 }
 
 /// Home the axis.
-#[utoipa::path(post, path = "/api/v1/tilt/home", tag = "tilt", responses(
+#[utoipa::path(post, path = "/api/v1/tilt/home", tag = "tilt", params(KnownStops), responses(
     (status = 200, body = AxisReport), (status = 409, response = NotNow),
 ))]
-pub async fn home(State(service): Service) -> Result<Response, Refusal> {
-    jog(&service, JogRequest::Home).await
+pub async fn home(State(service): Service, headers: HeaderMap) -> Result<Response, Refusal> {
+    jog(&service, JogRequest::Home, &headers).await
 }
 
 /// Move the axis.
-#[utoipa::path(post, path = "/api/v1/tilt/goto", tag = "tilt", request_body = GotoRequest, responses(
+#[utoipa::path(post, path = "/api/v1/tilt/goto", tag = "tilt", params(KnownStops), request_body = GotoRequest, responses(
     (status = 200, body = AxisReport), (status = 409, response = NotNow), (status = 415, response = Usage),
 ))]
 pub async fn goto(
@@ -56,7 +66,8 @@ pub async fn goto(
     headers: HeaderMap,
     bytes: Bytes,
 ) -> Result<Response, Refusal> {
-    jog(&service, JogRequest::Goto(body(&headers, &bytes)?)).await
+    let request = JogRequest::Goto(body(&headers, &bytes)?);
+    jog(&service, request, &headers).await
 }
 
 /// Stop the axis: any motion, also of a capture. Sets the brake.
@@ -72,5 +83,5 @@ pub async fn stop(State(service): Service) -> Result<Response, Refusal> {
     (status = 200, body = AxisReport), (status = 409, response = NotNow),
 ))]
 pub async fn clear(State(service): Service) -> Result<Response, Refusal> {
-    jog(&service, JogRequest::ClearFaults).await
+    run(&service, JogRequest::ClearFaults).await
 }

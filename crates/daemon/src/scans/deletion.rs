@@ -42,7 +42,7 @@ impl Scans {
         Ok(Some(view))
     }
 
-    /// Deletes a scan that can be restored for [`UNDO`] from `now`.
+    /// Deletes a scan that can be restored for [`UNDO`] from `now`, with those deleted before it.
     ///
     /// # Errors
     /// As [`Scans::delete`].
@@ -53,6 +53,10 @@ impl Scans {
             return Ok(None);
         };
         let kept_until = now + UNDO;
+        // A deletion of many is undone whole.
+        for other in deleted.values_mut() {
+            other.kept_until = other.kept_until.max(kept_until);
+        }
         deleted.insert(id.to_owned(), DeletedScan { record, kept_until });
         Ok(Some(view))
     }

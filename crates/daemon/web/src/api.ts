@@ -28,6 +28,8 @@ export interface Status {
   simulated: boolean;
   started_s: number;
   now_s: number;
+  /** Stops of the axis that clients have requested. */
+  stops: number;
   activity: {
     doing: Doing;
     scan?: string | null;
@@ -217,10 +219,10 @@ export class RequestError extends Error {
 const ROOT = "/api/v1/";
 
 /** Sends a request; throws `RequestError` with the remedy. */
-export async function sendRequest<T>(method: string, path: string, body?: unknown, signal?: AbortSignal): Promise<T> {
-  const init: RequestInit = { method, ...(signal ? { signal } : {}) };
+export async function sendRequest<T>(method: string, path: string, body?: unknown, signal?: AbortSignal, headers: Record<string, string> = {}): Promise<T> {
+  const init: RequestInit = { method, headers, ...(signal ? { signal } : {}) };
   if (body !== undefined) {
-    init.headers = { "content-type": "application/json" };
+    init.headers = { ...headers, "content-type": "application/json" };
     init.body = JSON.stringify(body);
   }
   const answer = await answered(path.startsWith("/") ? path : ROOT + path, init);
@@ -272,6 +274,18 @@ function problem(json: unknown, text: string, status: number): Problem {
   return { message: text.slice(0, 200) || `the daemon answers ${status}` };
 }
 
+/** Stops of the axis that the page knows of. */
+let stops: number | null = null;
+
+export function setStops(known: number): void {
+  stops = known;
+}
+
+/** Sends a request that moves the axis. The daemon refuses one that arrives after a later stop. */
+function move<T>(path: string, body?: unknown): Promise<T> {
+  return sendRequest<T>("POST", path, body, undefined, stops === null ? {} : { "velomotion-stops": String(stops) });
+}
+
 export const api = {
   status: () => sendRequest<Status>("GET", "status"),
   /** At most `limit` scans older than one, the newest first. */
@@ -289,12 +303,12 @@ export const api = {
   remove: (id: string) => sendRequest<unknown>("DELETE", `scans/${encodeURIComponent(id)}?undo=true`),
   restore: (id: string) => sendRequest<Scan>("POST", `scans/${encodeURIComponent(id)}/restore`),
   plan: (request: CaptureRequest) => sendRequest<CaptureEstimate>("GET", `plan?${query(request)}`),
-  capture: (request: CaptureRequest) => sendRequest<Scan>("POST", "captures", request),
+  capture: (request: CaptureRequest) => move<Scan>("captures", request),
   /** Stops any motion; of a capture the swept part is kept. */
   stop: (signal: AbortSignal) => sendRequest<unknown>("POST", "tilt/stop", undefined, signal),
-  home: () => sendRequest<unknown>("POST", "tilt/home"),
+  home: () => move<unknown>("tilt/home"),
   clear: () => sendRequest<unknown>("POST", "tilt/clear"),
-  goto: (to_deg: number, speed_deg_s: number) => sendRequest<unknown>("POST", "tilt/goto", { to_deg, speed_deg_s }),
+  goto: (to_deg: number, speed_deg_s: number) => move<unknown>("tilt/goto", { to_deg, speed_deg_s }),
 };
 
 /** URL of a scan's cloud, with the further columns. */

@@ -18,6 +18,7 @@ import * as signin from "./panels/signin.ts";
 import * as sweep from "./panels/sweep.ts";
 import type { CloudSource, Viewer } from "./viewer.ts";
 
+const REFUSED = "It answers, but does not send its events: too many pages may be open.";
 /** Largest newest scan that is opened automatically. */
 const SMALL_POINTS = 3_000_000;
 
@@ -40,6 +41,7 @@ const listener: Listener = {
     devices.setLink("Connected", "good");
     show(id("lost"), false);
     control.setConnected(true);
+    sweep.request_plan_later();
     void signin.offer();
     void list();
   },
@@ -51,8 +53,9 @@ const listener: Listener = {
     if (id("lost").hidden) text(id("lost"), "Connection to the daemon lost: displayed values are old.");
     show(id("lost"), true);
     void probe((why) => {
-      if (connected) return;
-      const kept = why.includes("daemon") ? "What is recorded stays" : "A running scan continues";
+      // A daemon that has just started answers before the next attempt.
+      if (connected || (retry_s < 2 && why === REFUSED)) return;
+      const kept = why.includes("ended") ? "What is recorded stays" : "A running scan continues";
       text(id("lost"), `Connection to the daemon lost: displayed values are old. ${why} ${kept}. Reconnecting${retry_s >= 1 ? ` in ${retry_s} s` : ""}.`);
     });
   },
@@ -167,17 +170,24 @@ function open_linked(view: Viewer, complete: boolean): boolean {
   return linked !== undefined;
 }
 
-/** A scan in view that ended while the page was not connected: no event said so. */
-function ended_unseen(): void {
-  const scan = viewer?.is_live ? scans.get(viewer.shown ?? "") : undefined;
-  if (scan !== undefined && scan.id !== reported) void finished(scan);
+/** Reports that the scan in view ended or was deleted while the page was not connected: no event said so. */
+function catch_up(): void {
+  const shown = viewer?.shown ?? null;
+  if (viewer === null || shown === null) return;
+  const scan = scans.get(shown);
+  if (scan === undefined) {
+    if (viewer.is_live) return;
+    quality.forget(shown);
+    viewer.forget(shown);
+    note("warning", "The scan in view was deleted while the page was not connected.", null);
+  } else if (viewer.is_live && scan.id !== reported) void finished(scan);
 }
 
 async function list(): Promise<void> {
   try {
     await scans.load((complete) => {
       listed = complete;
-      if (complete) ended_unseen();
+      if (complete) catch_up();
       if (viewer === null || open_linked(viewer, complete) || viewer.shown !== null) return;
       const newest = scans.all().find((scan) => scan.state === "whole" || scan.state === "partial");
       if (newest !== undefined && (newest.points ?? 0) <= SMALL_POINTS) viewer.open(source(newest));
@@ -195,6 +205,7 @@ async function probe(silent: (why: string) => void = () => {}): Promise<void> {
   const late = setTimeout(() => why(null), REFUSAL_MS);
   try {
     listener.status(await api.status());
+    silent(REFUSED);
   } catch (error) {
     if (error instanceof RequestError && error.status === 401) {
       events.close();
@@ -243,7 +254,8 @@ export function start(view: Viewer | null): void {
   sweep.wire();
   quality.wire(api.statistics);
   const open = (scan: Scan, other: Scan | null) => {
-    viewer?.open(source(scan), other === null ? null : source(other));
+    if (scan.state === "recording") viewer?.begin(scan.id, title(scan), scan.simulated, true);
+    else viewer?.open(source(scan), other === null ? null : source(other));
     id("canvas").scrollIntoView({ block: "nearest" });
   };
   scans.wire((scan) => open(scan, null), open);

@@ -48,7 +48,6 @@ export class Events {
   }
 
   open(): void {
-    clearTimeout(this.again);
     this.close();
     const socket = new WebSocket(eventsUrl(this.thin));
     socket.binaryType = "arraybuffer";
@@ -71,6 +70,7 @@ export class Events {
   /** Closes the connection until the next `open`. */
   close(): void {
     clearTimeout(this.silence);
+    clearTimeout(this.again);
     const socket = this.socket;
     this.socket = null;
     socket?.close();
@@ -86,7 +86,7 @@ export class Events {
 
   private lost(socket: WebSocket): void {
     if (socket !== this.socket) return;
-    // A working connection that is cut off in mid-sweep: this device is too slow for all points, so request fewer.
+    // A working connection that is cut off in mid-sweep: this device may be too slow for all points, so request fewer.
     const worked = performance.now() - this.opened_ms > 1_000 && this.tries === 0;
     if (this.capturing && worked) this.thin = Math.min(64, this.thin * 4);
     this.close();
@@ -107,7 +107,13 @@ export class Events {
       case "status": {
         const status = event["status"] as Status;
         this.capturing = status.activity.doing === "capturing";
-        return this.listener.status(status);
+        this.listener.status(status);
+        // The next scan gets all points again.
+        if (this.thin > 1 && status.activity.doing === "idle") {
+          this.thin = 1;
+          this.open();
+        }
+        return;
       }
       case "motion":
         return this.listener.motion(event as unknown as Motion);

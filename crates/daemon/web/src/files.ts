@@ -98,7 +98,7 @@ function update(now: ViewFile[]): void {
     if (file.state === "failed") alarm(`${file.name}: ${file.error ?? "failed"}`);
   });
   if (current === null || viewer?.linked_scans.scan != null) open_linked();
-  if (current === null) waiting(only ?? files.find((file) => file.state === "making"));
+  if (current === null && viewer !== null) waiting(only ?? files.find((file) => file.state === "making") ?? files.findLast((file) => file.state === "failed"));
 }
 
 /** Opens the files that the page's address names, else the first one that is ready. */

@@ -124,12 +124,14 @@ export class Viewer {
     return this.live !== null && this.opened === null;
   }
 
-  /** Shows the live points of a new scan. */
-  begin(scan: string, title: string, simulated: boolean): void {
+  /** Shows the live points of a new scan; `again` those from now on, after the user opened another scan. */
+  begin(scan: string, title: string, simulated: boolean, again = false): void {
     // If the user opened another scan meanwhile, it stays in view.
-    if (this.begun === scan) return;
+    if (this.begun === scan && (!again || this.is_live)) return;
     this.begun = scan;
     this.clear();
+    this.opened = null;
+    show(id("view-partial"), false);
     this.shown = scan;
     this.live = new Live(this.stage.points, small.matches ? 1_500_000 : 6_000_000);
     this.stage.scene.add(this.live.group);
@@ -147,7 +149,7 @@ export class Viewer {
 
   /** Adds live points; the daemon sends every `thin`th. */
   frame(frame: Frame, thin: number): void {
-    this.stage.setTilt(frame.tilt_deg);
+    this.setTilt(frame.tilt_deg);
     const live = this.live;
     if (live === null) return;
     this.learn(frame);
@@ -284,6 +286,7 @@ export class Viewer {
         const share = data.read / Math.max(1, data.total);
         attribute(progress, "value", String(other === null ? share : (1 + share) / 2));
         if (this.loaded !== cloud) return;
+        this.origin = data.origin;
         this.describe(data.read, `of ${count(data.total)}`);
         this.range(data.ranges);
         this.stage.animate();
@@ -350,6 +353,8 @@ export class Viewer {
   private failed(error: string): void {
     show(id("view-progress"), false);
     this.complete = false;
+    // Opening it again must not ask for the column that the daemon could not add.
+    if (this.field === "sd" && this.loaded === null) id<HTMLSelectElement>("field").value = this.field = "height";
     // What is left of them is of two clouds.
     if (this.live === null) this.unpick();
     if (this.live !== null) return text(id("view-note"), error);

@@ -30,7 +30,7 @@ export interface Other {
 
 export type LoadEvent =
   | { kind: "other"; parts: Columns[]; read: number; total: number }
-  | { kind: "points"; parts: Columns[]; ranges: Ranges; read: number; total: number; every: number }
+  | { kind: "points"; parts: Columns[]; ranges: Ranges; origin: Position; read: number; total: number; every: number }
   | { kind: "done"; read: number; total: number; every: number; origin: Position; simulated: boolean; other: Other | null; beyond: number; picked: (Picked | null)[] }
   | { kind: "failed"; error: string };
 
@@ -75,7 +75,7 @@ async function load(order: LoadRequest): Promise<void> {
     if (ranges === null) return;
     const parts = compact(columns, every);
     const transfer = parts.flatMap((part) => [part.positions, ...COLUMNS.map((name) => part[name])].map((array) => array.buffer));
-    here.postMessage({ kind: "points", parts, ranges, read: done + columns.count, total: count ?? 0, every }, transfer);
+    here.postMessage({ kind: "points", parts, ranges, origin, read: done + columns.count, total: count ?? 0, every }, transfer);
   });
   here.postMessage({
     kind: "done", read: ply.done, total: ply.count ?? 0, every: stride(ply.count, order.most), origin: ply.origin, simulated: ply.simulated, beyond,

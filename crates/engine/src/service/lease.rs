@@ -13,9 +13,18 @@ use crate::failure::{Failure, Kind};
 pub struct StopSignal {
     requested: Arc<AtomicBool>,
     reason: Arc<OnceLock<Failure>>,
+    /// Stops of the axis before the motion was asked for. Any later one prevents it.
+    stops_before: Option<u64>,
 }
 
 impl StopSignal {
+    pub(super) fn after(stops: u64) -> Self {
+        Self {
+            stops_before: Some(stops),
+            ..Self::default()
+        }
+    }
+
     /// Requests the stop. The first reason counts; a user's stop has none.
     pub fn request(&self, reason: Option<Failure>) {
         if let Some(reason) = reason {
@@ -34,7 +43,7 @@ impl StopSignal {
     pub(super) fn with_flag(requested: &Arc<AtomicBool>) -> Self {
         Self {
             requested: Arc::clone(requested),
-            reason: Arc::default(),
+            ..Self::default()
         }
     }
 
@@ -93,8 +102,15 @@ impl AxisLease {
     ) -> Result<Self, LeaseError> {
         let mut refused = None;
         service.state.send_if_modified(|state| {
+            // A stop counts itself before it looks for a motion under this lock: no motion that was
+            // asked for earlier begins after it.
+            let is_prevented = |before| service.stops.load(Ordering::Acquire) != before;
             if service.is_ending() {
                 refused = Some(LeaseError::ending());
+            } else if stop.stops_before.is_some_and(is_prevented) {
+                let what = "the axis was stopped before this motion began";
+                let failure = Failure::new(Kind::Interrupted, what).help("nothing has moved");
+                refused = Some(failure.into());
             } else if state.activity.doing != AxisTask::Idle {
                 refused = Some(LeaseError::Busy(state.activity.doing));
             } else {
@@ -163,7 +179,7 @@ mod tests {
             environment: Environment::default(),
         })
         .unwrap();
-        let [first, second, third] = [(); 3].map(|()| StopSignal::default());
+        let [first, second, third] = [(); 3].map(|()| service.stop_signal(None));
         let begin = Instant::now();
         let lease = loop {
             match service.lease_until(AxisTask::Moving, &first) {
@@ -195,6 +211,29 @@ mod tests {
         assert!(!lease.stop().is_requested());
         assert!(service.stop(None) && third.is_requested());
         drop(lease);
+
+        // A stop of the axis prevents what was asked for before it, and nothing later.
+        let [before, later] = [false, true].map(|stops| {
+            let runtime = tokio::runtime::Builder::new_current_thread()
+                .build()
+                .unwrap();
+            if stops {
+                assert_eq!(runtime.block_on(service.stop_capture()), (false, None));
+            }
+            service.stop_signal(None)
+        });
+        let late = service.stop_signal(Some(0));
+        for signal in [before, late] {
+            match service.lease_until(AxisTask::Moving, &signal).err() {
+                Some(LeaseError::Failure(failure)) => {
+                    assert_eq!(failure.kind, Kind::Interrupted);
+                    assert!(failure.message.contains("stopped before"), "{failure}");
+                }
+                other => panic!("{other:?}"),
+            }
+            assert_eq!(service.activity().doing, AxisTask::Idle);
+        }
+        drop(service.lease_until(AxisTask::Moving, &later).unwrap());
         service.shut_down(Failure::new(Kind::Interrupted, "the test ends"));
         assert!(thread.join());
     }

@@ -1,5 +1,6 @@
 //! State that clients follow: the status of the devices and of what they do.
 
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use units::{Degrees, Rpm};
@@ -54,6 +55,7 @@ impl DeviceService {
             device: self.name.clone(),
             simulated: self.simulated(),
             started_s: self.started_s,
+            stops: self.stops.load(Ordering::Acquire),
             now_s: now_s(),
             activity: state.activity.clone(),
             drive: state.drive.clone(),

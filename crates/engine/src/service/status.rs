@@ -188,7 +188,7 @@ pub struct ClientsStatus {
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[schema(example = json!({
     "version": "0.1.0", "device": "epos2", "simulated": false, "started_s": 1_795_684_672.186,
-    "now_s": 1_795_684_684.279,
+    "now_s": 1_795_684_684.279, "stops": 0,
     "activity": {
         "doing": "idle", "scan": null, "homes": false, "step": 0, "steps": 0, "from_deg": null,
         "to_deg": null, "left_s": null, "received": 0,
@@ -225,6 +225,9 @@ pub struct ServiceStatus {
     pub started_s: f64,
     /// Time of this status, Unix seconds.
     pub now_s: f64,
+    /// Stops of the axis that clients have requested since the start. Send it as `Velomotion-Stops`
+    /// with a request that moves the axis.
+    pub stops: u64,
     /// Task of the axis.
     pub activity: Activity,
     /// The drive.

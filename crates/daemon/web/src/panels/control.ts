@@ -1,6 +1,6 @@
 // Start, home and stop. Stop is never disabled, also has the Escape key, and is repeated until it is acknowledged.
 
-import { type Status, RequestError, api } from "../api.ts";
+import { type Status, RequestError, api, setStops } from "../api.ts";
 import { attribute, id, show, text } from "../dom.ts";
 import { duration, fixed } from "../format.ts";
 import type { Motion } from "../events.ts";
@@ -51,7 +51,7 @@ export function wire(start_capture: () => void, axis_ready: (ready: boolean) => 
 }
 
 /** Whether the axis is known to rest. A command that is under way, or a state from before the connection was lost, leaves that open. */
-const rests = () => status === null || (connected && !asking && status.activity.doing === "idle");
+const rests = () => (status === null ? id<HTMLDialogElement>("signin").open : connected && !asking && status.activity.doing === "idle");
 
 /** Stops a motion, if there may be one. */
 export function stop_motion(): void {
@@ -109,6 +109,8 @@ async function halt(): Promise<void> {
     if (await repeatStop(api.stop, unacknowledged, stopping.signal)) {
       announce("Stopped");
       stopped = true;
+      // What is begun from here on knows of this stop. Without an answer the next status tells.
+      await api.status().then(({ stops }) => setStops(stops), () => {});
       setTimeout(() => {
         stopped = false;
         draw();
@@ -129,6 +131,7 @@ export function setConnected(now: boolean): void {
 export function setStatus(now: Status): void {
   const before = status?.activity.doing;
   status = now;
+  setStops(now.stops);
   const { doing: what, step } = now.activity;
   if (before !== undefined && before !== what) announce(WORDS[what] ?? what);
   // A motion that begins replaces an earlier error; its own error stays.

@@ -32,7 +32,10 @@ export function setStatus(status: Status): void {
   text(id("device"), `${status.device} \u00b7 ${status.version}`);
   show(id("simulated"), status.simulated);
   problems(status);
-  if (typeof drive.angle_deg === "number" && status.activity.doing === "idle") setMotion({ angle_deg: drive.angle_deg, speed_deg_s: drive.speed_deg_s ?? 0 });
+  if (status.activity.doing === "idle") {
+    if (typeof drive.angle_deg === "number") setMotion({ angle_deg: drive.angle_deg, speed_deg_s: drive.speed_deg_s ?? 0 });
+    else for (const name of ["angle", "speed-now"]) text(id(name), "\u2013");
+  }
   marks(status.axis.min_deg, status.axis.max_deg);
 
   const lost = (lidar.lost_packets ?? 0) + (lidar.dropped_by_kernel ?? 0);

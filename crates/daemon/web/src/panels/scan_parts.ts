@@ -43,6 +43,13 @@ function chooser(scan: Scan, chosen: boolean, { choose }: Actions): HTMLElement 
   return h("label", { class: "choose" }, h("input", { type: "checkbox", "data-role": "choose", "aria-label": `Select ${title(scan)}`, checked: chosen, disabled: isBusy(scan), click }));
 }
 
+/** Shows the cloud, or of a running scan the points from now on. */
+function opener(scan: Scan, { open }: Actions): HTMLElement | null {
+  const name = title(scan);
+  if (scan.state === "recording") return button("open", "Live", `Show the live points of ${name}`, () => open(scan));
+  return hasCloud(scan) ? button("open", "Open", `Open ${name} in the view`, () => open(scan)) : null;
+}
+
 function badge(scan: Scan): HTMLElement {
   return h("span", { class: "badge", "data-state": scan.state }, scan.waits_for_room ? "no cloud yet" : (STATES[scan.state] ?? scan.state));
 }
@@ -72,7 +79,7 @@ export function card(scan: Scan, chosen: boolean, wrong: HTMLElement, actions: A
       h("p", { class: "badges" }, badge(scan), " ", scan.simulated ? h("span", { class: "badge", "data-state": "simulated" }, "SIMULATED") : null)),
     h("div", { class: "texts" }, scan.summary ? cut(scan, "why", scan.summary) : null, scan.notes ? cut(scan, "notes", scan.notes) : null),
     h("div", { class: "row" },
-      hasCloud(scan) ? button("open", "Open", `Open ${name} in the view`, () => actions.open(scan)) : null,
+      opener(scan, actions),
       isBusy(scan) ? null : button("download", "Download", `Download ${name}`, () => downloads(scan, name, wrong, actions)),
       button("edit", "Edit", `Edit name and notes of ${name}`, () => actions.edit(scan)),
       isBusy(scan) ? null : button("delete", "Delete", `Delete ${name}`, () => actions.remove(scan))),
@@ -93,7 +100,7 @@ export function cells(scan: Scan, chosen: boolean, wrong: HTMLElement, actions: 
     cell("number", scan.points ? compact(scan.points) : ""),
     cell("state", badge(scan)),
     cell("about", texts ? cut(scan, scan.summary ? "why" : "notes", texts) : null),
-    cell("acting", hasCloud(scan) ? button("open", "Open", `Open ${name} in the view`, () => actions.open(scan)) : null,
+    cell("acting", opener(scan, actions),
       isBusy(scan) ? null : button("download", "\u2193", `Download ${name}`, () => downloads(scan, name, wrong, actions)),
       button("edit", "Edit", `Edit name and notes of ${name}`, () => actions.edit(scan))),
   ];

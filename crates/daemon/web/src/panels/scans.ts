@@ -27,7 +27,8 @@ let shown: Scan[] = [];
 let order: Order = { by: "time", down: true };
 let current: string | null = null;
 let last_chosen: string | null = null;
-let editing: { id: string; place: Place } | null = null;
+/** The fields of the scans that are edited, by place and id. They keep what is typed while they are out of sight. */
+const editors = new Map<string, HTMLElement | null>();
 let loads = 0;
 let opened: (scan: Scan) => void = () => {};
 let compared: (newer: Scan, older: Scan) => void = () => {};
@@ -38,8 +39,10 @@ type Place = "card" | "row";
 function content(scan: Scan, place: Place): Node[] {
   try {
     const actions = { open: opened, edit: () => edit(scan, place), choose, remove: (one: Scan) => void remove_all([one]), refused: show_error };
-    if (editing?.id === scan.id && editing.place === place) {
-      const editor = parts.editor(scan, (changed) => edited(scan, changed), actions);
+    const key = `${place} ${scan.id}`;
+    if (editors.has(key)) {
+      const editor = editors.get(key) ?? parts.editor(scan, (changed) => edited(scan, place, changed), actions);
+      editors.set(key, editor);
       return [place === "card" ? editor : h("div", { role: "cell", class: "edit-cell" }, editor)];
     }
     const marked = chosen.has(scan.id);
@@ -59,7 +62,7 @@ function rows(list: string, place: Place, of: { scroller: string; across: () => 
     key: (scan) => scan.id,
     state: (scan) => {
       // Fields keep what is typed.
-      if (editing?.id === scan.id && editing.place === place) return "edited";
+      if (editors.has(`${place} ${scan.id}`)) return "edited";
       const { report: _report, ...rest } = scan;
       return JSON.stringify([rest, scan.id === current, chosen.has(scan.id)]);
     },
@@ -145,6 +148,7 @@ export function remove(name: string): void {
   updated.add(name);
   scans.delete(name);
   errors.delete(name);
+  for (const place of ["card", "row"]) editors.delete(`${place} ${name}`);
   draw();
 }
 
@@ -215,14 +219,13 @@ function choose(scan: Scan, on: boolean, range: boolean): void {
 const root = (place: Place) => id(place === "card" ? "scans" : "scan-rows");
 
 function edit(scan: Scan, place: Place): void {
-  editing = { id: scan.id, place };
+  editors.set(`${place} ${scan.id}`, null);
   draw();
-  root(place).querySelector<HTMLElement>(".edit [data-role=name]")?.focus();
+  root(place).querySelector<HTMLElement>(`[data-id="${CSS.escape(scan.id)}"] .edit [data-role=name]`)?.focus();
 }
 
-function edited(scan: Scan, changed: Scan | null): void {
-  const place = editing?.place ?? "card";
-  editing = null;
+function edited(scan: Scan, place: Place, changed: Scan | null): void {
+  editors.delete(`${place} ${scan.id}`);
   if (changed === null) draw();
   else set(changed);
   root(place).querySelector<HTMLElement>(`[data-id="${CSS.escape(scan.id)}"] [data-role=edit]`)?.focus();

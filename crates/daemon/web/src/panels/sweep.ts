@@ -50,8 +50,9 @@ function align(): void {
 
 /** Sets the axis's limits and the defaults of empty fields. */
 export function setStatus(status: Status): void {
-  const { axis } = status;
-  const now = JSON.stringify(axis);
+  const { axis, drive, lidar } = status;
+  // What the plan depends on; the lidar's speed varies by 1 rpm.
+  const now = JSON.stringify([axis, drive.referenced, lidar.state, Math.round((lidar.rpm ?? 0) / 10)]);
   if (now === known) return;
   known = now;
   most_deg_s = axis.max_speed_deg_s;
@@ -87,7 +88,7 @@ function read(): CaptureRequest {
 }
 
 /** Requests the plan shortly after the last change. */
-function request_plan_later(): void {
+export function request_plan_later(): void {
   clearTimeout(timer);
   timer = window.setTimeout(() => void plan(), 250);
 }
@@ -99,7 +100,9 @@ async function plan(): Promise<void> {
     const found = await api.plan(read());
     if (mine === serial) draw(found);
   } catch (error) {
-    if (mine !== serial || (error instanceof RequestError && (error.status === 0 || error.status === 401))) return;
+    if (mine !== serial) return;
+    // It is requested again when the connection is back. What is displayed may be of another speed.
+    if (error instanceof RequestError && (error.status === 0 || error.status === 401)) return out.replaceChildren(h("p", { class: "hint" }, "No plan without the daemon."));
     const words = error instanceof RequestError ? [error.message, error.help].filter(Boolean).join(": ") : String(error);
     show_error(words);
   }

@@ -1,6 +1,6 @@
 // Deleted scans that can still be restored: the daemon keeps them for 10 s.
 
-import { type Scan, api } from "../api.ts";
+import { type Scan, RequestError, api } from "../api.ts";
 import { id, show, text } from "../dom.ts";
 import { count } from "../format.ts";
 import { title } from "../found.ts";
@@ -21,9 +21,11 @@ let timer = 0;
 
 id("undo-now").addEventListener("click", () => void undo());
 
-/** Offers to restore a scan whose deletion was requested at `begun_ms`. */
+/** Offers to restore a scan whose deletion was requested at `begun_ms`, and those deleted before it for longer. */
 export function offer(scan: Scan, begun_ms: number, restored: () => void): void {
-  deleted.push({ scan, until_ms: begun_ms + KEPT_MS, restored });
+  const until_ms = begun_ms + KEPT_MS;
+  for (const one of deleted) one.until_ms = until_ms;
+  deleted.push({ scan, until_ms, restored });
   draw();
 }
 
@@ -56,7 +58,10 @@ async function undo(): Promise<void> {
       one.restored();
     } catch (error) {
       refused(`Undo: ${title(one.scan)}`, error, id("scans-error"));
+      // It can be tried again, unless the daemon has it no more.
+      if (!(error instanceof RequestError && error.status === 404)) deleted.push(one);
     }
   }
+  draw();
   if (restored > 0) announce(`${restored === 1 ? "The scan is" : `${restored} scans are`} back`);
 }
