@@ -2,7 +2,7 @@
 ci:
     bash .ci/run
 
-# Format, lints and the tests in virtual time, without the longest: before every commit, 3 minutes on 2 cores.
+# Format, lints and the tests in virtual time, without the longest: before every commit, 2.5 minutes on 2 cores.
 check:
     cargo fmt --all --check
     cargo clippy --workspace --all-targets -- -D warnings
