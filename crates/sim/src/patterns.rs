@@ -121,14 +121,12 @@ impl Pattern {
         let way_deg = tilt.to_deg - tilt.from_deg;
         let by_deg = tilt.speed_deg_s * 60.0 / settings.rpm;
         let ramped = ramped(name, &settings)?;
-        let frames = match settings.frames {
-            Some(frames) => f64::from(frames),
-            None if let Some(motion) = &ramped => (motion.end_s * settings.rpm / 60.0
-                * (1.0 - WHOLE))
-                .ceil()
-                .max(1.0),
-            None if by_deg > 0.0 => (way_deg.abs() / by_deg * (1.0 - WHOLE)).ceil().max(1.0),
-            None => 1.0,
+        let at_least = |frames: f64| (frames * (1.0 - WHOLE)).ceil().max(1.0);
+        let frames = match (settings.frames, &ramped) {
+            (Some(frames), _) => f64::from(frames),
+            (None, Some(motion)) => at_least(motion.end_s * settings.rpm / 60.0),
+            (None, None) if by_deg > 0.0 => at_least(way_deg.abs() / by_deg),
+            (None, None) => 1.0,
         };
         let got = frames * firings * elevations_deg.len() as f64;
         if got > MOST_POINTS as f64 {
