@@ -79,8 +79,8 @@ fn mcap_and_rosbags_read_our_recording_completely() {
     assert_eq!(
         got["frames"],
         json!([
+            "base_link",
             "base_link/tilt_base",
-            "tilt_base",
             "tilt_base/tilt_platform",
             "tilt_platform/lidar"
         ])

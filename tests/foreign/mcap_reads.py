@@ -71,7 +71,9 @@ with path.open("rb") as file:
                     "message": status.message,
                     "values": {value.key: value.value for value in status.values},
                 }
-xyz = np.vstack([np.concatenate([cloud[axis] for cloud in clouds]) for axis in "xyz"])
+# ROS's axes, x forward and y left, to those of the other files.
+forward, left, up = (np.concatenate([cloud[axis] for cloud in clouds]) for axis in "xyz")
+xyz = np.vstack([-left, forward, up])
 times = np.concatenate([cloud["time"] for cloud in clouds])
 
 # rosbags, which goes by metadata.yaml, and by the definitions of a ROS 2 distribution.

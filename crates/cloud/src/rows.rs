@@ -156,7 +156,7 @@ fn fill_floats(
 }
 
 /// Some rows of a column; none if it is shorter.
-fn part<T>(column: &[T], range: Range<usize>) -> &[T] {
+pub(crate) fn part<T>(column: &[T], range: Range<usize>) -> &[T] {
     column.get(range).unwrap_or_default()
 }
 

@@ -93,7 +93,7 @@ impl Publisher<'_> {
     }
 
     fn send_points(&mut self, frame: &PreviewFrame) -> Result<(), Error> {
-        let name = self.frames.of_clouds(true);
+        let name = self.frames.of_clouds();
         self.cloud
             .push(&frame.points, 0..frame.points.len(), name)?;
         if self.cloud.points() > 0 {

@@ -146,7 +146,7 @@ fn every_client_receives_the_whole_sweep_and_the_capture_loses_nothing() {
 fn check_clouds(clouds: &[Value], frames: &[Value]) {
     for cloud in clouds.iter().chain(frames) {
         let printed = &cloud["printed"];
-        assert_eq!(printed["frame"], "left/tilt_base");
+        assert_eq!(printed["frame"], "left/base_link");
         let fields = json!(["x", "y", "z", "intensity", "ring", "time"]);
         assert_eq!(
             (&printed["fields"], &printed["rings"]),
@@ -257,13 +257,13 @@ fn check_bytes(rig: &Rig, id: &str, peer: &Peer) {
     for (number, recorded) in last.iter().zip(&recorded) {
         let file = peer.folder.path().join(format!("near-{number}.cdr"));
         let sent = std::fs::read(file).unwrap();
-        // Encapsulation and stamp, then the frame's name, padded to four bytes: "left/tilt_base"
-        // and "tilt_base" with their zeros.
+        // Encapsulation and stamp, then the frame's name, padded to four bytes: "left/base_link"
+        // and "base_link" with their zeros.
         let (sent_head, sent_rest) = sent.split_at(12);
         let (head, rest) = recorded.split_at(12);
         assert_eq!(sent_head, head);
-        assert_eq!(sent_rest[4..18], *b"left/tilt_base");
-        assert_eq!(rest[4..13], *b"tilt_base");
+        assert_eq!(sent_rest[4..18], *b"left/base_link");
+        assert_eq!(rest[4..13], *b"base_link");
         assert!(sent_rest[20..] == rest[16..], "cloud {number} differs");
     }
     assert!(!recorded.is_empty());

@@ -30,7 +30,6 @@ pub struct Cloud<'a> {
 pub(crate) struct MessageSplitter {
     format: &'static str,
     frames: Frames,
-    tilts: bool,
     /// Whether the caller ends clouds, one per revolution of the lidar; set before the first batch.
     pub(crate) by_revolution: bool,
     /// Ends of the sweeps, in order of time.
@@ -49,7 +48,6 @@ impl MessageSplitter {
         Self {
             format,
             frames,
-            tilts: false,
             by_revolution: false,
             sweep_ends: Vec::new(),
             passed: 0,
@@ -63,9 +61,8 @@ impl MessageSplitter {
         self.cloud.fields()
     }
 
-    /// Sets the track of the tilt: the frame of the clouds, and their ends.
+    /// Sets the track of the tilt, whose sweeps end clouds.
     pub(crate) fn tilt(&mut self, track: &TiltTrack) {
-        self.tilts = track.mount.is_some();
         if !self.by_revolution {
             self.sweep_ends = track.sweeps.iter().map(|sweep| sweep.1).collect();
         }
@@ -107,7 +104,7 @@ impl MessageSplitter {
             }
             // A point always fits into an empty message.
             let end = end.max(rows.start + 1);
-            let frame = self.frames.of_clouds(self.tilts);
+            let frame = self.frames.of_clouds();
             let pushed = self.cloud.push(batch, rows.start..end, frame);
             pushed.map_err(|error| self.encoding(error))?;
             rows.start = end;

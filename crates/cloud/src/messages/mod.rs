@@ -32,13 +32,13 @@ pub use velodyne_scan::{PACKET_BYTES, VelodyneScan};
 
 /// The names of coordinate frames.
 pub mod frames {
-    /// The scanner with ROS's axes: x forward, y left, z up.
+    /// The scanner with ROS's axes: x forward, y left, z up. Frame of clouds.
     pub const ROOT: &str = "base_link";
-    /// The tilt axis, which does not tilt: x right, y forward, z up. Frame of clouds.
+    /// The tilt axis, which does not tilt: x right, y forward, z up. Frame of clouds in files.
     pub const BASE: &str = "tilt_base";
     /// The tilting platform.
     pub const PLATFORM: &str = "tilt_platform";
-    /// The lidar: x right, y forward, z up. Frame of clouds of a fixed platform.
+    /// The lidar: x right, y forward, z up.
     pub const LIDAR: &str = "lidar";
     /// The lidar with ROS's axes: x forward, y left, z up. Frame of raw packets.
     pub const LIDAR_ROS: &str = "lidar_ros";

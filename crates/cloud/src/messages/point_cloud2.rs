@@ -2,7 +2,7 @@
 //!
 //! The fields of ROS 2's Velodyne driver in its order: x, y, z, intensity (float32), ring (uint16),
 //! time (float32, seconds after the header's stamp), 22 bytes per point without padding; then
-//! further columns. Clouds are unorganised.
+//! further columns. Clouds are unorganised, in ROS's axes (REP 103): x forward, y left, z up.
 
 use std::ops::Range;
 
@@ -11,7 +11,7 @@ use units::{Host, Lidar, Stamp};
 use super::cdr::Cdr;
 use super::{Time, TimeOutOfRange, header};
 use crate::points::ColumnValues;
-use crate::rows::{NumberType, fill_values};
+use crate::rows::{NumberType, fill, fill_values, part};
 use crate::{Column, Fields, MissingColumns, Points};
 
 /// The columns of a cloud message: always intensity, ring and time, never the tilt, which the joint
@@ -110,7 +110,8 @@ impl CloudMessage {
         (self.first, self.last)
     }
 
-    /// Adds `rows` of a batch. The first batch sets the header's stamp and `frame`.
+    /// Adds `rows` of a batch, turned to ROS's axes. The first batch sets the header's stamp and
+    /// `frame`.
     ///
     /// # Errors
     /// [`CloudMessageError`]; nothing is added then.
@@ -198,6 +199,16 @@ impl CloudMessage {
     }
 }
 
+/// Turns x right, y forward to ROS's x forward, y left. It is exact.
+pub(crate) const fn to_ros([right, forward, up]: [f64; 3]) -> [f64; 3] {
+    [forward, -right, up]
+}
+
+/// Turns ROS's x forward, y left to x right, y forward.
+pub(crate) const fn from_ros([forward, left, up]: [f64; 3]) -> [f64; 3] {
+    [-left, forward, up]
+}
+
 /// Writes rows of a batch; `time` counts from `first`.
 fn encode(
     space: &mut [u8],
@@ -209,13 +220,19 @@ fn encode(
 ) {
     let since_first = |ns: i64| Stamp::from_nanos(ns).saturating_since(first).as_secs_f64();
     let of_lidar = |ns: i64| Stamp::<Lidar>::from_nanos(ns).as_secs_f64();
-    let axes = [batch.x_m(), batch.y_m(), batch.z_m()];
-    let axes = axes.map(|axis| (ColumnValues::Floats(axis), NumberType::F32));
-    let columns = columns
-        .columns()
-        .map(|column| (batch.values(column), number_type(column)));
-    let mut offset = 0;
-    for (values, number) in axes.into_iter().chain(columns) {
+    let axes = [batch.x_m(), batch.y_m(), batch.z_m()].map(|axis| part(axis, rows.clone()));
+    let [x, y, z] = axes;
+    let positions = x.iter().zip(y).zip(z).map(|((x, y), z)| {
+        let mut bytes = [0; 12];
+        for (slot, axis) in bytes.as_chunks_mut::<4>().0.iter_mut().zip(to_ros([*x, *y, *z])) {
+            *slot = (axis as f32).to_le_bytes();
+        }
+        bytes
+    });
+    fill(space, point_bytes, 0, positions);
+    let mut offset = 12;
+    for column in columns.columns() {
+        let (values, number) = (batch.values(column), number_type(column));
         let part = (values, rows.clone());
         match values {
             ColumnValues::LidarTimes(_) => {
@@ -298,9 +315,11 @@ mod tests {
         assert_eq!((step, data.len()), (22, 2200));
         for (row, point) in data.chunks(22).zip(cloud.iter()) {
             let float = |at: usize| f32::from_le_bytes(row[at..at + 4].try_into().unwrap());
-            for axis in 0..3 {
-                assert_eq!(float(4 * axis), point.position_m[axis] as f32);
+            let [right, forward, up] = point.position_m;
+            for (axis, metres) in [forward, -right, up].into_iter().enumerate() {
+                assert_eq!(float(4 * axis), metres as f32);
             }
+            assert_eq!(from_ros(to_ros(point.position_m)), point.position_m);
             assert_eq!(float(12), f32::from(point.intensity));
             assert_eq!(row[16..18], [point.ring, 0]);
             let since = (point.time.as_nanos() - START_NS) as f64 * 1e-9;

@@ -91,13 +91,10 @@ impl Frames {
         }
     }
 
-    /// Frame of the clouds: [`frames::BASE`] for a tilting platform, else [`frames::LIDAR`].
+    /// Frame of the clouds, [`frames::ROOT`].
     #[must_use]
-    pub fn of_clouds(&self, tilts: bool) -> &str {
-        match tilts {
-            true => &self.base,
-            false => &self.lidar,
-        }
+    pub fn of_clouds(&self) -> &str {
+        &self.root
     }
 
     /// Static transforms: ROS's axes, and for a tilting platform the lidar's mount.
@@ -105,7 +102,10 @@ impl Frames {
     pub fn fixed(&self, mount: Option<Mount>) -> Vec<Transform<'_>> {
         let axes = Transform {
             parent: &self.root,
-            child: self.of_clouds(mount.is_some()),
+            child: match mount {
+                Some(_) => &self.base,
+                None => &self.lidar,
+            },
             translation_m: [0.0; 3],
             rotation: Rotation::to_ros(),
         };
@@ -162,6 +162,7 @@ pub fn tf_message(cdr: &mut Cdr, stamp: Time, transforms: &[Transform<'_>]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::messages::point_cloud2::to_ros;
     use crate::mount::Tilt;
     use crate::tests::cdr_reader::Reader;
     use glam::{DQuat, DVec3};
@@ -192,6 +193,9 @@ mod tests {
 
     #[test]
     fn forward_is_x_and_left_is_y_in_ros() {
+        // Points are turned as the frames are.
+        let point = [1.0, 2.0, 3.0];
+        assert!(close(turned(Rotation::to_ros(), point), to_ros(point)));
         assert!(close(
             turned(Rotation::to_ros(), [0.0, 1.0, 0.0]),
             [1.0, 0.0, 0.0]
@@ -217,15 +221,14 @@ mod tests {
     #[test]
     fn the_prefix_precedes_every_frame_name() {
         let frames = Frames::with_prefix("left/");
-        let mut names = vec![frames.of_clouds(true), frames.of_clouds(false)];
+        let mut names = vec![frames.of_clouds()];
         let fixed = frames.fixed(Some(Mount::new(Metres(0.06))));
         assert_eq!(fixed[1].translation_m, [0.0, 0.0, 0.06]);
         names.extend(fixed.iter().flat_map(|t| [t.parent, t.child]));
         let tilted = frames.tilted(Degrees(-45.0));
         names.extend([tilted.parent, tilted.child]);
         let all = [
-            "tilt_base",
-            "lidar",
+            "base_link",
             "base_link",
             "tilt_base",
             "tilt_platform",

@@ -1,9 +1,10 @@
 //! MCAP with ROS 2 messages, by the `mcap` crate: the points of every
 //! `sensor_msgs/msg/PointCloud2`, each in the frame of its message; without transforms between
-//! frames. Times count from the message's stamp, but for those of 64 bits, as Hesai's and
+//! frames. Clouds of velomotion, which are in ROS's axes, are turned back to x right, y forward.
+//! Times count from the message's stamp, but for those of 64 bits, as Hesai's and
 //! RoboSense's drivers write them.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use mcap::McapError;
 use mcap::records::{Record, op};
@@ -13,8 +14,9 @@ use super::source::{ReadError, SourceField, SourceNumber, SourceRow};
 use super::stored_cloud::StoredCloud;
 use crate::Column;
 use crate::formats::Format;
-use crate::messages::Topic;
 use crate::messages::cdr::{CdrError, CdrReader};
+use crate::messages::point_cloud2::from_ros;
+use crate::messages::{Topic, frames};
 
 fn wrong(offset: usize, expected: &str, got: impl ToString) -> ReadError {
     ReadError {
@@ -38,7 +40,7 @@ pub(super) fn read(bytes: &[u8], cloud: &mut StoredCloud) -> Result<(), ReadErro
     let mut reader = LinearReader::new_with_options(options);
     let mut clouds = CloudCollector {
         schemas: HashSet::new(),
-        channels: HashSet::new(),
+        channels: HashMap::new(),
         cloud,
     };
     let mut rest = bytes;
@@ -65,8 +67,8 @@ pub(super) fn read(bytes: &[u8], cloud: &mut StoredCloud) -> Result<(), ReadErro
 struct CloudCollector<'a> {
     /// Schemas of point clouds.
     schemas: HashSet<u16>,
-    /// Channels of point clouds.
-    channels: HashSet<u16>,
+    /// Channels of point clouds, and whether a scanner of velomotion published them.
+    channels: HashMap<u16, bool>,
     cloud: &'a mut StoredCloud,
 }
 
@@ -88,12 +90,18 @@ impl CloudCollector<'_> {
                 if self.schemas.contains(&channel.schema_id)
                     && channel.message_encoding == "cdr" =>
             {
-                self.channels.insert(channel.id);
+                // A namespace may precede the name.
+                let ours = [Topic::Points, Topic::LivePoints]
+                    .iter()
+                    .any(|topic| channel.topic.ends_with(topic.name()));
+                self.channels.insert(channel.id, ours);
             }
-            Record::Message { header, data } if self.channels.contains(&header.channel_id) => {
-                // The offset is within the message.
-                points(&data, self.cloud)
-                    .map_err(|error| wrong(error.offset, &error.expected, error.got))?;
+            Record::Message { header, data } => {
+                if let Some(ours) = self.channels.get(&header.channel_id) {
+                    // The offset is within the message.
+                    points(&data, *ours, self.cloud)
+                        .map_err(|error| wrong(error.offset, &error.expected, error.got))?;
+                }
             }
             _ => {}
         }
@@ -101,12 +109,15 @@ impl CloudCollector<'_> {
     }
 }
 
-/// Adds the points of a `sensor_msgs/msg/PointCloud2`.
-fn points(message: &[u8], cloud: &mut StoredCloud) -> Result<(), CdrError> {
+/// Adds the points of a `sensor_msgs/msg/PointCloud2`. Those of earlier versions of velomotion are
+/// in another frame.
+fn points(message: &[u8], ours: bool, cloud: &mut StoredCloud) -> Result<(), CdrError> {
     let mut cdr = CdrReader::new(message)?;
     // Stamp and frame; height and width.
     let stamp_s = f64::from(cdr.u32()?) + f64::from(cdr.u32()?) * 1e-9;
-    cdr.sequence()?;
+    let frame = std::str::from_utf8(cdr.sequence()?).unwrap_or_default();
+    // A prefix may precede the name.
+    let turned = ours && frame.trim_end_matches('\0').ends_with(frames::ROOT);
     cdr.u32()?;
     cdr.u32()?;
     let mut fields = Vec::new();
@@ -149,6 +160,7 @@ fn points(message: &[u8], cloud: &mut StoredCloud) -> Result<(), CdrError> {
     for bytes in cdr.sequence()?.chunks_exact(point_bytes.max(1)) {
         let read = |field: SourceField| field.number.read(bytes.get(field.byte..)?, big_endian);
         let position = row.axes.map(|field| read(field).unwrap_or(f64::NAN));
+        let position = if turned { from_ros(position) } else { position };
         cloud.push(position, |column| {
             let value = row.columns.value(column, read)?;
             Some(match column {
@@ -168,6 +180,10 @@ mod tests {
 
     /// A message of one point at 1, 2, 3, stamped at a whole second.
     fn message(second: i32, fields: &[(&str, u8, &[u8])]) -> Vec<u8> {
+        message_in("lidar", second, fields)
+    }
+
+    fn message_in(frame: &str, second: i32, fields: &[(&str, u8, &[u8])]) -> Vec<u8> {
         let mut data: Vec<u8> = [1.0_f32, 2.0, 3.0]
             .iter()
             .flat_map(|axis| axis.to_le_bytes())
@@ -175,7 +191,7 @@ mod tests {
         let mut cdr = Cdr::new();
         cdr.i32(second);
         cdr.u32(0);
-        cdr.string("lidar");
+        cdr.string(frame);
         cdr.u32(1);
         cdr.u32(1);
         cdr.length(3 + fields.len());
@@ -204,7 +220,7 @@ mod tests {
     fn read(messages: &[Vec<u8>]) -> Vec<(Column, Vec<f32>)> {
         let mut cloud = StoredCloud::new(Fields::ALL);
         for message in messages {
-            points(message, &mut cloud).unwrap();
+            points(message, false, &mut cloud).unwrap();
         }
         assert_eq!(cloud.positions, vec![[1.0, 2.0, 3.0]; messages.len()]);
         cloud.columns
@@ -224,6 +240,20 @@ mod tests {
             [hesai(200_000_000_512.0), hesai(201_500_000_512.0)],
         ] {
             assert_eq!(read(&messages), [(Column::Time, vec![0.0, 1.5])]);
+        }
+    }
+
+    #[test]
+    fn clouds_in_ros_axes_are_turned_back_if_they_are_velomotions() {
+        for (frame, ours, expected) in [
+            ("left/base_link", true, [-2.0, 1.0, 3.0]),
+            ("base_link", false, [1.0, 2.0, 3.0]),
+            // Written before clouds were in ROS's axes.
+            ("tilt_base", true, [1.0, 2.0, 3.0]),
+        ] {
+            let mut cloud = StoredCloud::new(Fields::ALL);
+            points(&message_in(frame, 1, &[]), ours, &mut cloud).unwrap();
+            assert_eq!(cloud.positions, [expected], "{frame}");
         }
     }
 

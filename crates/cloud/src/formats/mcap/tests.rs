@@ -176,13 +176,13 @@ fn long_clouds_continue_in_further_messages() {
 }
 
 #[test]
-fn a_fixed_platform_is_in_the_lidars_frame() {
+fn a_fixed_platform_has_no_frame_that_tilts() {
     let messages = read(&written(new(), None, &[points([0])]));
     let topics: Vec<&str> = messages.iter().map(|m| m.topic.as_str()).collect();
     assert_eq!(topics, ["/tf_static", "/velomotion/points", "/diagnostics"]);
     let contains =
         |message: &Read, text: &[u8]| message.data.windows(text.len()).any(|w| w == text);
-    assert!(contains(&messages[1], b"lidar\0") && !contains(&messages[1], b"tilt"));
+    assert!(contains(&messages[1], b"base_link\0") && !contains(&messages[0], b"tilt"));
     assert!(contains(&messages[0], b"base_link\0") && contains(&messages[0], b"lidar\0"));
 }
 
