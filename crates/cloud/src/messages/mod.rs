@@ -25,6 +25,7 @@ pub(crate) use clouds::MessageSplitter;
 pub use clouds::{Cloud, Clouds, MOST_POINTS, MOST_SPAN};
 pub use diagnostics::diagnostic_array;
 pub use joint_state::joint_state;
+pub(crate) use point_cloud2::from_ros;
 pub use point_cloud2::{CloudMessage, CloudMessageError, fields_of};
 pub use transforms::{Frames, Rotation, Transform, tf_message};
 pub use trigger::{TRIGGER, trigger_response};

@@ -224,7 +224,12 @@ fn encode(
     let [x, y, z] = axes;
     let positions = x.iter().zip(y).zip(z).map(|((x, y), z)| {
         let mut bytes = [0; 12];
-        for (slot, axis) in bytes.as_chunks_mut::<4>().0.iter_mut().zip(to_ros([*x, *y, *z])) {
+        for (slot, axis) in bytes
+            .as_chunks_mut::<4>()
+            .0
+            .iter_mut()
+            .zip(to_ros([*x, *y, *z]))
+        {
             *slot = (axis as f32).to_le_bytes();
         }
         bytes

@@ -15,8 +15,8 @@ use super::stored_cloud::StoredCloud;
 use crate::Column;
 use crate::formats::Format;
 use crate::messages::cdr::{CdrError, CdrReader};
-use crate::messages::point_cloud2::from_ros;
-use crate::messages::{Topic, frames};
+
+use crate::messages::{Topic, frames, from_ros};
 
 fn wrong(offset: usize, expected: &str, got: impl ToString) -> ReadError {
     ReadError {
