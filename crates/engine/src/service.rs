@@ -88,6 +88,7 @@ pub struct DeviceService {
     ending: AtomicBool,
     connects: AtomicU64,
     stops: AtomicU64,
+    capture_stops: AtomicU64,
     started: Instant,
     started_s: f64,
     /// Last heartbeat of the device thread, milliseconds after the start.
@@ -130,6 +131,7 @@ impl DeviceService {
             ending: AtomicBool::new(false),
             connects: AtomicU64::new(0),
             stops: AtomicU64::new(0),
+            capture_stops: AtomicU64::new(0),
             started: Instant::now(),
             started_s: now_s(),
             heartbeat_ms: AtomicU64::new(0),
@@ -174,12 +176,29 @@ impl DeviceService {
         self.connects.load(Ordering::Relaxed)
     }
 
+    /// Stops of the axis that clients have requested.
+    #[must_use]
+    pub fn stops(&self) -> u64 {
+        self.stops.load(Ordering::Acquire)
+    }
+
+    fn stop_count(&self) -> StopCount {
+        StopCount {
+            axis: self.stops(),
+            captures: self.capture_stops.load(Ordering::Acquire),
+        }
+    }
+
     /// The signal of a motion that a client asks for now, or for which it asked when it knew of so
-    /// many stops ([`status::ServiceStatus`]): its request may arrive late. A later stop of any
-    /// client prevents the motion if it has not begun.
+    /// many stops of the axis ([`status::ServiceStatus`]): its request may arrive late. A later
+    /// stop of any client prevents the motion if it has not begun.
     #[must_use]
     pub fn stop_signal(&self, known_stops: Option<u64>) -> StopSignal {
-        StopSignal::after(known_stops.unwrap_or_else(|| self.stops.load(Ordering::Acquire)))
+        let now = self.stop_count();
+        StopSignal::after(StopCount {
+            axis: known_stops.unwrap_or(now.axis),
+            ..now
+        })
     }
 
     /// Time since the last heartbeat of the device thread.
@@ -225,7 +244,7 @@ impl DeviceService {
         match &self.lifetime {
             Lifetime::Resident => self.lease_until(task, &StopSignal::default()),
             Lifetime::Command { interrupt, .. } => {
-                AxisLease::take(self, task, StopSignal::with_flag(interrupt))
+                AxisLease::take(self, task, StopSignal::of_command(interrupt, task))
             }
         }
     }
@@ -359,6 +378,7 @@ impl DeviceService {
     /// [`LeaseError`] where the axis could not be stopped.
     pub async fn stop_axis(self: &Arc<Self>) -> Result<StopAnswer, LeaseError> {
         self.stops.fetch_add(1, Ordering::AcqRel);
+        self.send_status();
         if let Lifetime::Command { .. } = self.lifetime {
             self.stop(None);
             self.wait_idle().await;
@@ -397,7 +417,7 @@ impl DeviceService {
     /// Stops a capture and waits until the axis is at rest; other motion goes on. Returns whether
     /// there was a capture, and the scan's id.
     pub async fn stop_capture(&self) -> (bool, Option<String>) {
-        self.stops.fetch_add(1, Ordering::AcqRel);
+        self.capture_stops.fetch_add(1, Ordering::AcqRel);
         let mut state = self.state.subscribe();
         // The signal of the capture, which stops no motion that begins from here on.
         let capture = {

@@ -4,6 +4,7 @@
 //! `start_capture` is offered only if a capture is configured: every client of the router can call
 //! it.
 
+use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 
@@ -13,6 +14,7 @@ use tokio::runtime::Runtime;
 
 use engine::config::ros2::Ros2;
 use engine::failure::Failure;
+use engine::service::{DeviceService, StopSignal};
 
 use crate::Context;
 use crate::bridge::STOP_POLL;
@@ -50,6 +52,8 @@ impl Service {
 /// A call of a service.
 pub struct TriggerCall {
     service: Service,
+    /// Taken when it arrives: it may wait behind others.
+    stop: StopSignal,
     call: Call,
 }
 
@@ -62,11 +66,21 @@ pub fn queue() -> (Inbox, Receiver<TriggerCall>) {
 }
 
 /// Offers a service.
-pub fn declare(declarer: &mut Declarer<'_>, service: Service, inbox: &Inbox) -> Result<(), Error> {
+pub fn declare(
+    declarer: &mut Declarer<'_>,
+    service: Service,
+    devices: &Arc<DeviceService>,
+    inbox: &Inbox,
+) -> Result<(), Error> {
     let name = declarer.settings().resolve(service.name());
-    let inbox = inbox.clone();
+    let (devices, inbox) = (Arc::clone(devices), inbox.clone());
     declarer.service(&name, &TRIGGER, move |call| {
-        let call = TriggerCall { service, call };
+        let stop = devices.stop_signal(None);
+        let call = TriggerCall {
+            service,
+            stop,
+            call,
+        };
         match inbox.try_send(call) {
             Ok(()) => {}
             Err(TrySendError::Full(call) | TrySendError::Disconnected(call)) => {
@@ -83,7 +97,7 @@ pub(crate) fn run(context: &Context, calls: &Receiver<TriggerCall>, runtime: &Ru
             continue;
         };
         let (done, message) = match call.service {
-            Service::Start => start_capture(context),
+            Service::Start => start_capture(context, &call.stop),
             Service::Stop => (true, runtime.block_on(stop_capture(context))),
         };
         answer(&call, done, &message);
@@ -91,12 +105,11 @@ pub(crate) fn run(context: &Context, calls: &Receiver<TriggerCall>, runtime: &Ru
     }
 }
 
-fn start_capture(context: &Context) -> (bool, String) {
+fn start_capture(context: &Context, stop: &StopSignal) -> (bool, String) {
     let Some(request) = &context.settings.capture else {
         return (false, "no capture is configured".to_owned());
     };
-    let stop = context.devices().stop_signal(None);
-    match context.scans.start_capture(request, &stop) {
+    match context.scans.start_capture(request, stop) {
         Ok(id) => (true, id),
         Err(failure) => (false, text_of(failure)),
     }

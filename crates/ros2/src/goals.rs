@@ -26,8 +26,8 @@ use crate::goal_request::{GoalRequest, GoalResult, read, read_goal, result_respo
 const GOALS: usize = 16;
 /// Calls that wait for the end of one goal.
 const WAITING: usize = 8;
-/// Answers that wait for the network. Further ones are dropped, and their clients ask again: what
-/// the calls asked for is done.
+/// Answers that wait for the network. Further ones are dropped, and a goal whose answer has no room
+/// does not begin.
 const ANSWERS: usize = 2 * GOALS * WAITING;
 
 /// The end of a goal: what it reached, and why that is not all it asked for.
@@ -114,6 +114,10 @@ impl<C: Send + 'static> Goals<C> {
 
     /// Accepts a goal and begins it, or rejects it and reports why.
     pub(crate) fn send_goal(self: &Arc<Self>, action: Action, payload: &[u8], call: C) {
+        let Ok(room) = self.answers.try_reserve() else {
+            tracing::debug!("ROS 2: a goal was dropped");
+            return;
+        };
         let accepted = Time::of(io::clock::now()).unwrap_or_default();
         let goal = read_goal(action, payload);
         let begun = goal.and_then(|(id, request)| {
@@ -126,11 +130,11 @@ impl<C: Send + 'static> Goals<C> {
                 let reason = text_of(failure);
                 let text = format!("ROS 2: {}: goal rejected: {reason}", action.name());
                 self.runner.report(text);
-                return self.answer(call, goal_response(false, accepted));
+                return room.send((call, goal_response(false, accepted)));
             }
         };
         // Before its thread, which waits for the lock, can end it.
-        self.answer(call, goal_response(true, accepted));
+        room.send((call, goal_response(true, accepted)));
         drop(goals);
         self.changed.notify_one();
     }
@@ -512,6 +516,13 @@ mod tests {
         for _ in 0..ANSWERS + 10 {
             client.ask(9, "unknown");
         }
+        let mut cdr = Cdr::new();
+        cdr.array(&[2; 16]);
+        cdr.u8(1);
+        (0..2).for_each(|_| cdr.length(0));
+        let goals = &client.goals;
+        goals.send_goal(Action::MoveTilt, cdr.bytes(), "dropped");
+        assert_eq!(client.axis.begun.load(Ordering::SeqCst), 1);
         client.end(None);
         // Goals change their states whatever waits to be sent.
         waits().unwrap().block_on(client.goals.changed());
@@ -521,6 +532,7 @@ mod tests {
             assert_eq!(client.answer().0, "unknown");
         }
         assert_eq!(client.status(1), GoalStatus::Succeeded as u8);
+        assert_eq!(client.status(2), GoalStatus::Unknown as u8);
     }
 
     #[test]

@@ -136,7 +136,7 @@ impl RouterLink {
             channels.insert(topic, declarer.publisher(&name, &kind, quality)?);
         }
         for service in Service::offered(settings) {
-            calls::declare(&mut declarer, service, calls)?;
+            calls::declare(&mut declarer, service, context.devices(), calls)?;
         }
         let mut actions = Vec::new();
         for action in Action::offered(settings) {

@@ -90,7 +90,7 @@ fn about(points: usize) -> Vec<String> {
     vec![
         format!(
             "{points} points of a sweep through the simulator's hall (nothing farther than 20 m) with {} mm of range noise, written to memory as velomotion writes files, in \
-             batches, with intensity, ring, time and tilt (.bin with intensity alone). Disk access is not included. `.laz` is compressed on both cores, the others use one.",
+             batches, with intensity, ring, time and tilt (.bin with intensity alone). Disk access is not included. LAZ is compressed on both cores, the others use one.",
             NOISE_M * 1e3
         ),
         "Bytes exclude those of an empty file. The error is the largest distance between a point written and the same point read back. f32 \

@@ -228,6 +228,37 @@ fn only_one_motion_runs_at_a_time_and_a_stop_takes_over() {
     assert_eq!(answer.refused(409, "stopped")["kind"], "interrupted");
 }
 
+/// The network may delay a request beyond the stop of its motion.
+#[test]
+fn a_motion_that_was_asked_for_before_a_stop_is_refused() {
+    let rig = Rig::new();
+    rig.ready();
+    let known = rig.status()["stops"].as_u64().unwrap();
+    assert_eq!(known, 0);
+    let stopped = rig.post("/api/v1/tilt/stop", &json!({}));
+    assert!(stopped.head.contains("\nvelomotion-stops: 1"), "{}", stopped.head);
+    assert_eq!(rig.status()["stops"], 1);
+    let late = |path: &str, stops: &str, body: &Value| {
+        let headers = format!("content-type: application/json\r\nvelomotion-stops: {stops}\r\n");
+        request(rig.address, "POST", path, &headers, &body.to_string())
+    };
+    let goto = json!({"to_deg": -5.0});
+    for (path, body) in [
+        ("/api/v1/tilt/home", &json!({})),
+        ("/api/v1/tilt/goto", &goto),
+        ("/api/v1/captures", &json!({"speed_deg_s": 40.0})),
+    ] {
+        let refused = late(path, "0", body).refused(409, "stopped before");
+        assert_eq!(refused["kind"], "interrupted", "{refused}");
+    }
+    assert_eq!(rig.get("/api/v1/scans").json()["scans"], json!([]));
+    late("/api/v1/tilt/goto", "many", &goto).refused(400, "velomotion-stops");
+    // A stop of captures alone is none of the axis.
+    assert_eq!(rig.post("/api/v1/captures/stop", &json!({})).status, 200);
+    assert_eq!(late("/api/v1/tilt/home", "1", &json!({})).status, 200);
+    assert_eq!(late("/api/v1/tilt/goto", "1", &goto).status, 200);
+}
+
 #[test]
 fn prometheus_metrics_and_the_page_are_served() {
     let rig = Rig::new();

@@ -26,22 +26,38 @@ fn a_list_instead_of_an_object_is_refused() {
     assert!(scans["scans"].as_array().unwrap().is_empty(), "{scans}");
 }
 
-/// A stop that arrives before the scan has an id stops the scan.
+/// A stop that arrives before the scan has an id stops the scan, one that arrives before it begins
+/// prevents it.
 #[test]
 fn a_stop_just_after_the_start_is_not_lost() {
     let rig = Rig::new();
-    for _ in 0..8 {
+    let stop = || rig.post("/api/v1/captures/stop", &json!({})).json();
+    for turn in 0..8 {
         rig.ready();
         let address = rig.address;
         // 45 s without a stop.
         let answer = std::thread::spawn(move || {
             post(address, "/api/v1/captures", &json!({ "speed_deg_s": 1.0 }))
         });
-        let stopped = wait("a stop of a capture", || {
-            let stopped = rig.post("/api/v1/captures/stop", &json!({})).json();
-            (stopped["stopped"] == true).then_some(stopped)
-        });
+        let mut stopped = Value::Null;
+        if turn % 2 == 0 {
+            while stopped["stopped"] != true && !answer.is_finished() {
+                stopped = stop();
+            }
+        } else {
+            wait("the capture", || {
+                (rig.status()["activity"]["doing"] == "capturing").then_some(())
+            });
+        }
+        if stopped["stopped"] != true {
+            stopped = stop();
+        }
         let answer = answer.join().unwrap();
+        if turn % 2 == 0 && answer.status == 409 {
+            assert_eq!(answer.refused(409, "stopped before")["kind"], "interrupted");
+            continue;
+        }
+        assert_eq!(stopped["stopped"], true, "{stopped}");
         assert_eq!(answer.status, 201, "{}", answer.text());
         let id = answer.json()["id"].as_str().unwrap().to_owned();
         assert!(

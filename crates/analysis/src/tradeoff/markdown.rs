@@ -74,8 +74,8 @@ fn section(findings: &StudyFindings, folder: &str) -> String {
         escaped(&(findings.study.finding)(findings)),
         findings.study.name
     ));
+    // Its last column has the fronts, and the figure their axes.
     section.push(table(findings));
-    section.extend(findings.verdicts().iter().map(|verdict| escaped(verdict)));
     section.join("\n\n")
 }
 

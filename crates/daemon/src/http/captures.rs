@@ -23,7 +23,7 @@ use crate::plan as plans;
 use crate::state::{Counters, DaemonState};
 
 /// Header with the number of stops that the client knew when its user asked for a motion.
-const STOPS: &str = "velomotion-stops";
+pub const STOPS: &str = "velomotion-stops";
 
 /// A header of requests that move the axis.
 #[derive(IntoParams)]

@@ -11,7 +11,7 @@ use engine::service::DeviceService;
 use engine::service::axis_report::{AxisReport, StopAnswer};
 use serde::Serialize;
 
-use super::captures::{KnownStops, body, stop_signal};
+use super::captures::{KnownStops, STOPS, body, stop_signal};
 use super::openapi::{NotNow, Usage};
 use super::refusal::Refusal;
 
@@ -71,11 +71,15 @@ pub async fn goto(
 }
 
 /// Stop the axis: any motion, also of a capture. Sets the brake.
+///
+/// The header `Velomotion-Stops` of the answer is for requests that move the axis from now on.
 #[utoipa::path(post, path = "/api/v1/tilt/stop", tag = "tilt", responses(
     (status = 200, description = "The axis is at rest", body = StopAnswer), (status = 409, response = NotNow),
 ))]
 pub async fn stop(State(service): Service) -> Result<Response, Refusal> {
-    Ok(ok(&service.stop_axis().await?))
+    let mut answer = ok(&service.stop_axis().await?);
+    answer.headers_mut().insert(STOPS, service.stops().into());
+    Ok(answer)
 }
 
 /// Take the drive out of its fault state.

@@ -219,8 +219,8 @@ export class RequestError extends Error {
 const ROOT = "/api/v1/";
 
 /** Sends a request; throws `RequestError` with the remedy. */
-export async function sendRequest<T>(method: string, path: string, body?: unknown, signal?: AbortSignal, headers: Record<string, string> = {}): Promise<T> {
-  const init: RequestInit = { method, headers, ...(signal ? { signal } : {}) };
+export async function sendRequest<T>(method: string, path: string, body?: unknown, headers: Record<string, string> = {}): Promise<T> {
+  const init: RequestInit = { method, headers };
   if (body !== undefined) {
     init.headers = { ...headers, "content-type": "application/json" };
     init.body = JSON.stringify(body);
@@ -274,16 +274,25 @@ function problem(json: unknown, text: string, status: number): Problem {
   return { message: text.slice(0, 200) || `the daemon answers ${status}` };
 }
 
-/** Stops of the axis that the page knows of. */
-let stops: number | null = null;
+/** Stops of the axis that the page knows of, since the start of the daemon. */
+let stops = 0;
+let since_s: number | null = null;
 
-export function setStops(known: number): void {
-  stops = known;
+/** Takes the stops of a status; one may arrive after a later one. */
+export function setStops(known: number, started_s: number): void {
+  stops = since_s === started_s ? Math.max(stops, known) : known;
+  since_s = started_s;
+}
+
+/** Stops the axis. What is begun after its answer knows of this stop. */
+async function stop(signal: AbortSignal): Promise<void> {
+  const answer = await answered(`${ROOT}tilt/stop`, { method: "POST", signal });
+  stops = Math.max(stops, Number(answer.headers.get("velomotion-stops")));
 }
 
 /** Sends a request that moves the axis. The daemon refuses one that arrives after a later stop. */
 function move<T>(path: string, body?: unknown): Promise<T> {
-  return sendRequest<T>("POST", path, body, undefined, stops === null ? {} : { "velomotion-stops": String(stops) });
+  return sendRequest<T>("POST", path, body, since_s === null ? {} : { "velomotion-stops": String(stops) });
 }
 
 export const api = {
@@ -297,15 +306,15 @@ export const api = {
   /** Of a file of `velomotion view`. */
   file_statistics: (id: string) => sendRequest<ScanStatistics>("GET", new URL(`statistics/${id}`, location.href).pathname),
   statistics: (id: string) => sendRequest<ScanStatistics>("GET", `scans/${encodeURIComponent(id)}/statistics`),
-  /** Empty texts are removed. */
-  edit: (id: string, texts: { name: string; notes: string }) => sendRequest<Scan>("PATCH", `scans/${encodeURIComponent(id)}`, texts),
+  /** Absent texts stay, empty ones are removed. */
+  edit: (id: string, texts: { name?: string; notes?: string }) => sendRequest<Scan>("PATCH", `scans/${encodeURIComponent(id)}`, texts),
   /** The scan can be restored for 10 s. */
   remove: (id: string) => sendRequest<unknown>("DELETE", `scans/${encodeURIComponent(id)}?undo=true`),
   restore: (id: string) => sendRequest<Scan>("POST", `scans/${encodeURIComponent(id)}/restore`),
   plan: (request: CaptureRequest) => sendRequest<CaptureEstimate>("GET", `plan?${query(request)}`),
   capture: (request: CaptureRequest) => move<Scan>("captures", request),
   /** Stops any motion; of a capture the swept part is kept. */
-  stop: (signal: AbortSignal) => sendRequest<unknown>("POST", "tilt/stop", undefined, signal),
+  stop,
   home: () => move<unknown>("tilt/home"),
   clear: () => sendRequest<unknown>("POST", "tilt/clear"),
   goto: (to_deg: number, speed_deg_s: number) => move<unknown>("tilt/goto", { to_deg, speed_deg_s }),

@@ -26,6 +26,8 @@ let viewer: Viewer | null = null;
 let connected = false;
 /** Whether the list of scans is complete. */
 let listed = false;
+/** Id of the scan that is captured now. */
+let capturing: string | null = null;
 /** Id of the scan whose end was reported last. */
 let reported: string | null = null;
 
@@ -66,10 +68,8 @@ const listener: Listener = {
     sweep.setStatus(status);
     quality.setStatus(status);
     const { scan } = status.activity;
-    if (typeof scan === "string" && status.activity.doing === "capturing") {
-      const known = scans.get(scan);
-      viewer?.begin(scan, known?.name || scan, status.simulated);
-    }
+    capturing = typeof scan === "string" && status.activity.doing === "capturing" ? scan : null;
+    if (capturing !== null) viewer?.begin(capturing, scans.get(capturing)?.name || capturing, status.simulated);
     if (typeof status.drive.angle_deg === "number") viewer?.setTilt(status.drive.angle_deg);
   },
   motion(motion) {
@@ -176,7 +176,8 @@ function catch_up(): void {
   if (viewer === null || shown === null) return;
   const scan = scans.get(shown);
   if (scan === undefined) {
-    if (viewer.is_live) return;
+    // It began after the list was made.
+    if (viewer.is_live && shown === capturing) return;
     quality.forget(shown);
     viewer.forget(shown);
     note("warning", "The scan in view was deleted while the page was not connected.", null);

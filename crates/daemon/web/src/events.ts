@@ -29,6 +29,8 @@ export interface Listener {
 
 /** The daemon sends a status every second; a connection silent for so long is dead, even if it was never closed. */
 const SILENCE_MS = 4_000;
+/** Code with which the daemon closes a connection whose events are not read in time. */
+const TOO_SLOW = 1008;
 const WAITS_S = [0.5, 1, 2, 4, 8];
 
 export class Events {
@@ -39,6 +41,8 @@ export class Events {
   private silence = 0;
   private again = 0;
   private capturing = false;
+  /** Whether the daemon has said that this device is too slow. */
+  private is_slow = false;
 
   constructor(private readonly listener: Listener) {}
 
@@ -64,7 +68,10 @@ export class Events {
       if (typeof event.data === "string") this.text(event.data);
       else this.binary(event.data);
     };
-    socket.onclose = () => this.lost(socket);
+    socket.onclose = ({ code }) => {
+      this.is_slow ||= code === TOO_SLOW;
+      this.lost(socket);
+    };
   }
 
   /** Closes the connection until the next `open`. */
@@ -108,8 +115,8 @@ export class Events {
         const status = event["status"] as Status;
         this.capturing = status.activity.doing === "capturing";
         this.listener.status(status);
-        // The next scan gets all points again.
-        if (this.thin > 1 && status.activity.doing === "idle") {
+        // The next scan gets all points again, if only the network was lost.
+        if (this.thin > 1 && !this.is_slow && status.activity.doing === "idle") {
           this.thin = 1;
           this.open();
         }

@@ -130,8 +130,7 @@ export class Viewer {
     if (this.begun === scan && (!again || this.is_live)) return;
     this.begun = scan;
     this.clear();
-    this.opened = null;
-    show(id("view-partial"), false);
+    this.following = null;
     this.shown = scan;
     this.live = new Live(this.stage.points, small.matches ? 1_500_000 : 6_000_000);
     this.stage.scene.add(this.live.group);
@@ -354,7 +353,7 @@ export class Viewer {
     show(id("view-progress"), false);
     this.complete = false;
     // Opening it again must not ask for the column that the daemon could not add.
-    if (this.field === "sd" && this.loaded === null) id<HTMLSelectElement>("field").value = this.field = "height";
+    if (this.field === "sd" && this.whole === null) id<HTMLSelectElement>("field").value = this.field = "height";
     // What is left of them is of two clouds.
     if (this.live === null) this.unpick();
     if (this.live !== null) return text(id("view-note"), error);

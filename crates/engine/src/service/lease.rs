@@ -13,16 +13,33 @@ use crate::failure::{Failure, Kind};
 pub struct StopSignal {
     requested: Arc<AtomicBool>,
     reason: Arc<OnceLock<Failure>>,
-    /// Stops of the axis before the motion was asked for. Any later one prevents it.
-    stops_before: Option<u64>,
+    /// Stops before the motion was asked for. Any later one prevents it.
+    before: Option<StopCount>,
+}
+
+/// Stops that clients have requested.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct StopCount {
+    /// Of the axis: of any motion.
+    pub axis: u64,
+    /// Of captures alone.
+    pub captures: u64,
 }
 
 impl StopSignal {
-    pub(super) fn after(stops: u64) -> Self {
+    pub(super) fn after(stops: StopCount) -> Self {
         Self {
-            stops_before: Some(stops),
+            before: Some(stops),
             ..Self::default()
         }
+    }
+
+    /// Whether a stop was requested since the motion was asked for.
+    fn is_overtaken(&self, now: StopCount, task: AxisTask) -> bool {
+        self.before.is_some_and(|before| match task {
+            AxisTask::Capturing => before != now,
+            _ => before.axis != now.axis,
+        })
     }
 
     /// Requests the stop. The first reason counts; a user's stop has none.
@@ -39,10 +56,11 @@ impl StopSignal {
         self.requested.load(Ordering::Acquire)
     }
 
-    /// The same signal with the flag of a command.
-    pub(super) fn with_flag(requested: &Arc<AtomicBool>) -> Self {
+    /// The signal with the flag of a command, for its task. Any stop prevents a motion.
+    pub(super) fn of_command(requested: &Arc<AtomicBool>, task: AxisTask) -> Self {
         Self {
             requested: Arc::clone(requested),
+            before: (task != AxisTask::Stopping).then(StopCount::default),
             ..Self::default()
         }
     }
@@ -104,10 +122,9 @@ impl AxisLease {
         service.state.send_if_modified(|state| {
             // A stop counts itself before it looks for a motion under this lock: no motion that was
             // asked for earlier begins after it.
-            let is_prevented = |before| service.stops.load(Ordering::Acquire) != before;
             if service.is_ending() {
                 refused = Some(LeaseError::ending());
-            } else if stop.stops_before.is_some_and(is_prevented) {
+            } else if stop.is_overtaken(service.stop_count(), task) {
                 let what = "the axis was stopped before this motion began";
                 let failure = Failure::new(Kind::Interrupted, what).help("nothing has moved");
                 refused = Some(failure.into());
@@ -212,28 +229,31 @@ mod tests {
         assert!(service.stop(None) && third.is_requested());
         drop(lease);
 
-        // A stop of the axis prevents what was asked for before it, and nothing later.
-        let [before, later] = [false, true].map(|stops| {
-            let runtime = tokio::runtime::Builder::new_current_thread()
-                .build()
-                .unwrap();
-            if stops {
-                assert_eq!(runtime.block_on(service.stop_capture()), (false, None));
+        // A stop prevents what was asked for before it, and nothing later; a stop of captures
+        // prevents no other motion.
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_time().build().unwrap();
+        let before = service.stop_signal(None);
+        assert_eq!(runtime.block_on(service.stop_capture()), (false, None));
+        let prevented = |task, signal: &StopSignal| match service.lease_until(task, signal) {
+            Err(LeaseError::Failure(failure)) => {
+                assert_eq!(failure.kind, Kind::Interrupted);
+                assert!(failure.message.contains("stopped before"), "{failure}");
+                assert_eq!(service.activity().doing, AxisTask::Idle);
+                true
             }
-            service.stop_signal(None)
-        });
-        let late = service.stop_signal(Some(0));
-        for signal in [before, late] {
-            match service.lease_until(AxisTask::Moving, &signal).err() {
-                Some(LeaseError::Failure(failure)) => {
-                    assert_eq!(failure.kind, Kind::Interrupted);
-                    assert!(failure.message.contains("stopped before"), "{failure}");
-                }
-                other => panic!("{other:?}"),
-            }
-            assert_eq!(service.activity().doing, AxisTask::Idle);
+            Err(other) => panic!("{other:?}"),
+            Ok(_) => false,
+        };
+        assert!(prevented(AxisTask::Capturing, &before));
+        assert!(!prevented(AxisTask::Moving, &before));
+        let known = service.stops();
+        let before = service.stop_signal(None);
+        runtime.block_on(service.stop_axis()).unwrap();
+        for signal in [before, service.stop_signal(Some(known))] {
+            assert!(prevented(AxisTask::Moving, &signal));
+            assert!(prevented(AxisTask::Capturing, &signal));
         }
-        drop(service.lease_until(AxisTask::Moving, &later).unwrap());
+        assert!(!prevented(AxisTask::Moving, &service.stop_signal(Some(known + 1))));
         service.shut_down(Failure::new(Kind::Interrupted, "the test ends"));
         assert!(thread.join());
     }

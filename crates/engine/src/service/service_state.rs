@@ -1,6 +1,5 @@
 //! State that clients follow: the status of the devices and of what they do.
 
-use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use units::{Degrees, Rpm};
@@ -55,7 +54,7 @@ impl DeviceService {
             device: self.name.clone(),
             simulated: self.simulated(),
             started_s: self.started_s,
-            stops: self.stops.load(Ordering::Acquire),
+            stops: self.stops(),
             now_s: now_s(),
             activity: state.activity.clone(),
             drive: state.drive.clone(),

@@ -109,8 +109,6 @@ async function halt(): Promise<void> {
     if (await repeatStop(api.stop, unacknowledged, stopping.signal)) {
       announce("Stopped");
       stopped = true;
-      // What is begun from here on knows of this stop. Without an answer the next status tells.
-      await api.status().then(({ stops }) => setStops(stops), () => {});
       setTimeout(() => {
         stopped = false;
         draw();
@@ -131,7 +129,7 @@ export function setConnected(now: boolean): void {
 export function setStatus(now: Status): void {
   const before = status?.activity.doing;
   status = now;
-  setStops(now.stops);
+  setStops(now.stops, now.started_s);
   const { doing: what, step } = now.activity;
   if (before !== undefined && before !== what) announce(WORDS[what] ?? what);
   // A motion that begins replaces an earlier error; its own error stays.

@@ -115,7 +115,9 @@ export function editor(scan: Scan, done: (changed: Scan | null) => void, { refus
     event.preventDefault();
     show(wrong, false);
     try {
-      const changed = await api.edit(scan.id, { name: name.value, notes: notes.value });
+      // What was not changed here may have been changed elsewhere.
+      const texts = { ...(name.value === (scan.name ?? "") ? {} : { name: name.value }), ...(notes.value === (scan.notes ?? "") ? {} : { notes: notes.value }) };
+      const changed = await api.edit(scan.id, texts);
       announce(`Saved ${title(changed)}`);
       done(changed);
     } catch (error) {

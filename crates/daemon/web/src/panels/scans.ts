@@ -120,7 +120,7 @@ export async function load(loaded: (complete: boolean) => void): Promise<void> {
     } catch (error) {
       if (before === null || !(error instanceof RequestError) || error.status !== 404) throw error;
       // It was deleted meanwhile: the one before it is asked for.
-      scans.delete(before);
+      forget(before);
       continue;
     }
     if (mine !== loads) return;
@@ -131,7 +131,7 @@ export async function load(loaded: (complete: boolean) => void): Promise<void> {
     complete = part.length < PART;
     if (complete) {
       const known = new Set(listed);
-      for (const key of [...scans.keys()]) if (!known.has(key) && !updated.has(key)) scans.delete(key);
+      for (const key of [...scans.keys()]) if (!known.has(key) && !updated.has(key)) forget(key);
     }
     draw();
     loaded(complete);
@@ -146,10 +146,14 @@ export function set(scan: Scan): void {
 
 export function remove(name: string): void {
   updated.add(name);
+  forget(name);
+  draw();
+}
+
+function forget(name: string): void {
   scans.delete(name);
   errors.delete(name);
   for (const place of ["card", "row"]) editors.delete(`${place} ${name}`);
-  draw();
 }
 
 /** Marks the scan that is in view. */

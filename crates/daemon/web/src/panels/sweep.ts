@@ -18,6 +18,9 @@ const name = input("name");
 const tolerance = input("tolerance");
 const out = id<HTMLOutputElement>("plan");
 
+/** After an unanswered request. */
+const AGAIN_MS = 2_000;
+
 let least_deg_s = 0.05;
 let most_deg_s = 98;
 let timer = 0;
@@ -101,7 +104,8 @@ async function plan(): Promise<void> {
     if (mine === serial) draw(found);
   } catch (error) {
     if (mine !== serial) return;
-    // It is requested again when the connection is back. What is displayed may be of another speed.
+    // What is displayed may be of another speed. It is requested again, also when the connection is back.
+    if (error instanceof RequestError && error.status === 0) timer = window.setTimeout(() => void plan(), AGAIN_MS);
     if (error instanceof RequestError && (error.status === 0 || error.status === 401)) return out.replaceChildren(h("p", { class: "hint" }, "No plan without the daemon."));
     const words = error instanceof RequestError ? [error.message, error.help].filter(Boolean).join(": ") : String(error);
     show_error(words);
