@@ -30,6 +30,7 @@ use tokio::sync::{oneshot, watch};
 use units::Span;
 
 pub use device_thread::DeviceThread;
+use lease::StopCount;
 pub use lease::{AxisLease, LeaseError, StopSignal};
 pub use options::{Environment, Lifetime, ServiceOptions};
 

@@ -236,7 +236,11 @@ fn a_motion_that_was_asked_for_before_a_stop_is_refused() {
     let known = rig.status()["stops"].as_u64().unwrap();
     assert_eq!(known, 0);
     let stopped = rig.post("/api/v1/tilt/stop", &json!({}));
-    assert!(stopped.head.contains("\nvelomotion-stops: 1"), "{}", stopped.head);
+    assert!(
+        stopped.head.contains("\nvelomotion-stops: 1"),
+        "{}",
+        stopped.head
+    );
     assert_eq!(rig.status()["stops"], 1);
     let late = |path: &str, stops: &str, body: &Value| {
         let headers = format!("content-type: application/json\r\nvelomotion-stops: {stops}\r\n");

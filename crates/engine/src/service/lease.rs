@@ -231,7 +231,10 @@ mod tests {
 
         // A stop prevents what was asked for before it, and nothing later; a stop of captures
         // prevents no other motion.
-        let runtime = tokio::runtime::Builder::new_current_thread().enable_time().build().unwrap();
+        let runtime = tokio::runtime::Builder::new_current_thread()
+            .enable_time()
+            .build()
+            .unwrap();
         let before = service.stop_signal(None);
         assert_eq!(runtime.block_on(service.stop_capture()), (false, None));
         let prevented = |task, signal: &StopSignal| match service.lease_until(task, signal) {
@@ -253,7 +256,10 @@ mod tests {
             assert!(prevented(AxisTask::Moving, &signal));
             assert!(prevented(AxisTask::Capturing, &signal));
         }
-        assert!(!prevented(AxisTask::Moving, &service.stop_signal(Some(known + 1))));
+        assert!(!prevented(
+            AxisTask::Moving,
+            &service.stop_signal(Some(known + 1))
+        ));
         service.shut_down(Failure::new(Kind::Interrupted, "the test ends"));
         assert!(thread.join());
     }
