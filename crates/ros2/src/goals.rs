@@ -166,9 +166,9 @@ impl<C: Send + 'static> Goals<C> {
             let begun = || own.change(info.id, |goal| goal.has_begun = true);
             let run = AssertUnwindSafe(|| own.runner.run(request, &own_stop, &begun));
             let end = catch_unwind(run).unwrap_or_else(|_| {
-                // Nobody could cancel it any more.
+                // A goal that has ended cannot be cancelled, and its motion must not go on.
                 own_stop.request(None);
-                let what = "the thread of the goal panicked; its motion is stopped";
+                let what = "the thread of the goal panicked; a stop of its motion was requested";
                 (None, Some(Failure::new(Kind::Incomplete, what)))
             });
             own.end(info.id, end);

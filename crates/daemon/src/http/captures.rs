@@ -68,7 +68,10 @@ pub fn body<T: DeserializeOwned>(headers: &HeaderMap, body: &Bytes) -> Result<T,
 pub fn stop_signal(service: &DeviceService, headers: &HeaderMap) -> Result<StopSignal, Refusal> {
     let known = headers.get(STOPS).map(|value| {
         let number = value.to_str().ok().and_then(|text| text.parse().ok());
-        number.ok_or_else(|| Refusal::usage(format!("{STOPS}: expected the stops of a status")))
+        number.ok_or_else(|| {
+            let text = format!("{STOPS}: expected the stops of a status, got {value:?}");
+            Refusal::usage(text)
+        })
     });
     Ok(service.stop_signal(known.transpose()?))
 }
