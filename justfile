@@ -46,6 +46,12 @@ kills *ARGS:
 windows:
     tests/foreign/windows
 
+# Type-checks what runs on macOS. There is no C compiler for it: nothing is linked.
+macos:
+    rustup target add aarch64-apple-darwin
+    CC_aarch64_apple_darwin=true AR_aarch64_apple_darwin=true cargo check --target aarch64-apple-darwin --no-default-features \
+      -p velomotion-cloud -p velomotion-io -p velomotion-engine -p velomotion-daemon -p velomotion -p velomotion-python --locked
+
 # Captures beside 8 busy loops, by the command and by a daemon: each must be complete; --captures N --loops N for others.
 load *ARGS:
     cargo test -p velomotion --test load --locked -- --captures 10 {{ARGS}}

@@ -5,6 +5,7 @@
 use std::sync::OnceLock;
 
 mod counts;
+mod links;
 mod manifests;
 mod modules;
 
@@ -177,4 +178,10 @@ fn the_binary_is_thin() {
         files <= 12,
         "commands/capture.rs needs {files} files of the binary"
     );
+}
+
+#[test]
+fn links_lead_somewhere_and_the_book_lists_its_pages() {
+    let broken = links::broken();
+    assert!(broken.is_empty(), "{broken:#?}");
 }

@@ -30,6 +30,7 @@ def program(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
+    monkeypatch.setenv("PATH", str(Path(name).resolve().parent), prepend=os.pathsep)
 
     def run(*words):
         done = subprocess.run([name, *map(str, words), "--json"], capture_output=True, text=True)

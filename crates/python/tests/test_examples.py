@@ -39,22 +39,16 @@ def test_the_comparison_of_speed_runs():
     assert "velodyne-decoder" in done.stdout and "times" in done.stdout
 
 
-def test_the_pages_python_runs(tmp_path, monkeypatch):
-    page = (ROOT / "docs" / "src" / "python.md").read_text()
-    blocks = re.findall(r"^```python\n(.*?)^```$", page, re.M | re.S)
-    assert len(blocks) >= 3
-    monkeypatch.chdir(tmp_path)
+@pytest.mark.parametrize("page", ["docs/src/python.md", "docs/src/open-a-cloud.md", "crates/python/README.md"])
+def test_the_python_of_a_page_runs(page, program, tmp_path):
+    blocks = re.findall(r"^```python\n(.*?)^```$", (ROOT / page).read_text(), re.M | re.S)
+    assert blocks
     (tmp_path / "walk.pcap").write_bytes((RECORDINGS / "vlp16-dual.pcap").read_bytes())
     (tmp_path / "mount.toml").write_text("[mount]\nd_m = 0.06\n")
+    if "hall.pcapng" in "".join(blocks):
+        velomotion.simulate("hall", "hall.pcapng")
+        for cloud in ["hall.ply", "hall.laz"]:
+            program("replay", "hall.pcapng", "-o", cloud)
     names = {}
     for block in blocks:
-        exec(compile(block, "python.md", "exec"), names)
-
-
-@pytest.mark.parametrize("readme", ["crates/python/README.md"])
-def test_the_readmes_python_runs(readme, tmp_path, monkeypatch):
-    blocks = re.findall(r"^```python\n(.*?)^```$", (ROOT / readme).read_text(), re.M | re.S)
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "walk.pcap").write_bytes((RECORDINGS / "vlp16-dual.pcap").read_bytes())
-    for block in blocks:
-        exec(compile(block, readme, "exec"), {})
+        exec(compile(block, page, "exec"), names)

@@ -1,0 +1,87 @@
+//! Links between the repository's pages, and the book's list of pages.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use crate::manifests::root;
+
+/// Links that lead nowhere, and pages of the book that its summary lacks, as "page: link".
+pub fn broken() -> Vec<String> {
+    let book = root().join("docs/src");
+    let mut pages = vec![
+        root().join("README.md"),
+        root().join("crates/python/README.md"),
+    ];
+    pages.extend(["ARCHITECTURE.md", "CONTRIBUTING.md"].map(|name| root().join(name)));
+    let of_book = markdown_in(&book);
+    pages.extend(of_book.iter().cloned());
+    let mut broken = Vec::new();
+    for page in pages {
+        let text = read(&page);
+        for link in links_of(&text) {
+            let (file, heading) = link.split_once('#').unwrap_or((&link, ""));
+            let target = match file {
+                "" => page.clone(),
+                _ => page.parent().expect("a folder").join(file),
+            };
+            let is_known = match heading {
+                "" => target.exists(),
+                _ => target.is_file() && headings_of(&read(&target)).contains(heading),
+            };
+            if !is_known {
+                broken.push(format!("{}: {link}", page.display()));
+            }
+        }
+    }
+    let summary = links_of(&read(&book.join("SUMMARY.md")));
+    for page in of_book {
+        let name = page
+            .file_name()
+            .expect("a file")
+            .to_string_lossy()
+            .into_owned();
+        if name != "SUMMARY.md" && !summary.contains(&name) {
+            broken.push(format!("SUMMARY.md lacks {name}"));
+        }
+    }
+    broken
+}
+
+fn read(page: &Path) -> String {
+    std::fs::read_to_string(page).unwrap_or_else(|error| panic!("{}: {error}", page.display()))
+}
+
+fn markdown_in(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).expect("the book's folder");
+    let files = entries.map(|entry| entry.expect("an entry").path());
+    files
+        .filter(|file| file.extension().is_some_and(|extension| extension == "md"))
+        .collect()
+}
+
+/// The targets of `[text](target)` within the repository, outside blocks of code.
+fn links_of(text: &str) -> Vec<String> {
+    let prose: Vec<&str> = text.split("\n```").step_by(2).collect();
+    let prose = prose.join("\n");
+    let ends = prose.split("](").skip(1);
+    let targets = ends.filter_map(|rest| rest.split_once(')'));
+    targets
+        .map(|(target, _)| target.to_owned())
+        .filter(|target| !target.contains("://") && !target.starts_with("mailto:"))
+        .collect()
+}
+
+/// The names by which links call the headings of a page.
+fn headings_of(text: &str) -> BTreeSet<String> {
+    let headings = text.lines().filter(|line| line.starts_with('#'));
+    let names = headings.map(|line| {
+        let title = line.trim_start_matches('#').trim().to_lowercase();
+        let kept = title.chars().filter_map(|c| match c {
+            ' ' => Some('-'),
+            _ if c.is_alphanumeric() || "-_".contains(c) => Some(c),
+            _ => None,
+        });
+        kept.collect()
+    });
+    names.collect()
+}
