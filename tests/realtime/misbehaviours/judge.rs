@@ -10,8 +10,8 @@ use crate::run::{Kept, MAX_GAP, Outcome, Transport};
 const MARKS: (&str, &str) = ("<!-- table -->\n", "<!-- end of the table -->");
 /// Seconds without a request that show a machine too busy for the client.
 const MAX_SILENCE: f64 = 0.02;
-/// The same, of client or drive, where a brake stops the axis: [`BRAKED`] spares 3 ms of a sweep,
-/// and a quiet machine's pauses are of 2 ms.
+/// The same, of client or drive, where a brake stops the axis, for one pause and for all together:
+/// [`BRAKED`] spares 3 ms of a sweep, and a quiet machine's pauses are of 2 ms.
 const MAX_PAUSE_BRAKED: f64 = 0.004;
 /// Milliseconds from the sample that shows it to the first stop; and where nothing shows it.
 const STOP_MS: f64 = 50.0;
@@ -22,6 +22,8 @@ const SILENT_MS: f64 = 1_600.0;
 const BEYOND: f64 = 0.1;
 /// The same where a quick stop is ignored and the brake stops the axis.
 const BRAKED: f64 = 0.5;
+/// The same over RS232, where a sample takes 2.7 ms instead of 1.0 to 1.4 ms.
+const BRAKED_RS232: f64 = 1.0;
 /// The same where the first power off is lost, too.
 const BRAKED_LATE: f64 = 2.0;
 /// The same where the axis moves at 112 deg/s to a limit switch, which is read every 80 ms.
@@ -36,6 +38,7 @@ pub struct Verdict {
     beyond: f64,
     /// Degrees of a quick stop from the highest speed of the axis.
     ramp: f64,
+    is_rs232: bool,
     /// Milliseconds, and degrees at that speed, that a busy machine may add.
     delayed: (f64, f64),
     stop_ms: Option<f64>,
@@ -62,7 +65,7 @@ impl Verdict {
     }
 
     /// Judges a run, in which the machine may hold up the client for `allowed` seconds.
-    pub fn of(row: &Misbehaviour, outcome: &Outcome, allowed: f64) -> Self {
+    pub fn of(row: &Misbehaviour, transport: Transport, outcome: &Outcome, allowed: f64) -> Self {
         let drive = &outcome.drive;
         let began = drive.record.began.unwrap_or(f64::INFINITY);
         let last = drive.record.truth.last().map_or(0.0, |truth| truth.at);
@@ -78,16 +81,19 @@ impl Verdict {
         let is_held_up = is_shown && !row.name.contains("output unread");
         let speed = drive.record.highest_speed().max(56.25);
         // An undisturbed run is judged as the table states it.
-        let (max_gap, max_silence) = match row.expect {
-            Expect::Braked | Expect::BrakedLate => (MAX_PAUSE_BRAKED, MAX_PAUSE_BRAKED),
-            _ => (MAX_GAP, MAX_SILENCE),
+        let is_delayed = match row.expect {
+            Expect::Braked | Expect::BrakedLate => {
+                let longest = outcome.gap.max(outcome.silence);
+                longest.max(outcome.held_up) > MAX_PAUSE_BRAKED
+            }
+            _ => outcome.gap > MAX_GAP || outcome.silence > MAX_SILENCE,
         };
-        let is_delayed = outcome.gap > max_gap || outcome.silence > max_silence;
         let allowed = if is_delayed { allowed } else { 0.0 };
         let mut verdict = Self {
             travel: drive.record.travel(began),
             beyond: drive.record.beyond(0.0),
             ramp: speed.powi(2) / 500.0 / 2.0,
+            is_rs232: transport == Transport::Rs232,
             delayed: (allowed * 1e3, allowed * speed),
             stop_ms: outcome.stop_ms(),
             moving: drive.record.travel(last - 0.1) > 0.03,
@@ -146,6 +152,7 @@ impl Verdict {
                 Expect::Unstoppable | Expect::Falls => f64::INFINITY,
                 Expect::HomingBound | Expect::HomingStopped => f64::INFINITY,
                 Expect::Unseen => UNSEEN,
+                Expect::Braked if self.is_rs232 => BRAKED_RS232,
                 Expect::Braked => BRAKED,
                 Expect::BrakedLate => BRAKED_LATE,
                 _ => BEYOND,

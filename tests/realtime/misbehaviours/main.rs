@@ -140,7 +140,7 @@ fn one(row: &'static Misbehaviour, transport: Transport, allowed: f64) -> Verdic
     let mut verdict = Verdict::default();
     for _ in 0..TRIES {
         verdict = match run::run(row, transport) {
-            Ok(outcome) => Verdict::of(row, &outcome, allowed),
+            Ok(outcome) => Verdict::of(row, transport, &outcome, allowed),
             Err(why) => Verdict::failed(why),
         };
         if !verdict.is_disturbed || allowed > 0.0 && verdict.wrong.is_empty() {

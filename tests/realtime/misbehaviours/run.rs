@@ -27,6 +27,8 @@ const AFTERWARDS: Duration = Duration::from_millis(400);
 const TRIED: Duration = Duration::from_secs(3);
 /// A drive whose thread did not run for so many seconds misbehaves in a way of its own.
 pub const MAX_GAP: f64 = 0.012;
+/// Longest time between two requests on a quiet machine, of the slowest link.
+const BETWEEN_REQUESTS: f64 = 0.003;
 
 /// How the client reaches the drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,6 +85,8 @@ pub struct Outcome {
     /// Longest time without a request between the beginning and the first stop, and from then on
     /// while the axis moves under power.
     pub silence: f64,
+    /// Sum of what such times exceed [`BETWEEN_REQUESTS`] by.
+    pub held_up: f64,
 }
 
 /// What the threads of a run share.
@@ -126,7 +130,8 @@ pub fn run(row: &'static Misbehaviour, transport: Transport) -> Result<Outcome, 
             _ => AFTERWARDS,
         });
         shared.end.store(true, Ordering::Release);
-        let (drive, gap, silence) = device.join().map_err(|_| "the fake drive panicked")?;
+        let (drive, [gap, silence, held_up]) =
+            device.join().map_err(|_| "the fake drive panicked")?;
         let read = |name| {
             let bytes = std::fs::read(folder.path().join(name)).unwrap_or_default();
             String::from_utf8_lossy(&bytes).into_owned()
@@ -139,6 +144,7 @@ pub fn run(row: &'static Misbehaviour, transport: Transport) -> Result<Outcome, 
             kept: kept(folder.path()),
             gap,
             silence,
+            held_up,
         })
     })
 }
@@ -251,21 +257,20 @@ fn terminate(child: &Child) -> Result<(), String> {
     sent.map(drop).map_err(|error| error.to_string())
 }
 
-/// Runs the drive until the end; returns it with the longest pauses of its thread and of the
-/// client.
+/// Runs the drive until the end; returns it with the outcome's `gap`, `silence` and `held_up`.
 fn be_drive(
     pty: Pty,
     row: &'static Misbehaviour,
     transport: Transport,
     shared: &Shared,
-) -> (Drive, f64, f64) {
+) -> (Drive, [f64; 3]) {
     let mut pty = Some(pty);
     let mut link = transport.link();
     let mut drive = Drive::new(-8.0);
     drive.record.can = transport == Transport::Slcan;
     drive.arm(row);
     let (mut buffer, mut last, mut received) = ([0; 512], 0.0, 0.0);
-    let (mut longest, mut silence) = (0.0_f64, 0.0_f64);
+    let (mut longest, mut silence, mut held_up) = (0.0_f64, 0.0_f64, 0.0_f64);
     while !shared.end.load(Ordering::Acquire) {
         let read = match &mut pty {
             Some(port) => port
@@ -290,13 +295,16 @@ fn be_drive(
         let bytes = buffer
             .get(..read.map_or(0, |(count, _)| count))
             .unwrap_or_default();
+        let is_driven = drive.axis.powered && drive.axis.speed.abs() > 0.1;
+        let is_judged = |began| drive.record.first_stop(began).is_none() || is_driven;
+        let is_judged = drive.record.began.is_some_and(is_judged);
         if !bytes.is_empty() {
+            if is_judged {
+                held_up += (now - received - BETWEEN_REQUESTS).max(0.0);
+            }
             received = now;
         }
-        let is_driven = drive.axis.powered && drive.axis.speed.abs() > 0.1;
-        if let Some(began) = drive.record.began
-            && (drive.record.first_stop(began).is_none() || is_driven)
-        {
+        if is_judged {
             silence = silence.max(now - received);
         }
         let is_dead = drive.boots_at.is_some() || drive.faults.is_deaf;
@@ -326,7 +334,7 @@ fn be_drive(
             shared.half.store(true, Ordering::Release);
         }
     }
-    (drive, longest, silence)
+    (drive, [longest, silence, held_up])
 }
 
 fn kept(folder: &Path) -> Kept {
