@@ -121,6 +121,7 @@ fn replayed(log: &Path, accuracy: Accuracy, cloud: &Path) -> (u64, String) {
         truth: None,
         live: false,
         lost_records: 0,
+        georeference: None,
         interrupt: &AtomicBool::new(false),
     };
     let target = Target::open(cloud, Fields::FILE, false).unwrap();

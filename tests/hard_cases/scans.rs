@@ -437,6 +437,7 @@ fn request<'a>(recording: &'a Source, interrupt: &'a AtomicBool) -> Reconstructi
         truth: None,
         live: false,
         lost_records: 0,
+        georeference: None,
         interrupt,
     }
 }

@@ -417,6 +417,7 @@ impl Captured {
             truth: None,
             live: false,
             lost_records: 0,
+            georeference: None,
             interrupt: &AtomicBool::new(false),
         };
         let scan = replay::scan(&request, &mut points, Path::new("memory"))?;
@@ -454,6 +455,7 @@ impl Captured {
             truth: None,
             live: false,
             lost_records: 0,
+            georeference: None,
             interrupt: &AtomicBool::new(false),
         };
         replay::make(&request, Target::open(&path, Fields::FILE, false).unwrap()).unwrap();

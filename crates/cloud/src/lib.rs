@@ -24,6 +24,7 @@
 
 mod columns;
 mod diagnostic;
+mod east_north_up;
 mod error;
 pub mod formats;
 pub mod messages;
@@ -40,6 +41,7 @@ mod tilt_track;
 
 pub use columns::{Column, Fields, MissingColumns};
 pub use diagnostic::{Diagnostic, DiagnosticLevel};
+pub use east_north_up::EastNorthUp;
 pub use error::SinkError;
 pub use metadata::Metadata;
 pub use points::{Point, Points, Spare};

@@ -2,8 +2,10 @@
 //!
 //! It contains no wall-clock time, user or host name: the same log must give the same file.
 
+use crate::EastNorthUp;
+
 /// Contents of a file's header, for all formats.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Metadata {
     /// Whether the devices were simulated. Every format marks that as early as it can.
     pub simulated: bool,
@@ -17,6 +19,8 @@ pub struct Metadata {
     pub dual_return: bool,
     /// Whether the points are in the sensor's own frame, without tilt.
     pub sensor_frame: bool,
+    /// Axes of a georeferenced file, into which its writer turns the points of the scanner.
+    pub east_north_up: Option<EastNorthUp>,
     /// Further comments; several lines become several comments.
     pub comments: Vec<String>,
 }
@@ -48,9 +52,11 @@ impl Metadata {
             true => "the sensor, not tilted",
             false => "the tilt axis; tilt in degrees",
         };
-        text.push(format!(
-            "frame: x right, y forward, z up in metres from {origin}"
-        ));
+        // `velomotion view` draws the scanner in clouds whose metres count from the tilt axis.
+        text.push(match self.east_north_up {
+            None => format!("frame: x right, y forward, z up in metres from {origin}"),
+            Some(_) => format!("frame: x east, y north, z up in metres, origin at {origin}"),
+        });
         text.extend(self.comments.iter().cloned());
         text.iter().flat_map(|text| printable(text)).collect()
     }

@@ -270,6 +270,15 @@ impl Points {
             .map(|((&x, &y), &z)| [x, y, z])
     }
 
+    /// Replaces every position by `place` of it, metres.
+    pub(crate) fn map_positions(&mut self, place: impl Fn([f64; 3]) -> [f64; 3]) {
+        let len = self.len;
+        let rows = self.x_m.iter_mut().zip(&mut self.y_m).zip(&mut self.z_m);
+        for ((x, y), z) in rows.take(len) {
+            [*x, *y, *z] = place([*x, *y, *z]);
+        }
+    }
+
     /// Count and bounds.
     #[must_use]
     pub fn summary(&self) -> Summary {

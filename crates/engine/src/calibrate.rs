@@ -181,6 +181,7 @@ pub(crate) fn read(
         truth: None,
         live: false,
         lost_records: 0,
+        georeference: None,
         interrupt,
     };
     let mut points = Points::new(Scan::FIELDS);

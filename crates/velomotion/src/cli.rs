@@ -18,7 +18,8 @@ mod values;
 
 use values::{
     acceleration, address_and_port, azimuth, captured_model, deceleration, degrees, effect_or_all,
-    lidar_sheet, metres, millimetres, number, place, seconds, share, threads, two_times, whole,
+    heading, lidar_sheet, metres, millimetres, number, place, seconds, share, threads, two_times,
+    whole,
 };
 
 /// Version, and the commit of the build.
@@ -196,6 +197,11 @@ pub struct Replay {
     /// on, NAME.mcap one file
     #[arg(long, value_name = "DEG", allow_negative_numbers = true, value_parser = azimuth)]
     pub frames: Option<f64>,
+    /// Turn the cloud into a local frame, x east, y north, z up, at the position of the lidar's
+    /// satellite receiver: heading of the scanner's y axis (forward) clockwise from true north,
+    /// such as 30deg; the base is taken as level
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = heading)]
+    pub georeference: Option<f64>,
     /// Report how far the points of the live view are from the cloud
     #[arg(long, conflicts_with = "frames")]
     pub live: bool,

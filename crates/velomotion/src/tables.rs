@@ -220,6 +220,11 @@ pub fn scan_table(scan: &ScanReport) -> String {
         ));
     }
     rows.extend(scan.live.iter().map(|live| ("live view", live_line(live))));
+    if let Some(georeference) = &scan.georeference {
+        rows.extend(georeference.frame());
+        let clauses = georeference.accuracy.split("; ");
+        rows.extend(clauses.map(|clause| ("", clause.to_owned())));
+    }
     rows.push(("cloud", cloud_line(scan)));
     rows.push(("log", scan.log.clone()));
     if let Some(reception) = &scan.reception {

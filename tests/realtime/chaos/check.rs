@@ -157,6 +157,7 @@ fn points_of(log: &Path) -> Option<u64> {
         truth: None,
         live: false,
         lost_records: 0,
+        georeference: None,
         interrupt: &AtomicBool::new(false),
     };
     let scan = replay::scan(&request, &mut points, Path::new("memory"));

@@ -85,6 +85,108 @@ fn a_real_recording_becomes_a_cloud() {
     );
 }
 
+/// Text of a cloud as CSV: comments and rows.
+fn comments_and_rows(csv: &Path) -> (String, Vec<String>) {
+    let text = std::fs::read_to_string(csv).unwrap();
+    let (comments, rows): (Vec<&str>, Vec<&str>) =
+        text.lines().partition(|line| line.starts_with('#'));
+    let rows = rows.into_iter().map(str::to_owned).collect();
+    (comments.join("\n"), rows)
+}
+
+#[test]
+fn a_georeferenced_cloud_is_in_east_north_up_in_every_format() {
+    let path = recording("vlp16-strongest-gps.pcap");
+    let place = Place::new();
+    let replay = |options: &str| {
+        let line = format!("replay {} --tilt none {options} --json", path.display());
+        let output = place.run(&line);
+        assert!(output.status.success(), "{options}: {output:?}");
+        json(&output)
+    };
+    assert!(replay("-o plain.csv").get("georeference").is_none());
+    let (_, plain) = comments_and_rows(&place.path("plain.csv"));
+    let scan = replay("--georeference 90deg -o turned.csv");
+    let georeference = &scan["georeference"];
+    let degrees = |key: &str| georeference["origin"][key].as_f64().unwrap();
+    assert!((degrees("latitude_deg") - 36.829_131).abs() < 1e-6);
+    assert!((degrees("longitude_deg") + 2.407_572).abs() < 1e-6);
+    assert_eq!(georeference["heading_deg"], 90.0);
+    assert_eq!(georeference["pps"], "locked");
+    // Its five position packets repeat one sentence.
+    assert_eq!(
+        (&georeference["fixes"], &georeference["spread_worst_m"]),
+        (&1.into(), &0.0.into())
+    );
+    let (comments, turned) = comments_and_rows(&place.path("turned.csv"));
+    for part in [
+        "frame: x east, y north, z up in metres",
+        "origin: 36.829131, -2.407572 deg (WGS 84), pulse locked",
+        "heading: y forward was 90 deg clockwise from true north",
+        "15 m (95 %)",
+        "1 deg of heading is 349 mm at 20 m",
+    ] {
+        assert!(comments.contains(part), "no {part:?} in {comments}");
+    }
+    assert_eq!(plain.len(), turned.len());
+    for (plain, turned) in plain.iter().zip(&turned).skip(1) {
+        let split = |row: &str| {
+            let mut cells = row.splitn(4, ',').map(str::to_owned);
+            let axes = [0; 3].map(|_| cells.next().unwrap().parse::<f64>().unwrap());
+            (axes, cells.next())
+        };
+        let (([x, y, z], rest), ([east, north, up], same)) = (split(plain), split(turned));
+        assert!((east - y).abs() < 1e-12 && (north + x).abs() < 1e-12);
+        assert_eq!((z, rest), (up, same));
+    }
+    // A heading of 0 changes nothing but the names of the axes.
+    replay("--georeference 0 -o north.csv");
+    assert_eq!(comments_and_rows(&place.path("north.csv")).1, plain);
+    let read = |name: &str| {
+        let path = place.path(name);
+        let format = cloud::formats::Format::from_path(&path).unwrap();
+        let bytes = std::fs::read(&path).unwrap();
+        let cloud = cloud::read::cloud(format, bytes, cloud::Fields::NONE).unwrap();
+        cloud.positions
+    };
+    let expected = read("turned.csv");
+    for format in cloud::formats::Format::ALL {
+        let name = format!("turned.{format}");
+        replay(&format!("--georeference=-270deg --force -o {name}"));
+        let positions = read(&name);
+        assert_eq!(positions.len(), expected.len(), "{format}");
+        for (got, expected) in positions.iter().zip(&expected) {
+            let is_close = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-4;
+            assert!(got.iter().zip(expected).all(is_close), "{format}: {got:?}");
+        }
+    }
+    // An organised frame has its rows turned, too.
+    replay("--georeference 90 --frames 0 --organised -o grid.pcd");
+    let grid = std::fs::read(place.path("grid-00000.pcd")).unwrap();
+    let grid = String::from_utf8_lossy(&grid).into_owned();
+    assert!(grid.contains("frame: x east, y north, z up in metres"));
+}
+
+#[test]
+fn a_georeference_needs_a_fix_and_a_heading() {
+    let place = Place::new();
+    let path = recording("vlp16-dual.pcap");
+    let line = format!("replay {} --tilt none -o cloud.ply", path.display());
+    let words = [
+        "vlp16-dual.pcap",
+        "--georeference",
+        "valid fixes",
+        "found none in 0",
+    ];
+    place.fails(&format!("{line} --georeference 30deg"), 3, &words);
+    for heading in ["north", "361", "30rad", "nan"] {
+        let words = ["expected a heading from -360 to 360 degrees"];
+        place.fails(&format!("{line} --georeference {heading}"), 2, &words);
+    }
+    let line = format!("replay {} -o copy.pcap --georeference 30", path.display());
+    place.fails(&line, 2, &["--georeference is for clouds"]);
+}
+
 #[test]
 fn a_recording_goes_from_stdin_to_stdout() {
     let output = Command::new(env!("CARGO_BIN_EXE_velomotion"))

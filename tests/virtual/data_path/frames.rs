@@ -24,6 +24,7 @@ fn frames(log: &Path, output: &Path, organised: bool) -> ScanReport {
         truth: None,
         live: false,
         lost_records: 0,
+        georeference: None,
         interrupt: &AtomicBool::new(false),
     };
     let plan = FramePlan {

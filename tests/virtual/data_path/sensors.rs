@@ -58,6 +58,7 @@ fn scan(log: &Path, sensor: Option<&str>) -> Result<ScanReport, Failure> {
         truth: None,
         live: false,
         lost_records: 0,
+        georeference: None,
         interrupt: &AtomicBool::new(false),
     };
     replay::scan(

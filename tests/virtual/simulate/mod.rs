@@ -141,6 +141,7 @@ fn replayed(log: &Path, tilt: TiltSource) -> (ScanReport, Points) {
         truth: None,
         live: false,
         lost_records: 0,
+        georeference: None,
         interrupt: &AtomicBool::new(false),
     };
     let scan = replay::scan(&request, &mut points, Path::new("memory")).unwrap();

@@ -5,7 +5,9 @@ use std::error::Error;
 use std::io;
 
 use super::stage::Stage;
-use crate::{Companion, Fields, Metadata, Points, Sink, SinkError, Summary, TiltTrack};
+use crate::{
+    Companion, EastNorthUp, Fields, Metadata, Points, Sink, SinkError, Summary, TiltTrack,
+};
 
 /// Encodes a file. [`FileSink`] calls it in the order begin, points (any number), finish.
 pub trait FormatEncoder {
@@ -102,6 +104,7 @@ impl EncodeError {
 pub struct FileSink<E> {
     pub(super) encoder: E,
     fields: Fields,
+    east_north_up: Option<EastNorthUp>,
     stage: Stage,
     summary: Summary,
 }
@@ -112,6 +115,7 @@ impl<E: FormatEncoder> FileSink<E> {
         Self {
             encoder,
             fields,
+            east_north_up: None,
             stage: Stage::default(),
             summary: Summary::default(),
         }
@@ -129,6 +133,7 @@ impl<E: FormatEncoder> Sink for FileSink<E> {
         let format = self.encoder.format();
         self.stage.points(format)?;
         batch.fields().require(self.fields)?;
+        let batch = &*EastNorthUp::applied(self.east_north_up, batch);
         if let Some(limit_m) = self.encoder.limit_m() {
             batch.check_coordinates(format, limit_m, self.summary.points)?;
         }
@@ -148,6 +153,7 @@ impl<E: FormatEncoder> Sink for FileSink<E> {
         self.stage.begin(self.encoder.format())?;
         let begun = self.encoder.begin(metadata);
         begun.map_err(|fault| self.error(fault))?;
+        self.east_north_up = metadata.east_north_up;
         self.stage = Stage::Open;
         Ok(())
     }

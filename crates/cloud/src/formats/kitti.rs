@@ -1,5 +1,7 @@
 //! The `.bin` of KITTI (Geiger et al. 2013, "Vision meets robotics: The KITTI dataset"): of each
 //! point x forward, y left, z up in metres and the reflectance from 0 to 1, as little-endian f32.
+//! Georeferenced clouds are turned alike, to x north, y west, so that readers need not tell them
+//! apart.
 //!
 //! The file has no place for anything else. Its metadata are in a text file of its name beside it.
 
@@ -65,7 +67,10 @@ impl<W: Write> FormatEncoder for KittiEncoder<W> {
 
     fn companion(&self, file_name: &str) -> Option<Companion> {
         let columns = "x y z, reflectance from 0 to 1, each f32";
-        let turned = |line: &String| line.replace("x right, y forward", "x forward, y left");
+        let turned = |line: &String| {
+            line.replace("x right, y forward", "x forward, y left")
+                .replace("x east, y north", "x north, y west")
+        };
         let lines: Vec<String> = self.lines.iter().map(turned).collect();
         Some(Companion::metadata(file_name, columns, &lines))
     }
@@ -95,6 +100,15 @@ mod tests {
         assert_eq!(row, [y, -x, z, f32::from(point.intensity) / 255.0]);
         let companion = writer.companion("scan.bin").unwrap();
         assert_eq!(companion.name, "scan.bin.txt");
+        let axes = Some(crate::EastNorthUp::new(units::Degrees(0.0)));
+        let georeferenced = Metadata {
+            east_north_up: axes,
+            ..metadata()
+        };
+        let mut turned = KittiWriter::new(Vec::new());
+        turned.begin(&georeferenced).unwrap();
+        let beside = turned.companion("scan.bin").unwrap();
+        assert!(beside.text.contains("\nframe: x north, y west, z up"));
         for part in ["\nSIMULATED", "\nframe: x forward, y left, z up"] {
             assert!(companion.text.contains(part), "{}", companion.text);
         }

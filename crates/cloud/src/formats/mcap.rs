@@ -30,8 +30,8 @@ use crate::messages::{
     Cloud, Frames, MessageSplitter, Time, Topic, diagnostic_array, joint_state, tf_message,
 };
 use crate::{
-    Companion, Diagnostic, Fields, Metadata, Points, Revolution, Sink, SinkError, Summary,
-    TiltTrack,
+    Companion, Diagnostic, EastNorthUp, Fields, Metadata, Points, Revolution, Sink, SinkError,
+    Summary, TiltTrack,
 };
 
 pub use crate::messages::{MOST_POINTS, MOST_SPAN};
@@ -58,6 +58,7 @@ struct McapLog<W: Write + Seek> {
     fault: WriteFault,
     state: McapState<W>,
     hardware: String,
+    east_north_up: Option<EastNorthUp>,
     track: TiltTrack,
     /// Number of written samples of the track.
     samples: usize,
@@ -94,6 +95,7 @@ impl<W: Write + Seek> McapWriter<W> {
                 fault,
                 state: McapState::Idle(output),
                 hardware: String::new(),
+                east_north_up: None,
                 track: TiltTrack::default(),
                 samples: 0,
                 transformed: None,
@@ -177,7 +179,8 @@ impl<W: Write + Seek> McapLog<W> {
     fn write_mount(&mut self, at: Stamp<Host>) -> Result<(), SinkError> {
         let stamp = self.time(at)?;
         let frames = Frames::default();
-        let transforms = frames.fixed(self.track.mount);
+        let mut transforms = frames.fixed(self.track.mount);
+        transforms.extend(self.east_north_up.map(|axes| frames.in_map(axes)));
         tf_message(&mut self.cdr, stamp, &transforms);
         self.write(Topic::StaticTransforms, at)
     }
@@ -211,6 +214,7 @@ impl<W: Write + Seek> McapLog<W> {
 
     fn begin(&mut self, metadata: &Metadata) -> Result<(), SinkError> {
         self.hardware.clone_from(&metadata.source);
+        self.east_north_up = metadata.east_north_up;
         let McapState::Idle(output) = std::mem::replace(&mut self.state, McapState::Lost) else {
             return Ok(());
         };
@@ -300,6 +304,7 @@ impl<W: Write + Seek> Sink for McapWriter<W> {
     fn begin(&mut self, metadata: &Metadata) -> Result<(), SinkError> {
         self.stage.begin(FORMAT)?;
         self.log.begin(metadata)?;
+        self.clouds.east_north_up = metadata.east_north_up;
         self.stage = Stage::Open;
         Ok(())
     }

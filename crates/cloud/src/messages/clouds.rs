@@ -5,8 +5,8 @@ use std::ops::Range;
 
 use units::{Host, Span, Stamp};
 
-use super::{CloudMessage, CloudMessageError, Frames};
-use crate::{Fields, Points, Sink, SinkError, Summary, TiltTrack};
+use super::{CloudMessage, CloudMessageError, Frames, frames};
+use crate::{EastNorthUp, Fields, Points, Sink, SinkError, Summary, TiltTrack};
 
 const FORMAT: &str = "ros2";
 /// Greatest number of points of a message: 23 MB, four seconds of a VLP-16.
@@ -32,6 +32,8 @@ pub(crate) struct MessageSplitter {
     frames: Frames,
     /// Whether the caller ends clouds, one per revolution of the lidar; set before the first batch.
     pub(crate) by_revolution: bool,
+    /// Axes of georeferenced clouds, in the frame [`frames::MAP`]; set before the first batch.
+    pub(crate) east_north_up: Option<EastNorthUp>,
     /// Ends of the sweeps, in order of time.
     sweep_ends: Vec<Stamp<Host>>,
     /// Number of ends that points have passed.
@@ -49,6 +51,7 @@ impl MessageSplitter {
             format,
             frames,
             by_revolution: false,
+            east_north_up: None,
             sweep_ends: Vec::new(),
             passed: 0,
             cloud: CloudMessage::new(fields),
@@ -92,6 +95,7 @@ impl MessageSplitter {
         batch: &Points,
         take: &mut impl FnMut(Cloud<'_>) -> Result<(), SinkError>,
     ) -> Result<(), SinkError> {
+        let batch = &*EastNorthUp::applied(self.east_north_up, batch);
         let mut rows = 0..batch.len();
         while let Some(time) = batch.time().get(rows.start).copied() {
             let end = self.cloud_end(batch.time(), &rows);
@@ -104,7 +108,10 @@ impl MessageSplitter {
             }
             // A point always fits into an empty message.
             let end = end.max(rows.start + 1);
-            let frame = self.frames.of_clouds();
+            let frame = match self.east_north_up {
+                Some(_) => frames::MAP,
+                None => self.frames.of_clouds(),
+            };
             let pushed = self.cloud.push(batch, rows.start..end, frame);
             pushed.map_err(|error| self.encoding(error))?;
             rows.start = end;

@@ -33,6 +33,10 @@ pub use velodyne_scan::{PACKET_BYTES, VelodyneScan};
 
 /// The names of coordinate frames.
 pub mod frames {
+    /// The earth around the scanner: x east, y north, z up (REP 103, REP 105). Frame of
+    /// georeferenced clouds. Its origin is that of the scanner, as nothing measures the height
+    /// above the ellipsoid.
+    pub const MAP: &str = "map";
     /// The scanner with ROS's axes: x forward, y left, z up. Frame of clouds.
     pub const ROOT: &str = "base_link";
     /// The tilt axis, which does not tilt: x right, y forward, z up. Frame of clouds in files.

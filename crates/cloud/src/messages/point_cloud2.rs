@@ -2,14 +2,15 @@
 //!
 //! The fields of ROS 2's Velodyne driver in its order: x, y, z, intensity (float32), ring (uint16),
 //! time (float32, seconds after the header's stamp), 22 bytes per point without padding; then
-//! further columns. Clouds are unorganised, in ROS's axes (REP 103): x forward, y left, z up.
+//! further columns. Clouds are unorganised, in ROS's axes (REP 103): x forward, y left, z up, or
+//! east, north, up.
 
 use std::ops::Range;
 
 use units::{Host, Lidar, Stamp};
 
 use super::cdr::Cdr;
-use super::{Time, TimeOutOfRange, header};
+use super::{Time, TimeOutOfRange, frames, header};
 use crate::points::ColumnValues;
 use crate::rows::{NumberType, fill, fill_values, part};
 use crate::{Column, Fields, MissingColumns, Points};
@@ -110,8 +111,8 @@ impl CloudMessage {
         (self.first, self.last)
     }
 
-    /// Adds `rows` of a batch, turned to ROS's axes. The first batch sets the header's stamp and
-    /// `frame`.
+    /// Adds `rows` of a batch, turned to ROS's axes unless `frame` is [`frames::MAP`], whose axes
+    /// points then have. The first batch sets the header's stamp and `frame`.
     ///
     /// # Errors
     /// [`CloudMessageError`]; nothing is added then.
@@ -143,7 +144,9 @@ impl CloudMessage {
         };
         let (point_bytes, count) = (self.point_bytes, rows.len());
         let space = self.cdr.room(count * point_bytes);
-        encode(space, point_bytes, self.columns, batch, &rows, self.first);
+        let is_turned = frame != frames::MAP;
+        let columns = (point_bytes, self.columns);
+        encode(space, columns, batch, &rows, self.first, is_turned);
         self.points = self
             .points
             .saturating_add(u32::try_from(count).unwrap_or(u32::MAX));
@@ -209,27 +212,29 @@ pub(crate) const fn from_ros([forward, left, up]: [f64; 3]) -> [f64; 3] {
     [-left, forward, up]
 }
 
-/// Writes rows of a batch; `time` counts from `first`.
+/// Writes rows of a batch; `time` counts from `first`. Positions are turned to ROS's axes if
+/// `is_turned`.
 fn encode(
     space: &mut [u8],
-    point_bytes: usize,
-    columns: Fields,
+    (point_bytes, columns): (usize, Fields),
     batch: &Points,
     rows: &Range<usize>,
     first: Stamp<Host>,
+    is_turned: bool,
 ) {
     let since_first = |ns: i64| Stamp::from_nanos(ns).saturating_since(first).as_secs_f64();
     let of_lidar = |ns: i64| Stamp::<Lidar>::from_nanos(ns).as_secs_f64();
-    let axes = [batch.x_m(), batch.y_m(), batch.z_m()].map(|axis| part(axis, rows.clone()));
-    let [x, y, z] = axes;
+    let [x, y, z] =
+        [batch.x_m(), batch.y_m(), batch.z_m()].map(|column| part(column, rows.clone()));
     let positions = x.iter().zip(y).zip(z).map(|((x, y), z)| {
+        let position_m = [*x, *y, *z];
+        let position_m = if is_turned {
+            to_ros(position_m)
+        } else {
+            position_m
+        };
         let mut bytes = [0; 12];
-        for (slot, axis) in bytes
-            .as_chunks_mut::<4>()
-            .0
-            .iter_mut()
-            .zip(to_ros([*x, *y, *z]))
-        {
+        for (slot, axis) in bytes.as_chunks_mut::<4>().0.iter_mut().zip(position_m) {
             *slot = (axis as f32).to_le_bytes();
         }
         bytes

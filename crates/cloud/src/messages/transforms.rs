@@ -6,6 +6,7 @@ use units::Degrees;
 
 use super::cdr::Cdr;
 use super::{Time, frames, header};
+use crate::EastNorthUp;
 use crate::mount::Mount;
 
 /// A rotation as a unit quaternion x, y, z, w.
@@ -120,6 +121,22 @@ impl Frames {
         [axes].into_iter().chain(lidar).collect()
     }
 
+    /// Static transform of the scanner on the earth, [`frames::MAP`].
+    #[must_use]
+    pub fn in_map(&self, axes: EastNorthUp) -> Transform<'_> {
+        // Yaw is counterclockwise from x (east), the heading clockwise from y (north).
+        let yaw = Degrees(90.0 - axes.heading().0);
+        let (sin, cos) = (yaw.to_radians().0 / 2.0).sin_cos();
+        Transform {
+            parent: frames::MAP,
+            child: &self.root,
+            translation_m: [0.0; 3],
+            rotation: Rotation {
+                quaternion: [0.0, 0.0, sin, cos],
+            },
+        }
+    }
+
     /// Static transform of the frame of raw packets.
     #[must_use]
     pub fn of_packets(&self) -> Transform<'_> {
@@ -216,6 +233,22 @@ mod tests {
             turned(packets.rotation, [0.0, 1.0, 0.0]),
             [-1.0, 0.0, 0.0]
         ));
+    }
+
+    /// A cloud in `map` and one in `base_link` are the same.
+    #[test]
+    fn the_scanner_on_the_earth_agrees_with_the_axes_of_points() {
+        for heading in [-90.0, 0.0, 30.0, 123.4, 270.0] {
+            let axes = EastNorthUp::new(Degrees(heading));
+            let frames = Frames::default();
+            let map = frames.in_map(axes);
+            assert_eq!((map.parent, map.child), ("map", "base_link"));
+            let point = [1.0, 2.0, 3.0];
+            assert!(close(
+                turned(map.rotation, to_ros(point)),
+                axes.place(point)
+            ));
+        }
     }
 
     #[test]

@@ -110,7 +110,7 @@ impl CloudCollector<'_> {
 }
 
 /// Adds the points of a `sensor_msgs/msg/PointCloud2`. Those of earlier versions of velomotion are
-/// in another frame.
+/// in another frame, and georeferenced ones in [`frames::MAP`]: neither is turned.
 fn points(message: &[u8], ours: bool, cloud: &mut StoredCloud) -> Result<(), CdrError> {
     let mut cdr = CdrReader::new(message)?;
     // Stamp and frame; height and width.
@@ -248,6 +248,8 @@ mod tests {
         for (frame, ours, expected) in [
             ("left/base_link", true, [-2.0, 1.0, 3.0]),
             ("base_link", false, [1.0, 2.0, 3.0]),
+            // Georeferenced: x east, y north.
+            ("map", true, [1.0, 2.0, 3.0]),
             // Written before clouds were in ROS's axes.
             ("tilt_base", true, [1.0, 2.0, 3.0]),
         ] {

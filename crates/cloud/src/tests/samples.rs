@@ -18,6 +18,7 @@ pub fn metadata() -> Metadata {
         time_reference: "Unix seconds, host clock".into(),
         dual_return: false,
         sensor_frame: false,
+        east_north_up: None,
         comments: vec!["first\nsecond".into()],
     }
 }

@@ -6,6 +6,7 @@ pub mod decoder_options;
 pub mod diagnostics;
 mod failures;
 pub mod frames;
+mod georeference;
 pub mod lidar_copy;
 pub mod live;
 pub mod log_view;

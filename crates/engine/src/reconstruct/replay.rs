@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use analysis::truth::Comparison;
-use cloud::{Metadata, Sink, SinkError, TiltTrack};
+use cloud::{EastNorthUp, Metadata, Sink, SinkError, TiltTrack};
 use io::recording::{Gap, Pacer, Wait};
 use lidar::{FrameCutter, Options, Stats, UtcClock, is_dual};
 use protocol::record::{DriveLink, Record, Wire};
@@ -20,6 +20,7 @@ use units::{Degrees, Host, Span, Stamp};
 use super::contents::contents;
 use super::failures::scan_failure;
 use super::frames::{FrameFiles, FramePlan, OrganisedFrames, frame_cutter};
+use super::georeference::FixSurvey;
 use super::live::{LiveDifference, LivePoints};
 use super::satellite::SatelliteReceiver;
 use super::warnings::{alignment_warnings, incomplete_sweeps};
@@ -28,7 +29,7 @@ use crate::output::{Target, sink_failure};
 use crate::reconstruct::decoder_options::{DecoderRequest, decoder_options};
 use crate::reconstruct::diagnostics;
 use crate::reconstruct::report::{
-    self, ScanReport, StepReport, SyncReport, ToleranceReport, TruthErrors,
+    self, GeoreferenceReport, ScanReport, StepReport, SyncReport, ToleranceReport, TruthErrors,
 };
 use crate::reconstruct::source::{PassSummary, Source};
 use crate::reconstruct::utc::{InUtc, UtcSurvey};
@@ -63,6 +64,9 @@ pub struct Reconstruction<'a> {
     pub live: bool,
     /// Records lost during the recording.
     pub lost_records: u64,
+    /// Heading of the scanner's y axis (forward), clockwise from true north, for a file in the
+    /// local frame x east, y north, z up. The base is taken as level.
+    pub georeference: Option<Degrees>,
     /// Stops the reconstruction when set.
     pub interrupt: &'a AtomicBool,
 }
@@ -87,6 +91,7 @@ impl<'a> Reconstruction<'a> {
             truth: None,
             live: false,
             lost_records: 0,
+            georeference: None,
             interrupt,
         })
     }
@@ -147,6 +152,7 @@ struct FirstPass {
     /// UTC clock of the lidar's receiver, if requested.
     utc: Option<UtcClock>,
     receiver: SatelliteReceiver,
+    georeference: Option<GeoreferenceReport>,
 }
 
 /// First pass: clocks, angles and sweeps.
@@ -163,6 +169,7 @@ fn survey(request: &Reconstruction<'_>) -> Result<FirstPass, Failure> {
     let mut data_span: Option<[Stamp<Host>; 2]> = None;
     let mut dual_return = None;
     let mut receiver = SatelliteReceiver::default();
+    let mut fixes = request.georeference.map(FixSurvey::new);
     let pass = source.read(|record| {
         survey.observe(record);
         if let Wire::Lidar { payload, .. } = record.wire {
@@ -174,6 +181,9 @@ fn survey(request: &Reconstruction<'_>) -> Result<FirstPass, Failure> {
                 });
             } else if let Ok(packet) = PositionPacket::new(payload) {
                 receiver.observe(&packet);
+                if let Some(fixes) = &mut fixes {
+                    fixes.observe(&packet);
+                }
             }
         }
         if let Some(utc) = &mut utc {
@@ -196,6 +206,7 @@ fn survey(request: &Reconstruction<'_>) -> Result<FirstPass, Failure> {
         Failure::new(failure.kind, message)
             .help(format!("copy it from its source again; otherwise: {help}"))
     })?;
+    let georeference = fixes.map(|fixes| fixes.report(source.path(), receiver.pps));
     Ok(FirstPass {
         config,
         drive,
@@ -205,6 +216,7 @@ fn survey(request: &Reconstruction<'_>) -> Result<FirstPass, Failure> {
         dual_return: dual_return == Some(true),
         utc: utc.map(|utc| utc.clock),
         receiver,
+        georeference: georeference.transpose()?,
     })
 }
 
@@ -446,6 +458,7 @@ fn report(
         reception: None,
         truth: None,
         live: None,
+        georeference: first_pass.georeference.clone(),
     })
 }
 
@@ -543,6 +556,10 @@ fn metadata(first_pass: &FirstPass, request: &Reconstruction<'_>) -> Metadata {
         .to_owned(),
         dual_return: first_pass.dual_return,
         sensor_frame: request.tilt == TiltSource::None,
-        comments: first_pass.receiver.comment().into_iter().collect(),
+        east_north_up: request.georeference.map(EastNorthUp::new),
+        comments: match &first_pass.georeference {
+            Some(georeference) => georeference.comments(),
+            None => first_pass.receiver.comment().into_iter().collect(),
+        },
     }
 }

@@ -360,6 +360,30 @@ pub struct ScanReport {
     /// The live view, if it was compared.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub live: Option<LiveReport>,
+    /// Frame of the cloud, if it is georeferenced.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub georeference: Option<GeoreferenceReport>,
+}
+
+/// Frame of a georeferenced cloud: x east, y north, z up.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[non_exhaustive]
+pub struct GeoreferenceReport {
+    /// Position of the frame's origin: the median of the receiver's fixes. Its height is unknown.
+    pub origin: GpsReport,
+    /// Heading of the scanner's y axis (forward), degrees clockwise from true north, as requested.
+    pub heading_deg: f64,
+    /// Fixes: sentences with a valid position, counted once each.
+    pub fixes: u64,
+    /// Median distance of the fixes from the origin, metres, without the errors that they share.
+    pub spread_p50_m: f64,
+    /// Their greatest distance.
+    pub spread_worst_m: f64,
+    /// State of the pulse per second: `absent`, `synchronising`, `locked` or `error`.
+    #[schema(schema_with = crate::document::pps_states)]
+    pub pps: String,
+    /// The accuracy in words.
+    pub accuracy: String,
 }
 
 /// Residuals of clock and angle within a part of a recording.

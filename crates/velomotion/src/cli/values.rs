@@ -120,6 +120,12 @@ pub(super) fn azimuth(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Parses a heading, degrees: `30deg` or `30`.
+pub(super) fn heading(text: &str) -> Result<f64, String> {
+    azimuth(text.strip_suffix("deg").unwrap_or(text).trim_end())
+        .map_err(|_| "expected a heading from -360 to 360 degrees, such as 30deg".to_owned())
+}
+
 /// Parses a length, metres: `20m`, `5mm` or `2cm`; a number alone is in metres.
 pub(super) fn metres(text: &str) -> Result<f64, String> {
     quantity(text, &[("mm", 1e-3), ("cm", 1e-2), ("m", 1.0), ("", 1.0)])

@@ -81,6 +81,7 @@ fn replay(
         truth: None,
         live: arguments.live,
         lost_records: 0,
+        georeference: arguments.georeference.map(Degrees),
         interrupt,
     };
     let progress = Progress::new(common);
@@ -168,6 +169,7 @@ fn cloud_options(arguments: &cli::Replay) -> impl Iterator<Item = &'static str> 
         ("--realtime", arguments.realtime.is_some()),
         ("--time", arguments.time != cli::TimeArgument::Host),
         ("--frames", arguments.frames.is_some()),
+        ("--georeference", arguments.georeference.is_some()),
         ("--live", arguments.live),
         ("--model", lidar.model.is_some()),
         ("--calibration", lidar.calibration.is_some()),

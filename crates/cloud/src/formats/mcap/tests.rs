@@ -130,6 +130,35 @@ fn clouds_per_sweep_are_independent_of_batches() {
 }
 
 #[test]
+fn georeferenced_clouds_are_in_the_frame_map() {
+    let metadata = Metadata {
+        east_north_up: Some(EastNorthUp::new(Degrees(90.0))),
+        ..metadata()
+    };
+    let mut writer = new();
+    writer.begin(&metadata).unwrap();
+    writer.points(&points([0, 5])).unwrap();
+    let summary = writer.finish().unwrap();
+    // Forward, 1 m, is east, and right, 0 to 5 m, is south.
+    let expected = [[1.0, 0.0, 2.0], [1.0, -5.0, 2.0]];
+    assert!((summary.bounds.unwrap().max_m[0] - 1.0).abs() < 1e-12);
+    let bytes = writer.into_inner().unwrap().into_inner();
+    let fixed = &read(&bytes)[0];
+    assert_eq!(fixed.topic, "/tf_static");
+    for frame in [&b"map\0"[..], b"base_link\0"] {
+        let names = |window: &[u8]| window == frame;
+        assert!(fixed.data.windows(frame.len()).any(names));
+    }
+    let stored = crate::read::cloud(crate::formats::Format::Mcap, bytes, Fields::NONE).unwrap();
+    for (position, expected) in stored.positions.iter().zip(expected) {
+        for (got, expected) in position.iter().zip(expected) {
+            assert!((got - expected).abs() < 1e-6, "{position:?}");
+        }
+    }
+    assert_eq!(stored.positions.len(), 2);
+}
+
+#[test]
 fn revolutions_split_clouds() {
     let batches = [
         points([0, MS]),

@@ -173,7 +173,7 @@ pub fn device(pattern: &Pattern) -> Option<DeviceReport> {
 pub struct CloudMarks {
     /// Whether the devices were simulated.
     pub simulated: bool,
-    /// Whether the origin is on the tilt axis.
+    /// Whether it is in the frame of a tilting scanner, with the origin on the tilt axis.
     pub scanner: bool,
 }
 
@@ -318,6 +318,7 @@ fn of_log(path: &Path, interrupt: &AtomicBool) -> Result<Input, Failure> {
         truth: None,
         live: false,
         lost_records: 0,
+        georeference: None,
         interrupt,
     };
     let mut kept = LogPoints {

@@ -190,8 +190,11 @@ pub fn cloud(path: &Path, format: Format) -> Result<MadeCloud, Failure> {
     })
 }
 
-/// Comment of velomotion's own clouds.
-const FRAME: &str = "frame: x right, y forward, z up in metres from ";
+/// Comments of velomotion's own clouds, of which georeferenced ones have the second.
+const FRAMES: [&str; 2] = [
+    "frame: x right, y forward, z up in metres from ",
+    "frame: x east, y north, z up in metres, origin at ",
+];
 
 /// Number of points of a PLY of velomotion, which the page reads as it is: binary, little-endian,
 /// finite coordinates and nothing but points. A file of other programs, or one that is not whole,
@@ -217,7 +220,8 @@ fn own_ply(head: &[u8], length: u64) -> Option<u64> {
     }
     let header_bytes = (end + END.len()) as u64;
     let is_whole = |points: &u64| points.checked_mul(row_bytes) == length.checked_sub(header_bytes);
-    points.filter(is_whole).filter(|_| text.contains(FRAME))
+    let is_own = FRAMES.iter().any(|frame| text.contains(frame));
+    points.filter(is_whole).filter(|_| is_own)
 }
 
 /// The names of an XYZ file's columns, which its companion has, as the header row of a text.
@@ -274,6 +278,9 @@ mod tests {
         let own = |head: &str, more: u64| own_ply(head.as_bytes(), head.len() as u64 + more);
         let whole = format!("{HEAD}end_header\n");
         assert_eq!(own(&whole, 35), Some(7));
+        let georeferenced = "x east, y north, z up in metres, origin at";
+        let georeferenced = whole.replace("x right, y forward, z up in metres from", georeferenced);
+        assert_eq!(own(&georeferenced, 35), Some(7));
         // Cut off, or with bytes that are no points.
         assert_eq!([34, 36].map(|more| own(&whole, more)), [None, None]);
         for head in [
