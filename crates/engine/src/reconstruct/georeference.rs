@@ -101,7 +101,7 @@ impl FixSurvey {
         };
         // Garmin, GPS 16x Technical Specifications (190-00228-08), 1.5.4.4: < 15 m, 95 % typical.
         let accuracy = format!(
-            "{origin}; fixes share errors: receivers such as the GPS 18x are specified to 15 m (95 %); 1 deg of heading is {:.0} mm at 20 m; the height is unknown, and the base is taken as level",
+            "{origin}; fixes share errors: receivers such as the GPS 16x are specified to 15 m (95 %); 1 deg of heading is {:.0} mm at 20 m; the height is unknown, and the base is taken as level",
             20e3 * 1.0_f64.to_radians()
         );
         Ok(GeoreferenceReport {
