@@ -45,6 +45,12 @@ pub struct CaptureRequest {
 pub const MAX_SWEEPS: u32 = 10_000;
 
 impl CaptureRequest {
+    /// Number of sweeps, the default included.
+    #[must_use]
+    pub fn sweep_count(&self) -> u32 {
+        self.sweeps.unwrap_or(if self.both_ways { 2 } else { 1 })
+    }
+
     /// Requested accuracy of the cloud.
     ///
     /// # Errors

@@ -15,16 +15,16 @@ use engine::config::ros2::Ros2;
 use engine::failure::{Failure, Kind};
 use engine::service::StopSignal;
 use engine::service::events::{Event, MessageLevel, RecvError};
-use engine::service::scan_record::{ScanState, check_name};
+use engine::service::scan_record::ScanState;
 use tokio::runtime::Runtime;
 use zenoh::qos::Priority;
 
 use crate::bridge::{self, STOP_POLL, StopFlag};
 use crate::goal_request::{GoalRequest, GoalResult, feedback_message};
 use crate::goals::{Answers, GoalEnd, GoalRunner, Goals};
-use crate::link::{Call, Channel, Declarer, Error, RouterLink};
+use crate::link::{Call, Channel, Declarer, Error, RouterLink, SERVICES};
 use crate::rmw::QualityOfService;
-use crate::{Context, ScanService};
+use crate::{Context, ScanService, check_capture};
 
 /// Between two looks of a goal whether it is cancelled, or its scan is made.
 const GOAL_POLL: Duration = Duration::from_millis(20);
@@ -116,7 +116,8 @@ pub(crate) fn declare(
     ];
     for (part, kind, serve) in services {
         let goals = Arc::clone(goals);
-        declarer.service(&format!("{name}/_action/{part}"), &kind, move |call| {
+        let name = format!("{name}/_action/{part}");
+        declarer.service(&name, &kind, SERVICES, move |call| {
             let payload = call.payload();
             serve(&goals, action, &payload, call);
         })?;
@@ -245,8 +246,7 @@ impl GoalRunner for DaemonRunner {
         let devices = self.scans.devices();
         match request {
             GoalRequest::Capture(request) => {
-                request.name.as_deref().map_or(Ok(()), check_name)?;
-                devices.plan(request, "cloud".into(), "log".into())?;
+                check_capture(request, devices.config(), devices.device())?;
             }
             GoalRequest::Move(request) => {
                 jog::commands(*request, devices.config(), devices.device().1)?;

@@ -11,7 +11,11 @@ use engine::service::events::MessageLevel;
 use tokio::runtime::{Builder, Runtime};
 
 use crate::link::{self, RouterLink};
-use crate::{Context, Counts, ScanService, actions, calls, clouds, events, packets};
+use crate::parameters::NodeParameters;
+use crate::{
+    Context, Counts, ScanService, actions, calls, check_capture, clouds, events, packets,
+    parameters,
+};
 
 /// Between two attempts to reach a router.
 const RETRY_INTERVAL: Duration = Duration::from_secs(1);
@@ -65,9 +69,10 @@ impl Bridge {
         settings: Ros2Config,
         counts: Arc<Counts>,
     ) -> Result<Self, Failure> {
+        let devices = scans.devices();
         if let Some(request) = &settings.capture {
-            let plan = scans.devices().plan(request, "cloud".into(), "log".into());
-            plan.map_err(|failure| Failure {
+            let checked = check_capture(request, devices.config(), devices.device());
+            checked.map_err(|failure| Failure {
                 message: format!("[daemon.ros2.capture]: {}", failure.message),
                 ..failure
             })?;
@@ -82,6 +87,7 @@ impl Bridge {
         let stop = StopFlag::default();
         let context = Context {
             scans: Arc::clone(scans),
+            parameters: NodeParameters::new(&settings, devices),
             settings,
             counts,
             stop: stop.clone(),
@@ -106,7 +112,8 @@ fn run(context: &Context, runtimes: &[Runtime; 4]) {
     let mut reported = false;
     while !context.stop.is_set() {
         let (inbox, waiting) = calls::queue();
-        let link = match RouterLink::open(context, &inbox, &goals) {
+        let (parameters_inbox, parameter_calls) = parameters::queue();
+        let link = match RouterLink::open(context, &inbox, &goals, &parameters_inbox) {
             Ok(link) => link,
             Err(error) => {
                 if !reported {
@@ -128,6 +135,7 @@ fn run(context: &Context, runtimes: &[Runtime; 4]) {
             scope.spawn(move || clouds::queue_finished(context, scans_runtime, &finished));
             scope.spawn(move || clouds::run(context, link, queue));
             scope.spawn(move || calls::run(context, &waiting, calls_runtime));
+            scope.spawn(move || parameters::run(context, &parameter_calls));
             let (goals, outgoing) = (&goals, &mut outgoing);
             scope.spawn(move || actions::run(context, link, goals, outgoing, goals_runtime));
             // The other threads go on without one of these.

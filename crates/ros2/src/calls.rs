@@ -18,7 +18,7 @@ use engine::service::{DeviceService, StopSignal};
 
 use crate::Context;
 use crate::bridge::STOP_POLL;
-use crate::link::{Call, Declarer, Error};
+use crate::link::{Call, Declarer, Error, SERVICES};
 
 /// Calls that wait for their answers.
 const WAITING: usize = 8;
@@ -74,7 +74,7 @@ pub fn declare(
 ) -> Result<(), Error> {
     let name = declarer.settings().resolve(service.name());
     let (devices, inbox) = (Arc::clone(devices), inbox.clone());
-    declarer.service(&name, &TRIGGER, move |call| {
+    declarer.service(&name, &TRIGGER, SERVICES, move |call| {
         let stop = devices.stop_signal(None);
         let call = TriggerCall {
             service,
@@ -106,10 +106,10 @@ pub(crate) fn run(context: &Context, calls: &Receiver<TriggerCall>, runtime: &Ru
 }
 
 fn start_capture(context: &Context, stop: &StopSignal) -> (bool, String) {
-    let Some(request) = &context.settings.capture else {
+    let Some(request) = context.parameters.capture() else {
         return (false, "no capture is configured".to_owned());
     };
-    match context.scans.start_capture(request, stop) {
+    match context.scans.start_capture(&request, stop) {
         Ok(id) => (true, id),
         Err(failure) => (false, text_of(failure)),
     }

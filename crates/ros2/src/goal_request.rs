@@ -9,7 +9,7 @@ use engine::failure::{Failure, Kind};
 use crate::actions::Action;
 
 /// Longest request, bytes.
-pub(crate) const LONGEST: usize = 1024;
+pub(crate) const LONGEST: usize = 4096;
 
 /// What a goal asks for.
 #[derive(Clone, Debug, PartialEq)]
@@ -211,7 +211,7 @@ mod tests {
             }
         }
         assert!(of([None; 4], "").contains("expected a speed"));
-        assert!(of([Some(20.0); 4], &"n".repeat(LONGEST)).contains("at most 1024 bytes"));
+        assert!(of([Some(20.0); 4], &"n".repeat(LONGEST)).contains("at most 4096 bytes"));
         // A length beyond the end of the message reserves no memory.
         let mut goal = capture_goal([Some(20.0); 4], "hall");
         let length = goal.len() - 9;

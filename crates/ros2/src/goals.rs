@@ -564,7 +564,7 @@ mod tests {
             "too many goals",
             "too fast",
             "bytes, got",
-            "at most 1024",
+            "at most 4096",
         ] {
             assert!(reports.contains(reason), "{reason}: {reports}");
         }

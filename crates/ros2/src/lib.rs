@@ -1,11 +1,11 @@
-//! The ROS 2 bridge: clouds, raw packets, the tilt joint, transforms, diagnostics, and services and
-//! actions that capture and move the axis, in the format of `rmw_zenoh` and without an installation
-//! of ROS (docs/src/ros2.md).
+//! The ROS 2 bridge: clouds, raw packets, the tilt joint, transforms, diagnostics, parameters, and
+//! services and actions that capture and move the axis, in the format of `rmw_zenoh` and without an
+//! installation of ROS (docs/src/ros2.md).
 //!
-//! Six threads: one follows events, one queues finished scans, one sends their clouds, one sends
-//! packets, one answers calls of services, one those of actions; and one for each goal under way.
-//! Nothing waits for them: what the network does not take is left out and counted. ROS 2's
-//! parameters, time from `/clock`, and DDS are left out.
+//! Seven threads: one follows events, one queues finished scans, one sends their clouds, one sends
+//! packets, one answers calls of services, one those of actions, one those of parameters; and one
+//! for each goal under way. Nothing waits for them: what the network does not take is left out and
+//! counted. Time from `/clock`, events of parameters, and DDS are left out.
 //!
 //! ```
 //! # #[cfg(feature = "zenoh")]
@@ -26,17 +26,20 @@ mod goals;
 mod latched;
 mod link;
 mod packets;
+mod parameters;
 mod rmw;
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use engine::capture::jog::JogRequest;
+use engine::capture::plan::CapturePlan;
 use engine::capture_request::CaptureRequest;
 use engine::config::ros2::Ros2 as Ros2Config;
+use engine::config::{Config, Device};
 use engine::failure::Failure;
 use engine::service::axis_report::AxisReport;
-use engine::service::scan_record::ScanView;
+use engine::service::scan_record::{ScanView, check_name};
 use engine::service::{DeviceService, StopSignal};
 use tokio::sync::oneshot;
 
@@ -76,6 +79,7 @@ pub trait ScanService: Send + Sync {
 pub(crate) struct Context {
     pub(crate) scans: Arc<dyn ScanService>,
     pub(crate) settings: Ros2Config,
+    pub(crate) parameters: parameters::NodeParameters,
     pub(crate) counts: Arc<Counts>,
     pub(crate) stop: bridge::StopFlag,
 }
@@ -84,4 +88,14 @@ impl Context {
     pub(crate) fn devices(&self) -> &Arc<DeviceService> {
         self.scans.devices()
     }
+}
+
+/// Checks a capture as the daemon does before it begins one for a client of HTTP.
+pub(crate) fn check_capture(
+    request: &CaptureRequest,
+    config: &Config,
+    device: (&str, &Device),
+) -> Result<(), Failure> {
+    request.name.as_deref().map_or(Ok(()), check_name)?;
+    CapturePlan::of(request, config, device, "cloud".into(), "log".into()).map(drop)
 }

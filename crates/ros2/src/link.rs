@@ -23,6 +23,7 @@ use crate::calls::{self, Service};
 use crate::goal_request::LONGEST;
 use crate::goals::Goals;
 use crate::latched::LatchedMessages;
+use crate::parameters;
 use crate::rmw::{self, Entity, Gid, QualityOfService};
 use crate::{Context, Counts};
 
@@ -35,7 +36,7 @@ const RETRY_MS: (u32, u32) = (250, 2_000);
 pub type Error = zenoh::Error;
 
 /// QoS of services (`rmw_qos_profile_services_default`).
-const SERVICES: QualityOfService = QualityOfService {
+pub const SERVICES: QualityOfService = QualityOfService {
     reliable: true,
     latched: false,
     depth: 10,
@@ -104,11 +105,13 @@ pub struct Declarer<'a> {
 }
 
 impl RouterLink {
-    /// Connects and declares everything; calls go to `calls`, those of actions to `goals`.
+    /// Connects and declares everything; calls go to `calls`, those of actions to `goals`, those
+    /// of parameters to `parameters`.
     pub fn open(
         context: &Context,
         calls: &calls::Inbox,
         goals: &Arc<Goals<Call>>,
+        parameters: &parameters::Inbox,
     ) -> Result<Self, Error> {
         let settings = &context.settings;
         let config = serde_json::json!({
@@ -138,6 +141,7 @@ impl RouterLink {
         for service in Service::offered(settings) {
             calls::declare(&mut declarer, service, context.devices(), calls)?;
         }
+        parameters::declare(&mut declarer, parameters)?;
         let mut actions = Vec::new();
         for action in Action::offered(settings) {
             let (feedback, status) = actions::declare(&mut declarer, *action, goals)?;
@@ -292,6 +296,7 @@ impl<'a> Declarer<'a> {
         &mut self,
         name: &str,
         kind: &MessageType,
+        quality: QualityOfService,
         take: impl Fn(Call) + Send + Sync + 'static,
     ) -> Result<(), Error> {
         self.session
@@ -304,7 +309,7 @@ impl<'a> Declarer<'a> {
             })
             .background()
             .wait()?;
-        self.announce(Entity::Service, (name, kind), SERVICES)?;
+        self.announce(Entity::Service, (name, kind), quality)?;
         Ok(())
     }
 }
@@ -344,10 +349,10 @@ impl Call {
         if let Some(request) = attachment.and_then(|bytes| rmw::request_of(&bytes)) {
             return Some(Self { query, request });
         }
-        let expected = "expected an attachment of rmw_zenoh: number, time, gid, 33 bytes";
-        if let Err(error) = query.reply_err(expected).wait() {
-            tracing::debug!("ROS 2: {error}");
-        }
+        refuse(
+            &query,
+            "expected an attachment of rmw_zenoh: number, time, gid, 33 bytes",
+        );
         None
     }
 
@@ -363,6 +368,11 @@ impl Call {
         bytes
     }
 
+    /// Refuses a call that no response of its type answers. A client's `rmw_zenoh` logs the text.
+    pub fn refuse(&self, text: &str) {
+        refuse(&self.query, text);
+    }
+
     /// Answers the call with its own number and gid.
     pub fn answer(&self, bytes: &[u8]) {
         let (number, gid) = self.request;
@@ -371,5 +381,11 @@ impl Call {
         if let Err(error) = reply.attachment(attachment).wait() {
             tracing::debug!("ROS 2: {error}");
         }
+    }
+}
+
+fn refuse(query: &Query, text: &str) {
+    if let Err(error) = query.reply_err(text).wait() {
+        tracing::debug!("ROS 2: {error}");
     }
 }

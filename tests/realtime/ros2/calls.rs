@@ -12,7 +12,7 @@ fn key(service: &str) -> String {
 }
 
 /// Calls a service. Returns success and message.
-fn call(router: &mut Peer, service: &str) -> (bool, String) {
+pub fn call(router: &mut Peer, service: &str) -> (bool, String) {
     let command = json!({ "do": "call", "key": key(service), "attachment": true });
     let printed = router.request(&command);
     let answers: Vec<&Value> = printed

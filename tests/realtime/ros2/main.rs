@@ -5,6 +5,7 @@
 mod actions;
 mod calls;
 mod network;
+mod parameters;
 mod peer;
 #[path = "../daemon/rig.rs"]
 #[allow(dead_code)] // other test programs use the rest

@@ -50,8 +50,8 @@ fn a_router_that_starts_late_or_restarts_gets_everything() {
     assert_eq!(of(2), (Some("lidar"), Some("lidar_ros")));
     let tokens = wait("all tokens", || {
         let tokens = router.tokens();
-        // A node, seven publishers, one service.
-        (tokens.len() == 9).then_some(tokens)
+        // A node, seven publishers, seven services.
+        (tokens.len() == 15).then_some(tokens)
     });
 
     drop(router);
@@ -60,7 +60,7 @@ fn a_router_that_starts_late_or_restarts_gets_everything() {
     connected(&rig, true);
     let mut again = wait("all tokens again", || {
         let tokens = router.tokens();
-        (tokens.len() == 9).then_some(tokens)
+        (tokens.len() == 15).then_some(tokens)
     });
     let mut tokens = tokens;
     tokens.sort();

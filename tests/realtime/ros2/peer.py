@@ -45,6 +45,18 @@ for name in ["Capture", "MoveTilt"]:
         "CancelGoal_Response": "int8 return_code\naction_msgs/GoalInfo[] goals_canceling\n",
     }.items():
         store.register(get_types_from_msg(text, f"velomotion_msgs/msg/{name}_{part}"))
+# Of the package rcl_interfaces.
+PARAMETER = "rcl_interfaces/Parameter"
+for name, (request, response) in {
+    "DescribeParameters": ("string[] names", f"{PARAMETER}Descriptor[] descriptors"),
+    "GetParameters": ("string[] names", f"{PARAMETER}Value[] values"),
+    "GetParameterTypes": ("string[] names", "uint8[] types"),
+    "ListParameters": ("string[] prefixes\nuint64 depth", "rcl_interfaces/ListParametersResult result"),
+    "SetParameters": (f"{PARAMETER}[] parameters", "rcl_interfaces/SetParametersResult[] results"),
+    "SetParametersAtomically": (f"{PARAMETER}[] parameters", "rcl_interfaces/SetParametersResult result"),
+}.items():
+    for part, text in {"Request": request, "Response": response}.items():
+        store.register(get_types_from_msg(f"{text}\n", f"rcl_interfaces/msg/{name}_{part}"))
 mouth = threading.Lock()
 KINDS = {2: "u1", 4: "<u2", 7: "<f4", 8: "<f8"}
 
@@ -137,6 +149,8 @@ def made(kind, values):
             fields[field] = made(about, value or {})
         elif node == Nodetype.BASE:
             fields[field] = value or {"string": ""}.get(about[0], 0)
+        elif about[0][0] == Nodetype.NAME:
+            fields[field] = [made(about[0][1], each) for each in value or []]
         else:
             element = about[0][1][0]
             if element == "string":
@@ -260,11 +274,14 @@ def call(session, key, with_attachment):
 
 
 def ask(session, key, kind, request):
-    """Calls a service of an action; its answer is printed when it comes."""
+    """Calls a service; its answer is printed when it comes."""
     payload = store.serialize_cdr(made(f"{kind}_Request", request), f"{kind}_Request")
     attachment = np.array([7, time.time_ns()], "<i8").tobytes() + bytes([16]) + bytes(range(16))
 
     def answered(reply):
+        if reply.ok is None:
+            say(refused=reply.err.payload.to_string(), key=key)
+            return
         response = store.deserialize_cdr(reply.ok.payload.to_bytes(), f"{kind}_Response")
         say(answer=key, response=plain(response))
 

@@ -358,7 +358,16 @@ fn check_graph(peer: &mut Peer) {
             "/diagnostics": wanted("diagnostic_msgs/msg/DiagnosticArray", reliable),
         })
     );
-    let services = json!({ "/left/velomotion/stop_capture": ["std_srvs/srv/Trigger"] });
+    let services = json!({
+        "/left/velomotion/describe_parameters": ["rcl_interfaces/srv/DescribeParameters"],
+        "/left/velomotion/get_parameter_types": ["rcl_interfaces/srv/GetParameterTypes"],
+        "/left/velomotion/get_parameters": ["rcl_interfaces/srv/GetParameters"],
+        "/left/velomotion/list_parameters": ["rcl_interfaces/srv/ListParameters"],
+        "/left/velomotion/set_parameters": ["rcl_interfaces/srv/SetParameters"],
+        "/left/velomotion/set_parameters_atomically":
+            ["rcl_interfaces/srv/SetParametersAtomically"],
+        "/left/velomotion/stop_capture": ["std_srvs/srv/Trigger"],
+    });
     assert_eq!(graph["services"], services);
     let tokens = peer.tokens();
     let nodes: Vec<_> = tokens.iter().filter(|t| t.contains("/NN/")).collect();

@@ -55,6 +55,11 @@ impl Cdr {
         self.number(value.to_le_bytes());
     }
 
+    /// An `int64`.
+    pub fn i64(&mut self, value: i64) {
+        self.number(value.to_le_bytes());
+    }
+
     /// An array of bytes.
     pub fn array(&mut self, bytes: &[u8]) {
         self.bytes.extend_from_slice(bytes);
@@ -212,6 +217,22 @@ impl<'a> CdrReader<'a> {
         Ok(u32::from_le_bytes(self.number()?))
     }
 
+    /// An `int64`.
+    ///
+    /// # Errors
+    /// [`CdrError`].
+    pub fn i64(&mut self) -> Result<i64, CdrError> {
+        Ok(i64::from_le_bytes(self.number()?))
+    }
+
+    /// A `uint64`.
+    ///
+    /// # Errors
+    /// [`CdrError`].
+    pub fn u64(&mut self) -> Result<u64, CdrError> {
+        Ok(u64::from_le_bytes(self.number()?))
+    }
+
     /// A `float64`.
     ///
     /// # Errors
@@ -269,6 +290,22 @@ impl<'a> CdrReader<'a> {
         }
     }
 
+    /// A sequence of elements that have at least one byte each.
+    ///
+    /// # Errors
+    /// [`CdrError`]. Memory is for the elements that are there, whatever the length says.
+    pub fn list<T>(
+        &mut self,
+        mut element: impl FnMut(&mut Self) -> Result<T, CdrError>,
+    ) -> Result<Vec<T>, CdrError> {
+        let length = self.u32()?;
+        let mut elements = Vec::new();
+        for _ in 0..length {
+            elements.push(element(self)?);
+        }
+        Ok(elements)
+    }
+
     fn number<const N: usize>(&mut self) -> Result<[u8; N], CdrError> {
         let behind = self.at - ENCAPSULATION.len();
         self.take(behind.next_multiple_of(N) - behind)?;
@@ -321,6 +358,9 @@ mod tests {
         cdr.f64(-1.5);
         cdr.string("déjà");
         cdr.i32(-9);
+        cdr.i64(-7);
+        cdr.u64(u64::MAX);
+        cdr.f64s(&[0.5, 1.5]);
         cdr.length(1);
         cdr.f64(2.5);
         cdr.length(0);
@@ -329,6 +369,8 @@ mod tests {
         assert_eq!(reader.f64(), Ok(-1.5));
         assert_eq!(reader.string(), Ok("déjà".to_owned()));
         assert_eq!(reader.i32(), Ok(-9));
+        assert_eq!((reader.i64(), reader.u64()), (Ok(-7), Ok(u64::MAX)));
+        assert_eq!(reader.list(CdrReader::f64), Ok(vec![0.5, 1.5]));
         assert_eq!(reader.optional(CdrReader::f64), Ok(Some(2.5)));
         assert_eq!(reader.optional(CdrReader::f64), Ok(None));
         assert_eq!(reader.offset(), cdr.bytes().len());

@@ -1,5 +1,5 @@
 //! Scans as ROS 2 messages: clouds, raw packets, the tilt joint, transforms, diagnostics, and the
-//! calls and messages of services and actions. A recording
+//! calls and messages of services, actions and parameters. A recording
 //! ([`formats::mcap`](crate::formats::mcap)) and a network carry the same bytes.
 //!
 //! Clouds of a tilting platform are in [`frames::BASE`], the frame of every other format (x right,
@@ -12,6 +12,7 @@ mod clouds;
 mod definitions;
 mod diagnostics;
 mod joint_state;
+pub mod parameters;
 mod point_cloud2;
 mod transforms;
 mod trigger;

@@ -18,9 +18,7 @@ pub(super) fn sweep_request(
     config: &Config,
     device: &Device,
 ) -> Result<SweepRequest, Failure> {
-    let sweeps = request
-        .sweeps
-        .unwrap_or(if request.both_ways { 2 } else { 1 });
+    let sweeps = request.sweep_count();
     if !(1..=MAX_SWEEPS).contains(&sweeps) {
         return Err(Failure::new(
             Kind::Usage,
