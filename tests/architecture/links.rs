@@ -33,6 +33,11 @@ pub fn broken() -> Vec<String> {
             }
         }
     }
+    // The page of the architecture is this part of a file.
+    let part = "ANCHOR: book -->";
+    if !read(&root().join("ARCHITECTURE.md")).contains(part) {
+        broken.push(format!("ARCHITECTURE.md lacks {part}"));
+    }
     let summary = links_of(&read(&book.join("SUMMARY.md")));
     for page in of_book {
         let name = page
@@ -59,10 +64,15 @@ fn markdown_in(folder: &Path) -> Vec<PathBuf> {
         .collect()
 }
 
+/// A page without its blocks of code.
+fn prose_of(text: &str) -> String {
+    let prose: Vec<&str> = text.split("\n```").step_by(2).collect();
+    prose.join("\n")
+}
+
 /// The targets of `[text](target)` within the repository, outside blocks of code.
 fn links_of(text: &str) -> Vec<String> {
-    let prose: Vec<&str> = text.split("\n```").step_by(2).collect();
-    let prose = prose.join("\n");
+    let prose = prose_of(text);
     let ends = prose.split("](").skip(1);
     let targets = ends.filter_map(|rest| rest.split_once(')'));
     targets
@@ -73,7 +83,8 @@ fn links_of(text: &str) -> Vec<String> {
 
 /// The names by which links call the headings of a page.
 fn headings_of(text: &str) -> BTreeSet<String> {
-    let headings = text.lines().filter(|line| line.starts_with('#'));
+    let prose = prose_of(text);
+    let headings = prose.lines().filter(|line| line.starts_with('#'));
     let names = headings.map(|line| {
         let title = line.trim_start_matches('#').trim().to_lowercase();
         let kept = title.chars().filter_map(|c| match c {

@@ -45,7 +45,7 @@ impl EastNorthUp {
     }
 
     /// The batch with its points in `axes`; without axes the batch itself.
-    pub(crate) fn applied(axes: Option<Self>, batch: &Points) -> Cow<'_, Points> {
+    pub(crate) fn apply(axes: Option<Self>, batch: &Points) -> Cow<'_, Points> {
         axes.map_or(Cow::Borrowed(batch), |axes| {
             let mut placed = batch.clone();
             placed.map_positions(|position_m| axes.place(position_m));

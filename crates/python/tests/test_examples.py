@@ -6,6 +6,7 @@ import sys
 
 import nbclient
 import nbformat
+import numpy
 import pytest
 import velomotion
 from conftest import RECORDINGS, ROOT
@@ -39,7 +40,10 @@ def test_the_comparison_of_speed_runs():
     assert "velodyne-decoder" in done.stdout and "times" in done.stdout
 
 
-@pytest.mark.parametrize("page", ["docs/src/python.md", "docs/src/open-a-cloud.md", "crates/python/README.md"])
+PAGES = ["docs/src/python.md", "docs/src/formats.md", "docs/src/open-a-cloud.md", "crates/python/README.md"]
+
+
+@pytest.mark.parametrize("page", PAGES)
 def test_the_python_of_a_page_runs(page, program, tmp_path):
     blocks = re.findall(r"^```python\n(.*?)^```$", (ROOT / page).read_text(), re.M | re.S)
     assert blocks
@@ -52,3 +56,6 @@ def test_the_python_of_a_page_runs(page, program, tmp_path):
     names = {}
     for block in blocks:
         exec(compile(block, page, "exec"), names)
+    if (tmp_path / "hall.npz").exists():
+        stored = numpy.load("hall.npz")["points"]
+        assert numpy.array_equal(stored, velomotion.read("hall.pcapng"))

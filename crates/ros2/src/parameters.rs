@@ -1,10 +1,11 @@
 //! The node's parameters, with the answers of `rclcpp`'s `ParameterService` and `NodeParameters`.
 //!
-//! Those of the capture that `start_capture` begins can be set, within the limits of the axis, and
-//! keep their values until the daemon ends. The others are read-only. Setting one moves nothing.
+//! Parameters of the capture that `start_capture` begins can be set if `actions = true`, within the
+//! limits of the axis, and keep their values until the daemon ends. The others are read-only.
+//! Setting a parameter moves nothing.
 
 use std::sync::atomic::Ordering;
-use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use cloud::messages::cdr::Cdr;
@@ -27,9 +28,9 @@ use crate::link::{Call, Declarer, Error};
 use crate::rmw::{NODE, QualityOfService};
 use crate::{Context, check_capture};
 
-/// Calls that wait for their answers. Further ones are dropped.
+/// Calls that wait for their answers. Further ones are refused.
 const WAITING: usize = 16;
-/// Between the parts of a name.
+/// Separator of the parts of a name.
 const SEPARATOR: char = '.';
 /// QoS of the services (`rmw_qos_profile_parameters`).
 const QUALITY: QualityOfService = QualityOfService {
@@ -56,8 +57,10 @@ pub fn declare(declarer: &mut Declarer<'_>, inbox: &Inbox) -> Result<(), Error> 
         let name = declarer.settings().resolve(&name);
         let inbox = inbox.clone();
         declarer.service(&name, &service.message_type(), QUALITY, move |call| {
-            if inbox.try_send((service, call)).is_err() {
-                tracing::debug!("ROS 2: a call about parameters was dropped");
+            let sent = inbox.try_send((service, call));
+            if let Err(TrySendError::Full((_, call)) | TrySendError::Disconnected((_, call))) = sent
+            {
+                call.refuse("too many calls about parameters at once: try again");
             }
         })?;
     }
@@ -219,6 +222,8 @@ pub(crate) struct NodeParameters {
     config: Config,
     device: (String, Device),
     frame_prefix: String,
+    /// Whether nodes may set the capture's parameters (`actions = true`).
+    can_set: bool,
     /// The capture that `start_capture` begins.
     capture: Option<Mutex<CaptureRequest>>,
 }
@@ -230,6 +235,7 @@ impl NodeParameters {
             config: devices.config().clone(),
             device: (name.to_owned(), device.clone()),
             frame_prefix: settings.frame_prefix.clone(),
+            can_set: settings.actions,
             capture: settings.capture.clone().map(Mutex::new),
         }
     }
@@ -288,7 +294,7 @@ impl NodeParameters {
             Some(ParameterDescriptor {
                 name: parameter.name,
                 description: parameter.description,
-                is_read_only: parameter.set.is_none(),
+                is_read_only: parameter.set.is_none() || !self.can_set,
                 value: (parameter.get)(self, &capture),
             })
         });
@@ -308,15 +314,14 @@ impl NodeParameters {
         });
         let names: Vec<_> = names.collect();
         let parts = names.iter().filter_map(|name| name.rsplit_once(SEPARATOR));
-        let mut found: Vec<_> = parts.map(|(prefix, _)| prefix).collect();
-        found.dedup();
-        list_response(&names, &found)
+        let mut name_prefixes: Vec<_> = parts.map(|(prefix, _)| prefix).collect();
+        name_prefixes.dedup();
+        list_response(&names, &name_prefixes)
     }
 
     /// Sets all values or none.
     fn set(&self, values: Vec<(String, ParameterValue)>) -> SetResult {
-        let mut capture = self.locked();
-        let mut changed = capture.as_deref().cloned();
+        let mut changed = self.capture();
         for (name, value) in values {
             let refused = |text| Err(format!("parameter {name:?} {text}"));
             let Some(parameter) = self.offered().find(|parameter| parameter.name == name) else {
@@ -325,14 +330,21 @@ impl NodeParameters {
             let (Some(setter), Some(changed)) = (parameter.set, &mut changed) else {
                 return refused("is read-only: velomotion.toml configures it");
             };
+            if !self.can_set {
+                return refused("is read-only without actions = true in [daemon.ros2]");
+            }
             let current = (parameter.get)(self, changed);
             let set = setter.set(changed, &current, value);
             set.map_err(|failure| format!("parameter {name:?}: {}", text_of(failure)))?;
         }
-        if let (Some(capture), Some(changed)) = (&mut capture, changed) {
+        if let Some(changed) = changed {
             let (name, device) = &self.device;
             check_capture(&changed, &self.config, (name, device)).map_err(text_of)?;
-            **capture = changed;
+            tracing::info!("ROS 2: parameters of start_capture: {changed:?}");
+            // One thread sets parameters, so nothing has changed since they were read.
+            if let Some(mut capture) = self.locked() {
+                *capture = changed;
+            }
         }
         Ok(())
     }
@@ -348,6 +360,7 @@ mod tests {
             config: Config::default(),
             device: ("sim".to_owned(), Device::simulator()),
             frame_prefix: "left/".to_owned(),
+            can_set: true,
             capture: capture.map(Mutex::new),
         }
     }
@@ -462,6 +475,21 @@ mod tests {
         assert_eq!(set(&node, &values(30.0)), Ok(()));
         let capture = node.capture().unwrap();
         assert_eq!((capture.to_deg, capture.speed_deg_s), (Some(-20.0), 30.0));
+    }
+
+    /// Without actions a node has no angles and speeds of its own.
+    #[test]
+    fn without_actions_all_parameters_are_read_only() {
+        let node = NodeParameters {
+            can_set: false,
+            ..configured()
+        };
+        let before = node.capture();
+        let refused = set(&node, &[("capture.speed_deg_s", Double(30.0))]);
+        assert!(refused.unwrap_err().contains("actions = true"));
+        assert_eq!(node.capture(), before);
+        let names = ["capture.speed_deg_s".to_owned()];
+        assert!(node.describe(&names)[0].is_read_only);
     }
 
     /// A node without a configured capture has nothing to set.

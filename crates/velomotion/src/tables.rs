@@ -222,7 +222,7 @@ pub fn scan_table(scan: &ScanReport) -> String {
     rows.extend(scan.live.iter().map(|live| ("live view", live_line(live))));
     if let Some(georeference) = &scan.georeference {
         rows.extend(georeference.frame());
-        let clauses = georeference.accuracy.split("; ");
+        let clauses = georeference.accuracy_clauses();
         rows.extend(clauses.map(|clause| ("", clause.to_owned())));
     }
     rows.push(("cloud", cloud_line(scan)));

@@ -77,14 +77,21 @@ pub const SCREENS: [Screen; 6] = [
 /// screen with both colour schemes if `VELOMOTION_ALL_SCREENS` is set, which takes six times as
 /// long.
 pub fn screens() -> Vec<Screen> {
+    // A test's thread has its name.
+    let length = std::thread::current().name().map_or(0, str::len);
+    let screens = [DESKTOP, PHONE.light(), DESKTOP.light(), NARROW];
+    of_ci(&[screens[length % screens.len()]])
+}
+
+/// A laptop and a phone, for a test whose steps differ between them, or that concerns a stop.
+pub fn both_kinds() -> Vec<Screen> {
+    of_ci(&[DESKTOP, PHONE.light()])
+}
+
+fn of_ci(screens: &[Screen]) -> Vec<Screen> {
     match std::env::var_os("VELOMOTION_ALL_SCREENS") {
         Some(_) => SCREENS.to_vec(),
-        None => {
-            // A test's thread has its name.
-            let length = std::thread::current().name().map_or(0, str::len);
-            let screens = [DESKTOP, PHONE.light(), DESKTOP.light(), NARROW];
-            vec![screens[length % screens.len()]]
-        }
+        None => screens.to_vec(),
     }
 }
 

@@ -3,7 +3,7 @@
 
 use serde_json::{Value, json};
 
-use super::browser::{DESKTOP, Page, SCREENS, Screen, screens};
+use super::browser::{DESKTOP, Page, SCREENS, Screen, both_kinds, screens};
 use super::view::pick;
 use super::{browser_and_simulator, points, ready, start, until_in_sight};
 
@@ -61,7 +61,7 @@ fn assert_near(found: f64, expected: f64, what: &str) {
 fn the_camera_follows_mouse_fingers_wheel_and_keys() {
     let (driver, _folder, daemon, url) = browser_and_simulator();
     let half_turn = std::f64::consts::PI;
-    for screen in screens() {
+    for screen in both_kinds() {
         driver.test(screen, async |page| {
             with_a_scan(&page, &url).await;
             let (centre, height) = middle(&page).await;

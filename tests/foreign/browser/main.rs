@@ -21,7 +21,7 @@ use engine::config::Config;
 use engine::config::daemon::DaemonConfig;
 use serde_json::Value;
 
-use browser::{DESKTOP, Driver, NARROW, PHONE, Page, screens};
+use browser::{DESKTOP, Driver, NARROW, PHONE, Page, both_kinds, screens};
 
 /// A daemon with its own folder; port 0 takes a free one.
 fn daemon(config: Config, device: Option<&str>, folder: &Path, port: u16) -> Daemon {
@@ -215,7 +215,7 @@ fn a_scan_is_started_displayed_and_counted() {
 fn a_sweep_is_displayed_and_stopped_by_key_and_by_touch() {
     let (driver, _folder, daemon, url) = browser_and_simulator();
     // Phones first: the list of downloads is of their scans.
-    for screen in screens().into_iter().rev() {
+    for screen in both_kinds().into_iter().rev() {
         let name = if screen.width < 600 {
             "by-finger"
         } else {

@@ -4,7 +4,7 @@ use engine::config::Config;
 use tokio::task::spawn_blocking;
 use velomotion_tests::bench::Bench;
 
-use super::browser::{DESKTOP, Driver, NARROW, PHONE, Page, screens};
+use super::browser::{DESKTOP, Driver, NARROW, PHONE, Page, both_kinds, screens};
 use super::{
     ESCAPE, TO_THE_TOP, TOO_MANY, browser_and_simulator, daemon, points, ready, reserving,
     simulator, start, until_in_sight, url,
@@ -24,7 +24,7 @@ const SILENT: &str = "
 #[ignore = "needs chromium and chromedriver"]
 fn an_unconfirmed_stop_is_repeated_under_an_alarm_of_full_width() {
     let (driver, _folder, daemon, url) = browser_and_simulator();
-    for screen in screens() {
+    for screen in both_kinds() {
         driver.test(screen, async |page| {
             ready(&page, &url).await;
             page.run(SILENT).await;

@@ -7,7 +7,7 @@ use engine::config::Config;
 use engine::failure::{Failure, Kind};
 use serde_json::{Value, json};
 
-use super::browser::{DESKTOP, Driver, PHONE, Page, screens};
+use super::browser::{DESKTOP, Driver, PHONE, Page, both_kinds, screens};
 use super::{
     ENTER, ESCAPE, TOO_MANY, browser_and_simulator, daemon, ready, simulator, start,
     until_in_sight, url,
@@ -146,7 +146,7 @@ fn a_scan_gets_a_name_and_notes_where_it_is_shown() {
     }
     let daemon = simulator(folder.path());
     let url = url(&daemon);
-    for (screen, round) in screens().into_iter().zip(1..) {
+    for (screen, round) in both_kinds().into_iter().zip(1..) {
         driver.test(screen, async |page| {
             open(&page, &url, "3 scans").await;
             let name = format!("Hall {round}, north end");

@@ -10,7 +10,7 @@ use std::thread::JoinHandle;
 use velomotion::cli::Common;
 use velomotion::commands::view::show;
 
-use super::browser::{DESKTOP, Driver, PHONE, Page, screens};
+use super::browser::{DESKTOP, Driver, PHONE, Page, both_kinds, screens};
 use super::{browser_and_simulator, points, ready, simulator, start, until_in_sight, url};
 
 /// Makes a scan with a daemon and returns the folder of its log and cloud.
@@ -437,7 +437,7 @@ const SCALED: &str = "() => {
 #[ignore = "needs chromium and chromedriver"]
 fn the_stop_stays_in_full_screen_and_leaving_that_stops_the_axis() {
     let (driver, _folder, daemon, url) = browser_and_simulator();
-    for screen in screens() {
+    for screen in both_kinds() {
         driver.test(screen, async |page| {
             ready(&page, &url).await;
             start(&page, "slow", "1", "-45").await;

@@ -170,11 +170,11 @@ fn run_page(folder: &Path, page: &str) -> Vec<Result<(), String>> {
             if line.starts_with("velomotion doctor --bring-up") {
                 line = line.replacen("--bring-up", "--bring-up --yes", 1);
             }
-            let (code, said) = run_line(folder, &line);
+            let (code, output) = run_line(folder, &line);
             let refused = REFUSED.iter().find(|(start, ..)| line.starts_with(start));
             let expected = refused.map_or(&[0][..], |(_, codes, _)| codes);
             let is_expected = code.is_some_and(|code| expected.contains(&code));
-            let failure = || format!("{page}: {line}: {code:?}\n{said}");
+            let failure = || format!("{page}: {line}: {code:?}\n{output}");
             ran.push(is_expected.then_some(()).ok_or_else(failure));
         }
     }
@@ -186,9 +186,12 @@ fn run_page(folder: &Path, page: &str) -> Vec<Result<(), String>> {
 fn run_line(folder: &Path, line: &str) -> (Option<i32>, String) {
     let program = Path::new(env!("CARGO_BIN_EXE_velomotion"));
     let path = std::env::var("PATH").unwrap();
-    // Nice, as analyses would take both processors from the tests beside this one.
-    let mut child = Command::new("nice")
-        .args(["bash", "-ec", &format!("exec 2>&1\nexec {line}")])
+    assert!(!line.contains("&&") && !line.contains("; "), "{line}");
+    // Nice, as analyses would take both processors from the tests beside this one. The time limit
+    // ends a command that hangs.
+    let mut child = Command::new("timeout")
+        .args(["--signal=KILL", "900", "nice", "bash", "-ec"])
+        .arg(format!("exec 2>&1\nexec {line}"))
         .current_dir(folder)
         .env(
             "PATH",
@@ -202,16 +205,16 @@ fn run_line(folder: &Path, line: &str) -> (Option<i32>, String) {
         .spawn()
         .unwrap();
     let serves = line.starts_with("velomotion view") || line.starts_with("velomotion daemon");
-    let mut said = String::new();
+    let mut output = String::new();
     for printed in BufReader::new(child.stdout.take().unwrap()).lines() {
         let printed = printed.unwrap();
         if serves && printed.starts_with("http") {
             let id = child.id().to_string();
             Command::new("kill").args(["-INT", &id]).status().unwrap();
         }
-        said.push_str(&format!("{printed}\n"));
+        output.push_str(&format!("{printed}\n"));
     }
-    (child.wait().unwrap().code(), said)
+    (child.wait().unwrap().code(), output)
 }
 
 /// The pages of the book, and the README.

@@ -161,10 +161,15 @@ fn a_georeferenced_cloud_is_in_east_north_up_in_every_format() {
         }
     }
     // An organised frame has its rows turned, too.
+    replay("--frames 0 --organised -o plain.pcd");
     replay("--georeference 90 --frames 0 --organised -o grid.pcd");
-    let grid = std::fs::read(place.path("grid-00000.pcd")).unwrap();
-    let grid = String::from_utf8_lossy(&grid).into_owned();
-    assert!(grid.contains("frame: x east, y north, z up in metres"));
+    let [plain, grid] = ["plain-00000.pcd", "grid-00000.pcd"].map(read);
+    assert!(!plain.is_empty() && plain.len() == grid.len());
+    for ([x, y, z], turned) in plain.iter().zip(&grid) {
+        let is_close = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-4 || a.is_nan() && b.is_nan();
+        let expected = [*y, -x, *z];
+        assert!(turned.iter().zip(&expected).all(is_close), "{turned:?}");
+    }
 }
 
 #[test]

@@ -85,7 +85,8 @@ pub struct Outcome {
     /// Longest time without a request between the beginning and the first stop, and from then on
     /// while the axis moves under power.
     pub silence: f64,
-    /// Sum of what such times exceed [`BETWEEN_REQUESTS`] by.
+    /// Sum of what such times exceed [`BETWEEN_REQUESTS`] by, where they do so twice: pauses of the
+    /// machine, but not a client that is slow throughout.
     pub held_up: f64,
 }
 
@@ -300,7 +301,10 @@ fn be_drive(
         let is_judged = drive.record.began.is_some_and(is_judged);
         if !bytes.is_empty() {
             if is_judged {
-                held_up += (now - received - BETWEEN_REQUESTS).max(0.0);
+                let between = now - received;
+                if between > 2.0 * BETWEEN_REQUESTS {
+                    held_up += between - BETWEEN_REQUESTS;
+                }
             }
             received = now;
         }

@@ -3,6 +3,7 @@
 use cloud::messages::TRIGGER;
 use serde_json::{Value, json};
 
+use crate::parameters::{double, set};
 use crate::peer::{Peer, alone, connected, daemon, endpoint, figure, python};
 use crate::rig::{Rig, sweeps};
 
@@ -56,6 +57,11 @@ fn a_capture_is_started_and_stopped_by_service_calls() {
         (done, message.as_str()),
         (true, "nothing was being captured")
     );
+
+    // Without actions nodes have no speeds of their own.
+    let speed = double("capture.speed_deg_s", 20.0);
+    let (is_set, reason) = set(&mut router, &speed);
+    assert!(!is_set && reason.contains("actions = true"), "{reason}");
 
     let id = begin(&rig, &mut router);
     assert!(id.contains("called"), "{id}");

@@ -69,12 +69,12 @@ impl Service {
     }
 }
 
-fn double(name: &str, value: f64) -> Value {
+pub fn double(name: &str, value: f64) -> Value {
     json!({ "name": name, "value": { "type": 3, "double_value": value } })
 }
 
 /// Sets a parameter. Returns whether it was set, and else the reason.
-fn set(router: &mut Peer, parameter: &Value) -> (bool, String) {
+pub fn set(router: &mut Peer, parameter: &Value) -> (bool, String) {
     let answer = SET.ask(router, &json!({ "parameters": [parameter] }));
     assert_eq!(answer["results"].as_array().unwrap().len(), 1, "{answer}");
     result(&answer["results"][0])
@@ -98,7 +98,7 @@ fn parameters_set_the_next_capture_and_move_nothing() {
     let mut router = Peer::start(&python(), "router", &place);
     let rig = daemon(
         &place,
-        "frame_prefix = 'left/'\n[daemon.ros2.capture]\nspeed_deg_s = 5.0\n",
+        "frame_prefix = 'left/'\nactions = true\n[daemon.ros2.capture]\nspeed_deg_s = 5.0\n",
     );
     connected(&rig, true);
     rig.ready();

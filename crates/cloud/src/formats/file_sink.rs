@@ -133,7 +133,7 @@ impl<E: FormatEncoder> Sink for FileSink<E> {
         let format = self.encoder.format();
         self.stage.points(format)?;
         batch.fields().require(self.fields)?;
-        let batch = &*EastNorthUp::applied(self.east_north_up, batch);
+        let batch = &*EastNorthUp::apply(self.east_north_up, batch);
         if let Some(limit_m) = self.encoder.limit_m() {
             batch.check_coordinates(format, limit_m, self.summary.points)?;
         }

@@ -95,7 +95,7 @@ impl MessageSplitter {
         batch: &Points,
         take: &mut impl FnMut(Cloud<'_>) -> Result<(), SinkError>,
     ) -> Result<(), SinkError> {
-        let batch = &*EastNorthUp::applied(self.east_north_up, batch);
+        let batch = &*EastNorthUp::apply(self.east_north_up, batch);
         let mut rows = 0..batch.len();
         while let Some(time) = batch.time().get(rows.start).copied() {
             let end = self.cloud_end(batch.time(), &rows);

@@ -63,7 +63,7 @@ impl FixSurvey {
             }
             let first_deg = self.kept.first().map_or(0.0, |fix| fix[1]);
             let east_deg = position.longitude_deg - first_deg;
-            let longitude_deg = first_deg + wrapped(east_deg);
+            let longitude_deg = first_deg + wrap_longitude(east_deg);
             self.kept.push([position.latitude_deg, longitude_deg]);
         }
         self.fixes += 1;
@@ -77,7 +77,7 @@ impl FixSurvey {
         let axis = |axis: usize| median(self.kept.iter().filter_map(|fix| fix.get(axis).copied()));
         let (Some(latitude_deg), Some(longitude_deg), Some(pps)) = (axis(0), axis(1), pps) else {
             let what = format!(
-                "{}: --georeference needs the position of a satellite receiver: expected valid fixes in the position packets, found none in {} packets",
+                "{}: --georeference needs the position of a satellite receiver: expected valid fixes, found none (position packets: {})",
                 path.display(),
                 self.packets
             );
@@ -85,10 +85,10 @@ impl FixSurvey {
                 "velomotion info shows the state of the receiver; record again once it has a fix, or omit --georeference",
             ));
         };
-        let across = latitude_deg.to_radians().cos();
+        let cos_latitude = latitude_deg.to_radians().cos();
         let distances = self.kept.iter().map(|[latitude, longitude]| {
             let north = (latitude - latitude_deg).to_radians();
-            let east = (longitude - longitude_deg).to_radians() * across;
+            let east = (longitude - longitude_deg).to_radians() * cos_latitude;
             EARTH_M * north.hypot(east)
         });
         let spread_worst_m = distances.clone().fold(0.0, f64::max);
@@ -107,7 +107,7 @@ impl FixSurvey {
         Ok(GeoreferenceReport {
             origin: GpsReport {
                 latitude_deg,
-                longitude_deg: wrapped(longitude_deg),
+                longitude_deg: wrap_longitude(longitude_deg),
             },
             heading_deg: self.heading.0,
             fixes: self.fixes,
@@ -133,9 +133,14 @@ impl GeoreferenceReport {
         [("origin", origin), ("heading", heading)]
     }
 
+    /// The accuracy, a statement each.
+    pub fn accuracy_clauses(&self) -> impl Iterator<Item = &str> {
+        self.accuracy.split("; ")
+    }
+
     /// Comments in a cloud's metadata.
     pub(super) fn comments(&self) -> Vec<String> {
-        let clauses = self.accuracy.split("; ");
+        let clauses = self.accuracy_clauses();
         let accuracy = clauses.map(|clause| ("accuracy", clause.to_owned()));
         let named = self.frame().into_iter().chain(accuracy);
         named
@@ -145,7 +150,7 @@ impl GeoreferenceReport {
 }
 
 /// A longitude from -180 to 180, degrees.
-fn wrapped(longitude_deg: f64) -> f64 {
+fn wrap_longitude(longitude_deg: f64) -> f64 {
     match longitude_deg {
         east if east > 180.0 => east - 360.0,
         west if west < -180.0 => west + 360.0,
