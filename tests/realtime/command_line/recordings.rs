@@ -181,7 +181,7 @@ fn a_georeference_needs_a_fix_and_a_heading() {
         "vlp16-dual.pcap",
         "--georeference",
         "valid fixes",
-        "found none in 0",
+        "found none (position packets: 0)",
     ];
     place.fails(&format!("{line} --georeference 30deg"), 3, &words);
     for heading in ["north", "361", "30rad", "nan"] {

@@ -1,5 +1,6 @@
-//! Captures on a loaded machine: busy loops take the processors from the program, its simulated
-//! drive (a process of its own) and its lidar. Every capture must be complete.
+//! Captures on a loaded machine: busy loops take the processors from the program and its lidar.
+//! Every capture must be complete. The simulated drive is a process of its own, with a raised
+//! priority where that is allowed: a real one has its own processor.
 //!
 //! `cargo test -p velomotion --test load -- [--captures N] [--loops N] [--link LINK] [--page]`:
 //! captures by the command, and as many by a daemon. Without arguments 2 of each, 8 loops, and usb.
@@ -29,7 +30,17 @@ fn main() {
     let free = |_| UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
     let [data, position] = [0, 1].map(free).map(|s| s.local_addr().unwrap().port());
     let link: String = value_of("--link", "usb".to_owned());
-    let mut drive = spawn(folder.path(), &format!("firmware-sim --{link}"), &[]);
+    // For an ordinary user the priority stays as it is.
+    let mut drive = Command::new("nice")
+        .args(["-n", "-15", env!("CARGO_BIN_EXE_velomotion")])
+        .args(["firmware-sim", &format!("--{link}")])
+        .current_dir(folder.path())
+        .env("XDG_RUNTIME_DIR", folder.path())
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
     let port = first_line(&mut drive);
     let config = format!(
         "[device]\ndefault = 'separate'\n[device.separate]\nkind = '{link}'\nport = '{port}'\nlidar = '127.0.0.1'\n\
