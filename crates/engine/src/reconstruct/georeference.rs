@@ -230,7 +230,9 @@ mod tests {
         assert_eq!(failure.kind, Kind::BadInput);
         assert!(failure.message.starts_with("hall.pcapng: --georeference"));
         assert!(
-            failure.message.ends_with("found none in 1 packets"),
+            failure
+                .message
+                .ends_with("found none (position packets: 1)"),
             "{failure}"
         );
     }
