@@ -87,7 +87,7 @@ const REFUSED: [(&str, &[i32], &str); 4] = [
     (
         "velomotion doctor --bring-up",
         &[5, 6],
-        "nobody presses the limit switches; the machine may be too busy to poll",
+        "the limit switches are not pressed; the machine may be too busy to poll",
     ),
     ("velomotion doctor", &[4], "the bench has no lidar"),
 ];
@@ -163,7 +163,7 @@ fn run_page(folder: &Path, page: &str) -> Vec<Result<(), String>> {
                 "target/release/velomotion " => format!("velomotion {rest}"),
                 _ => line.to_owned(),
             };
-            // The bench has no lidar, and nobody answers its questions.
+            // The bench has no lidar, and no person answers its questions.
             if BENCH.contains(&page) && line.starts_with("velomotion capture") {
                 line.push_str(" --device sim");
             }
