@@ -144,15 +144,14 @@ fn about(scenes: &[BvhScene], rays: usize) -> Vec<String> {
         .collect();
     vec![
         format!(
-            "Trees over the simulator's {} and a {}, and {rays} rays of a sweep through the quarry, cast on one thread in the order of a lidar. \
-             A middle cut halves the triangles along their widest axis. Bins divide each axis: the cut between two bins with the smallest \
-             cost by the surface area heuristic is taken. Triangles in one box are tested together.",
+            "Scenes are the simulator's {} and a {}. One thread casts {rays} rays of a sweep through the quarry, in the order \
+             of a lidar. A middle cut halves the triangles along their widest axis. Bins divide each axis; the cut between two \
+             with the smallest cost by the surface area heuristic is taken. Triangles in one box are tested together.",
             counts.get(1).map_or("", String::as_str),
             counts.first().map_or("", String::as_str),
         ),
-        "Every tree gives the same object, triangle and distance, bit for bit; the last column counts differences. The tree is built once \
-         per run, so the best build time depends on the number of rays: 3 million are ten seconds of a VLP-16. The scene is given, so each \
-         has a separate front."
+        "Every tree gives the same object, triangle and distance, bit for bit. A tree is built once per run, so the number of \
+         rays decides which is best: 3 million are ten seconds of a VLP-16. Each scene has its own front."
             .to_owned(),
     ]
 }

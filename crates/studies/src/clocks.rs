@@ -31,7 +31,7 @@ fn finding(findings: &StudyFindings) -> String {
         format!("{} to {}", worst("quiet NIC"), worst("busy USB-Ethernet"))
     };
     format!(
-        "The lower envelope of all packets errs by {} us, Olson's online clock by {}, a line by {}",
+        "The lower envelope errs by {} us, Olson's online clock by {}, a line by {}",
         of("of the whole: lower envelope"),
         of("online: Olson's"),
         of("a line by least squares"),
@@ -84,14 +84,12 @@ fn measure(bench: &mut Bench<'_>) -> Result<StudyRows, StudyError> {
 fn about(seconds: i64, runs: usize) -> Vec<String> {
     vec![
         format!(
-            "{seconds} s of a VLP-16's packets over simulated links: a quiet Ethernet port, the same with interrupts every 125 us, and an adapter on a busy USB, with spikes of \
-             up to 20 ms and an oscillator that is up to 50 ppm off and wanders. Errors exclude the link's minimum delay, which timing \
-             cannot observe, and are averaged over {runs} \
-             recordings: the bias is the magnitude of their mean, the worst error the largest after the first second. 18 us are 0.001 \
-             degrees at 56.25 deg/s."
+            "{seconds} s of a VLP-16's packets over simulated links: a quiet Ethernet port, one with interrupts every 125 us, \
+             and a busy USB adapter. All have spikes of up to 20 ms; the lidar's oscillator is up to 50 ppm off and wanders. \
+             Errors count after the first second, without the link's minimum delay. Bias (magnitude of the mean) and worst \
+             error are averaged over {runs} recordings. 18 us are 0.001 degrees at 56.25 deg/s."
         ),
-        "Arrivals and the online clock are known when a packet arrives; the line and the envelope of the whole need all packets. The link \
-         is given, so each has a separate front."
+        "Line and envelope need all packets; the others are known when a packet arrives. Each link has its own front."
             .to_owned(),
     ]
 }

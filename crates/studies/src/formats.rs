@@ -89,13 +89,13 @@ fn measure(bench: &mut Bench<'_>) -> Result<StudyRows, StudyError> {
 fn about(points: usize) -> Vec<String> {
     vec![
         format!(
-            "{points} points of a sweep through the simulator's hall (nothing farther than 20 m) with {} mm of range noise, written to memory as velomotion writes files, in \
-             batches, with intensity, ring, time and tilt (.bin with intensity alone). Disk access is not included. LAZ is compressed on both cores, the others use one.",
+            "{points} points of a sweep through the simulator's hall (nothing farther than 20 m), with {} mm of range noise. \
+             They are written to memory with intensity, ring, time and tilt (.bin with intensity alone). LAZ is compressed on \
+             both cores, the others use one.",
             NOISE_M * 1e3
         ),
-        "Bytes exclude those of an empty file. The error is the largest distance between a point written and the same point read back. f32 \
-         coordinates (.ply, .pcd, .e57, .mcap, .bin) have an error that grows with distance, 4 um at 100 m; steps of 0.1 mm (.las, .laz) the same \
-         everywhere."
+        "Bytes exclude those of an empty file. The error is the largest distance between a point written and read back. In f32 \
+         (.ply, .pcd, .e57, .mcap, .bin) it grows with distance, 4 um at 100 m; with steps of 0.1 mm (.las, .laz) it does not."
             .to_owned(),
     ]
 }

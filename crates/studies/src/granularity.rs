@@ -118,13 +118,12 @@ fn measure(bench: &mut Bench<'_>) -> Result<StudyRows, StudyError> {
 fn about(points: usize) -> Vec<String> {
     vec![
         format!(
-            "A VLP-16 at 10 revolutions a second on a platform that tilts at 56.25 deg/s, with all surfaces {RANGE_M} m away ({points} points). \
-             Angles are those at the start of the packet, block or firing, or of each return. The error is the distance to the point by \
-             definition, with time and angles looked up for each return; at 10 m it is a tenth."
+            "A VLP-16 at 10 revolutions per second tilts at 56.25 deg/s; all surfaces are {RANGE_M} m away ({points} points). \
+             Angles are those at the start of packet, block or firing, or of each return. The error is the distance to the \
+             point with time and angles looked up for each return; at 10 m it is a tenth."
         ),
-        "All rows but the last are plain loops over decoded distances in f64, with the library's sine, that write x, y and z. The last row \
-         is velomotion's path from the packets' bytes: it looks up clock and angle and extrapolates both angles from the start of a block \
-         to each return."
+        "From the packets' bytes, velomotion looks up clock and angle, and extrapolates both angles from a block's start to \
+         each return. The other rows are plain f64 loops over decoded distances, with the library's sine."
             .to_owned(),
     ]
 }

@@ -112,10 +112,13 @@ fn measure(bench: &mut Bench<'_>) -> Result<StudyRows, StudyError> {
     let points = scan.points.len();
     let plan = bench.plan(&format!("{points} points"), 2, 7);
     let about = vec![
-        format!("An RMBL of {points} points: a VLP-16 at 901 azimuths, rotated in steps from 0 to 180 degrees; 151 bins of equal \
-        angle; one thread."),
-        "The error is the largest error of D, the share of all pairs, relative to the exact count. The bound is the method's: for \
-         samples a confidence interval with a risk of 1 in 1000.".to_owned(),
+        format!(
+            "A VLP-16 at 901 azimuths, rotated in steps from 0 to 180 degrees ({points} points); {BINS} bins of equal angle; \
+             one thread."
+        ),
+        "The error is the largest of D, a share of all pairs. The bound of samples is a confidence interval with a risk of 1 \
+         in 1000."
+            .to_owned(),
     ];
     Ok((about, bench.rows(plan, choices)?))
 }

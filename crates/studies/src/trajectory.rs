@@ -174,15 +174,15 @@ fn finding(findings: &StudyFindings) -> String {
 fn about(seeds: u64) -> Vec<String> {
     vec![
         format!(
-            "A sweep of 45 degrees at 56.25 deg/s with ramps of 500 deg/s2, polled at three rates. The error is the largest difference to \
-             the true angle at any block of the sweep, averaged over {seeds} runs; 0.01 degrees are 1.7 mm at 10 m. The time is that of a \
-             whole sweep: fitting the curve to the polls and evaluating it at each block."
+            "A sweep of 45 degrees at 56.25 deg/s with ramps of 500 deg/s2. The error is that of the worst block, averaged \
+             over {seeds} runs; 0.01 degrees are 1.7 mm at 10 m. The time is for fitting the curve and evaluating it at each \
+             block."
         ),
         format!(
-            "Ideal polls are exact; the others have the encoder's steps of {QUANTUM_DEG} degrees and times known to 0.1 or 0.5 ms (one standard deviation). \
-             The axis follows the commanded motion, or a second-order servo of {SERVO_HZ} Hz with a damping of {DAMPED} or {UNDERDAMPED} does. \
-             In the last column the drive renews its position once per millisecond; no poll shows the half of a millisecond that it is late \
-             on average."
+            "Ideal polls are exact; others have the encoder's steps of {QUANTUM_DEG} degrees and times known to 0.1 or 0.5 ms \
+             (one standard deviation). The axis moves as commanded, or as a second-order servo ({SERVO_HZ} Hz, damping \
+             {DAMPED} or {UNDERDAMPED}). With latch, the drive renews its position once per millisecond; no single poll shows \
+             the average delay, half of that."
         ),
     ]
 }

@@ -65,12 +65,14 @@ fn measure(bench: &mut Bench<'_>) -> Result<StudyRows, StudyError> {
 fn about(points: usize) -> Vec<String> {
     vec![
         format!(
-            "The same tilt, {points} points at {RANGE_M} m, each return with its own azimuth and tilt. Eq. 1-6 are computed in f64, or \
-             entirely in f32 with angles and distances. The error is the distance to the point computed in f64 with the library's sine."
+            "The same tilt, {points} points at {RANGE_M} m, each return with its own azimuth and tilt. The paper's Eq. 1-6 are \
+             computed in f64, or entirely in f32 with angles and distances. The error is the distance to the point of \"f64, \
+             library\"."
         ),
-        "Library: sine and cosine of both angles for every return. Table: those of the nearest hundredth of a degree, 36,000 entries; \
-         azimuth table: for the azimuth only. Addition: the library's for the first laser of a firing, and for the others the angle \
-         addition formulas with a third-order series of the small difference; velomotion does this in f64 per block."
+        "Library: sine and cosine of both angles for every return. Table: those of the nearest hundredth of a degree (36,000 \
+         entries); azimuth table: for the azimuth only. Addition: the library's for a firing's first laser; the others follow \
+         by angle addition formulas, with a third-order series of the small difference. In f64, velomotion does this per \
+         block."
             .to_owned(),
     ]
 }

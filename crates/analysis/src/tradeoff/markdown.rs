@@ -36,21 +36,21 @@ impl Book<'_> {
         let (how, compared) = match report.is_timed() {
             true => (
                 format!(
-                    "Measured by `{}` on {}. Times are the median of repeated runs, with the \
-                     minimum and the maximum; the choices ran in turns.",
+                    "Measured by `{}` on {}. Times are medians (minimum..maximum) of repeated runs, \
+                     in turns.",
                     self.command,
                     escaped(&report.machine.line())
                 ),
-                ", compared with the best run",
+                ", compared with their best run",
             ),
             false => (format!("Computed by `{}`.", self.command), ""),
         };
         let mut page = vec![
             format!("# {}", escaped(self.title)),
             format!(
-                "{how} Smaller is better everywhere. A choice is on the Pareto front (*, or the \
-                 number of the figure) unless another choice is at least as good in both columns \
-                 and better in one{compared}."
+                "{how} Smaller is better. Choices on the Pareto front have a * or the number of the \
+                 plot. No other choice is at least as good in both columns and better in \
+                 one{compared}."
             ),
         ];
         page.extend(

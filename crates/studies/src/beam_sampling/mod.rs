@@ -37,7 +37,7 @@ fn finding(findings: &StudyFindings) -> String {
         format!("{} and {}", value("hall"), value("parking"))
     };
     format!(
-        "5 x 3 sub-rays at edges leave {} % of the edges off by 50 mm, in {} ns; the middle alone {} %, in {} ns",
+        "5 x 3 sub-rays at edges leave {} % of edges off by 50 mm, in {} ns. The middle alone leaves {} %, in {} ns",
         of("5 x 3 at edges", 2),
         of("5 x 3 at edges", 0),
         of("the middle alone", 2),
@@ -136,9 +136,9 @@ fn counted(scene: &str, shots: &SampledFirings, edges: &[SilhouetteEdge]) -> Str
         .count();
     let share = 100.0 * edges.len() as f64 / shots.count().max(1) as f64;
     format!(
-        "{scene}: {} shots, {} of them at edges ({share:.1} %), {two} with two returns",
-        shots.count(),
-        edges.len()
+        "In {scene} {} of {} shots are at edges ({share:.1} %), {two} with two returns",
+        edges.len(),
+        shots.count()
     )
 }
 
@@ -146,23 +146,19 @@ fn about(counts: &[String]) -> Vec<String> {
     let [columns, rows] = FINE;
     vec![
         format!(
-            "Shots of a VLP-16 spread over a sweep through built-in scenes ({}). The beam divergence is 3 x 1.5 mrad. The reference is \
-             {columns} x {rows} sub-rays of every \
-             shot; a shot is at an edge unless all its sub-rays hit one plane within 2 mm.",
-            counts.join("; ")
+            "A VLP-16's shots (divergence 3 x 1.5 mrad) are spread over a sweep through built-in scenes. The reference casts \
+             {columns} x {rows} sub-rays per shot; a shot is at an edge unless all hit one plane within 2 mm. {}.",
+            counts.join(". ")
         ),
         format!(
-            "Errors are shares of the shots at edges: the strongest return is off by more than 5 or 50 mm, or one of the two has none. \
-             The range is a mean over the footprint if surfaces are \
-             less than 1 m apart; the error is metres if another return is chosen as the strongest, so that a mean error would depend on few shots. \
-             Two returns are wrong if either is more \
-             than {ANOTHER_M} m off or missing, as a share of the shots for which reference or sampling has two. \
-             The time is that of a complete shot, including the central ray; the search for edges belongs to \"at edges\", except for the \
-             map of flat directions, made once per run by 228,000 rays."
+            "Errors are shares of shots at edges whose strongest return is more than 5 or 50 mm off, or missing in sampling or \
+             reference alone. A mean error would depend on few shots: those with another strongest return, metres off. Two \
+             returns are wrong if either is missing or more than {ANOTHER_M} m off, as a share of shots with two in reference \
+             or sampling. The time includes the central ray and, \"at edges\", the search for edges, but not the map of flat \
+             directions (228,000 rays per run)."
         ),
-        "At edges: velomotion casts sub-rays only where the map and the corners of the footprint permit an edge; edges of objects between \
-         the corners are missed. Everywhere: the same sub-rays at every \
-         shot. 5 x 3 at edges is the default. The scene is given, so each has a separate front."
+        "At edges: velomotion casts sub-rays only where map and corners of the footprint permit an edge, and misses edges of \
+         objects between the corners. Everywhere: at every shot. 5 x 3 at edges is the default. Each scene has its own front."
             .to_owned(),
     ]
 }

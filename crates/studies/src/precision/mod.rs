@@ -39,7 +39,7 @@ fn finding(findings: &StudyFindings) -> String {
     let of = |test: &str, column| findings.text(&format!("at 5e5 m as they are, {test}"), column);
     let ours = "watertight in f64 (velomotion's)";
     format!(
-        "500 km from the origin f32 errs by {} mm in {} ns, f64 by {} mm in {} ns; {} rays of a million slip through",
+        "500 km from the origin f32 errs by {} mm in {} ns, f64 by {} mm in {} ns. Of a million rays {} slip through",
         of("watertight in f32", 2),
         of("watertight in f32", 0),
         of(ours, 2),
@@ -125,18 +125,18 @@ fn measure(bench: &mut Bench<'_>) -> Result<StudyRows, StudyError> {
 fn about(rays: usize) -> Vec<String> {
     vec![
         format!(
-            "{rays} rays from inside a rough sphere {:.0} to {:.0} m in radius, one third of them exactly towards vertices of its \
-             triangles, one third towards edges, one third in random directions. Each is tested against \
-             the {TRIANGLES} nearest triangles, eight rays at a time, and hits the first. The error is the distance to the hit of exact \
-             rays with exact triangles in double-double arithmetic (106 bits), including rounding of coordinates. The sphere is closed: a \
-             ray without a hit has slipped through. A test is one ray and one triangle.",
+            "{rays} rays start inside a rough closed sphere {:.0} to {:.0} m in radius. About one third go exactly to vertices \
+             of its triangles, one third to edges, one third in random directions. Eight at a time are tested against the \
+             {TRIANGLES} nearest triangles and hit the first. The error is the distance to the hit of exact rays and triangles \
+             in double-double arithmetic (106 bits), including rounding of coordinates. A ray without a hit has slipped \
+             through. A test is one ray and one triangle.",
             RADIUS_M * (1.0 - LUMPS),
             RADIUS_M * (1.0 + LUMPS)
         ),
-        "Moeller and Trumbore's test solves for each triangle separately. The watertight test (Woop, Benthin and Wald) translates and \
-         shears vertices until the ray is an axis, with Kahan's difference of products; velomotion uses it in f64. A local origin is \
-         subtracted in f64 before coordinates are rounded, as velomotion does for every mesh. A register holds twice as many f32 numbers, \
-         but triangle tests are only a part of a cast: the boxes of trees are f32 anyway."
+        "Moeller and Trumbore's test solves for each triangle separately. The watertight test (Woop, Benthin and Wald) \
+         translates and shears vertices until the ray is an axis, with Kahan's difference of products. A local origin is \
+         subtracted in f64 before coordinates are rounded, as for velomotion's meshes. A register holds twice as many f32 \
+         numbers, but triangle tests are only a part of a cast, whose boxes are f32 anyway."
             .to_owned(),
     ]
 }

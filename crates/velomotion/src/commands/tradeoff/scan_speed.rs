@@ -136,20 +136,20 @@ fn about(recommended: usize) -> Result<Vec<String>, StudyError> {
     }
     Ok(vec![
         format!(
-            "Choose the speed by the gap. With the ranges of a VLP-16 (10 mm, one standard deviation) 95 % of points are within 20 to 26 mm \
-             at {USUAL_M} m at any speed; a slower scan has more points, not better ones. The fastest scans by the gap of 99 % of \
-             directions: {}. velomotion plan --at 20m --gap 0.3deg --error 25mm chooses for other limits and devices, with \
-             --range-sd, --rpm and --time.",
-            advice.join("; ")
+            "Choose the speed by the gap: a slower scan has more points, not better ones. At any speed 95 % of a VLP-16's \
+             points (range sd 10 mm) are within 20 to 26 mm at {USUAL_M} m. The fastest scans by the gap of 99 % of directions \
+             follow. {}. For other limits and devices use velomotion plan --at 20m --gap 0.3deg --error 25mm, with --range-sd, \
+             --rpm and --time.",
+            advice.join(". ")
         ),
         format!(
-            "45 degrees, one sweep, a VLP-16 at {RPM} rpm, USB, homing included. The gap is the angle from a direction in view to \
-             the nearest ray, for 99 % of directions, and the widest found; it is the worst of four azimuths of the lidar at the start, and of \
-             12 to 40 for the commands above. Gentle ramps are part of the sweep, with lines closer together. At 20 deg/s the tilt per revolution is the spacing of the lasers, so that \
-             lines coincide: 19 deg/s sees more."
+            "45 degrees, one sweep, a VLP-16 at {RPM} rpm, USB, homing included. Gaps are angles from directions in view to \
+             the nearest ray: of 99 % of directions, and the widest found. They are the worst of four azimuths of the lidar at \
+             the start (12 to 40 for the commands above). Lines of gentle ramps are closer together. At 20 deg/s lines \
+             coincide: 19 deg/s sees more."
         ),
-        "Errors hold for 95 % of points, across the tilt axis, once with and once without the ranges: azimuth, tilt angle, clock, and the \
-         delay of positions that no scan reveals. The mount counts as exact. velomotion help plan has the terms."
+        "Errors hold for 95 % of points, across the tilt axis, with and without ranges. The other terms are azimuth, tilt \
+         angle, clock, and the delay of positions that no scan reveals (velomotion help plan). The mount counts as exact."
             .to_owned(),
     ])
 }
