@@ -1,11 +1,11 @@
 //! The ROS 2 bridge: clouds, raw packets, the tilt joint, transforms, diagnostics, parameters, and
-//! services and actions that capture and move the axis, in the format of `rmw_zenoh` and without an
-//! installation of ROS (docs/src/ros2.md).
+//! services and actions that capture and move the axis, in the format of `rmw_zenoh` or of
+//! `zenoh-bridge-ros2dds`, without an installation of ROS (docs/src/ros2.md).
 //!
 //! Seven threads: one follows events, one queues finished scans, one sends their clouds, one sends
 //! packets, one answers calls of services, one those of actions, one those of parameters; and one
 //! for each goal under way. Nothing waits for them: what the network does not take is left out and
-//! counted. Time from `/clock`, events of parameters, and DDS are left out.
+//! counted. Time from `/clock` and events of parameters are left out.
 //!
 //! ```
 //! # #[cfg(feature = "zenoh")]
@@ -20,6 +20,7 @@ mod bridge;
 mod calls;
 mod clouds;
 mod counts;
+mod dds_bridge;
 mod events;
 mod goal_request;
 mod goals;

@@ -25,7 +25,7 @@ use crate::goals::Goals;
 use crate::latched::LatchedMessages;
 use crate::parameters;
 use crate::rmw::{self, Entity, Gid, QualityOfService};
-use crate::{Context, Counts};
+use crate::{Context, Counts, dds_bridge};
 
 /// Wait for a router before the bridge looks whether it ends.
 const CONNECT_MS: u32 = 2_000;
@@ -231,9 +231,10 @@ impl RouterLink {
 impl<'a> Declarer<'a> {
     fn new(session: &'a Session, settings: &'a Ros2) -> Result<Self, Error> {
         let zid = session.zid().to_string();
-        let token = session
-            .liveliness()
-            .declare_token(rmw::node_token(settings, &zid));
+        let token = session.liveliness().declare_token(match settings.dds {
+            true => dds_bridge::bridge_token(&zid),
+            false => rmw::node_token(settings, &zid),
+        });
         Ok(Self {
             session,
             settings,
@@ -248,7 +249,7 @@ impl<'a> Declarer<'a> {
         self.settings
     }
 
-    /// Announces an entity and returns its gid.
+    /// Announces an entity and returns its gid, zeros if others announce it.
     fn announce(
         &mut self,
         entity: Entity,
@@ -256,11 +257,33 @@ impl<'a> Declarer<'a> {
         quality: QualityOfService,
     ) -> Result<Gid, Error> {
         self.id += 1;
-        let token = rmw::token(self.settings, &self.zid, (self.id, entity), named, quality);
+        let token = match self.settings.dds {
+            true => dds_bridge::token(&self.zid, entity, named, quality),
+            false => {
+                let numbered = (self.id, entity);
+                Some(rmw::token(
+                    self.settings,
+                    &self.zid,
+                    numbered,
+                    named,
+                    quality,
+                ))
+            }
+        };
+        let Some(token) = token else {
+            return Ok(Gid::default());
+        };
         let gid = rmw::gid(&token);
         let token = self.session.liveliness().declare_token(token).wait()?;
         self.offers.push(token);
         Ok(gid)
+    }
+
+    fn key(&self, name: &str, kind: &MessageType) -> String {
+        match self.settings.dds {
+            true => dds_bridge::key(name),
+            false => rmw::key(self.settings, name, kind),
+        }
     }
 
     /// Declares a publisher of the topic with this full name.
@@ -270,7 +293,7 @@ impl<'a> Declarer<'a> {
         kind: &MessageType,
         (quality, priority): (QualityOfService, Priority),
     ) -> Result<Channel, Error> {
-        let key = rmw::key(self.settings, name, kind);
+        let key = self.key(name, kind);
         let latched = match quality.latched {
             true => Some(LatchedMessages::declare(self.session, &self.zid, &key)?),
             false => None,
@@ -300,7 +323,7 @@ impl<'a> Declarer<'a> {
         take: impl Fn(Call) + Send + Sync + 'static,
     ) -> Result<(), Error> {
         self.session
-            .declare_queryable(rmw::key(self.settings, name, kind))
+            .declare_queryable(self.key(name, kind))
             .complete(true)
             .callback(move |query| {
                 if let Some(call) = Call::new(query) {
@@ -343,15 +366,17 @@ pub struct Call {
 }
 
 impl Call {
-    /// A query with an attachment of `rmw_zenoh`; others are refused.
+    /// A query with an attachment of `rmw_zenoh` or the bridge to DDS; others are refused.
     fn new(query: Query) -> Option<Self> {
         let attachment = query.attachment().map(|attachment| attachment.to_bytes());
-        if let Some(request) = attachment.and_then(|bytes| rmw::request_of(&bytes)) {
+        let request = attachment
+            .and_then(|bytes| rmw::request_of(&bytes).or_else(|| dds_bridge::request_of(&bytes)));
+        if let Some(request) = request {
             return Some(Self { query, request });
         }
         refuse(
             &query,
-            "expected an attachment of rmw_zenoh: number, time, gid, 33 bytes",
+            "expected an attachment of rmw_zenoh (number, time, gid: 33 bytes) or zenoh-bridge-ros2dds (20 bytes)",
         );
         None
     }

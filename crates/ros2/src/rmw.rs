@@ -14,7 +14,7 @@ const NODE_ID: u32 = 0;
 const USUAL_DEPTH: u32 = 42;
 /// Bytes of an attachment: two i64, a length, a gid.
 const ATTACHMENT_BYTES: usize = 33;
-const GID_BYTES: usize = 16;
+pub const GID_BYTES: usize = 16;
 
 /// Identity of a publisher or a client in `rmw_zenoh`.
 pub type Gid = [u8; GID_BYTES];

@@ -14,7 +14,12 @@ fn key(service: &str) -> String {
 
 /// Calls a service. Returns success and message.
 pub fn call(router: &mut Peer, service: &str) -> (bool, String) {
-    let command = json!({ "do": "call", "key": key(service), "attachment": true });
+    call_key(router, &key(service), "rmw_zenoh")
+}
+
+/// Calls the service with this key.
+pub fn call_key(router: &mut Peer, key: &str, attachment: &str) -> (bool, String) {
+    let command = json!({ "do": "call", "key": key, "attachment": attachment });
     let printed = router.request(&command);
     let answers: Vec<&Value> = printed
         .iter()
@@ -77,7 +82,7 @@ fn a_capture_is_started_and_stopped_by_service_calls() {
     );
 
     // A request that is not rmw_zenoh's moves nothing.
-    let command = json!({ "do": "call", "key": key("start_capture"), "attachment": false });
+    let command = json!({ "do": "call", "key": key("start_capture"), "attachment": "none" });
     let printed = router.request(&command);
     assert!(
         printed
@@ -111,7 +116,7 @@ fn ros_moves_nothing_unless_configured() {
     let rig = daemon(&place, "");
     connected(&rig, true);
     rig.ready();
-    let command = json!({ "do": "call", "key": key("start_capture"), "attachment": true });
+    let command = json!({ "do": "call", "key": key("start_capture"), "attachment": "rmw_zenoh" });
     let printed = router.request(&command);
     let answered = printed.iter().any(|v| v.get("answered").is_some());
     assert!(!answered, "{printed:?}");

@@ -4,6 +4,7 @@
 
 mod actions;
 mod calls;
+mod dds_bridge;
 mod network;
 mod parameters;
 mod peer;

@@ -161,7 +161,7 @@ fn parameters_set_the_next_capture_and_move_nothing() {
     );
     assert_eq!(get(&mut router, speed)["double_value"], 56.25);
     // A request that is not of this type.
-    let command = json!({ "do": "call", "key": LIST.key(), "attachment": true });
+    let command = json!({ "do": "call", "key": LIST.key(), "attachment": "rmw_zenoh" });
     let printed = router.request(&command);
     let refused = printed.iter().find(|value| value.get("refused").is_some());
     assert!(

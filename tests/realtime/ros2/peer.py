@@ -205,14 +205,18 @@ def content(name, message):
     raise ValueError(name)
 
 
-def listener(who):
+def listener(who, kind=None):
     def callback(sample):
         try:
             key = str(sample.key_expr)
-            domain, *topic, dds, digest = key.split("/")
-            name = ros_name(dds)
+            if kind is None:
+                domain, *topic, dds, digest = key.split("/")
+                name = ros_name(dds)
+            else:
+                # For a bridge to DDS the key is the topic's name.
+                domain, topic, digest, name = None, key.split("/"), None, kind
             # The types of actions have other names in rosbags, and thus another hash.
-            own = name.startswith("velomotion_msgs/")
+            own = name.startswith("velomotion_msgs/") or kind is not None
             name = name.replace("/action/", "/msg/")
             # What a node with these types subscribes to; another hash is another topic.
             assert own or digest == store.hash_rihs01(name), f"{key}: {store.hash_rihs01(name)}"
@@ -240,15 +244,20 @@ def listener(who):
     return callback
 
 
-def call(session, key, with_attachment):
-    """As a client of rmw_zenoh calls: std_srvs/srv/Trigger's request is one byte that means nothing."""
+def call(session, key, attachment):
+    """As a client of rmw_zenoh or the bridge to DDS calls: std_srvs/srv/Trigger's request is one byte that means nothing."""
     gid = bytes(range(16))
     sent = time.time_ns()
-    data = np.array([7, sent], "<i8").tobytes() + bytes([16]) + gid
+    data = None
+    if attachment == "rmw_zenoh":
+        data = np.array([7, sent], "<i8").tobytes() + bytes([16]) + gid
+    elif attachment == "dds":
+        gid = gid[:8] + bytes(8)
+        data = b"rqh" + gid[:8] + np.array([7], "<i8").tobytes() + b"\x01"
     replies = session.get(
         key,
         payload=b"\x00\x01\x00\x00\x00",
-        attachment=data if with_attachment else None,
+        attachment=data,
         target=zenoh.QueryTarget.ALL_COMPLETE,
         consolidation=zenoh.ConsolidationMode.NONE,
         timeout=60.0,
@@ -325,25 +334,28 @@ config.insert_json5(f"{where}/endpoints", json.dumps([endpoint]))
 config.insert_json5("timestamping/enabled", "true")
 with zenoh.open(config) as session:
     kept = []
-    tokens = session.liveliness().declare_subscriber(
-        "@ros2_lv/**",
-        lambda sample: say(
-            token=str(sample.key_expr), there=sample.kind == zenoh.SampleKind.PUT
-        ),
-        history=True,
-    )
+    for tokens in ["@ros2_lv/**", "@/*/@ros2_lv/**"]:
+        kept.append(
+            session.liveliness().declare_subscriber(
+                tokens,
+                lambda sample: say(
+                    token=str(sample.key_expr), there=sample.kind == zenoh.SampleKind.PUT
+                ),
+                history=True,
+            )
+        )
     say(ready=str(session.zid()))
     for line in sys.stdin:
         command = json.loads(line)
         if command["do"] == "subscribe":
-            kept.append(session.declare_subscriber(command["key"], listener(command["who"])))
+            kept.append(session.declare_subscriber(command["key"], listener(command["who"], command.get("kind"))))
         elif command["do"] == "subscribe_latched":
             # What rmw_zenoh makes of a transient local, reliable subscription.
             kept.append(
                 zenoh.ext.declare_advanced_subscriber(
                     session,
                     command["key"],
-                    listener(command["who"]),
+                    listener(command["who"], command.get("kind")),
                     history=zenoh.ext.HistoryConfig(detect_late_publishers=True, max_samples=1),
                     recovery=zenoh.ext.RecoveryConfig(heartbeat=True),
                     subscriber_detection=True,

@@ -45,6 +45,7 @@ pub struct DaemonConfig {
     /// Disk space to leave free, bytes.
     pub reserve_bytes: u64,
     /// `[daemon.ros2]`; without it ROS 2 gets nothing.
+    #[serde(deserialize_with = "super::ros2::table")]
     pub ros2: Option<Ros2>,
 }
 

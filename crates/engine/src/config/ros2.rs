@@ -20,7 +20,9 @@ pub struct Ros2 {
     /// The zenoh router in zenoh's notation: `tcp/HOST:PORT`.
     #[serde(deserialize_with = "router")]
     pub router: String,
-    /// `ROS_DOMAIN_ID` of the subscribers.
+    /// Whether the router is a `zenoh-bridge-ros2dds`, whose subscribers use DDS.
+    pub dds: bool,
+    /// `ROS_DOMAIN_ID` of the subscribers; the bridge to DDS has its own.
     #[serde(deserialize_with = "domain")]
     pub domain: u8,
     /// Namespace of the node and its topics: `/`, or names each preceded by a slash.
@@ -41,6 +43,7 @@ impl Default for Ros2 {
         Self {
             // Default address of `rmw_zenohd`.
             router: "tcp/localhost:7447".to_owned(),
+            dds: false,
             domain: 0,
             namespace: "/".to_owned(),
             frame_prefix: String::new(),
@@ -56,6 +59,18 @@ impl Ros2 {
     pub fn resolve(&self, topic: &str) -> String {
         format!("{}{topic}", self.namespace.trim_end_matches('/'))
     }
+}
+
+/// The `[daemon.ros2]` table, whose settings agree.
+pub(super) fn table<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Ros2>, D::Error> {
+    let settings = Ros2::deserialize(from)?;
+    if settings.dds && settings.domain != 0 {
+        return Err(D::Error::custom(format!(
+            "domain: with dds = true the domain is that of zenoh-bridge-ros2dds (-d, ROS_DOMAIN_ID); expected none, got {}",
+            settings.domain
+        )));
+    }
+    Ok(Some(settings))
 }
 
 /// The text, if it is valid.
@@ -116,6 +131,7 @@ fn frame_prefix<'de, D: Deserializer<'de>>(from: D) -> Result<String, D::Error> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::config::daemon::DaemonConfig;
 
     fn settings(text: &str) -> Result<Ros2, String> {
         toml::from_str(text).map_err(|error| error.to_string())
@@ -127,7 +143,7 @@ mod tests {
         assert_eq!(usual.router, "tcp/localhost:7447");
         assert_eq!((usual.domain, usual.namespace.as_str()), (0, "/"));
         assert_eq!(usual.resolve("/tf"), "/tf");
-        assert!(usual.capture.is_none() && !usual.actions);
+        assert!(usual.capture.is_none() && !usual.actions && !usual.dds);
     }
 
     #[test]
@@ -166,6 +182,10 @@ mod tests {
             let message = settings(text).unwrap_err();
             assert!(message.contains(wanted), "{text}: {message}");
         }
+        let daemon = "[ros2]\ndds = true\ndomain = 3";
+        let message = toml::from_str::<DaemonConfig>(daemon).unwrap_err();
+        assert!(message.to_string().contains("ROS_DOMAIN_ID"), "{message}");
+        assert!(toml::from_str::<DaemonConfig>("[ros2]\ndds = true").is_ok());
         let long = format!("namespace = '/{}'", "n".repeat(LONGEST));
         assert!(settings(&long).is_err());
     }
