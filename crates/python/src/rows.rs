@@ -58,8 +58,8 @@ pub(crate) struct PointLayout {
 }
 
 impl PointLayout {
-    /// The layout of these fields, of the usual ones without names. Each field lies at a multiple
-    /// of its size.
+    /// The layout of these fields, of the usual ones without names: in this order, each field at a
+    /// multiple of its size. numpy cannot save fields in another order than that of their bytes.
     pub fn new(names: Option<&[String]>) -> Result<Self, BindingError> {
         let usual = || ALL.iter().take(USUAL).map(|(name, _)| (*name).to_owned());
         let names: Vec<String> = names.map_or_else(|| usual().collect(), <[String]>::to_vec);
@@ -82,22 +82,19 @@ impl PointLayout {
                 "fields: expected one or more, got none",
             ));
         }
-        let mut by_size: Vec<PointField> = fields.iter().map(|(_, field)| *field).collect();
-        by_size.sort_by_key(|field| std::cmp::Reverse(field.format().1));
-        let largest = by_size.first().map_or(1, |field| field.format().1);
-        let mut end = 0;
-        let mut places = Vec::with_capacity(by_size.len());
-        for field in by_size {
-            places.push((field, end));
-            end += field.format().1;
+        let mut end = 0_usize;
+        let mut largest = 1;
+        let mut places = Vec::with_capacity(fields.len());
+        for (_, field) in &fields {
+            let (_, bytes) = field.format();
+            let offset = end.next_multiple_of(bytes);
+            places.push((*field, offset));
+            end = offset + bytes;
+            largest = largest.max(bytes);
         }
-        let offset = |field: PointField| {
-            let place = places.iter().find(|(placed, _)| *placed == field);
-            place.map_or(0, |(_, offset)| *offset)
-        };
         Ok(Self {
-            fields: (fields.iter())
-                .map(|(name, field)| (*name, field.format().0, offset(*field)))
+            fields: (fields.iter().zip(&places))
+                .map(|((name, field), (_, offset))| (*name, field.format().0, *offset))
                 .collect(),
             row_bytes: end.next_multiple_of(largest),
             places,

@@ -28,6 +28,9 @@ def test_rows_are_as_documented_and_not_copied():
     assert list(points.dtype.names) == USUAL and points.ndim == 1 and len(points) > 1_000
     assert points.dtype["x"] == np.float32 and points.dtype["time"] == np.float64
     assert points.dtype["ring"] == np.uint8 and points.dtype.itemsize == 40
+    # numpy.save and numpy.savez need the order of the bytes.
+    offsets = [points.dtype.fields[name][1] for name in USUAL]
+    assert offsets == sorted(offsets)
     # A view of the memory that Rust allocated.
     assert not points.flags.owndata and points.flags.aligned and points.flags.writeable
     some = velomotion.read(RECORDINGS / "vlp16-dual.pcap", fields=["intensity", "x", "device_time"])

@@ -222,8 +222,8 @@ pub fn scan_table(scan: &ScanReport) -> String {
     rows.extend(scan.live.iter().map(|live| ("live view", live_line(live))));
     if let Some(georeference) = &scan.georeference {
         rows.extend(georeference.frame());
-        let clauses = georeference.accuracy_clauses();
-        rows.extend(clauses.map(|clause| ("", clause.to_owned())));
+        let clauses: Vec<&str> = georeference.accuracy_clauses().collect();
+        rows.push(("accuracy", clauses.join("\n")));
     }
     rows.push(("cloud", cloud_line(scan)));
     rows.push(("log", scan.log.clone()));
