@@ -5,9 +5,9 @@
 use std::sync::OnceLock;
 
 mod counts;
-mod links;
 mod manifests;
 mod modules;
+mod pages;
 
 use counts::Counts;
 use manifests::{ANYTHING, Workspace, allowed_dependencies, confined, locked};
@@ -31,6 +31,7 @@ const OPTIONAL_PACKAGES: [&str; 2] = ["zenoh", "xxhash-rust"];
 
 /// Ceilings of the figures; they may only fall.
 const MAX_REPEATED_TYPES: usize = 2;
+const MAX_WORDS_OF_BOOK: usize = 25_000;
 
 #[test]
 fn crates_depend_only_on_what_the_table_allows() {
@@ -182,6 +183,15 @@ fn the_binary_is_thin() {
 
 #[test]
 fn links_lead_somewhere_and_the_book_lists_its_pages() {
-    let broken = links::broken();
+    let broken = pages::broken_links();
     assert!(broken.is_empty(), "{broken:#?}");
+}
+
+#[test]
+fn the_book_is_short() {
+    let words = pages::words_of_book();
+    assert!(
+        words <= MAX_WORDS_OF_BOOK,
+        "{words} words of prose, at most {MAX_WORDS_OF_BOOK}"
+    );
 }

@@ -1,4 +1,4 @@
-//! Links between the repository's pages, and the book's list of pages.
+//! Links between the repository's pages, the book's list of pages, and its length.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::manifests::root;
 
 /// Links that lead nowhere, and pages of the book that its summary lacks, as "page: link".
-pub fn broken() -> Vec<String> {
+pub fn broken_links() -> Vec<String> {
     let book = root().join("docs/src");
     let mut pages = vec![
         root().join("README.md"),
@@ -50,6 +50,26 @@ pub fn broken() -> Vec<String> {
         }
     }
     broken
+}
+
+/// Words of the book's prose: its pages without code, tables, comments and the targets of links.
+pub fn words_of_book() -> usize {
+    let mut pages = markdown_in(&root().join("docs/src"));
+    pages.retain(|page| !page.ends_with("SUMMARY.md"));
+    pages.push(root().join("ARCHITECTURE.md"));
+    let words = pages.iter().map(|page| {
+        let prose = prose_of(&read(page));
+        let lines = prose.lines().map(str::trim_start);
+        let lines = lines.filter(|line| !line.starts_with(['|', '<']));
+        let text = lines.collect::<Vec<_>>().join(" ");
+        let parts = text.split("](").enumerate();
+        let parts = parts.map(|(i, part)| match part.split_once(')') {
+            Some((_target, rest)) if i > 0 => rest,
+            _ => part,
+        });
+        parts.collect::<String>().split_whitespace().count()
+    });
+    words.sum()
 }
 
 fn read(page: &Path) -> String {
