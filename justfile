@@ -46,6 +46,10 @@ kills *ARGS:
 windows:
     tests/foreign/windows
 
+# A node over DDS behind zenoh-bridge-ros2dds, which is compiled from its published plugin; needs cmake and libclang-dev.
+dds:
+    tests/foreign/dds/run
+
 # Type-checks what runs on macOS. There is no C compiler for it: nothing is linked.
 macos:
     rustup target add aarch64-apple-darwin

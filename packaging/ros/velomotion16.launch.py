@@ -15,7 +15,8 @@ def generate_launch_description():
         [
             DeclareLaunchArgument("router", default_value="true", description="start the zenoh router"),
             DeclareLaunchArgument("rviz", default_value="true", description="start RViz"),
-            SetEnvironmentVariable("RMW_IMPLEMENTATION", "rmw_zenoh_cpp"),
+            DeclareLaunchArgument("zenoh", default_value="true", description="use rmw_zenoh_cpp, not the middleware of this shell"),
+            SetEnvironmentVariable("RMW_IMPLEMENTATION", "rmw_zenoh_cpp", condition=IfCondition(LaunchConfiguration("zenoh"))),
             Node(package="rmw_zenoh_cpp", executable="rmw_zenohd", condition=IfCondition(LaunchConfiguration("router"))),
             Node(package="rviz2", executable="rviz2", arguments=["-d", str(view)], condition=IfCondition(LaunchConfiguration("rviz"))),
         ]

@@ -4,6 +4,7 @@
 
 use std::sync::OnceLock;
 
+mod commands;
 mod counts;
 mod manifests;
 mod modules;
@@ -184,6 +185,12 @@ fn the_binary_is_thin() {
 #[test]
 fn links_lead_somewhere_and_the_book_lists_its_pages() {
     let broken = pages::broken_links();
+    assert!(broken.is_empty(), "{broken:#?}");
+}
+
+#[test]
+fn commands_of_the_pages_name_what_exists() {
+    let broken = commands::broken();
     assert!(broken.is_empty(), "{broken:#?}");
 }
 

@@ -280,7 +280,7 @@ pub fn allowed_dependencies() -> Vec<(String, Vec<String>)> {
     crates
 }
 
-fn table(path: &Path) -> Table {
+pub fn table(path: &Path) -> Table {
     let text =
         std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     text.parse()

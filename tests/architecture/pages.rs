@@ -8,15 +8,8 @@ use crate::manifests::root;
 /// Links that lead nowhere, and pages of the book that its summary lacks, as "page: link".
 pub fn broken_links() -> Vec<String> {
     let book = root().join("docs/src");
-    let mut pages = vec![
-        root().join("README.md"),
-        root().join("crates/python/README.md"),
-    ];
-    pages.extend(["ARCHITECTURE.md", "CONTRIBUTING.md"].map(|name| root().join(name)));
-    let of_book = markdown_in(&book);
-    pages.extend(of_book.iter().cloned());
     let mut broken = Vec::new();
-    for page in pages {
+    for page in all_pages() {
         let text = read(&page);
         for link in links_of(&text) {
             let (file, heading) = link.split_once('#').unwrap_or((&link, ""));
@@ -39,7 +32,7 @@ pub fn broken_links() -> Vec<String> {
         broken.push(format!("ARCHITECTURE.md lacks {part}"));
     }
     let summary = links_of(&read(&book.join("SUMMARY.md")));
-    for page in of_book {
+    for page in markdown_in(&book) {
         let name = page
             .file_name()
             .expect("a file")
@@ -50,6 +43,29 @@ pub fn broken_links() -> Vec<String> {
         }
     }
     broken
+}
+
+/// The pages of the book, and those beside it.
+pub fn all_pages() -> Vec<PathBuf> {
+    let mut pages = markdown_in(&root().join("docs/src"));
+    let others = [
+        "README.md",
+        "ARCHITECTURE.md",
+        "CONTRIBUTING.md",
+        "crates/python/README.md",
+    ];
+    pages.extend(others.map(|name| root().join(name)));
+    pages
+}
+
+/// Lines of the blocks of code of a page, and code within its sentences.
+pub fn code_of(text: &str) -> Vec<String> {
+    let blocks = text.split("\n```").skip(1).step_by(2);
+    let joined = blocks.map(|block| block.replace("\\\n", " "));
+    let lines = joined.flat_map(|block| block.lines().map(str::to_owned).collect::<Vec<_>>());
+    let prose = prose_of(text);
+    let spans = prose.split('`').skip(1).step_by(2).map(str::to_owned);
+    lines.chain(spans).collect()
 }
 
 /// Words of the book's prose: its pages without code, tables, comments and the targets of links.
@@ -72,7 +88,7 @@ pub fn words_of_book() -> usize {
     words.sum()
 }
 
-fn read(page: &Path) -> String {
+pub fn read(page: &Path) -> String {
     std::fs::read_to_string(page).unwrap_or_else(|error| panic!("{}: {error}", page.display()))
 }
 

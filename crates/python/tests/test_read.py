@@ -23,7 +23,7 @@ def ignore_incomplete(call):
         return call()
 
 
-def test_rows_are_as_documented_and_not_copied():
+def test_rows_are_as_documented_and_not_copied(tmp_path):
     points = velomotion.read(RECORDINGS / "vlp16-dual.pcap")
     assert list(points.dtype.names) == USUAL and points.ndim == 1 and len(points) > 1_000
     assert points.dtype["x"] == np.float32 and points.dtype["time"] == np.float64
@@ -34,6 +34,10 @@ def test_rows_are_as_documented_and_not_copied():
     # A view of the memory that Rust allocated.
     assert not points.flags.owndata and points.flags.aligned and points.flags.writeable
     some = velomotion.read(RECORDINGS / "vlp16-dual.pcap", fields=["intensity", "x", "device_time"])
+    # With padding between fields.
+    np.save(tmp_path / "some.npy", some)
+    saved = np.load(tmp_path / "some.npy")
+    assert all(np.array_equal(saved[name], some[name]) for name in some.dtype.names)
     assert list(some.dtype.names) == ["intensity", "x", "device_time"] and some.dtype.itemsize == 16
     assert np.array_equal(some["x"], points["x"]) and np.array_equal(some["intensity"], points["intensity"])
     for name in velomotion.read.__doc__.split("Returns")[1].split("Warns")[0].split("- ")[1:]:

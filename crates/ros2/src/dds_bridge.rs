@@ -18,13 +18,14 @@ pub fn key(name: &str) -> String {
     name.trim_matches('/').to_owned()
 }
 
-/// Token of a bridge, which the session `zid` takes the place of.
+/// Token that declares the session `zid` as a bridge.
 #[must_use]
 pub fn bridge_token(zid: &str) -> String {
     format!("@/{zid}/@ros2_lv")
 }
 
-/// Token of a publisher or service; an action has one in all, with its service `send_goal`.
+/// Token of a publisher or service. An action has a single token, declared with its service
+/// `send_goal`; its other parts have none.
 #[must_use]
 pub fn token(
     zid: &str,

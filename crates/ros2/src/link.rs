@@ -249,7 +249,7 @@ impl<'a> Declarer<'a> {
         self.settings
     }
 
-    /// Announces an entity and returns its gid, zeros if others announce it.
+    /// Announces an entity and returns its gid, zeros if it has no token of its own.
     fn announce(
         &mut self,
         entity: Entity,

@@ -89,7 +89,7 @@ fn everything_is_done_by_the_keyboard_alone() {
             press_at(&page, "#by-hand summary", SPACE).await;
 
             let name = format!("round-{number}");
-            type_at(&page, "#speed", "56.25").await;
+            type_at(&page, "#speed", "30").await;
             press_at(&page, "#sweep > details > summary", enter).await;
             type_at(&page, "#name", &name).await;
             press_at(&page, "#sweep > details > summary", enter).await;

@@ -190,7 +190,15 @@ fn run_line(folder: &Path, line: &str) -> (Option<i32>, String) {
     // Nice, as analyses would take both processors from the tests beside this one. The time limit
     // ends a command that hangs.
     let mut child = Command::new("timeout")
-        .args(["--signal=KILL", "900", "nice", "bash", "-ec"])
+        .args([
+            "--signal=KILL",
+            "900",
+            "nice",
+            "bash",
+            "-eo",
+            "pipefail",
+            "-c",
+        ])
         .arg(format!("exec 2>&1\nexec {line}"))
         .current_dir(folder)
         .env(
