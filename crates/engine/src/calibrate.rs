@@ -245,7 +245,8 @@ fn refused(refusal: &CalibrationRefusal, request: &CalibrateRequest<'_>) -> Fail
             "fasten the base and scan again; a soft floor or a tripod gives way"
         }
         CalibrationRefusal::Misfit { chi2 } if *chi2 < 1.0 => {
-            "the ranges agree better than their stated noise: state a smaller range_sd_m in [lidar] before the scan"
+            "the ranges agree better than their stated noise: state a smaller range_sd_m in [lidar] before the scan; \
+             a simulated capture has no noise: velomotion help calibrate-simulated"
         }
         CalibrationRefusal::Misfit { .. } => {
             "the scene moved, or the scanner has an error that is not in the model; scan another place"

@@ -4,7 +4,7 @@ mod companion;
 mod file;
 mod texts;
 
-use std::io as stdio;
+use std::io::{self as stdio, IsTerminal};
 use std::path::{Path, PathBuf};
 
 use ::io::files::{FileError, NewFile, Overwrite};
@@ -36,6 +36,13 @@ impl Target {
     /// [`Kind::BadInput`] if the file cannot be created.
     pub fn open(path: &Path, fields: Fields, force: bool) -> Result<Self, Failure> {
         if path == Path::new("-") {
+            if stdio::stdout().is_terminal() {
+                return Err(Failure::new(
+                    Kind::Usage,
+                    "a cloud named - is PLY in bytes, and stdout is a terminal",
+                )
+                .help("name a file instead of -, or redirect stdout"));
+            }
             let scratch = ::io::files::scratch_in(&::io::files::scratch_folder());
             let scratch = scratch.map_err(|error| {
                 Failure::new(Kind::BadInput, format!("cannot write to stdout: {error}"))
@@ -47,6 +54,10 @@ impl Target {
                 file: None,
                 sink: Box::new(PlyPipe::new(stdio::stdout(), scratch, fields)),
             });
+        }
+        if path.is_dir() {
+            let path = path.to_owned();
+            return Err(file_failure(&FileError::Directory { path }));
         }
         let format = Format::from_path(path).map_err(|error| {
             Failure::new(Kind::Usage, format!("{}: {error}", path.display()))
@@ -158,16 +169,23 @@ impl Target {
     }
 }
 
-/// Refuses an existing file, before anything is opened.
+/// Refuses an existing file and a missing folder, before anything is opened.
 ///
 /// # Errors
 /// [`Kind::Usage`].
 pub fn check_free(path: &Path, force: bool) -> Result<(), Failure> {
-    if !force && path.exists() {
-        let path = path.to_owned();
-        return Err(file_failure(&FileError::Exists { path }));
-    }
-    Ok(())
+    let folder = path.parent().filter(|folder| *folder != Path::new(""));
+    let error = match folder {
+        Some(folder) if !folder.is_dir() => FileError::NoFolder {
+            path: path.to_owned(),
+            folder: folder.to_owned(),
+        },
+        _ if !force && path.exists() => FileError::Exists {
+            path: path.to_owned(),
+        },
+        _ => return Ok(()),
+    };
+    Err(file_failure(&error))
 }
 
 /// Refuses `-` for a log, which must be a file, and other extensions. `with` names the option.

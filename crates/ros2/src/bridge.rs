@@ -118,10 +118,17 @@ fn run(context: &Context, runtimes: &[Runtime; 4]) {
             Err(error) => {
                 if !reported {
                     reported = true;
-                    let text = format!("ROS 2: no zenoh router at {router}: {error}");
-                    let help = "start one (ros2 run rmw_zenoh_cpp rmw_zenohd), or name it with router = \"tcp/HOST:PORT\" \
-                                under [daemon.ros2]; it is tried again every second";
-                    events.message(MessageLevel::Warning, text, Some(help.to_owned()));
+                    let text = format!("ROS 2: no zenoh router at {router}");
+                    tracing::debug!("{text}: {error}");
+                    let program = match context.settings.dds {
+                        true => "zenoh-bridge-ros2dds",
+                        false => "ros2 run rmw_zenoh_cpp rmw_zenohd",
+                    };
+                    let help = format!(
+                        "start one ({program}), or name it with router = \"tcp/HOST:PORT\" under [daemon.ros2]; \
+                         it is tried again every second"
+                    );
+                    events.message(MessageLevel::Warning, text, Some(help));
                 }
                 context.stop.wait(RETRY_INTERVAL);
                 continue;

@@ -35,9 +35,15 @@ pub enum TlsAcceptor {}
 const CLOSE_WAIT: Duration = Duration::from_secs(2);
 
 pub(super) fn cannot_listen(place: &str, error: &std::io::Error) -> Failure {
-    Failure::new(Kind::Usage, format!("cannot listen on {place}: {error}")).help(
-        "end the program that has it, or choose another address with --listen (port 0 takes any that is free)",
-    )
+    let help = match error.kind() {
+        std::io::ErrorKind::PermissionDenied => {
+            "allow this user to write the folder, set XDG_RUNTIME_DIR to another, or choose a port above 1023"
+        }
+        _ => {
+            "end the program that has it, or choose another address with --listen (port 0 takes any that is free)"
+        }
+    };
+    Failure::new(Kind::Usage, format!("cannot listen on {place}: {error}")).help(help)
 }
 
 /// Binds a TCP address.

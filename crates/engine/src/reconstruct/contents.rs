@@ -9,6 +9,7 @@ use scanner::{Accuracy, ScanConfig, Survey, TiltSource};
 
 use super::failures::scan_failure;
 use super::satellite::{SatelliteReceiver, pps_name};
+use super::warnings::incomplete_sweeps;
 use crate::failure::Failure;
 use crate::reconstruct::report::{
     Contents, Gps, InfoReport, MissingPackets, PacketCounts, SensorReport, SweepReport, TiltReport,
@@ -43,6 +44,9 @@ pub fn read_contents(source: &Source, options: Options) -> Result<InfoReport, Fa
                 sweeps = found
                     .map(|sweep| SweepReport::new(sweep, contents.rpm))
                     .collect();
+                contents
+                    .warnings
+                    .extend(incomplete_sweeps(&config, &alignment));
             }
             Err(error) => contents.warnings.push(error.to_string()),
         }

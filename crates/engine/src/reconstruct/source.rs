@@ -357,7 +357,7 @@ pub fn failure(error: &RecordingError) -> Failure {
             "copy the recording from its source again"
         }
         RecordingError::Foreign { .. } => {
-            "give a pcap or pcapng with lidar packets, as tcpdump, Wireshark or velomotion capture write it; velomotion view shows clouds"
+            "give a pcap or pcapng with lidar packets, as tcpdump, Wireshark or velomotion capture write it; velomotion view shows clouds, by their extension: .ply for a PLY"
         }
         RecordingError::Link { .. } => {
             "record on an Ethernet interface (tcpdump -i eth0 udp), or convert with editcap"

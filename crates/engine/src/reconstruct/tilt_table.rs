@@ -18,45 +18,18 @@ pub fn tilt_source(text: &str) -> Result<TiltSource, Failure> {
     }
 }
 
-/// Reads a CSV of time_s,angle_deg. A first line without numbers is a header; its units must be
-/// these.
+/// Reads a CSV of time_s,angle_deg.
 fn angle_table(path: &Path) -> Result<AngleTable, Failure> {
     let wrong = |what: String| {
         Failure::new(Kind::BadInput, format!("{}: {what}", path.display())).help(
-            "give a CSV of two columns, time_s,angle_deg: times in increasing order, either Unix seconds \
-             or seconds since the recording's first packet",
+            "--tilt takes log, none, or a CSV of time_s,angle_deg with decimal points: times in increasing \
+             order, either Unix seconds or seconds since the recording's first packet",
         )
     };
     let text =
         std::fs::read_to_string(path).map_err(|error| wrong(format!("cannot read: {error}")))?;
-    let (mut rows, mut lines) = (Vec::new(), Vec::new());
-    let mut heading = false;
-    for (number, line) in text.lines().enumerate() {
-        let line = line.trim();
-        let blank = line.is_empty() || line.starts_with('#');
-        match parse_row(line) {
-            Some(row) => {
-                rows.push(row);
-                lines.push(number + 1);
-            }
-            None if blank => {}
-            None if rows.is_empty() && !heading => {
-                if !has_units(line) {
-                    return Err(wrong(format!(
-                        "line {}: expected the columns time_s,angle_deg, got {line:?}",
-                        number + 1
-                    )));
-                }
-                heading = true;
-            }
-            None => {
-                return Err(wrong(format!(
-                    "line {}: expected two finite numbers, got {line:?}",
-                    number + 1
-                )));
-            }
-        }
-    }
+    let rows = rows_of(&text).map_err(wrong)?;
+    let (lines, rows): (Vec<usize>, Vec<(f64, f64)>) = rows.into_iter().unzip();
     AngleTable::new(rows).map_err(|error| match error {
         AngleTableError::Range { row } | AngleTableError::Order { row } => {
             let line = lines.get(row.saturating_sub(1)).copied().unwrap_or(row);
@@ -66,28 +39,58 @@ fn angle_table(path: &Path) -> Result<AngleTable, Failure> {
     })
 }
 
-/// Whether no column of a header has another unit: `time,angle` has none.
-fn has_units(header: &str) -> bool {
-    let units = ["s", "deg"];
-    header.split([',', ';']).zip(units).all(|(name, unit)| {
-        let name = name.trim().to_lowercase();
-        match name.rsplit_once('_') {
-            Some((_, found)) => found == unit,
-            None => !name.is_empty(),
+/// The rows with their lines. A first line without numbers is a header; its units must be seconds
+/// and degrees. The first line has the separator and the number of columns of all: decimal commas
+/// would give other numbers.
+fn rows_of(text: &str) -> Result<Vec<(usize, (f64, f64))>, String> {
+    let mut rows = Vec::new();
+    let mut columns = None;
+    for (number, line) in (1..).zip(text.lines()) {
+        let line = line.trim();
+        if line.is_empty() || line.starts_with('#') {
+            continue;
         }
-    })
+        let wrong =
+            |expected: &str| Err(format!("line {number}: expected {expected}, got {line:?}"));
+        let is_first = columns.is_none();
+        let (separator, count) = *columns.get_or_insert_with(|| {
+            let separator = if line.contains(';') { ';' } else { ',' };
+            (separator, line.split(separator).count())
+        });
+        let cells: Vec<&str> = line.split(separator).map(str::trim).collect();
+        if cells.len() != count {
+            return wrong(&format!("{count} columns separated by {separator:?}"));
+        }
+        match parse_row(&cells) {
+            Some(_) if is_first && count > 2 => {
+                return wrong("the two columns time_s,angle_deg, or a header first");
+            }
+            Some(row) => rows.push((number, row)),
+            None if is_first && has_units(&cells) => {}
+            None if is_first => return wrong("the columns time_s,angle_deg"),
+            None => return wrong("two finite numbers with decimal points"),
+        }
+    }
+    Ok(rows)
 }
 
-fn parse_row(line: &str) -> Option<(f64, f64)> {
-    let mut cells = line
-        .split([',', ';'])
-        .map(|cell| cell.trim().parse::<f64>());
-    match (cells.next(), cells.next()) {
-        (Some(Ok(time)), Some(Ok(angle))) if time.is_finite() && angle.is_finite() => {
-            Some((time, angle))
-        }
-        _ => None,
-    }
+/// Whether these are names of columns, the first two without another unit: `time,angle` has none.
+fn has_units(header: &[&str]) -> bool {
+    let units = ["s", "deg"];
+    header.len() >= units.len()
+        && header.iter().zip(units).all(|(name, unit)| {
+            let name = name.to_lowercase();
+            let found = name.rsplit_once('_');
+            name.starts_with(char::is_alphabetic) && found.is_none_or(|(_, found)| found == unit)
+        })
+}
+
+fn parse_row(cells: &[&str]) -> Option<(f64, f64)> {
+    let [time, angle, ..] = cells else {
+        return None;
+    };
+    let row: (f64, f64) = (time.parse().ok()?, angle.parse().ok()?);
+    (row.0.is_finite() && row.1.is_finite()).then_some(row)
 }
 
 #[cfg(test)]
@@ -102,14 +105,53 @@ mod tests {
             "t_s, tilt_deg",
             "time_s,angle_deg,note",
         ] {
-            assert!(has_units(header), "{header}");
+            assert_eq!(rows_of(header), Ok(Vec::new()), "{header}");
         }
         for header in [
             "time_s,angle_rad",
             "time_ms,angle_deg",
             "time_s,position_qc",
+            "time_s",
         ] {
-            assert!(!has_units(header), "{header}");
+            let message = rows_of(header).unwrap_err();
+            assert!(message.starts_with("line 1: expected the columns time_s,angle_deg"));
+        }
+    }
+
+    #[test]
+    fn rows_have_the_columns_of_the_first_line() {
+        let expected = Ok(vec![(3, (0.0, -1.5)), (5, (1.0, 2.0))]);
+        assert_eq!(
+            rows_of("# of a rig\nt;a;note\n0;-1.5;x\n\n1 ; 2;y\n"),
+            expected
+        );
+        assert_eq!(rows_of("0, 1\n"), Ok(vec![(1, (0.0, 1.0))]));
+    }
+
+    /// A decimal comma is a separator elsewhere: 0,5;10,2 must not become 0 s and 5 deg.
+    #[test]
+    fn decimal_commas_and_other_columns_are_refused() {
+        for (table, wanted) in [
+            ("0,5;10,2\n1,0;12,0", "line 1: expected the columns"),
+            (
+                "time_s;angle_deg\n0,5;10,2",
+                "line 2: expected two finite numbers with decimal points",
+            ),
+            ("0,5,10,2\n1,0,12,0", "line 1: expected the two columns"),
+            (
+                "time,angle\n0,5,10,2",
+                "line 2: expected 2 columns separated by ','",
+            ),
+            (
+                "time;angle\n0,5",
+                "line 2: expected 2 columns separated by ';'",
+            ),
+            ("0,1\n1;2", "line 2: expected 2 columns separated by ','"),
+            ("0,1\n1,nan", "line 2: expected two finite numbers"),
+            ("banana", "line 1: expected the columns"),
+        ] {
+            let message = rows_of(table).unwrap_err();
+            assert!(message.starts_with(wanted), "{table}: {message}");
         }
     }
 }
