@@ -15,7 +15,8 @@ async fn main() -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
     let config = format!(
         "{{ mode: 'router', listen: {{ endpoints: ['{endpoint}'] }}, scouting: {{ multicast: {{ enabled: false }} }},
             timestamping: {{ enabled: true }}, adminspace: {{ enabled: true }}, plugins_loading: {{ enabled: true }},
-            plugins: {{ ros2dds: {{ domain: {domain}, ros_localhost_only: true }} }} }}"
+            plugins: {{ ros2dds: {{ domain: {domain}, ros_localhost_only: true,
+                queries_timeout: {{ actions: {{ get_result: ['.*=86400'] }} }} }} }} }}"
     );
     let mut plugins = PluginsManager::static_plugins_only();
     plugins.declare_static_plugin::<zenoh_plugin_ros2dds::ROS2Plugin, &str>("ros2dds", true);
