@@ -169,23 +169,31 @@ impl Target {
     }
 }
 
-/// Refuses an existing file and a missing folder, before anything is opened.
+/// Refuses an existing file, before anything is opened.
 ///
 /// # Errors
 /// [`Kind::Usage`].
 pub fn check_free(path: &Path, force: bool) -> Result<(), Failure> {
+    if !force && path.exists() {
+        let path = path.to_owned();
+        return Err(file_failure(&FileError::Exists { path }));
+    }
+    Ok(())
+}
+
+/// Refuses a file in a folder that does not exist, before hours of work for it.
+///
+/// # Errors
+/// [`Kind::Usage`].
+pub fn check_folder(path: &Path) -> Result<(), Failure> {
     let folder = path.parent().filter(|folder| *folder != Path::new(""));
-    let error = match folder {
-        Some(folder) if !folder.is_dir() => FileError::NoFolder {
+    match folder.filter(|folder| !folder.is_dir()) {
+        Some(folder) => Err(file_failure(&FileError::NoFolder {
             path: path.to_owned(),
             folder: folder.to_owned(),
-        },
-        _ if !force && path.exists() => FileError::Exists {
-            path: path.to_owned(),
-        },
-        _ => return Ok(()),
-    };
-    Err(file_failure(&error))
+        })),
+        None => Ok(()),
+    }
 }
 
 /// Refuses `-` for a log, which must be a file, and other extensions. `with` names the option.

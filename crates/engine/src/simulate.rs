@@ -160,6 +160,7 @@ impl SimulationFiles<'_> {
         }
         let opened = if scene.simulation.sensor.packets.is_some() {
             output::log_is_file(output, option, &["pcapng", "pcap"])?;
+            output::check_folder(output)?;
             output::check_free(output, force)?;
             let path = output.to_owned();
             SimulationOutput::Log { path, force }

@@ -62,6 +62,12 @@ fn a_calibration_needs_different_scans_and_replaces_only_a_calibration() {
         2,
         &["swept.toml exists and is no calibration"],
     );
+    // Before the minutes of the fit.
+    place.fails(
+        "calibrate swept.pcapng -o missing/mount.toml",
+        2,
+        &["the folder missing does not exist"],
+    );
 }
 
 #[test]

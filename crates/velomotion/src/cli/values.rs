@@ -60,10 +60,7 @@ pub(super) fn number(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         // Later checks print the number: 1e300 would have 301 digits.
         Ok(number) if number.is_nan() || number.abs() <= 1e6 => Ok(number),
-        _ => Err(
-            "expected a number from -1e6 to 1e6, with a decimal point and without a unit"
-                .to_owned(),
-        ),
+        _ => Err("expected a number from -1e6 to 1e6, such as 56.25".to_owned()),
     }
 }
 

@@ -11,7 +11,7 @@ use engine::calibrate::{
 use engine::config::load_mount;
 use engine::document::Document;
 use engine::failure::{Failure, Kind};
-use engine::output::{check_free, make_folder, refuse_overwrite, write_text};
+use engine::output::{check_folder, check_free, make_folder, refuse_overwrite, write_text};
 
 use super::CommandOutput;
 use crate::cli::{self, Common, VERSION};
@@ -28,6 +28,7 @@ pub fn run(arguments: &cli::Calibrate, common: &Common) -> Result<CommandOutput,
         for log in &arguments.logs {
             refuse_overwrite(log, output)?;
         }
+        check_folder(output)?;
         check_free(output, arguments.force)?;
         replaces_only_a_calibration(output)?;
     }

@@ -491,11 +491,11 @@ mod tests {
             ),
             (
                 "capture --speed 1e300",
-                "invalid value '1e300' for '--speed <DEG_PER_S>': expected a number from -1e6 to 1e6",
+                "invalid value '1e300' for '--speed <DEG_PER_S>': expected a number from -1e6 to 1e6, such as 56.25",
             ),
             (
                 "tilt goto 1e300",
-                "invalid value '1e300' for '<DEG>': expected a number from -1e6 to 1e6",
+                "invalid value '1e300' for '<DEG>': expected a number from -1e6 to 1e6, such as 56.25",
             ),
             (
                 "capture",
