@@ -6,6 +6,9 @@ use scanner::{AngleTable, AngleTableError, TiltSource};
 
 use crate::failure::{Failure, Kind};
 
+/// Lines, each with its time, seconds, and its angle, degrees.
+type Rows = Vec<(usize, (f64, f64))>;
+
 /// Reads `--tilt`: `log`, `none`, or the path of a CSV.
 ///
 /// # Errors
@@ -42,8 +45,8 @@ fn angle_table(path: &Path) -> Result<AngleTable, Failure> {
 /// The rows with their lines. A first line without numbers is a header; its units must be seconds
 /// and degrees. The first line has the separator and the number of columns of all: decimal commas
 /// would give other numbers.
-fn rows_of(text: &str) -> Result<Vec<(usize, (f64, f64))>, String> {
-    let mut rows = Vec::new();
+fn rows_of(text: &str) -> Result<Rows, String> {
+    let mut rows = Rows::new();
     let mut columns = None;
     for (number, line) in (1..).zip(text.lines()) {
         let line = line.trim();
