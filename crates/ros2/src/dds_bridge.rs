@@ -40,13 +40,13 @@ pub fn token(
         let (action, kind) = (escaped(action), escaped(kind));
         return (part == "send_goal").then(|| format!("{begin}/AS/{action}/{kind}"));
     }
-    let (key, type_name) = (escaped(name), escaped(&kind.name));
+    let (key, type_name) = (escaped(name), escaped(kind.name));
     Some(match entity {
         Entity::Publisher => {
             // Numbers of DDS: reliable 1, transient local 1, keep last 0; and the type's hash as
             // participants publish it in USER_DATA.
             let (reliable, latched) = (u8::from(quality.reliable), u8::from(quality.latched));
-            let (depth, hash) = (quality.depth, &kind.hash);
+            let (depth, hash) = (quality.depth, kind.hash);
             format!("{begin}/MP/{key}/{type_name}/:{reliable}:{latched}:0,{depth}:typehash={hash};")
         }
         Entity::Service => format!("{begin}/SS/{key}/{type_name}"),
@@ -84,7 +84,7 @@ mod tests {
     #[test]
     fn tokens_announce_topics_services_and_whole_actions() {
         let kind = Topic::StaticTransforms.message_type();
-        let hash = &kind.hash;
+        let hash = kind.hash;
         assert_eq!(key("/left/tf"), "left/tf");
         assert_eq!(
             token("7a", Entity::Publisher, ("/left/tf", &kind), LATCHED).unwrap(),
