@@ -66,7 +66,7 @@ pub(super) fn table<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Ros2>, 
     let settings = Ros2::deserialize(from)?;
     if settings.dds && settings.domain != 0 {
         return Err(D::Error::custom(format!(
-            "domain: with dds = true the domain is that of zenoh-bridge-ros2dds (-d, ROS_DOMAIN_ID); expected none, got {}",
+            "domain: with dds = true the domain is that of zenoh-bridge-ros2dds (-d, ROS_DOMAIN_ID); expected 0, got {}",
             settings.domain
         )));
     }

@@ -46,6 +46,8 @@ fn angle_table(path: &Path) -> Result<AngleTable, Failure> {
 /// and degrees. The first line has the separator and the number of columns of all: decimal commas
 /// would give other numbers.
 fn rows_of(text: &str) -> Result<Rows, String> {
+    // Spreadsheets begin UTF-8 with a byte order mark.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut rows = Rows::new();
     let mut columns = None;
     for (number, line) in (1..).zip(text.lines()) {
@@ -107,6 +109,7 @@ mod tests {
             "Time;Angle",
             "t_s, tilt_deg",
             "time_s,angle_deg,note",
+            "\u{feff}time_s,angle_deg",
         ] {
             assert_eq!(rows_of(header), Ok(Vec::new()), "{header}");
         }
@@ -128,7 +131,9 @@ mod tests {
             rows_of("# of a rig\nt;a;note\n0;-1.5;x\n\n1 ; 2;y\n"),
             expected
         );
-        assert_eq!(rows_of("0, 1\n"), Ok(vec![(1, (0.0, 1.0))]));
+        for table in ["0, 1\n", "\u{feff}0,1\n"] {
+            assert_eq!(rows_of(table), Ok(vec![(1, (0.0, 1.0))]));
+        }
     }
 
     /// A decimal comma is a separator elsewhere: 0,5;10,2 must not become 0 s and 5 deg.
