@@ -26,6 +26,8 @@ local objects = {
   [0x6081] = { "Profile Velocity", 32 }, [0x6083] = { "Profile Acceleration", 32 },
   [0x6084] = { "Profile Deceleration", 32 }, [0x6085] = { "Quick Stop Deceleration", 32 }, [0x6098] = { "Homing Method", -8 },
 }
+-- Objects with several values, whose subindex 0 is their number, 8 bits.
+local several = { [0x1003] = true, [0x1018] = true, [0x2070] = true, [0x2071] = true, [0x2078] = true, [0x2079] = true, [0x607D] = true }
 -- Of these commands, the first two data words name an object.
 local with_object = { [0x10] = true, [0x11] = true, [0x12] = true, [0x13] = true }
 
@@ -113,6 +115,7 @@ local function dissect_frame(bytes, pinfo, tree, opcode, header, words)
   local function value(low, high)
     local known = objects[object.index]
     local width = known and known[2] or 32
+    if object.subindex == 0 and several[object.index] then width = 8 end
     local range = 2 ^ math.abs(width)
     local number_of = (low + 65536 * high) % range
     if width < 0 and number_of >= range / 2 then number_of = number_of - range end

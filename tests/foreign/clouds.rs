@@ -1,5 +1,5 @@
 //! Clouds in foreign readers: MCAP in mcap and rosbags, E57 in pye57, PLY and PCD in Open3D. LAZ
-//! in laspy is in `main.rs`. XYZ is read by Open3D, too, KITTI by numpy.
+//! in laspy is in `main.rs`. XYZ is read by Open3D, too, KITTI and npz by numpy.
 
 use cloud::Summary;
 use serde_json::{Value, json};
@@ -241,12 +241,13 @@ fn open3d_reads_our_ply_and_pcd_with_the_right_count_and_bounds() {
 
 #[test]
 #[ignore = "needs python3 with the packages of tests/foreign/requirements.txt"]
-fn open3d_reads_our_xyz_and_numpy_our_kitti() {
+fn open3d_reads_our_xyz_and_numpy_our_kitti_and_npz() {
     let scan = Captured::new(Setting::default());
     let summary = scan.cloud().summary();
     for (name, columns) in [
         ("cloud.xyz", json!(["positions"])),
         ("cloud.bin", json!(["positions", "reflectance"])),
+        ("cloud.npz", json!(["intensity", "ring", "tilt", "time"])),
     ] {
         let file = scan.cloud_file(name);
         let got = run_script("open3d_reads.py", &[&file]);

@@ -1,10 +1,11 @@
-"""Open3D reads a .ply, .pcd or .xyz cloud, and numpy a .bin of KITTI: count, bounds and columns as JSON.
+"""Open3D reads a .ply, .pcd or .xyz cloud, and numpy a .bin of KITTI or a .npz: count, bounds and columns as JSON.
 
 usage: open3d_reads.py CLOUD
 """
 
 import json
 import sys
+import zipfile
 
 import numpy as np
 import open3d as o3d
@@ -16,6 +17,14 @@ if path.endswith(".bin"):
     # KITTI: x forward, y left. Ours: x right, y forward.
     xyz = np.column_stack([-rows[:, 1], rows[:, 0], rows[:, 2]])
     columns = ["positions", "reflectance"]
+elif path.endswith(".npz"):
+    assert zipfile.ZipFile(path).testzip() is None, "checksums"
+    archive = np.load(path)
+    points = archive["points"]
+    assert b"SIMULATED" in archive["metadata.txt"]
+    xyz = np.column_stack([points[axis] for axis in "xyz"])
+    assert (points["time"] > 1.6e9).all() and points["ring"].max() < 16, "columns are where they should be"
+    columns = sorted(name for name in points.dtype.names if name not in "xyz")
 else:
     cloud = o3d.t.io.read_point_cloud(path)
     xyz = cloud.point.positions.numpy()

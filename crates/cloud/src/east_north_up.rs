@@ -44,6 +44,15 @@ impl EastNorthUp {
         ]
     }
 
+    /// The unit quaternion (x, y, z, w) that turns the scanner's axes into these.
+    pub(crate) fn rotation(self) -> [f64; 4] {
+        // Clockwise, seen from above.
+        let (sin, cos) = (-self.heading.to_radians().0 / 2.0).sin_cos();
+        // Both signs are one rotation; E57 takes only w >= 0.
+        let sign = if cos < 0.0 { -1.0 } else { 1.0 };
+        [0.0, 0.0, sign * sin, sign * cos]
+    }
+
     /// The batch with its points in `axes`; without axes the batch itself.
     pub(crate) fn apply(axes: Option<Self>, batch: &Points) -> Cow<'_, Points> {
         axes.map_or(Cow::Borrowed(batch), |axes| {

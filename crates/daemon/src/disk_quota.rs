@@ -34,7 +34,8 @@ pub fn most_bytes(format: Format, points: u64) -> u64 {
         | Format::Laz
         | Format::E57
         | Format::Mcap
-        | Format::Kitti => ROW_BYTES,
+        | Format::Kitti
+        | Format::Npz => ROW_BYTES,
     };
     points.saturating_mul(row).saturating_add(HEAD_BYTES)
 }

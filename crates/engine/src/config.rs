@@ -64,7 +64,10 @@ pub fn load(file: Option<&Path>) -> Result<Config, Failure> {
                 toml_error(&text, &error)
             ),
         )
-        .help("correct that line; velomotion help wiring shows every key")
+        .help(format!(
+            "correct that line; velomotion help {} shows every key",
+            page(&text, &error)
+        ))
     })?;
     config.check().map_err(|what| {
         Failure::new(
@@ -89,6 +92,18 @@ impl Config {
         self.axis.check()?;
         let mut devices = self.device.profiles.iter();
         devices.try_for_each(|(name, device)| device.check(name))
+    }
+}
+
+/// The page of the book that describes the table in which an error is.
+fn page(text: &str, error: &toml::de::Error) -> &'static str {
+    let end = error.span().map_or(0, |span| span.end);
+    let tables = text.get(..end).unwrap_or(text).lines().rev();
+    let table = tables.map(str::trim).find(|line| line.starts_with('['));
+    match table.unwrap_or_default() {
+        table if table.starts_with("[daemon.ros2") => "ros2",
+        table if table.starts_with("[daemon") => "daemon",
+        _ => "wiring",
     }
 }
 

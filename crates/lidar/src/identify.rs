@@ -96,7 +96,21 @@ impl Identifier {
             self.confirmed = false;
             self.regular = None;
         }
-        let mut conflict = None;
+        // Models of one spacing, as VLP-16 and Hi-Res, differ in the factory byte alone. For others
+        // the spacing decides: a VLP-16 of 2014 has the byte of an HDL-32E.
+        let of_byte = LidarModel::of(packet.product());
+        let contradicts = |requested: &LidarModel| {
+            let period_ns = |model: &LidarModel| model.packet_period_ns(is_dual(packet));
+            of_byte.is_some_and(|model| {
+                model.name != requested.name && period_ns(model) == period_ns(requested)
+            })
+        };
+        let requested = self.user_model.filter(|model| contradicts(model));
+        let mut conflict = requested.map(|requested| ModelConflict {
+            product: packet.product(),
+            user_model: Some(requested),
+            spacing: None,
+        });
         if let Some(spacing) = spacing
             && let Some(model) = self.contradicting_model(spacing, named, is_dual(packet))
         {
@@ -107,8 +121,7 @@ impl Identifier {
                 conflict = Some(ModelConflict {
                     product: packet.product(),
                     user_model: self.user_model,
-                    spacing,
-                    spacing_of: model,
+                    spacing: Some((spacing, model)),
                 });
                 Some(SpacingFinding { named, model })
             };

@@ -70,7 +70,7 @@ pub struct PacketGap {
     pub packets: u64,
 }
 
-/// Contradiction between the packet spacing and the factory byte or the user's model.
+/// Contradiction between the factory byte, the packet spacing and the user's model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ModelConflict {
@@ -78,10 +78,8 @@ pub struct ModelConflict {
     pub product: Product,
     /// The user's model, which takes precedence.
     pub user_model: Option<&'static LidarModel>,
-    /// Device time between the two packets.
-    pub spacing: Span,
-    /// The model with that packet period.
-    pub spacing_of: &'static LidarModel,
+    /// Device time between two packets and the model with that period, if it contradicts.
+    pub spacing: Option<(Span, &'static LidarModel)>,
 }
 
 impl Stats {
@@ -111,13 +109,19 @@ impl Stats {
         }
     }
 
+    /// Keeps each kind once. A spacing replaces the same contradiction without one.
     pub(crate) fn report(&mut self, conflict: ModelConflict) {
-        let known = self
-            .conflicts
-            .iter()
-            .any(|c| c.product == conflict.product && c.spacing_of == conflict.spacing_of);
-        if !known {
-            self.conflicts.push(conflict);
+        let of_product = |known: &&mut ModelConflict| known.product == conflict.product;
+        let mut known = self.conflicts.iter_mut().filter(of_product);
+        let model = |conflict: &ModelConflict| conflict.spacing.map(|(_, model)| model);
+        match known.find(|known| {
+            known.spacing.is_none()
+                || conflict.spacing.is_none()
+                || model(known) == model(&conflict)
+        }) {
+            Some(known) if known.spacing.is_none() => *known = conflict,
+            Some(_) => {}
+            None => self.conflicts.push(conflict),
         }
     }
 }
@@ -131,16 +135,20 @@ impl fmt::Display for ModelConflict {
                 write!(f, "the packets' factory byte 0x{byte:02X} is not known")?;
             }
         }
-        write!(
-            f,
-            ", their spacing of {:.0} us says {}; decoded as {}",
-            self.spacing.as_micros_f64(),
-            self.spacing_of.name,
-            self.user_model.unwrap_or(self.spacing_of).name
-        )?;
-        if self.user_model.is_some() {
-            write!(f, " as asked")?;
+        let spacing_of = self.spacing.map(|(spacing, model)| {
+            let spacing_us = spacing.as_micros_f64();
+            write!(
+                f,
+                ", their spacing of {spacing_us:.0} us says {}",
+                model.name
+            )
+            .map(|()| model)
+        });
+        let spacing_of = spacing_of.transpose()?;
+        match (self.user_model, spacing_of) {
+            (Some(model), _) => write!(f, "; decoded as {} as asked", model.name),
+            (None, Some(model)) => write!(f, "; decoded as {}", model.name),
+            (None, None) => Ok(()),
         }
-        Ok(())
     }
 }

@@ -291,6 +291,12 @@ fn assert_vlp16_of_2014(datagrams: &[Datagram], expected: &Expected) {
         conflict.to_string(),
         "the packets' factory byte says HDL-32E, their spacing of 1327 us says VLP-16; decoded as VLP-16"
     );
+    // The spacing confirms the right model against the factory byte.
+    let requested = Options {
+        model: Some(&protocol::vlp16::models::VLP_16),
+        ..options(Duplicates::Unique)
+    };
+    assert!(decode(datagrams, requested).stats.conflicts.is_empty());
     let rpm = stats.rpm.unwrap();
     assert!((rpm - 1_200.0).abs() < 10.0, "{rpm}");
     assert_sums(&decoded.points, expected.sums_m);

@@ -498,6 +498,22 @@ fn the_model_of_the_user_takes_precedence() {
         (60, "HDL-32E")
     );
     assert_eq!(decoder.stats().conflicts.len(), 1);
+    // A Hi-Res has the spacing of a VLP-16: the factory byte alone tells them apart.
+    let mut of_one_spacing = Decoder::new(Options {
+        model: Some(&protocol::vlp16::models::PUCK_HI_RES),
+        ..Options::default()
+    });
+    for packet in &packets {
+        of_one_spacing.packet(packet.host, &packet.bytes, &mut |_| {});
+    }
+    let conflicts = &of_one_spacing.stats().conflicts;
+    assert_eq!(
+        conflicts
+            .iter()
+            .map(ToString::to_string)
+            .collect::<Vec<_>>(),
+        ["the packets' factory byte says VLP-16; decoded as Puck Hi-Res as asked"]
+    );
     let message = decoder.stats().conflicts[0].to_string();
     assert!(
         message.ends_with("says VLP-16; decoded as HDL-32E as asked"),

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Compares velomotion with PyPI's velodyne-decoder: pcap files to numpy arrays, on one core, in one run.
 
-usage: speed.py [--repetitions N] RECORDING.pcap ...
+usage: speed.py [--repetitions N] [--least RATIO] RECORDING.pcap ...
 
 Both give structured arrays of points. They take turns, so that other work on the machine meets both. A time is CPU time
 of all threads; a ratio is that of neighbouring turns, printed as median (least..most). velodyne-decoder has x, y, z,
@@ -11,6 +11,7 @@ intensity, time, column, ring and kind of return in 24 bytes; velomotion the doc
 import argparse
 import os
 import statistics
+import sys
 import time
 import warnings
 from importlib.metadata import version
@@ -36,11 +37,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("recordings", nargs="+")
     parser.add_argument("--repetitions", type=int, default=9)
+    parser.add_argument("--least", type=float, default=0, help="a smaller ratio is a failure")
     arguments = parser.parse_args()
     # The reader of frames has a thread of its own, which may not run beside Python's.
     os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
     warnings.simplefilter("ignore", velomotion.IncompleteWarning)
+    warnings.simplefilter("ignore", velomotion.RecordingWarning)
     print(f"velomotion {velomotion.__version__}, velodyne-decoder {version('velodyne-decoder')}, load {os.getloadavg()[0]:.1f}")
+    slow = []
     for path in arguments.recordings:
         model = MODELS[velomotion.Log(path).info()["model"]]
         config = vd.Config(model=getattr(vd.Model, model), min_range=0.0, max_range=1000.0)
@@ -72,11 +76,15 @@ def main():
                 (their_s, their_points), (our_s, our_points) = measure(their_work), measure(our_work)
                 ratios.append((our_points / our_s) / (their_points / their_s))
                 rates.append((their_points / their_s * 1e-6, our_points / our_s * 1e-6))
+            if statistics.median(ratios) < arguments.least:
+                slow.append(f"{os.path.basename(path)}, {name}")
             theirs_rate, ours_rate = (statistics.median(column) for column in zip(*rates))
             print(
                 f"  {name}: {statistics.median(ratios):.1f} ({min(ratios):.1f}..{max(ratios):.1f}) times as fast: "
                 f"{ours_rate:.1f} against {theirs_rate:.1f} million points/s"
             )
+    if slow:
+        sys.exit(f"below {arguments.least:g}: {'; '.join(slow)}")
 
 
 if __name__ == "__main__":

@@ -17,6 +17,11 @@ use crate::binding_error::BindingError;
 use crate::table::to_python;
 use crate::work;
 
+/// Farthest origin: map coordinates are nearer, and it keeps their millimetres.
+const MAX_ORIGIN_M: f64 = 1e9;
+/// Most bins of the K function, as `velomotion analyze` takes them.
+const MAX_BINS: usize = 3_600;
+
 /// Source of the measured directions.
 enum DirectionSource {
     Pattern(String),
@@ -35,6 +40,10 @@ struct FoundDirections {
 impl DirectionSource {
     fn new(source: &Bound<'_, PyAny>, origin: Option<[f64; 3]>) -> PyResult<Self> {
         let py = source.py();
+        if origin.is_some_and(|origin| !origin.iter().all(|axis| axis.abs() <= MAX_ORIGIN_M)) {
+            let what = format!("origin: expected three numbers up to {MAX_ORIGIN_M:e} m");
+            return Err(BindingError::usage(what).into_py(py));
+        }
         let wrong = || {
             BindingError::usage(
                 "source: expected the name of a pattern, an array of shape (n, 3), or one with fields x, y, z",
@@ -203,6 +212,13 @@ pub(crate) fn k<'py>(
     error: f64,
     origin: Option<[f64; 3]>,
 ) -> PyResult<Bound<'py, PyDict>> {
+    let wrong = |what| Err(BindingError::usage(what).into_py(py));
+    if !(0.0..1.0).contains(&error) {
+        return wrong("error: expected a share from 0 (every pair is counted) to below 1");
+    }
+    if !(1..=MAX_BINS).contains(&bins) {
+        return wrong("bins: expected 1 to 3600");
+    }
     let source = DirectionSource::new(source, origin)?;
     let (estimate, curve) = work::run(py, move |_| {
         let found = source.directions()?;

@@ -140,7 +140,7 @@ pub(crate) fn mount_for(
         (None, TiltSource::Table(_)) if !source.has_config()? => match usual_place() {
             Some(file) => Ok(Some(load_mount(&file)?)),
             None => Err(BindingError::usage(
-                "mount: the recording has no configuration: where is the lidar on its tilt axis?",
+                "mount: the recording has no configuration; expected its height above the tilt axis in m, or the path of a mount.toml",
             )),
         },
         (None, _) => Ok(None),

@@ -61,10 +61,42 @@ impl From<Failure> for BindingError {
         };
         Self {
             class,
-            message: failure.message,
-            help: failure.help,
+            message: with_arguments(&failure.message),
+            help: failure.help.as_deref().map(with_arguments),
         }
     }
+}
+
+/// Arguments whose names are not those of the command line's options.
+const ARGUMENTS: [(&str, &str); 8] = [
+    ("--at", "at_m"),
+    ("--error", "error_mm"),
+    ("--gap", "gap_deg"),
+    ("--time:", "time_s:"),
+    ("--range-sd", "range_sd_m"),
+    ("--mount-sd", "mount_sd_deg"),
+    ("--from", "from_deg"),
+    ("--to", "to_deg"),
+];
+
+/// A message about options of the command line, with Python's arguments instead. A message that
+/// names a command stays as it is.
+fn with_arguments(text: &str) -> String {
+    if text.contains("velomotion ") || text.contains("replay --") {
+        return text.to_owned();
+    }
+    let words = text.split(' ').map(|word| {
+        let Some(option) = word.strip_prefix("--") else {
+            return word.to_owned();
+        };
+        let argument = ARGUMENTS.iter().find_map(|(known, argument)| {
+            let rest = word.strip_prefix(known)?;
+            let ends = !rest.starts_with(|next: char| next == '-' || next.is_alphanumeric());
+            ends.then(|| format!("{argument}{rest}"))
+        });
+        argument.unwrap_or_else(|| option.replace('-', "_"))
+    });
+    words.collect::<Vec<_>>().join(" ")
 }
 
 /// Refuses a file that the system does not open.
@@ -85,11 +117,9 @@ pub(crate) fn check_readable(path: &Path) -> Result<(), BindingError> {
     })
 }
 
-/// Warns that a result is incomplete.
-pub(crate) fn warn_incomplete(py: Python<'_>, missing: &str) -> PyResult<()> {
-    let category = py
-        .import("velomotion._errors")?
-        .getattr("IncompleteWarning")?;
-    let text = CString::new(missing.replace('\0', " ")).unwrap_or_default();
+/// Warns of `what` by a class of `velomotion/_errors.py`.
+pub(crate) fn warn(py: Python<'_>, class: &str, what: &str) -> PyResult<()> {
+    let category = py.import("velomotion._errors")?.getattr(class)?;
+    let text = CString::new(what.replace('\0', " ")).unwrap_or_default();
     PyErr::warn(py, &category, &text, 1)
 }

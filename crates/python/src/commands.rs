@@ -73,12 +73,16 @@ pub(crate) fn plan<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let rpm: Vec<u32> = match rpm {
         None => Vec::new(),
-        Some(rpm) => match rpm.extract::<u32>() {
-            Ok(rpm) => vec![rpm],
-            Err(_) => rpm.extract().map_err(|_| {
-                BindingError::usage("rpm: expected a whole number, or several").into_py(py)
-            })?,
-        },
+        Some(rpm) => {
+            let several: Vec<u32> = rpm
+                .extract::<u32>()
+                .map_or_else(|_| rpm.extract().unwrap_or_default(), |rpm| vec![rpm]);
+            if several.is_empty() {
+                let what = "rpm: expected a whole number, or several";
+                return Err(BindingError::usage(what).into_py(py));
+            }
+            several
+        }
     };
     let report = work::run(py, move |_| {
         if let Some(file) = &config {
@@ -175,7 +179,8 @@ pub(crate) fn calibrate<'py>(
 ///     The log to write: .pcapng, or .pcap for the lidar's packets alone; the measured cloud of a
 ///     lidar whose packets are not simulated.
 /// truth : path, optional
-///     Cloud of the true points (.ply, .pcd, .las, .laz, .e57, .mcap, .csv, .xyz, .bin).
+///     Cloud of the true points (.ply, .pcd, .las, .laz, .e57, .mcap, .csv, .xyz, .bin,
+///     .npz).
 /// seed : int, optional
 ///     Random seed; by default the scene's.
 /// without : sequence of str
@@ -187,6 +192,8 @@ pub(crate) fn calibrate<'py>(
 ///     Threads that make packets; the log does not depend on it. By default one per core.
 /// force : bool
 ///     Whether to overwrite existing files.
+///
+/// After Ctrl-C log and truth are there, complete up to that time.
 ///
 /// Returns
 /// -------

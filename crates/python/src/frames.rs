@@ -8,8 +8,8 @@ use cloud::{Fields, Points, Revolution, Sink, SinkError, TiltTrack};
 use pyo3::prelude::*;
 use units::Degrees;
 
-use crate::binding_error::{BindingError, warn_incomplete};
-use crate::read::ReadRequest;
+use crate::binding_error::BindingError;
+use crate::read::{Findings, ReadRequest};
 use crate::rows::{PointLayout, PointRows};
 use crate::table::{row_type, to_numpy};
 use crate::work::LOOK_AGAIN;
@@ -21,8 +21,8 @@ const AHEAD: usize = 4;
 enum FrameMessage {
     /// The rows of a revolution.
     Rows(Vec<u8>),
-    /// The end of the recording, with what is missing.
-    End(Result<Option<String>, BindingError>),
+    /// The end of the recording, with what is known about it.
+    End(Result<Findings, BindingError>),
 }
 
 /// Iterator of one array per revolution of the lidar; `frames` makes it.
@@ -139,9 +139,7 @@ impl FrameIterator {
                 Err(RecvTimeoutError::Disconnected) => Err(BindingError::internal()),
             };
             self.end();
-            if let Some(missing) = ended.map_err(|error| error.into_py(py))? {
-                warn_incomplete(py, &missing)?;
-            }
+            ended.map_err(|error| error.into_py(py))?.warn(py)?;
             return Ok(None);
         }
     }

@@ -144,8 +144,11 @@ impl LogFile {
         let (report, missing) = work::run(py, move |_| {
             let source = open()?;
             let report = read_contents(&source, options(&source)?)?;
-            let missing = completeness::missing_packets(&report.contents);
-            Ok((report.to_json(), missing.or(report.contents.truncated)))
+            let missing = report.incomplete_sweeps.iter().cloned();
+            let missing = missing.chain(completeness::missing_packets(&report.contents));
+            let missing: Vec<_> = missing.chain(report.contents.truncated.clone()).collect();
+            let missing = (!missing.is_empty()).then(|| missing.join(", and "));
+            Ok((report.to_json(), missing))
         })?;
         let report = to_python(py, &report)?;
         report.set_item("incomplete", missing)?;

@@ -16,7 +16,7 @@ use units::Degrees;
 use crate::arguments::{
     MountArgument, TiltArgument, decoder_request, mount_for, sensor, time_reference,
 };
-use crate::binding_error::{BindingError, check_readable, warn_incomplete};
+use crate::binding_error::{BindingError, check_readable, warn};
 use crate::frames::FrameIterator;
 use crate::rows::{PointLayout, PointRows};
 use crate::table::{row_type, to_numpy};
@@ -35,13 +35,13 @@ pub(crate) struct ReadRequest {
 
 impl ReadRequest {
     /// Reads the recording into a sink, which gets the ends of revolutions at an azimuth if there
-    /// is one. Returns what is missing.
+    /// is one.
     pub fn read(
         self,
         cut: Option<Degrees>,
         sink: &mut dyn Sink,
         interrupt: &AtomicBool,
-    ) -> Result<Option<String>, BindingError> {
+    ) -> Result<Findings, BindingError> {
         check_readable(&self.path)?;
         let mut source = Source::open(&self.path, self.sensor)?;
         let tilt = self.tilt.resolve(&source)?;
@@ -56,6 +56,7 @@ impl ReadRequest {
         if let Some(file) = &self.decoder.calibration {
             check_readable(file)?;
         }
+        let is_table = matches!(tilt, TiltSource::Table(_));
         let request = Reconstruction {
             tilt,
             options: decoder_options(&self.decoder, &source)?,
@@ -67,8 +68,42 @@ impl ReadRequest {
             None => replay::scan(&request, sink, output)?,
             Some(cut) => replay::scan_by_revolution(&request, cut, sink, output)?,
         };
-        let missing = completeness::missing(&report);
-        Ok(missing.map(|missing| format!("{}: {missing}", self.path.display())))
+        let mut warnings = report.contents.warnings.clone();
+        // The sweeps of a log have their ends; a table has those of another program.
+        if is_table && report.left_out > 0 {
+            let (out, all) = (report.left_out, report.left_out + report.points);
+            let why = report.left_out_because.as_deref().unwrap_or("left out");
+            warnings.push(format!("{out} of {all} returns were omitted: {why}"));
+        }
+        let named = |what: String| format!("{}: {what}", self.path.display());
+        Ok(Findings {
+            missing: completeness::missing(&report).map(|missing| named(missing.to_string())),
+            // Incomplete sweeps are among what is missing.
+            warnings: warnings
+                .into_iter()
+                .filter(|warning| !report.incomplete_sweeps.contains(warning))
+                .map(named)
+                .collect(),
+        })
+    }
+}
+
+/// What a reader should know about a recording, besides its points.
+pub(crate) struct Findings {
+    missing: Option<String>,
+    warnings: Vec<String>,
+}
+
+impl Findings {
+    /// Warns of them.
+    pub fn warn(self, py: Python<'_>) -> PyResult<()> {
+        for warning in &self.warnings {
+            warn(py, "RecordingWarning", warning)?;
+        }
+        match self.missing {
+            Some(missing) => warn(py, "IncompleteWarning", &missing),
+            None => Ok(()),
+        }
     }
 }
 
@@ -174,6 +209,9 @@ fn request(
 /// -----
 /// IncompleteWarning
 ///     Packets or parts of sweeps are missing, or there is no point.
+/// RecordingWarning
+///     The recording contradicts itself or an argument, such as the model, or a table of angles
+///     covers a part of it: what velomotion replay warns of.
 ///
 /// The array is the memory that the points were written to. Other Python threads run meanwhile.
 #[pyfunction]
@@ -205,16 +243,14 @@ pub(crate) fn read<'py>(
         fields,
     )?;
     let row_type = row_type(py, &layout.fields, layout.row_bytes)?;
-    let (bytes, missing) = work::run(py, move |interrupt| {
+    let (bytes, findings) = work::run(py, move |interrupt| {
         let mut rows = CloudRows(PointRows::new(layout));
-        let missing = request.read(None, &mut rows, interrupt)?;
+        let findings = request.read(None, &mut rows, interrupt)?;
         let mut bytes = rows.0.bytes;
         bytes.shrink_to_fit();
-        Ok((bytes, missing))
+        Ok((bytes, findings))
     })?;
-    if let Some(missing) = missing {
-        warn_incomplete(py, &missing)?;
-    }
+    findings.warn(py)?;
     to_numpy(bytes, &row_type)
 }
 
@@ -231,7 +267,8 @@ pub(crate) fn read<'py>(
 /// -------
 /// Frames
 ///     An iterator of arrays as read gives them, one per revolution of the lidar that has points;
-///     the first and the last are seldom whole. The next revolutions are read meanwhile.
+///     the first and the last are seldom whole. The next revolutions are read meanwhile. Its end
+///     warns as read does.
 #[pyfunction]
 #[pyo3(signature = (path, *, tilt=None, mount=None, sensor=None, model=None, calibration=None, time="host",
     equal_returns="once", fields=None, cut=0.0))]
@@ -249,7 +286,12 @@ pub(crate) fn frames<'py>(
     fields: Option<Vec<String>>,
     cut: f64,
 ) -> PyResult<FrameIterator> {
-    let checked = check_readable(&path);
+    let checked = check_readable(&path).and_then(|()| match cut.abs() <= 360.0 {
+        true => Ok(()),
+        false => Err(BindingError::usage(
+            "cut: expected an azimuth from -360 to 360 deg",
+        )),
+    });
     checked.map_err(|error| error.into_py(py))?;
     let (request, layout) = request(
         py,

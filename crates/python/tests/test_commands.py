@@ -1,8 +1,10 @@
 """plan, density, k, calibrate and simulate give what the commands give."""
 
 import numpy as np
+import pye57
 import pytest
 import velomotion
+from conftest import RECORDINGS
 
 
 def test_plan(program):
@@ -13,6 +15,23 @@ def test_plan(program):
     assert velomotion.plan(lidar="hdl32e", rpm=[600, 1200], device="sim") == told
     impossible = velomotion.plan(gap_deg=0.01, device="sim")
     assert impossible["unmet"] and not impossible.get("chosen")
+
+
+@pytest.mark.parametrize("arguments, expected", [
+    ({"at_m": -1}, "at_m: expected"),
+    ({"time_s": -1}, "time_s: expected"),
+    ({"range_sd_m": -1}, "range_sd_m: expected"),
+    ({"range_sd_m": float("nan")}, "range_sd_m: expected"),
+    ({"mount_sd_deg": -1}, "mount_sd_deg: expected"),
+    ({"rpm": []}, "rpm: expected"),
+    ({"from_deg": 10, "to_deg": 10}, "from_deg"),
+    ({"lidar": "hdl32e", "rpm": 7}, "rpm: expected"),
+])
+def test_refusals_of_plan_name_its_arguments(arguments, expected):
+    with pytest.raises(velomotion.Error) as refused:
+        velomotion.plan(device="sim", **arguments)
+    message = f"{refused.value} {refused.value.help}"
+    assert expected in message and "--" not in message.replace("velomotion plan --help", "")
 
 
 def test_density_and_k(program):
@@ -84,3 +103,14 @@ def test_calibrate(program, tmp_path):
     (tmp_path / "made.toml").write_text(toml)
     calibrated = velomotion.read(log, mount=tmp_path / "made.toml")
     assert len(calibrated) == len(velomotion.read(log, mount=0.06)) > 100_000
+
+
+def test_pye57_turns_a_georeferenced_scan_to_north(program, tmp_path):
+    clouds = [tmp_path / "walk.e57", tmp_path / "walk.csv"]
+    for cloud in clouds:
+        recording = RECORDINGS / "vlp16-strongest-gps.pcap"
+        program("replay", recording, "--tilt", "none", "--georeference", "250deg", "-o", cloud)
+    scan = pye57.E57(str(clouds[0])).read_scan(0)
+    placed = np.column_stack([scan["cartesianX"], scan["cartesianY"], scan["cartesianZ"]])
+    expected = np.loadtxt(clouds[1], delimiter=",", comments=["#", "x_m"], usecols=(0, 1, 2))
+    assert placed.shape == expected.shape and np.abs(placed - expected).max() < 1e-5

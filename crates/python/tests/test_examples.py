@@ -9,6 +9,7 @@ import nbformat
 import numpy
 import pytest
 import velomotion
+from dask.distributed import LocalCluster
 from conftest import RECORDINGS, ROOT
 
 EXAMPLES = ROOT / "crates" / "python" / "examples"
@@ -23,13 +24,16 @@ def test_many_logs_on_a_local_cluster(tmp_path):
     logs = [tmp_path / f"{seed}.pcapng" for seed in range(3)]
     for seed, log in enumerate(logs):
         velomotion.simulate("room", log, seed=seed)
-    command = [sys.executable, EXAMPLES / "many_logs.py", "--workers", "2", *logs]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=300)
-    assert done.returncode == 0, done.stderr
-    table = [line.split() for line in done.stdout.splitlines()]
-    points = {row[0]: int(row[1]) for row in table if row and row[0].endswith(".pcapng")}
-    assert points == {log.name: len(velomotion.read(log)) for log in logs}
-    assert "MB/s" in done.stdout and "processes" in done.stdout
+    expected = {log.name: len(velomotion.read(log)) for log in logs}
+    with LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None) as cluster:
+        for where in [["--workers", "2"], ["--scheduler", cluster.scheduler_address]]:
+            command = [sys.executable, EXAMPLES / "many_logs.py", *where, *logs]
+            done = subprocess.run(command, capture_output=True, text=True, timeout=300)
+            assert done.returncode == 0, done.stderr
+            table = [line.split() for line in done.stdout.splitlines()]
+            points = {row[0]: int(row[1]) for row in table if row and row[0].endswith(".pcapng")}
+            assert points == expected
+            assert re.search(r" MB/s by [12] processes$", done.stdout.rstrip()), done.stdout
 
 
 def test_the_comparison_of_speed_runs():
@@ -38,6 +42,8 @@ def test_the_comparison_of_speed_runs():
     done = subprocess.run(command, capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stderr
     assert "velodyne-decoder" in done.stdout and "times" in done.stdout
+    demanded = subprocess.run([*command, "--least", "1e9"], capture_output=True, text=True, timeout=300)
+    assert demanded.returncode == 1 and "below 1e+09" in demanded.stderr
 
 
 PAGES = ["docs/src/python.md", "docs/src/formats.md", "docs/src/open-a-cloud.md", "crates/python/README.md"]

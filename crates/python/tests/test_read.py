@@ -204,6 +204,18 @@ def test_what_is_missing_is_a_warning(tmp_path):
     assert 0 < len(points) == sum(map(len, frames))
 
 
+def test_what_replay_warns_of_is_a_warning():
+    path = RECORDINGS / "vlp16-strongest-gps.pcap"
+    # Both have one spacing of packets; points of the one are up to 1.6 m off as those of the other.
+    with pytest.warns(velomotion.RecordingWarning, match="factory byte says VLP-16; decoded as Puck Hi-Res as asked"):
+        velomotion.read(path, model="hi-res")
+    with pytest.warns(velomotion.RecordingWarning, match="returns were omitted"):
+        some = velomotion.read(path, tilt=[[0, 0], [0.01, 1]], mount=0.06)
+    assert 0 < len(some) < len(velomotion.read(path)) / 2
+    with pytest.raises(velomotion.UsageError, match="row 3 is half a revolution"):
+        velomotion.read(path, tilt=[[0, 358], [0.1, 359.9], [0.2, 1.8]], mount=0.06)
+
+
 def test_errors_are_pythons(tmp_path):
     path = RECORDINGS / "vlp16-dual.pcap"
     missing = tmp_path / "missing.pcap"
@@ -225,6 +237,9 @@ def test_errors_are_pythons(tmp_path):
                  lambda: list(velomotion.frames(path, cut=float("inf"))), lambda: velomotion.density("vlp17"),
                  lambda: velomotion.density(np.zeros((3, 3))), lambda: velomotion.density(np.ones((3, 2))),
                  lambda: velomotion.density("vlp16", level=99), lambda: velomotion.k("vlp16", bins=0),
+                 lambda: velomotion.k("vlp16", bins=3601), lambda: velomotion.k("vlp16", error=-1),
+                 lambda: velomotion.k("vlp16", error=float("nan")), lambda: velomotion.frames(path, cut=1e30),
+                 lambda: velomotion.density(np.ones((3, 3)), origin=(float("nan"), 0, 0)),
                  lambda: velomotion.k("vlp16", origin=(0, 0, 0)), lambda: velomotion.plan(lidar="os1"),
                  lambda: velomotion.plan(rpm="fast"), lambda: velomotion.plan(at_m=-1),
                  lambda: velomotion.simulate("hall", tmp_path / "log.pcapng", without=["rain"]),

@@ -5,7 +5,15 @@ commands of velomotion with these names do. Work runs without the interpreter's 
 copied, and errors are velomotion.Error.
 """
 
-from ._errors import Error, FileError, IncompleteError, IncompleteWarning, InputError, UsageError
+from ._errors import (
+    Error,
+    FileError,
+    IncompleteError,
+    IncompleteWarning,
+    InputError,
+    RecordingWarning,
+    UsageError,
+)
 from ._velomotion import Frames, Log, __version__, calibrate, density, frames, k, plan, read, simulate
 
 __all__ = [
@@ -16,6 +24,7 @@ __all__ = [
     "IncompleteWarning",
     "InputError",
     "Log",
+    "RecordingWarning",
     "UsageError",
     "__version__",
     "calibrate",

@@ -25,5 +25,9 @@ class IncompleteError(Error):
     """The result would be incomplete: no setting, too little evidence, a full disk."""
 
 
+class RecordingWarning(UserWarning):
+    """A recording contradicts itself or an argument; the result may not be what was meant."""
+
+
 class IncompleteWarning(UserWarning):
     """Something is missing in a recording; the result has the rest."""

@@ -414,3 +414,33 @@ fn refuse(query: &Query, text: &str) {
         tracing::debug!("ROS 2: {error}");
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A subscriber that asks for more than is offered gets nothing.
+    #[test]
+    fn the_view_of_rviz_subscribes_as_the_topics_are_published() {
+        let view = include_str!("../../../packaging/ros/velomotion16.rviz");
+        let fields = |key: &str| -> Vec<String> {
+            let values = view
+                .lines()
+                .filter_map(|line| line.trim().strip_prefix(key));
+            values.map(str::to_owned).collect()
+        };
+        let topics = fields("Value: /");
+        let asked = fields("Reliability Policy: ").into_iter();
+        let asked: Vec<_> = asked.zip(fields("Durability Policy: ")).collect();
+        assert_eq!((topics.len(), asked.len()), (2, 2));
+        for (topic, (reliability, durability)) in topics.iter().zip(asked) {
+            let name = format!("/{topic}");
+            let published = Topic::ALL.into_iter().find(|topic| topic.name() == name);
+            let offered = quality(published.unwrap());
+            assert!(offered.reliable || reliability == "Best Effort", "{name}");
+            assert!(offered.latched || durability == "Volatile", "{name}");
+        }
+        let frames = fields("Fixed Frame: ");
+        assert_eq!(frames, ["base_link"]);
+    }
+}

@@ -14,8 +14,9 @@
 //! from 1 ms to 10 ms are found where neither device was recorded for half a second, as on a host
 //! that sleeps, and where the samples show them: by the drive's own clock (`drive_clock`), or by
 //! the motion of the axis (`motion`). On a quiet network these show steps from 0.1 ms on. Where
-//! nothing shows the cause, the change of the delay is reported. Others, and steps undone within
-//! six seconds, are not found; the clock's bound contains all of them. `lidar` unwraps hours.
+//! nothing shows the cause, the change of the delay is reported. Others, and forward steps undone
+//! within six seconds, are not found; the clock's bound contains all of them. `lidar` unwraps
+//! hours.
 
 mod drive_clock;
 mod jumps;

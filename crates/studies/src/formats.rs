@@ -95,7 +95,7 @@ fn about(points: usize) -> Vec<String> {
             NOISE_M * 1e3
         ),
         "Bytes exclude those of an empty file. The error is the largest distance between a point written and read back. In f32 \
-         (.ply, .pcd, .e57, .mcap, .bin) it grows with distance, 4 um at 100 m; with steps of 0.1 mm (.las, .laz) it does not."
+         (.ply, .pcd, .e57, .mcap, .bin, .npz) it grows with distance, 4 um at 100 m; with steps of 0.1 mm (.las, .laz) it does not."
             .to_owned(),
     ]
 }
@@ -231,7 +231,13 @@ mod tests {
         // Half a step of f32 between 16 and 32 m is 0.95 um per coordinate.
         assert!((0.1..1.7).contains(&ply), "{ply}");
         assert_eq!(error_um(Format::Xyz), 0.0);
-        for like in [Format::Pcd, Format::E57, Format::Mcap, Format::Kitti] {
+        for like in [
+            Format::Pcd,
+            Format::E57,
+            Format::Mcap,
+            Format::Kitti,
+            Format::Npz,
+        ] {
             assert_eq!(error_um(like), ply, "{like}");
         }
         let las = error_um(Format::Las);

@@ -286,7 +286,8 @@ pub struct Simulate {
     /// HDL-64E [default: named after the scene]
     #[arg(short, long, value_name = "LOG.pcapng")]
     pub output: Option<PathBuf>,
-    /// Cloud of the true points: .ply .pcd .las .laz .e57 .mcap .csv .xyz .bin; - is PLY on stdout
+    /// Cloud of the true points: .ply .pcd .las .laz .e57 .mcap .csv .xyz .bin .npz; - is PLY on
+    /// stdout
     #[arg(long, value_name = "CLOUD")]
     pub truth: Option<PathBuf>,
     /// Random seed [default: the scene's]
@@ -367,7 +368,7 @@ pub enum EqualReturns {
 /// Output of a cloud.
 #[derive(Clone, Debug, Args)]
 pub struct Output {
-    /// Cloud to write: .ply .pcd .las .laz .e57 .mcap .csv .xyz .bin; - is PLY on stdout
+    /// Cloud to write: .ply .pcd .las .laz .e57 .mcap .csv .xyz .bin .npz; - is PLY on stdout
     #[arg(short, long, value_name = "CLOUD")]
     pub output: Option<PathBuf>,
     /// Add a column sd: standard error of each point (root mean square), metres
@@ -387,7 +388,7 @@ pub struct Output {
 /// `view`.
 #[derive(Clone, Debug, Args)]
 pub struct ViewArguments {
-    /// Clouds (.ply .pcd .las .laz .e57 .mcap .csv .xyz .bin .txt .asc), logs or recordings
+    /// Clouds (.ply .pcd .las .laz .e57 .mcap .csv .xyz .bin .npz .txt .asc), logs or recordings
     /// (pcapng, pcap); a log's cloud is made first and plays along its time
     #[arg(value_name = "FILE", required = true)]
     pub files: Vec<PathBuf>,
@@ -462,8 +463,8 @@ pub struct Analyze {
     /// Patterns by name: a lidar (vlp16, hi-res, hdl32e, vlp32c, hdl64e, utm30lx, lms151), which
     /// tilts with :SPEED and spins with ,spin; rmbl:SPEED, rsbl:SPEED, velomotion16:SPEED. Each
     /// takes ,KEY=VALUE: rpm, step, start, seam, from, to, accel, tilt, frames, d, and planar
-    /// scanners ,roll or ,pitch. Clouds (.ply .pcd .las .laz .e57 .mcap .csv .xyz .bin .txt .asc),
-    /// logs or recordings
+    /// scanners ,roll or ,pitch. Clouds (.ply .pcd .las .laz .e57 .mcap .csv .xyz .bin .npz .txt
+    /// .asc), logs or recordings
     #[arg(value_name = "PATTERN|CLOUD|LOG", required = true)]
     pub inputs: Vec<String>,
     /// Subdivisions of the icosahedron whose faces are the bins: 20 x 4^N bins

@@ -8,6 +8,7 @@ use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, Table};
 use engine::reconstruct::report::{
     Contents, InfoReport, LiveReport, Reception, ScanReport, SensorReport, SweepReport,
 };
+use engine::words::counted;
 
 use crate::terminal::width_of;
 
@@ -124,8 +125,10 @@ fn reception_line(reception: &Reception) -> String {
         n => format!(", {n} of other senders omitted"),
     };
     format!(
-        "{} lidar packets, {} dropped by the kernel{others}; {} records dropped by the log",
-        reception.received, reception.dropped_by_kernel, reception.dropped_by_log
+        "{}, {} dropped by the kernel{others}; {} dropped by the log",
+        counted(reception.received, "lidar packet"),
+        reception.dropped_by_kernel,
+        counted(reception.dropped_by_log, "record")
     )
 }
 
@@ -156,9 +159,13 @@ fn cloud_line(scan: &ScanReport) -> String {
     match scan.clouds {
         None => scan.output.clone(),
         Some(clouds) if Format::from_path(Path::new(&scan.output)) == Ok(Format::Mcap) => {
-            format!("{clouds} frames in {}", scan.output)
+            format!("{} in {}", counted(clouds, "frame"), scan.output)
         }
-        Some(clouds) => format!("{clouds} frames, numbered from the name {}", scan.output),
+        Some(clouds) => format!(
+            "{}, numbered from the name {}",
+            counted(clouds, "frame"),
+            scan.output
+        ),
     }
 }
 
@@ -190,8 +197,9 @@ pub fn scan_table(scan: &ScanReport) -> String {
         rows.push((
             "",
             format!(
-                "{} gaps between samples, the longest {:.2} s",
-                sync.angle_gaps, sync.longest_angle_gap_s
+                "{} between samples, the longest {:.2} s",
+                counted(sync.angle_gaps, "gap"),
+                sync.longest_angle_gap_s
             ),
         ));
     }

@@ -40,16 +40,81 @@ fn blocks_of(page: &Path) -> Vec<Block> {
 }
 
 /// Programs of a command that runs: velomotion, and what its tutorials use.
-const PROGRAMS: [&str; 5] = [
+const PROGRAMS: [&str; 7] = [
     "velomotion ",
+    "time velomotion ",
     "target/release/velomotion ",
     "ssh robot cat ",
     "sed ",
     "printf ",
+    "(umask 77; ",
+];
+
+/// Beginnings of the other commands, and why they do not run here. `tests/architecture` looks
+/// whether what they name exists.
+const NOT_RUN: [(&str, &str); 37] = [
+    (
+        "cargo test -p ",
+        "a test of its own, which cargo test --workspace runs",
+    ),
+    ("cargo test --workspace", "this test is one of it"),
+    ("cargo bench -p ", "measures for minutes"),
+    ("cargo run --release -p ", "compiles with optimisation"),
+    (
+        "cargo run --release -- capture",
+        "the quick start's test runs the program under test",
+    ),
+    ("cargo run --release --bin seeds", "fuzzing is by hand"),
+    ("cargo build --release", "compiles with optimisation"),
+    ("cargo run -p velomotion --example", "packaging/deb runs it"),
+    (
+        "cargo install --path",
+        "tests/packaging/install-times runs it",
+    ),
+    ("cargo install cargo-", "another program"),
+    ("cargo +nightly fuzz", "fuzzing is by hand"),
+    ("cd fuzz", "fuzzing is by hand"),
+    ("just ", "200 captures; CI runs some of them"),
+    ("packaging/deb", "CI builds and checks the package"),
+    ("sudo apt ", "tests/packaging/check does it"),
+    ("sudo systemctl ", "tests/packaging/check does it"),
+    ("systemctl status", "tests/packaging/check does it"),
+    ("journalctl ", "tests/packaging/check reads the log"),
+    ("systemd-analyze ", "tests/packaging/check runs it"),
+    ("sudo adduser ", "changes this machine"),
+    ("sudo install ", "changes this machine"),
+    ("sudo tcpdump ", "needs a lidar"),
+    ("sudo modprobe ", "needs a drive"),
+    ("echo ", "needs a drive, or the bridge to DDS"),
+    ("podman ", "tests/packaging/install-times runs it"),
+    (
+        "VELOMOTION_",
+        "a test of its own, which writes into the sources",
+    ),
+    ("tests/foreign/vcan/in-vm", "CI runs it"),
+    ("python3 benches/", "measures for minutes"),
+    ("python3 -m venv", "CI makes one"),
+    (". venv", "CI makes one"),
+    ("pip install", "CI installs the wheel"),
+    (
+        "python crates/python/examples",
+        "pytest runs it (crates/python/tests)",
+    ),
+    (
+        "export RMW_IMPLEMENTATION",
+        "ROS 2 is no package of this system",
+    ),
+    ("ros2 ", "ROS 2 is no package of this system"),
+    ("rviz2 ", "ROS 2 is no package of this system"),
+    ("ROS_DISTRO=", "tests/foreign/dds does it"),
+    (
+        "for scene in ",
+        "makes pictures of the book, with optimisation",
+    ),
 ];
 
 /// Files that the commands of a page read and do not make.
-const INPUTS: [(&str, &[&str]); 8] = [
+const INPUTS: [(&str, &[&str]); 10] = [
     (
         "README",
         &[
@@ -62,6 +127,8 @@ const INPUTS: [(&str, &[&str]); 8] = [
     ),
     ("accuracy-study", &["mount.toml"]),
     ("formats", &["walk.pcap"]),
+    ("open-a-cloud", &["hall.pcapng"]),
+    ("rays", &["crates/sim/scenes/hall.toml"]),
     ("patterns", &["hall.ply", "capture.pcapng", "survey.las"]),
     (
         "replay",
@@ -120,6 +187,10 @@ fn make_input(place: &Place, name: &str) {
             }
             write(&packets);
         }
+        "crates/sim/scenes/hall.toml" => {
+            std::fs::create_dir_all(place.path(name).parent().unwrap()).unwrap();
+            std::fs::copy(book().join("../..").join(name), place.path(name)).unwrap();
+        }
         "angles.csv" => write(b"time_s,angle_deg\n0.0,-10\n0.02,-20\n"),
         "mount.toml" => write(b"[mount]\nd_m = 0.06\n"),
         "scene.toml" | "my-scene.toml" => {
@@ -160,7 +231,7 @@ fn run_page(folder: &Path, page: &str) -> Vec<Result<(), String>> {
             let rest = line.strip_prefix(program).unwrap();
             let mut line = match *program {
                 "ssh robot cat " => format!("cat {rest}"),
-                "target/release/velomotion " => format!("velomotion {rest}"),
+                "target/release/velomotion " | "time velomotion " => format!("velomotion {rest}"),
                 _ => line.to_owned(),
             };
             // The bench has no lidar, and no person answers its questions.
@@ -199,7 +270,10 @@ fn run_line(folder: &Path, line: &str) -> (Option<i32>, String) {
             "pipefail",
             "-c",
         ])
-        .arg(format!("exec 2>&1\nexec {line}"))
+        .arg(format!(
+            "exec 2>&1\n{}{line}",
+            if line.starts_with('(') { "" } else { "exec " }
+        ))
         .current_dir(folder)
         .env(
             "PATH",
@@ -328,6 +402,121 @@ fn shell_of(block: &Block) -> String {
     };
     let lines = text.lines().filter(is_typed);
     lines.flat_map(|line| [line, "\n"]).collect()
+}
+
+/// The commands of a page's tables with a column of commands.
+fn commands_of_tables(page: &Path) -> Vec<String> {
+    let text = std::fs::read_to_string(page).unwrap();
+    let mut lines = text.lines();
+    let mut commands = Vec::new();
+    while let Some(head) = lines.next() {
+        let cells = |row: &str| -> Vec<String> {
+            let row = row.trim_matches('|').split(" | ");
+            row.map(|cell| cell.trim().to_owned()).collect()
+        };
+        let column = cells(head).iter().position(|cell| cell == "command");
+        let Some(column) = column.filter(|_| head.starts_with('|')) else {
+            continue;
+        };
+        for row in lines
+            .by_ref()
+            .skip(1)
+            .take_while(|row| row.starts_with('|'))
+        {
+            let cell = &cells(row)[column];
+            let command = cell
+                .strip_prefix('`')
+                .and_then(|cell| cell.strip_suffix('`'));
+            commands.extend(command.map(str::to_owned));
+        }
+    }
+    commands
+}
+
+#[test]
+fn the_commands_of_tables_run_as_printed() {
+    let mut ran = Vec::new();
+    for page in pages() {
+        let commands = commands_of_tables(&page);
+        let name = page.file_stem().unwrap().to_str().unwrap();
+        let place = Place::new();
+        for input in INPUTS.iter().filter(|(page, _)| *page == name) {
+            input.1.iter().for_each(|input| make_input(&place, input));
+        }
+        for (at, line) in commands.iter().enumerate() {
+            // Two programs may read one file.
+            if line.starts_with("velomotion replay") && !commands[..at].contains(line) {
+                let (code, output) = run_line(place.0.path(), line);
+                let failure = || format!("{name}: {line}: {code:?}\n{output}");
+                ran.push((code == Some(0)).then_some(()).ok_or_else(failure));
+            }
+        }
+    }
+    assert!(count(ran) >= 4);
+}
+
+/// The page's requests, to a daemon of this test.
+#[test]
+fn the_requests_of_the_daemons_page_run_as_printed() {
+    let folder = crate::daemon::rig::place();
+    let daemon = crate::daemon::rig::Process::start(folder.path());
+    crate::daemon::rig::ready(daemon.address);
+    let lines: String = blocks_of(&book().join("daemon.md"))
+        .iter()
+        .map(shell_of)
+        .collect();
+    let mut id = String::new();
+    let mut requests = 0;
+    for line in lines.lines().filter(|line| line.starts_with("$ curl ")) {
+        let address = format!("http://{}", daemon.address);
+        let mut line = line[2..].replace("http://127.0.0.1:8016", &address);
+        if let Some(at) = line.find("simulated-") {
+            let end = at + line[at..].find('Z').unwrap() + 1;
+            line.replace_range(at..end, &id);
+        }
+        // What it prints is read here.
+        let line = line.split(" | ").next().unwrap();
+        let (code, output) = run_line(folder.path(), line);
+        assert_eq!(code, Some(0), "{line}\n{output}");
+        if id.is_empty() {
+            let scan: serde_json::Value = serde_json::from_str(&output).unwrap();
+            scan["id"].as_str().unwrap().clone_into(&mut id);
+            crate::daemon::rig::finished(daemon.address, &id);
+        }
+        requests += 1;
+    }
+    assert_eq!(requests, 3);
+    let mut files = std::fs::read_dir(folder.path()).unwrap();
+    let is_laz = |path: &Path| path.extension().is_some_and(|is| is == "laz");
+    assert!(files.any(|file| is_laz(&file.unwrap().path())));
+}
+
+/// A command that no test runs has a reason.
+#[test]
+fn every_other_command_has_a_reason_not_to_run() {
+    let mut used = std::collections::BTreeSet::new();
+    let mut wrong = Vec::new();
+    for page in pages() {
+        let lines: String = blocks_of(&page).iter().map(shell_of).collect();
+        let (mut of_loop, is_daemon) = (false, page.ends_with("daemon.md"));
+        for line in lines.lines() {
+            let line = line.strip_prefix("$ ").unwrap_or(line).trim();
+            let runs = PROGRAMS.iter().any(|start| line.starts_with(start));
+            // A request of the daemon's page, or words of a loop.
+            let known = (is_daemon && line.starts_with("curl ")) || of_loop || line.is_empty();
+            of_loop = (of_loop || line.starts_with("for ")) && !line.ends_with("done");
+            if runs || known || line.starts_with('#') {
+                continue;
+            }
+            match NOT_RUN.iter().find(|(start, _)| line.starts_with(start)) {
+                Some((start, _)) => _ = used.insert(*start),
+                None => wrong.push(format!("{}: {line}", page.display())),
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    let unused = NOT_RUN.iter().filter(|(start, _)| !used.contains(start));
+    assert_eq!(unused.count(), 0, "{used:?}");
 }
 
 /// Of all commands verbs, options and values exist, of those in prose verbs and options.

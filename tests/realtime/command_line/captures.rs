@@ -278,6 +278,35 @@ fn invalid_speeds_and_angles_are_refused_before_anything_moves() {
         &["a log must be a file", "--log"],
     );
     place.fails("capture --speed 10 -o cloud.xyzzy", 2, &[".xyzzy", ".laz"]);
+    place.fails(
+        "capture --speed 1e300",
+        2,
+        &["error:", "'1e300'", "--speed"],
+    );
+    place.fails("capture --speed 10 --log x.pcap", 2, &["x.pcap", ".pcapng"]);
+}
+
+#[test]
+fn info_of_a_capture_names_file_start_sweeps_and_configuration() {
+    let place = Place::new();
+    std::fs::write(
+        place.path("rig.toml"),
+        "device = \"sim\"\n[mount]\nd_m = 0.11\n",
+    )
+    .unwrap();
+    let line = "capture --speed 90 --from 0 --to -5 --config rig.toml -o scan.ply --json";
+    let scan = json(&place.run(line));
+    let info = json(&place.run("info scan.pcapng --json"));
+    assert_eq!(info["file"], "scan.pcapng");
+    assert_eq!(info["configuration"]["mount"]["d_m"], 0.11);
+    assert_eq!(info["sweeps"], scan["sweeps"]);
+    assert_eq!(info["sweeps"].as_array().unwrap().len(), 1);
+    let since_s = std::time::SystemTime::now()
+        .duration_since(std::time::UNIX_EPOCH)
+        .unwrap()
+        .as_secs_f64()
+        - info["start_s"].as_f64().unwrap();
+    assert!((0.0..600.0).contains(&since_s), "{info}");
 }
 
 #[test]

@@ -1,12 +1,13 @@
 //! ASTM E57 (E2807), by the `e57` crate.
 //!
-//! One point cloud per sweep, or one in all if there are no sweeps, with its pose (identity),
-//! bounds, limits, the times at which acquisition began and ended, and the metadata in its
-//! description, which begins with SIMULATED for simulated devices. A point has cartesianX, Y, Z
-//! (f32), intensity (0..=255), rowIndex (the ring) and timeStamp (f64 seconds after a whole
-//! second). Tilt and further columns are attributes of an extension, which other readers ignore.
-//! There is no columnIndex, as a cloud of several revolutions is not a grid, and no creation date,
-//! as the same log must give the same bytes.
+//! One point cloud per sweep, or one in all if there are no sweeps, with its pose (the identity, or
+//! the heading of a georeferenced cloud, whose points stay in the scanner's axes), bounds, limits,
+//! the times at which acquisition began and ended, and the metadata in its description, which
+//! begins with SIMULATED for simulated devices. A point has cartesianX, Y, Z (f32), intensity
+//! (0..=255), rowIndex (the ring) and timeStamp (f64 seconds after a whole second). Tilt and
+//! further columns are attributes of an extension, which other readers ignore. There is no
+//! columnIndex, as a cloud of several revolutions is not a grid, and no creation date, as the same
+//! log must give the same bytes.
 //!
 //! The library's writer of a cloud borrows its writer of a file, so both live on a thread of their
 //! own, fed by a short queue.
@@ -173,7 +174,7 @@ impl<W: Read + Write + Seek + Send + 'static> FormatEncoder for E57Encoder<W> {
     }
 
     fn begin(&mut self, metadata: &Metadata) -> Result<(), EncodeError> {
-        self.description = metadata.lines();
+        self.description = worker::description(metadata);
         let Some(output) = self.output.take() else {
             return Ok(());
         };
@@ -189,6 +190,10 @@ impl<W: Read + Write + Seek + Send + 'static> FormatEncoder for E57Encoder<W> {
     }
 
     fn wants_tilt(&self) -> bool {
+        true
+    }
+
+    fn has_pose(&self) -> bool {
         true
     }
 

@@ -43,6 +43,11 @@ pub trait FormatEncoder {
         let _ = track;
     }
 
+    /// Whether the file has a pose for its points, which then stay in the scanner's axes.
+    fn has_pose(&self) -> bool {
+        false
+    }
+
     /// Writes a batch that has the columns.
     ///
     /// # Errors
@@ -133,7 +138,12 @@ impl<E: FormatEncoder> Sink for FileSink<E> {
         let format = self.encoder.format();
         self.stage.points(format)?;
         batch.fields().require(self.fields)?;
-        let batch = &*EastNorthUp::apply(self.east_north_up, batch);
+        let placed = &*EastNorthUp::apply(self.east_north_up, batch);
+        let batch = if self.encoder.has_pose() {
+            batch
+        } else {
+            placed
+        };
         if let Some(limit_m) = self.encoder.limit_m() {
             batch.check_coordinates(format, limit_m, self.summary.points)?;
         }
@@ -141,7 +151,7 @@ impl<E: FormatEncoder> Sink for FileSink<E> {
             self.stage = Stage::Cut;
             return Err(self.error(fault));
         }
-        self.summary.add(batch.summary());
+        self.summary.add(placed.summary());
         Ok(())
     }
 

@@ -34,6 +34,11 @@ impl RowLayout {
         }
     }
 
+    /// Bytes of a row.
+    pub(super) const fn row_bytes(&self) -> usize {
+        self.rows.row_bytes()
+    }
+
     /// Names and number types, in order.
     pub(super) fn properties(&self) -> impl Iterator<Item = (&'static str, NumberType)> {
         let columns = self.fields.columns();

@@ -1,5 +1,5 @@
-//! Clouds as files: PLY, PCD, LAS/LAZ, E57, MCAP, CSV, XYZ and KITTI, each a [`Sink`] over a
-//! writer.
+//! Clouds as files: PLY, PCD, LAS/LAZ, E57, MCAP, CSV, XYZ, KITTI and numpy's npz, each a [`Sink`]
+//! over a writer.
 //!
 //! The default columns are intensity, ring, time and tilt ([`Fields::FILE`](crate::Fields::FILE)).
 //!
@@ -12,6 +12,7 @@
 //! | MCAP | f32, within 4 um at 100 m | stamp, f32 seconds after it within 0.25 us | by time |
 //! | CSV, XYZ | exact | exact | batch by batch |
 //! | KITTI | f32, within 4 um at 100 m | none | batch by batch |
+//! | NPZ | f32, within 4 um at 100 m | f64 Unix seconds, within 0.12 us | batch by batch |
 
 mod csv;
 mod e57;
@@ -22,6 +23,7 @@ pub(crate) mod kitti;
 pub(crate) mod las;
 mod layout;
 pub mod mcap;
+pub(crate) mod npz;
 pub mod pcd;
 pub mod ply;
 mod seconds;
@@ -54,6 +56,8 @@ pub enum Format {
     Xyz,
     /// `.bin` of KITTI: position and reflectance alone.
     Kitti,
+    /// numpy's `.npz`.
+    Npz,
 }
 
 /// An extension without a format.
@@ -79,7 +83,7 @@ fn expected() -> String {
 
 impl Format {
     /// Every format.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Ply,
         Self::Pcd,
         Self::Las,
@@ -89,6 +93,7 @@ impl Format {
         Self::Csv,
         Self::Xyz,
         Self::Kitti,
+        Self::Npz,
     ];
 
     /// Whether the metadata, and the mark SIMULATED, are only in a companion.
@@ -126,6 +131,7 @@ impl Format {
             Self::Csv => "csv",
             Self::Xyz => "xyz",
             Self::Kitti => "bin",
+            Self::Npz => "npz",
         }
     }
 
@@ -166,6 +172,7 @@ impl Format {
             Self::Mcap => Box::new(mcap::McapWriter::new(output, fields)),
             Self::Csv | Self::Xyz => Box::new(csv::CsvWriter::new(output, self, fields)),
             Self::Kitti => Box::new(kitti::KittiWriter::new(output)),
+            Self::Npz => Box::new(npz::NpzWriter::new(output, fields)),
         }
     }
 }
@@ -197,7 +204,7 @@ mod tests {
         let error = Format::from_extension("obj").unwrap_err();
         assert_eq!(
             error.to_string(),
-            "no cloud format for extension .obj: expected one of .ply .pcd .las .laz .e57 .mcap .csv .xyz .bin"
+            "no cloud format for extension .obj: expected one of .ply .pcd .las .laz .e57 .mcap .csv .xyz .bin .npz"
         );
         let error = Format::from_path(Path::new("cloud")).unwrap_err();
         assert!(error.to_string().contains("without extension"), "{error}");

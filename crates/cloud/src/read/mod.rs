@@ -2,13 +2,15 @@
 //!
 //! The formats of [`crate::formats`], as written here and by other programs: PLY and PCD as text or
 //! binary in any layout of columns, LAS and LAZ of every version of the `las` crate, E57,
-//! PointCloud2 in MCAP, text with a row per point, KITTI. Positions are in metres as in the file.
+//! PointCloud2 in MCAP, text with a row per point, KITTI, structured arrays of numpy. Positions are
+//! in metres as in the file.
 
 mod csv;
 mod e57;
 mod kitti;
 mod las;
 mod mcap;
+mod npz;
 mod pcd;
 mod ply;
 mod source;
@@ -36,6 +38,7 @@ pub fn cloud(format: Format, bytes: Vec<u8>, wanted: Fields) -> Result<StoredClo
         Format::Mcap => mcap::read(&bytes, &mut cloud),
         Format::Csv | Format::Xyz => csv::read(format, &bytes, &mut cloud),
         Format::Kitti => kitti::read(&bytes, &mut cloud),
+        Format::Npz => npz::read(&bytes, &mut cloud),
     }?;
     Ok(cloud)
 }

@@ -58,7 +58,12 @@ fn files_round_trip() {
         assert_eq!(read.len(), points.len());
         // f32 at 100 m; 0.1 mm steps; shortest decimals.
         let most = match format {
-            Format::Ply | Format::Pcd | Format::E57 | Format::Mcap | Format::Kitti => 4e-6,
+            Format::Ply
+            | Format::Pcd
+            | Format::E57
+            | Format::Mcap
+            | Format::Kitti
+            | Format::Npz => 4e-6,
             Format::Las | Format::Laz => 0.51e-4,
             Format::Csv | Format::Xyz => 0.0,
         };

@@ -174,7 +174,7 @@ impl From<LeaseError> for Refusal {
                 StatusCode::CONFLICT,
                 Kind::Busy,
                 format!("the axis is busy: {}", task.description()),
-                "wait until it is done, or stop it (POST /api/v1/tilt/stop, tilt stop)",
+                "wait until it is done, or stop it (velomotion tilt stop)",
             )
             .retry_after(RETRY_S),
         }

@@ -471,7 +471,19 @@ fn check(request: &PlanRequest) -> Result<(), Failure> {
                 "{flag}: expected a number above 0 {unit}, got {}",
                 ShortNumber(value)
             );
-            let help = "plan --help explains the limits";
+            let help = "velomotion plan --help explains the limits";
+            return Err(Failure::new(Kind::Usage, message).help(help));
+        }
+    }
+    let deviations = [
+        ("--range-sd", request.range_sd_m, 10.0, "m"),
+        ("--mount-sd", request.mount_sd_deg, 90.0, "deg"),
+    ];
+    for (flag, value, most, unit) in deviations {
+        if let Some(value) = value.filter(|value| !(0.0..=most).contains(value)) {
+            let got = ShortNumber(value);
+            let message = format!("{flag}: expected 0 to {most} {unit}, got {got}");
+            let help = "give a standard deviation, or leave it out";
             return Err(Failure::new(Kind::Usage, message).help(help));
         }
     }

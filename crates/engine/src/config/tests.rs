@@ -130,3 +130,17 @@ fn a_misspelt_key_is_an_error_with_its_line() {
         assert!(error.contains("line 3") && error.contains(what), "{error}");
     }
 }
+
+#[test]
+fn an_error_names_the_page_of_its_table() {
+    for (text, expected) in [
+        ("[axis]\nmin = 5", "wiring"),
+        ("[daemon]\nlisten = 5", "daemon"),
+        ("[daemon]\n[daemon.ros2]\ndds = 'yes'", "ros2"),
+        ("[daemon.ros2]\n[lidar]\nrpm = 'fast'", "wiring"),
+        ("[daemon", "daemon"),
+    ] {
+        let error = toml::from_str::<Config>(text).unwrap_err();
+        assert_eq!(page(text, &error), expected, "{text}");
+    }
+}

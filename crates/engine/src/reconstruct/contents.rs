@@ -15,6 +15,7 @@ use crate::reconstruct::report::{
     Contents, Gps, InfoReport, MissingPackets, PacketCounts, SensorReport, SweepReport, TiltReport,
 };
 use crate::reconstruct::source::{PassSummary, SensorAddress, Source};
+use crate::words::counted;
 
 /// Reads the whole recording and lists what it holds.
 ///
@@ -36,7 +37,7 @@ pub fn read_contents(source: &Source, options: Options) -> Result<InfoReport, Fa
     })?;
     let sensor = sensors.first().map(|survey| survey.name().to_string());
     let mut contents = sensors.contents(&config, survey.drive(), &pass, &survey.steps());
-    let mut sweeps = Vec::new();
+    let (mut sweeps, mut incomplete) = (Vec::new(), Vec::new());
     if survey.drive().is_some() && contents.packets.data > 0 {
         match survey.solve(&config, &TiltSource::Log, Accuracy::Best) {
             Ok(alignment) => {
@@ -44,9 +45,8 @@ pub fn read_contents(source: &Source, options: Options) -> Result<InfoReport, Fa
                 sweeps = found
                     .map(|sweep| SweepReport::new(sweep, contents.rpm))
                     .collect();
-                contents
-                    .warnings
-                    .extend(incomplete_sweeps(&config, &alignment));
+                incomplete = incomplete_sweeps(&config, &alignment);
+                contents.warnings.extend(incomplete.iter().cloned());
             }
             Err(error) => contents.warnings.push(error.to_string()),
         }
@@ -57,6 +57,7 @@ pub fn read_contents(source: &Source, options: Options) -> Result<InfoReport, Fa
         start_s: start.map(|start| start.as_secs_f64()),
         sensor,
         sweeps,
+        incomplete_sweeps: incomplete,
         configuration: source.has_config()?.then_some(config),
     })
 }
@@ -203,8 +204,8 @@ impl SensorSurveys {
         contents.packets.malformed += unassigned.malformed;
         if let Some(error) = &unassigned.first_malformed {
             contents.warnings.push(format!(
-                "{} packets resemble a lidar's but match no lidar here, the first: {error}",
-                unassigned.malformed
+                "{} like a lidar's without a lidar here, the first: {error}",
+                counted(unassigned.malformed, "packet")
             ));
         }
         if self.sensors.len() > 1 {
@@ -334,14 +335,16 @@ fn warnings(stats: &Stats, pass: &PassSummary, steps: &[ClockStep]) -> Vec<Strin
     let lidar_was_set = steps.iter().any(|step| step.clock == SetClock::Lidar);
     if let Some(malformed) = &pass.counts.first_malformed {
         warnings.push(format!(
-            "{} records are damaged, the first at byte {}: {}",
-            pass.counts.malformed, malformed.offset, malformed.fault
+            "{} damaged, the first at byte {}: {}",
+            counted(pass.counts.malformed, "record"),
+            malformed.offset,
+            malformed.fault
         ));
     }
     if let Some(error) = &stats.first_malformed {
         warnings.push(format!(
-            "{} lidar packets are damaged, the first: {error}",
-            stats.malformed
+            "{} damaged, the first: {error}",
+            counted(stats.malformed, "lidar packet")
         ));
     }
     let counts_with_text = [

@@ -3,6 +3,7 @@
 use cloud::{Diagnostic, DiagnosticLevel};
 
 use crate::reconstruct::report::{Contents, ScanReport, SyncReport};
+use crate::words::counted;
 
 /// Checks of a scan: devices, losses, clock, tilt, cloud.
 #[must_use]
@@ -60,7 +61,7 @@ fn devices(contents: &Contents) -> Diagnostic {
 fn lidar(scan: &ScanReport) -> Diagnostic {
     let contents = &scan.contents;
     let lost = contents.lost_packets.saturating_add(scan.lost_records);
-    let problem = (lost > 0).then(|| format!("{lost} packets were lost"));
+    let problem = (lost > 0).then(|| format!("{} lost", counted(lost, "packet")));
     let packets = contents.packets;
     let values = NamedValues::new()
         .with_some("model", contents.model.as_ref())

@@ -33,6 +33,7 @@ use crate::reconstruct::report::{
 };
 use crate::reconstruct::source::{PassSummary, Source};
 use crate::reconstruct::utc::{InUtc, UtcSurvey};
+use crate::words::counted;
 
 /// Clock of the point times.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -319,7 +320,8 @@ fn omit_without_utc(scan: &mut ScanReport, without_utc: u64) {
             None => reason,
         });
         scan.contents.warnings.push(format!(
-            "{without_utc} points were omitted: the lidar's clock was not locked to UTC"
+            "{} omitted: the lidar's clock was not locked to UTC",
+            counted(without_utc, "point")
         ));
     }
 }

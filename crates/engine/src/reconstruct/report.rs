@@ -145,6 +145,9 @@ pub struct InfoReport {
     pub sensor: Option<String>,
     /// Sweeps of a log. Why there are none is a warning.
     pub sweeps: Vec<SweepReport>,
+    /// Planned sweeps that are incomplete; also in the warnings.
+    #[serde(skip)]
+    pub incomplete_sweeps: Vec<String>,
     /// Configuration of the scanner in a log; null for a plain recording.
     pub configuration: Option<ScanConfig>,
 }

@@ -25,7 +25,7 @@ pub fn tilt_source(text: &str) -> Result<TiltSource, Failure> {
 fn angle_table(path: &Path) -> Result<AngleTable, Failure> {
     let wrong = |what: String| {
         Failure::new(Kind::BadInput, format!("{}: {what}", path.display())).help(
-            "--tilt takes log, none, or a CSV of time_s,angle_deg with decimal points: times in increasing \
+            "--tilt takes log, none, or a CSV of time_s,angle_deg (time or t, angle or tilt) with decimal points: times in increasing \
              order, either Unix seconds or seconds since the recording's first packet",
         )
     };
@@ -34,7 +34,9 @@ fn angle_table(path: &Path) -> Result<AngleTable, Failure> {
     let rows = rows_of(&text).map_err(wrong)?;
     let (lines, rows): (Vec<usize>, Vec<(f64, f64)>) = rows.into_iter().unzip();
     AngleTable::new(rows).map_err(|error| match error {
-        AngleTableError::Range { row } | AngleTableError::Order { row } => {
+        AngleTableError::Range { row }
+        | AngleTableError::Order { row }
+        | AngleTableError::Wrapped { row } => {
             let line = lines.get(row.saturating_sub(1)).copied().unwrap_or(row);
             wrong(format!("line {line}: {error}"))
         }
@@ -42,9 +44,9 @@ fn angle_table(path: &Path) -> Result<AngleTable, Failure> {
     })
 }
 
-/// The rows with their lines. A first line without numbers is a header; its units must be seconds
-/// and degrees. The first line has the separator and the number of columns of all: decimal commas
-/// would give other numbers.
+/// The rows with their lines. A first line without numbers is a header; it must name a time in
+/// seconds and then an angle in degrees. The first line has the separator and the number of columns
+/// of all: decimal commas would give other numbers.
 fn rows_of(text: &str) -> Result<Rows, String> {
     // Spreadsheets begin UTF-8 with a byte order mark.
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
@@ -71,7 +73,7 @@ fn rows_of(text: &str) -> Result<Rows, String> {
                 return wrong("the two columns time_s,angle_deg, or a header first");
             }
             Some(row) => rows.push((number, row)),
-            None if is_first && has_units(&cells) => {}
+            None if is_first && is_header(&cells) => {}
             None if is_first => return wrong("the columns time_s,angle_deg"),
             None => return wrong("two finite numbers with decimal points"),
         }
@@ -79,14 +81,18 @@ fn rows_of(text: &str) -> Result<Rows, String> {
     Ok(rows)
 }
 
-/// Whether these are names of columns, the first two without another unit: `time,angle` has none.
-fn has_units(header: &[&str]) -> bool {
-    let units = ["s", "deg"];
-    header.len() >= units.len()
-        && header.iter().zip(units).all(|(name, unit)| {
+/// Whether the first two names are a time and an angle without another unit; `time,angle` has
+/// none.
+fn is_header(header: &[&str]) -> bool {
+    let known: [(&[&str], &str); 2] = [
+        (&["time", "t", "timestamp"], "s"),
+        (&["angle", "tilt", "tilt_angle", "a"], "deg"),
+    ];
+    header.len() >= known.len()
+        && header.iter().zip(known).all(|(name, (names, unit))| {
             let name = name.to_lowercase();
-            let found = name.rsplit_once('_');
-            name.starts_with(char::is_alphabetic) && found.is_none_or(|(_, found)| found == unit)
+            let end = format!("_{unit}");
+            names.contains(&name.strip_suffix(&end).unwrap_or(&name))
         })
 }
 
@@ -108,6 +114,7 @@ mod tests {
             "time_s,angle_deg",
             "Time;Angle",
             "t_s, tilt_deg",
+            "timestamp,tilt_angle_deg",
             "time_s,angle_deg,note",
             "\u{feff}time_s,angle_deg",
         ] {
@@ -118,6 +125,13 @@ mod tests {
             "time_ms,angle_deg",
             "time_s,position_qc",
             "time_s",
+            "angle,time",
+            "angle_deg,time_s",
+            "seconds,radians",
+            "time (ms),angle (rad)",
+            "secs,nsecs,angle_deg",
+            "time,speed,angle",
+            "x,y,z",
         ] {
             let message = rows_of(header).unwrap_err();
             assert!(message.starts_with("line 1: expected the columns time_s,angle_deg"));

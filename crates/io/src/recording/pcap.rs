@@ -123,7 +123,10 @@ fn describe(start: &[u8]) -> String {
         (b"\x1F\x8B", "gzip (unpack it first)"),
         (b"\xFD7zXZ", "xz (unpack it first)"),
         (b"\x28\xB5\x2F\xFD", "zstd (unpack it first)"),
-        (b"PK\x03\x04", "a zip archive (unpack it first)"),
+        (
+            b"PK\x03\x04",
+            "a zip archive (unpack it first) or a cloud of numpy",
+        ),
         (
             b"\x34\xCD\xB2\xA1",
             "modified pcap (convert it with editcap)",

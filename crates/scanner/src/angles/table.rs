@@ -47,6 +47,14 @@ pub enum AngleTableError {
         /// Row, counted from 1 over the rows with numbers.
         row: usize,
     },
+    /// A table whose angles begin again after a revolution: between them the axis would turn back.
+    #[error(
+        "tilt angles: row {row} is half a revolution or more from the row before it: expected angles that go on beyond 360 or -180 deg"
+    )]
+    Wrapped {
+        /// Row, counted from 1 over the rows with numbers.
+        row: usize,
+    },
 }
 
 /// Clock of a table's times.
@@ -66,7 +74,8 @@ impl AngleTable {
     ///
     /// # Errors
     /// [`AngleTableError::Short`] with fewer than two rows, [`AngleTableError::Range`] for times
-    /// and angles that cannot be, [`AngleTableError::Order`] where time does not increase.
+    /// and angles that cannot be, [`AngleTableError::Order`] where time does not increase,
+    /// [`AngleTableError::Wrapped`] where angles begin again after a revolution.
     pub fn new(rows: Vec<(f64, f64)>) -> Result<Self, AngleTableError> {
         if rows.len() < 2 {
             return Err(AngleTableError::Short { rows: rows.len() });
@@ -77,8 +86,11 @@ impl AngleTable {
         let back = rows
             .windows(2)
             .position(|w| matches!(w, [a, b] if b.0 <= a.0));
-        match back {
-            Some(row) => Err(AngleTableError::Order { row: row + 2 }),
+        if let Some(row) = back {
+            return Err(AngleTableError::Order { row: row + 2 });
+        }
+        match wrapped(&rows) {
+            Some(row) => Err(AngleTableError::Wrapped { row: row + 1 }),
             None => Ok(Self { rows }),
         }
     }
@@ -131,6 +143,26 @@ impl AngleTable {
     }
 }
 
+/// The first row after a jump of half a revolution or more that is more than twice as fast as the
+/// other rows, while the rest of the revolution would be as slow as they are.
+fn wrapped(rows: &[(f64, f64)]) -> Option<usize> {
+    let steps = rows.windows(2).map(|pair| match pair {
+        [before, after] => ((after.1 - before.1).abs(), after.0 - before.0),
+        _ => (0.0, 1.0),
+    });
+    let usual_deg_s = steps
+        .clone()
+        .filter(|(step_deg, _)| *step_deg < 180.0)
+        .map(|(step_deg, seconds)| 2.0 * step_deg / seconds)
+        .reduce(f64::max)?;
+    let mut steps = steps;
+    let jump = steps.position(|(step_deg, seconds)| {
+        let usual_deg = usual_deg_s * seconds;
+        step_deg >= 180.0 && step_deg > usual_deg && 360.0 - step_deg <= usual_deg
+    });
+    jump.map(|at| at + 1)
+}
+
 /// Times from 1653 to 2286 and angles within ten revolutions: others are mistakes, and would
 /// overflow 64 bits of nanoseconds.
 fn in_range((seconds, degrees): (f64, f64)) -> bool {
@@ -158,6 +190,34 @@ mod tests {
             .samples(&recording(1_600_000_000, 1_600_000_010))
             .unwrap();
         assert_eq!(samples[0].host.as_nanos(), 1_600_000_000_500_000_000);
+    }
+
+    /// Interpolated, the axis would turn back through the whole circle within one row.
+    #[test]
+    fn angles_that_begin_again_after_a_revolution_are_refused() {
+        let table = |angles: &[f64]| {
+            let rows = (0..).zip(angles).map(|(at, angle)| (f64::from(at), *angle));
+            AngleTable::new(rows.collect()).map(|_| ())
+        };
+        let wrapped = |row| Err(AngleTableError::Wrapped { row });
+        assert_eq!(table(&[358.0, 359.9, 1.8, 5.0]), wrapped(3));
+        assert_eq!(table(&[178.0, 179.9, -179.0]), wrapped(3));
+        assert_eq!(table(&[1.0, 359.0, 357.0]), wrapped(2));
+        assert_eq!(table(&[0.0, 100.0, 200.0, 300.0, 40.0]), wrapped(5));
+        // Slow and quantised motion.
+        assert_eq!(table(&[358.0, 359.9, 359.9, 0.1, 2.0]), wrapped(4));
+        assert_eq!(table(&[359.9, 359.95, 359.94, 0.01, 0.05]), wrapped(4));
+        // Fast rotations, and sweeps there and back with a row at each end.
+        for angles in [
+            &[0.0, 360.0][..],
+            &[0.0, 200.0, 400.0, 600.0],
+            &[-90.0, 90.0],
+            &[-90.0, 90.0, -90.0, 90.0],
+            &[0.0, 100.0, -100.0, 100.0, 0.0],
+            &[10.0, 0.0, -10.0, 0.0, 10.0],
+        ] {
+            assert_eq!(table(angles), Ok(()), "{angles:?}");
+        }
     }
 
     #[test]

@@ -5,7 +5,7 @@
 //! about uniform brightness (63-9243, appendix F). The footprint is sampled by sub-rays of equal
 //! light. Surfaces within `separation_m` make one return at the mean range weighted by light (a
 //! mixed pixel); surfaces farther apart make two returns, of which the sensor reports the
-//! strongest, the last or both. It separates them from 1 m on (section 6.2).
+//! strongest, the last or both. The VLS-128 separates them from 1 m on (63-9483, section 6.2.3).
 //!
 //! Sub-rays are cast only where the footprint may span an edge: not where the surroundings are one
 //! plane ([`plain`]), else where one of the four corners is off the plane of the others or of

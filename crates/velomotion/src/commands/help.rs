@@ -315,9 +315,11 @@ fn text(words: &[String], width: Option<usize>) -> Option<String> {
     let mut command = command();
     command.build();
     let [first, ..] = words else {
+        let longest = PAGES.iter().map(|(name, _)| name.len()).max();
+        let width = longest.unwrap_or_default();
         let pages = PAGES.map(|(name, text)| {
             let title = text.lines().find_map(|line| line.strip_prefix("# "));
-            format!("  {name:12} {}", title.unwrap_or_default())
+            format!("  {name:width$}  {}", title.unwrap_or_default())
         });
         let help = command.render_long_help();
         return Some(format!(
@@ -441,8 +443,9 @@ mod tests {
         assert!(of(&["tilt", "goto"]).unwrap().contains("Target angle"));
         assert!(of(&["formats"]).unwrap().starts_with("# Formats"));
         let all = of(&[]).unwrap();
+        let page = |line: &str| line.split_whitespace().eq(["formats", "Formats"]);
         assert!(
-            all.contains("firmware-sim") && all.contains("  formats      Formats"),
+            all.contains("firmware-sim") && all.lines().any(page),
             "{all}"
         );
         assert_eq!(of(&["nothing"]), None);

@@ -17,6 +17,7 @@ use engine::reconstruct::lidar_copy;
 use engine::reconstruct::replay::{self, Reconstruction};
 use engine::reconstruct::source::Source;
 use engine::reconstruct::tilt_table::tilt_source;
+use engine::words::counted;
 use scanner::{TableTime, TiltSource};
 use units::Degrees;
 
@@ -216,8 +217,8 @@ fn copy(
             .say("SIMULATED: this log was made by simulated devices; the pcap does not say so");
     }
     let text = format!(
-        "{} packets of the lidar in {}",
-        report.datagrams,
+        "{} in {}",
+        counted(report.datagrams, "lidar packet"),
         pcap.display()
     );
     Ok(CommandOutput {

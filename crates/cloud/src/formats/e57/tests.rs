@@ -112,6 +112,45 @@ fn the_file_describes_itself() {
     assert_eq!((pose.rotation.w, pose.translation.z), (1.0, 0.0));
 }
 
+/// Readers apply the pose; other formats have points that are turned already.
+#[test]
+fn a_georeferenced_scan_has_the_heading_as_its_pose() {
+    for heading_deg in [30.0, -270.0, 300.0] {
+        assert_heading_is_pose(heading_deg);
+    }
+}
+
+fn assert_heading_is_pose(heading_deg: f64) {
+    let cloud = cloud_from(100, NOW_NS);
+    let axes = crate::EastNorthUp::new(units::Degrees(heading_deg));
+    let georeferenced = Metadata {
+        east_north_up: Some(axes),
+        ..metadata()
+    };
+    let file = SharedOutput::default();
+    let mut writer = E57Writer::new(file.clone(), Fields::FILE);
+    writer.begin(&georeferenced).unwrap();
+    writer.points(&cloud).unwrap();
+    let bounds = writer.finish().unwrap().bounds.unwrap();
+    let about = E57Reader::new(Cursor::new(file.content())).unwrap();
+    let pose = about.pointclouds().remove(0).transform.unwrap();
+    let half = (heading_deg / 2.0).to_radians();
+    assert!(pose.rotation.w >= 0.0);
+    assert!((pose.rotation.w - half.cos().abs()).abs() < 1e-15);
+    assert!((pose.rotation.z.abs() - half.sin().abs()).abs() < 1e-15);
+    let description = about.pointclouds().remove(0).description.unwrap();
+    assert!(description.contains("frame: x east, y north, z up"));
+    assert!(description.contains(", after the pose"), "{description}");
+    let read = crate::read::positions(crate::formats::Format::E57, file.content()).unwrap();
+    assert_eq!(read.positions.len(), cloud.len());
+    for (read, point) in read.positions.iter().zip(cloud.iter()) {
+        let placed = axes.place(point.position_m);
+        let off = |axis: usize| (read[axis] - placed[axis]).abs();
+        assert!(off(0) < 8e-6 && off(1) < 8e-6 && off(2) < 8e-6);
+        assert!((0..3).all(|axis| placed[axis] <= bounds.max_m[axis]));
+    }
+}
+
 /// Sweeps become scans for any batches; one without points, here the second, is left out.
 #[test]
 fn each_sweep_is_a_scan() {

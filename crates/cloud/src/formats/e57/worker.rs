@@ -8,7 +8,7 @@ use e57::{DateTime, Extension, Quaternion, Transform, Translation};
 use units::{Host, Stamp};
 
 use super::attributes::{NAMESPACE, PointAttributes, URL};
-use crate::{Metadata, Points};
+use crate::{EastNorthUp, Metadata, Points};
 
 /// Commands to the thread.
 pub(super) enum WorkerCommand {
@@ -37,15 +37,20 @@ pub(super) struct CloudDescription {
     description: String,
     sensor: String,
     software: String,
+    /// Rotation of the pose of every scan, (x, y, z, w).
+    rotation: [f64; 4],
 }
 
 impl CloudDescription {
     pub(super) fn new(metadata: &Metadata) -> Self {
         Self {
             simulated: metadata.simulated,
-            description: text(&metadata.lines().join("\n")),
+            description: text(&description(metadata).join("\n")),
             sensor: text(&metadata.source),
             software: text(&metadata.software),
+            rotation: metadata
+                .east_north_up
+                .map_or([0.0, 0.0, 0.0, 1.0], EastNorthUp::rotation),
         }
     }
 
@@ -56,6 +61,16 @@ impl CloudDescription {
             None => format!("{mark}scan"),
         }
     }
+}
+
+/// The metadata. Points of a georeferenced cloud are in the scanner's axes before the pose.
+pub(super) fn description(metadata: &Metadata) -> Vec<String> {
+    let mut lines = metadata.lines();
+    if metadata.east_north_up.is_some() {
+        let frames = lines.iter_mut().filter(|line| line.starts_with("frame: "));
+        frames.for_each(|line| line.push_str(", after the pose"));
+    }
+    lines
 }
 
 /// Text for a CDATA section, without its end mark.
@@ -116,13 +131,9 @@ fn write_scan<W: Read + Write + Seek>(
     cloud.set_description(Some(about.description.clone()));
     cloud.set_sensor_model(some(&about.sensor));
     cloud.set_sensor_sw_version(some(&about.software));
+    let [x, y, z, w] = about.rotation;
     cloud.set_transform(Some(Transform {
-        rotation: Quaternion {
-            w: 1.0,
-            x: 0.0,
-            y: 0.0,
-            z: 0.0,
-        },
+        rotation: Quaternion { w, x, y, z },
         translation: Translation {
             x: 0.0,
             y: 0.0,

@@ -10,7 +10,7 @@ import { announce } from "./messages.ts";
 const MORE = "+";
 /** Cloud formats: extension and displayed name. */
 const FORMATS: [string, string][] = [
-  ["ply", "PLY"], ["laz", "LAZ"], ["las", "LAS"], ["pcd", "PCD"], ["e57", "E57"], ["csv", "CSV"], ["mcap", "MCAP (ROS 2)"],
+  ["ply", "PLY"], ["laz", "LAZ"], ["las", "LAS"], ["pcd", "PCD"], ["e57", "E57"], ["csv", "CSV"], ["npz", "NPZ (numpy)"], ["mcap", "MCAP (ROS 2)"],
 ];
 const STATES: Record<string, string> = { recording: "recording", making: "making the cloud", whole: "complete", partial: "partial", failed: "no cloud" };
 let formats = FORMATS;

@@ -109,7 +109,7 @@ impl<'a> InputArgument<'a> {
 /// Extensions of text files with one row per point, apart from `.csv` and `.xyz`.
 const TEXT_EXTENSIONS: [&str; 2] = ["txt", "asc"];
 
-const HINT: &str = "name a pattern (a lidar: vlp16, hi-res, hdl32e, vlp32c, hdl64e, utm30lx, lms151, each with :SPEED to tilt and ,spin to spin; rmbl:SPEED, rsbl:SPEED, velomotion16:SPEED), a cloud (.ply .pcd .las .laz .e57 .mcap .csv .xyz .bin .txt .asc), \
+const HINT: &str = "name a pattern (a lidar: vlp16, hi-res, hdl32e, vlp32c, hdl64e, utm30lx, lms151, each with :SPEED to tilt and ,spin to spin; rmbl:SPEED, rsbl:SPEED, velomotion16:SPEED), a cloud (.ply .pcd .las .laz .e57 .mcap .csv .xyz .bin .npz .txt .asc), \
                     or a log or recording (pcapng, pcap)";
 
 /// The failure for an invalid pattern.

@@ -497,7 +497,7 @@ fn inputs_that_cannot_be_analysed_are_errors() {
         (
             "analyze nosuch.ply",
             3,
-            ".e57 .mcap .csv .xyz .bin .txt .asc",
+            ".e57 .mcap .csv .xyz .bin .npz .txt .asc",
         ),
         ("analyze vlp16,start=0,start=90", 2, "expected start once"),
         ("analyze velomotion16:50,,d=1", 2, "expected KEY=VALUE"),
