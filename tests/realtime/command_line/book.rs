@@ -54,10 +54,7 @@ const PROGRAMS: [&str; 8] = [
 /// Beginnings of the other commands, and why they do not run here. `tests/architecture` looks
 /// whether what they name exists.
 const NOT_RUN: [(&str, &str); 37] = [
-    (
-        "cargo test -p ",
-        "a test of its own, which cargo test --workspace runs",
-    ),
+    ("cargo test -p ", "a test of its own, which CI runs"),
     ("cargo test --workspace", "this test is one of it"),
     ("cargo bench -p ", "measures for minutes"),
     ("cargo run --release -p ", "compiles with optimisation"),
@@ -77,9 +74,9 @@ const NOT_RUN: [(&str, &str); 37] = [
     ("cd fuzz", "fuzzing is by hand"),
     ("just ", "200 captures; CI runs some of them"),
     ("packaging/deb", "CI builds and checks the package"),
-    ("sudo apt ", "tests/packaging/check does it"),
-    ("sudo systemctl ", "tests/packaging/check does it"),
-    ("systemctl status", "tests/packaging/check does it"),
+    ("sudo apt ", "tests/packaging/check installs and removes it"),
+    ("sudo systemctl ", "tests/packaging/check uses the service"),
+    ("systemctl status", "tests/packaging/check uses the service"),
     ("journalctl ", "tests/packaging/check reads the log"),
     ("systemd-analyze ", "tests/packaging/check runs it"),
     ("sudo adduser ", "changes this machine"),
